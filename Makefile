@@ -1,0 +1,110 @@
+# make            create the environment, run the sweep SWEEP to its figure and fit
+# make test       create the environment, run the tests
+# make help       all targets
+#
+# Variables
+#   SWEEP=config/default.yaml   the configuration that `make` runs; results in results/<its name>/
+#   PYTHON=python3              the interpreter that .venv is made from (3.11 or newer)
+#   MPI=wheel | system          wheel (default): MPICH from the package index, no system MPI needed.
+#                               system: for a cluster. mpi4py is built from its source release against
+#                               the MPI whose mpicc is first on PATH (or in MPICC), so load that MPI's
+#                               module first; this needs its compiler and headers. `mpiexec` (or srun)
+#                               is then the system's. The choice is remembered until .venv is removed.
+
+SWEEP  ?= config/default.yaml
+PYTHON ?= python3
+MPI    ?= $(if $(wildcard .venv/.packages-system),system,wheel)
+
+ifeq ($(filter wheel system,$(MPI)),)
+$(error MPI=$(MPI) is unknown; use MPI=wheel or MPI=system)
+endif
+
+export PYTHONNOUSERSITE := 1
+
+RESULTS  = results/$(basename $(notdir $(SWEEP)))/
+REPORT   = results/tests/junit.xml
+IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1
+PIP      = PIP_USE_PEP517=1 .venv/bin/python -m pip install --quiet --no-deps --no-build-isolation
+PACKAGES = .venv/.packages-$(MPI)
+READY    = .venv/.ready-$(MPI)
+
+# The blocks of the lock whose package matches the pattern $(1); those that do not with $(2) = !
+locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
+
+.DEFAULT_GOAL := all
+.PHONY: all env test nightly lint lock clean help
+
+all: env  ## Run the sweep SWEEP to its figure and fit
+	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP)
+	@echo "Results: $(RESULTS)"
+
+env: $(READY)  ## Create .venv from requirements.lock
+
+# Starts from an empty .venv, so that nothing of an older lock stays behind. The build tools come
+# first: what has no wheel is then built by locked tools, not by whatever is newest.
+$(PACKAGES): requirements.lock
+	@command -v "$(PYTHON)" >/dev/null || { \
+	  echo "There is no interpreter '$(PYTHON)'; install Python 3.11 or newer or name one: make env PYTHON=python3.12" >&2; exit 1; }
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	  echo "'$(PYTHON)' is $$("$(PYTHON)" -V 2>&1); crackfront needs Python 3.11 or newer: make env PYTHON=python3.12" >&2; exit 1; }
+	@rm -rf .venv
+	@if "$(PYTHON)" -c 'import ensurepip, venv' 2>/dev/null; then "$(PYTHON)" -m venv .venv; \
+	elif command -v virtualenv >/dev/null; then virtualenv --quiet --python "$(PYTHON)" .venv; \
+	elif command -v uv >/dev/null; then uv venv --quiet --seed --python "$(PYTHON)" .venv; \
+	else echo "'$(PYTHON)' cannot create a virtual environment; run 'apt-get install python3-venv' (as root) and repeat" >&2; exit 1; fi
+	@echo "Installing requirements.lock into .venv (about a minute) ..."
+	@$(call locked,setuptools|cython) > .venv/lock-build.txt
+	@$(call locked,mpi4py|mpich) > .venv/lock-mpi.txt
+	@$(call locked,mpi4py) > .venv/lock-mpi4py.txt
+	@$(call locked,(mpi4py|mpich),!) > .venv/lock-rest.txt
+	@$(PIP) --require-hashes --requirement .venv/lock-build.txt
+	@$(PIP) --require-hashes --requirement .venv/lock-rest.txt
+ifeq ($(MPI),wheel)
+	@$(PIP) --require-hashes --only-binary mpi4py,mpich --requirement .venv/lock-mpi.txt
+else
+	@$(PIP) --require-hashes --no-binary mpi4py --no-cache-dir --requirement .venv/lock-mpi4py.txt
+endif
+	@touch $@
+
+$(READY): $(PACKAGES) pyproject.toml
+	@$(PIP) --editable .
+	@.venv/bin/python -m pip check --quiet
+ifeq ($(MPI),wheel)
+	@$(IN_ENV) mpiexec -n 2 .venv/bin/python -c 'from mpi4py import MPI; assert MPI.COMM_WORLD.size == 2' || { \
+	  echo "mpiexec and mpi4py in .venv do not belong together; run 'make clean env'" >&2; exit 1; }
+endif
+	@touch $@
+	@echo "Environment: .venv ($$(.venv/bin/python -V), MPI=$(MPI))"
+
+test: env  ## Run the tests that are not slow
+	@mkdir -p $(dir $(REPORT))
+	@echo "Test report: $(REPORT)"
+	@$(IN_ENV) .venv/bin/python -m pytest -m "not slow" --junitxml=$(REPORT)
+
+nightly: env  ## Run all tests, the slow ones too
+	@mkdir -p $(dir $(REPORT))
+	@echo "Test report: $(REPORT)"
+	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT)
+
+lint: env  ## Style, format, types, import floors, format of the rules
+	.venv/bin/ruff check
+	.venv/bin/ruff format --check
+	.venv/bin/mypy
+	.venv/bin/lint-imports
+	.venv/bin/snakefmt --check Snakefile workflow
+
+lock:  ## Resolve requirements.in and pyproject.toml anew into requirements.lock
+	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT \
+	&& "$(PYTHON)" -m venv "$$tools" && "$$tools/bin/pip" install --quiet uv \
+	&& "$$tools/bin/uv" pip compile --quiet --no-config --upgrade --universal --python-version 3.11 --fork-strategy fewest \
+	  --generate-hashes --no-emit-index-url --no-annotate --no-header \
+	  --output-file requirements.lock requirements.in pyproject.toml >/dev/null
+	@echo "Locked: requirements.lock"
+
+clean:  ## Remove .venv and caches, never results
+	rm -rf .venv .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache build *.egg-info
+	find crackfront tests workflow -type d -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
+
+help:  ## Show this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' Makefile
+	@echo "Variables: SWEEP=$(SWEEP) PYTHON=$(PYTHON) MPI=$(MPI) (see the top of the Makefile)"
