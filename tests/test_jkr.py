@@ -1,0 +1,159 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from crackfront import jkr
+from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION
+
+# facts.md: radius, penetration and force of the smooth sphere at w = w_int.
+STATES = {
+    "pull-off at fixed penetration": (0.550321208, -0.908560296, -5 / 6),
+    "pull-off at fixed force": (1.144714243, -0.436790232, -3 / 2),
+    "zero penetration": (1.386722549, 0.0, -4 / 3),
+    "zero force": (1.817120593, 1.100642416, 0.0),
+    "unit penetration": (1.783484193282, 1.0, -0.161241120956),
+}
+DIGIT = 6e-10
+
+radii = st.floats(0.05, 4.0)
+penetrations = st.floats(-2.0, 3.0)
+adhesions = st.floats(0.1, 3.0)
+
+
+def derivative(function, at, step=1e-5):
+    """Central difference of fourth order."""
+    near = function(at + step) - function(at - step)
+    far = function(at + 2 * step) - function(at - 2 * step)
+    return (8 * near - far) / (12 * step)
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_a_tabulated_state_is_in_equilibrium(state):
+    radius, penetration, _ = STATES[state]
+    assert jkr.equilibrium_penetration(radius) == pytest.approx(penetration, abs=5 * DIGIT)
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_both_expressions_of_the_force_give_the_tabulated_one(state):
+    radius, penetration, force = STATES[state]
+    assert jkr.equilibrium_force(radius) == pytest.approx(force, abs=5 * DIGIT)
+    assert jkr.force(radius, penetration) == pytest.approx(force, abs=5 * DIGIT)
+
+
+@pytest.mark.parametrize("state", list(STATES)[1:])
+def test_a_stable_radius_is_found_from_its_penetration(state):
+    radius, penetration, _ = STATES[state]
+    assert jkr.equilibrium_radius(penetration) == pytest.approx(radius, abs=5 * DIGIT)
+
+
+def test_radius_at_zero_penetration_is_exact():
+    assert jkr.equilibrium_radius(0.0) == pytest.approx((8 / 3) ** (1 / 3), rel=1e-15)
+
+
+def test_pull_off_is_at_the_closed_form_values():
+    assert jkr.pull_off_radius() == pytest.approx(0.550321208, abs=DIGIT)
+    assert jkr.pull_off_penetration() == pytest.approx(-0.908560296, abs=DIGIT)
+    assert jkr.pull_off_force() == -1.5
+
+
+def test_no_force_lies_below_the_pull_off_force():
+    force = jkr.equilibrium_force(np.linspace(0.01, 3, 100_001))
+    assert force.min() == pytest.approx(jkr.pull_off_force(), abs=1e-8)
+    assert np.all(force >= jkr.pull_off_force() - 1e-14)
+
+
+def test_no_penetration_lies_below_pull_off():
+    penetration = jkr.equilibrium_penetration(np.linspace(0.01, 3, 100_001))
+    assert np.all(penetration >= jkr.pull_off_penetration() - 1e-14)
+
+
+def test_the_contact_is_still_found_at_the_pull_off_penetration_itself():
+    found = jkr.equilibrium_radius(jkr.pull_off_penetration())
+    assert found == pytest.approx(jkr.pull_off_radius(), rel=1e-6)
+
+
+@given(adhesions)
+def test_radius_penetration_and_force_scale_with_powers_of_the_adhesion(adhesion):
+    assert jkr.pull_off_radius(adhesion) == pytest.approx(
+        adhesion ** (1 / 3) * jkr.pull_off_radius(), rel=1e-13
+    )
+    assert jkr.pull_off_penetration(adhesion) == pytest.approx(
+        adhesion ** (2 / 3) * jkr.pull_off_penetration(), rel=1e-13
+    )
+    assert jkr.pull_off_force(adhesion) == pytest.approx(adhesion * jkr.pull_off_force(), rel=1e-14)
+
+
+@given(radii, adhesions)
+def test_equilibrium_means_that_the_release_rate_is_the_work_of_adhesion(radius, adhesion):
+    penetration = jkr.equilibrium_penetration(radius, adhesion)
+    assert jkr.apparent_work_of_adhesion(radius, penetration) == pytest.approx(adhesion, rel=1e-10)
+
+
+@given(st.floats(-0.9, 5.0), st.floats(1.0, 3.0))
+def test_equilibrium_radius_inverts_equilibrium_penetration_on_the_stable_branch(
+    penetration, adhesion
+):
+    radius = jkr.equilibrium_radius(penetration, adhesion)
+    assert radius >= jkr.pull_off_radius(adhesion)
+    assert jkr.equilibrium_penetration(radius, adhesion) == pytest.approx(penetration, abs=1e-13)
+
+
+@given(radii, penetrations)
+def test_force_is_the_derivative_of_the_elastic_energy_in_penetration(radius, penetration):
+    slope = derivative(lambda b: float(jkr.elastic_energy(radius, b)), penetration, step=1e-2)
+    assert jkr.force(radius, penetration) == pytest.approx(slope, rel=1e-9, abs=1e-9)
+
+
+@given(radii, penetrations)
+def test_release_rate_is_the_derivative_of_the_elastic_energy_in_area(radius, penetration):
+    slope = derivative(lambda a: float(jkr.elastic_energy(a, penetration)), radius, step=1e-3)
+    release = jkr.stress_intensity(radius, penetration) ** 2 / (2 * CONTACT_MODULUS)
+    assert 2 * np.pi * radius * release == pytest.approx(slope, rel=1e-7, abs=1e-7)
+
+
+@given(radii, st.floats(-2.0, 0.0))
+def test_release_rate_has_its_closed_form_where_the_edge_is_open(radius, penetration):
+    closed = 3 / 8 * (radius**2 - penetration) ** 2 / radius / np.pi
+    assert jkr.energy_release_rate(radius, penetration) == pytest.approx(closed, rel=1e-13)
+
+
+@given(radii, st.floats(1e-6, 2.0))
+def test_an_edge_in_compression_releases_nothing(radius, excess):
+    penetration = radius**2 + excess
+    assert jkr.stress_intensity(radius, penetration) < 0
+    assert jkr.energy_release_rate(radius, penetration) == 0
+    assert jkr.apparent_work_of_adhesion(radius, penetration) == 0
+
+
+@given(st.floats(0.3, 3.0), st.floats(0.3, 2.0))
+def test_release_rate_hardens_as_the_closed_form_says(radius, adhesion):
+    penetration = float(jkr.equilibrium_penetration(radius, adhesion))
+    slope = derivative(lambda a: float(jkr.energy_release_rate(a, penetration)), radius)
+    closed = np.sqrt(6 * adhesion * radius) - adhesion / radius
+    assert slope / WORK_OF_ADHESION == pytest.approx(closed, rel=1e-7, abs=1e-7)
+
+
+@given(adhesions)
+def test_the_circle_loses_its_stability_exactly_at_fixed_penetration_pull_off(adhesion):
+    radius = jkr.pull_off_radius(adhesion)
+    assert np.sqrt(6 * adhesion * radius) - adhesion / radius == pytest.approx(0.0, abs=1e-12)
+
+
+def test_functions_broadcast_over_arrays():
+    radius, penetration = np.array([[1.0], [2.0]]), np.array([-0.5, 0.0, 0.5])
+    for function in (jkr.stress_intensity, jkr.energy_release_rate, jkr.force, jkr.elastic_energy):
+        both = function(radius, penetration)
+        assert both.shape == (2, 3)
+        assert both[1, 2] == function(2.0, 0.5)
+
+
+def test_a_radius_below_pull_off_is_refused_with_the_limit():
+    with pytest.raises(ValueError, match=r"penetration -1.0 is below pull-off \(-0.90856\)"):
+        jkr.equilibrium_radius(-1.0)
+
+
+def test_a_weaker_sphere_is_lost_at_a_penetration_that_the_stronger_one_survives():
+    assert jkr.equilibrium_radius(-0.9) > 0
+    with pytest.raises(ValueError, match=r"work of adhesion of 0\.5 w_int"):
+        jkr.equilibrium_radius(-0.9, 0.5)

@@ -1,0 +1,54 @@
+import pytest
+
+from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
+
+NANODIAMOND = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / (1 - 0.5**2))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "digit"),
+    [("lateral", 62.9e-6, 0.05e-6), ("vertical", 3.16e-6, 0.005e-6), ("force", 0.247e-3, 5e-7)],
+)
+def test_nanodiamond_contact_has_the_published_scales(name, value, digit):
+    assert getattr(NANODIAMOND, name) == pytest.approx(value, abs=digit)
+
+
+@pytest.mark.parametrize("name", ["lateral", "vertical", "force", "energy_per_area"])
+def test_a_scene_that_is_given_in_reduced_units_is_left_as_it_is(name):
+    reduced = Scales(radius=1.0, work_of_adhesion=WORK_OF_ADHESION, contact_modulus=CONTACT_MODULUS)
+    assert getattr(reduced, name) == pytest.approx(1.0, rel=1e-14)
+
+
+def test_reduced_work_of_adhesion_turns_into_that_of_the_scene():
+    assert NANODIAMOND.energy_per_area * WORK_OF_ADHESION == pytest.approx(63e-3, rel=1e-14)
+
+
+def test_one_energy_is_the_same_as_force_times_height_and_as_adhesion_times_area():
+    by_load = NANODIAMOND.force * NANODIAMOND.vertical
+    by_area = NANODIAMOND.energy_per_area * NANODIAMOND.lateral**2
+    assert by_load == pytest.approx(by_area, rel=1e-14)
+
+
+def test_contact_modulus_turns_into_that_of_the_scene():
+    stiffness = NANODIAMOND.force / (NANODIAMOND.lateral * NANODIAMOND.vertical)
+    assert stiffness * CONTACT_MODULUS == pytest.approx(0.7e6 / 0.75, rel=1e-14)
+
+
+def test_a_sphere_curves_by_its_own_radius_in_its_own_units():
+    assert NANODIAMOND.lateral**2 / NANODIAMOND.vertical == pytest.approx(1.25e-3, rel=1e-14)
+
+
+def test_scales_do_not_depend_on_the_unit_of_length_that_the_scene_is_given_in():
+    # Lengths in mm and forces in mN: E' in mN/mm^2 = 1e3 Pa, w in mN/mm = 1 J/m^2.
+    other = Scales(radius=1.25, work_of_adhesion=63e-3, contact_modulus=0.7e3 / 0.75)
+    assert other.lateral == pytest.approx(1e3 * NANODIAMOND.lateral, rel=1e-14)
+    assert other.vertical == pytest.approx(1e3 * NANODIAMOND.vertical, rel=1e-14)
+    assert other.force == pytest.approx(1e3 * NANODIAMOND.force, rel=1e-14)
+
+
+@pytest.mark.parametrize("name", ["radius", "work_of_adhesion", "contact_modulus"])
+@pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_scene_without_positive_finite_parameters_is_refused(name, value):
+    scene = {"radius": 1.0, "work_of_adhesion": 1.0, "contact_modulus": 1.0, name: value}
+    with pytest.raises(ValueError, match=f"{name} is {value}; it must be positive and finite"):
+        Scales(**scene)
