@@ -1,0 +1,168 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
+
+# SI Fig. S-5, reduced units: shortest wavelength, roll-off, Hurst exponent.
+PAPER = [(0.005, 0.005, 0.8), (0.000625, 0.01, 0.8), (0.000625, 0.1, 0.3), (0.005, 0.1, 0.3)]
+
+# E = 0.7 MPa, nu = 0.5, R = 1.25 mm, w_int = 63 mJ/m2 (facts.md).
+NANODIAMOND_SCALES = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
+NANODIAMOND = SelfAffineSpectrum(short_cutoff=1e-10, roll_off=2.1e-6, hurst=1.0, plateau=8.4e-27)
+
+
+@st.composite
+def spectra(draw):
+    short = draw(st.floats(1e-3, 0.1))
+    return SelfAffineSpectrum(
+        short_cutoff=short,
+        roll_off=short * draw(st.floats(1.0, 200.0)),
+        hurst=draw(st.one_of(st.floats(0.05, 1.0), st.just(0.5))),
+        plateau=draw(st.floats(1e-8, 1e2)),
+    )
+
+
+def mean_square_by_quadrature(spectrum, order):
+    """Integral of q^(2 order) C(q) q / 2 pi, piece by piece in log q."""
+    knee, cutoff = 2 * np.pi / spectrum.roll_off, 2 * np.pi / spectrum.short_cutoff
+
+    def integrand(log_q):
+        q = math.exp(log_q)
+        return q ** (2 + 2 * order) * float(spectrum.density(q)) / (2 * np.pi)
+
+    scale = integrand(math.log(knee))
+    flat = quad(lambda s: integrand(s) / scale, math.log(knee) - 40, math.log(knee))[0]
+    tail = quad(lambda s: integrand(s) / scale, math.log(knee), math.log(cutoff))[0]
+    return scale * (flat + tail)
+
+
+@given(spectra(), st.sampled_from([0.0, 0.5, 1.0, 2.0]))
+def test_mean_square_is_the_integral_of_the_density(spectrum, order):
+    expected = mean_square_by_quadrature(spectrum, order)
+    assert spectrum.mean_square(order) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(("short", "roll_off", "hurst"), PAPER)
+def test_half_derivative_of_the_paper_spectra_has_its_closed_form(short, roll_off, hurst):
+    knee, ratio = 2 * np.pi / roll_off, roll_off / short
+    closed = knee**3 / (2 * np.pi) * (1 / 3 + (ratio ** (1 - 2 * hurst) - 1) / (1 - 2 * hurst))
+    assert SelfAffineSpectrum(short, roll_off, hurst).mean_square(0.5) == pytest.approx(
+        closed, rel=1e-13
+    )
+
+
+def test_half_derivative_at_hurst_one_half_is_a_logarithm():
+    spectrum = SelfAffineSpectrum(0.002, 0.1, 0.5, plateau=3.0)
+    knee = 2 * np.pi / 0.1
+    closed = 3.0 * knee**3 / (2 * np.pi) * (1 / 3 + math.log(50))
+    assert spectrum.mean_square(0.5) == pytest.approx(closed, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("order", "offset"),
+    [(0.5, 1e-15), (0.5, 1e-9), (0.5, -1e-9), (0.5, 1e-6), (1.0, -1e-15), (1.0, -1e-9)],
+)
+def test_mean_square_is_continuous_where_hurst_exponent_and_order_agree(order, offset):
+    exact = SelfAffineSpectrum(0.002, 0.1, order).mean_square(order)
+    near = SelfAffineSpectrum(0.002, 0.1, order + offset).mean_square(order)
+    assert near == pytest.approx(exact, rel=10 * abs(offset) + 1e-13)
+
+
+def test_a_flat_spectrum_does_not_depend_on_the_hurst_exponent():
+    rough, smooth = (SelfAffineSpectrum(0.01, 0.01, hurst) for hurst in (0.1, 1.0))
+    assert rough.mean_square(0.5) == smooth.mean_square(0.5)
+    assert rough.mean_square(0.5) == pytest.approx((2 * np.pi / 0.01) ** 3 / (6 * np.pi))
+
+
+def test_density_is_flat_to_the_roll_off_falls_to_the_cutoff_and_is_zero_beyond():
+    spectrum = SelfAffineSpectrum(0.01, 0.1, 0.7, plateau=5.0)
+    knee, cutoff = 2 * np.pi / 0.1, 2 * np.pi / 0.01
+    assert np.all(spectrum.density(np.array([0.0, 0.5 * knee, knee])) == pytest.approx(5.0))
+    assert spectrum.density(3 * knee) == pytest.approx(5.0 * 3 ** (-2 - 1.4))
+    assert spectrum.density(cutoff) == pytest.approx(5.0 * 10 ** (-2 - 1.4))
+    assert spectrum.density(1.0001 * cutoff) == 0
+
+
+@given(spectra(), st.floats(1e-4, 0.9))
+def test_scaling_to_an_elastic_energy_changes_nothing_but_the_height(spectrum, energy):
+    scaled = spectrum.with_elastic_energy(energy)
+    assert scaled.elastic_energy == pytest.approx(energy, rel=1e-12)
+    assert scaled.correlation_length == pytest.approx(spectrum.correlation_length, rel=1e-12)
+    assert (scaled.short_cutoff, scaled.roll_off, scaled.hurst) == (
+        spectrum.short_cutoff,
+        spectrum.roll_off,
+        spectrum.hurst,
+    )
+
+
+@pytest.mark.parametrize("energy", [0.0, -0.1, float("nan")])
+def test_scaling_to_no_elastic_energy_is_refused(energy):
+    with pytest.raises(ValueError, match="must be positive and finite"):
+        SelfAffineSpectrum(0.01, 0.1, 0.8).with_elastic_energy(energy)
+
+
+@given(spectra())
+def test_elastic_energy_is_a_quarter_of_the_modulus_times_the_half_derivative(spectrum):
+    expected = CONTACT_MODULUS / 4 * spectrum.mean_square(0.5) / WORK_OF_ADHESION
+    assert spectrum.elastic_energy == pytest.approx(expected, rel=1e-13)
+
+
+def test_correlation_length_of_a_flat_spectrum_is_four_thirds_of_its_cutoff():
+    # <q> of q C(q) ~ q is 3/4 of the cutoff.
+    assert SelfAffineSpectrum(0.03, 0.03, 1.0).correlation_length == pytest.approx(0.04, rel=1e-13)
+
+
+@given(spectra())
+def test_correlation_length_lies_above_the_shortest_wavelength(spectrum):
+    assert spectrum.correlation_length >= spectrum.short_cutoff * (1 - 1e-12)
+    assert spectrum.correlation_length <= 4 / 3 * spectrum.roll_off * (1 + 1e-12)
+
+
+def test_nanodiamond_needs_the_published_energy_to_conform():
+    in_si = NANODIAMOND_SCALES.contact_modulus / 4 * NANODIAMOND.mean_square(0.5)
+    assert in_si == pytest.approx(11.1e-3, abs=0.05e-3)
+
+
+def test_nanodiamond_has_the_published_height():
+    assert math.sqrt(NANODIAMOND.mean_square(0.0)) == pytest.approx(109e-9, abs=1e-9)
+
+
+def test_nanodiamond_energy_in_reduced_units_is_that_of_si():
+    unit = NANODIAMOND_SCALES
+    reduced = SelfAffineSpectrum(
+        short_cutoff=NANODIAMOND.short_cutoff / unit.lateral,
+        roll_off=NANODIAMOND.roll_off / unit.lateral,
+        hurst=1.0,
+        plateau=NANODIAMOND.plateau / (unit.vertical * unit.lateral) ** 2,
+    )
+    in_si = unit.contact_modulus / 4 * NANODIAMOND.mean_square(0.5) / unit.work_of_adhesion
+    assert reduced.elastic_energy == pytest.approx(in_si, rel=1e-12)
+    assert reduced.elastic_energy == pytest.approx(0.177, abs=0.0005)
+    assert 2 * math.sqrt(reduced.elastic_energy) == pytest.approx(0.84, abs=0.005)
+
+
+@pytest.mark.parametrize("hurst", [0.0, -0.1, 1.0001, float("nan")])
+def test_a_hurst_exponent_outside_its_range_is_refused(hurst):
+    with pytest.raises(ValueError, match=rf"hurst is {hurst}; it must lie in \(0, 1\]"):
+        SelfAffineSpectrum(0.01, 0.1, hurst)
+
+
+def test_a_roll_off_below_the_cutoff_is_refused_with_what_to_do():
+    with pytest.raises(
+        ValueError, match=r"roll_off 0\.1 is shorter than short_cutoff 0\.2; lower the cutoff"
+    ):
+        SelfAffineSpectrum(0.2, 0.1, 0.8)
+
+
+@pytest.mark.parametrize("name", ["short_cutoff", "roll_off", "plateau"])
+@pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf")])
+def test_lengths_and_plateau_must_be_positive_and_finite(name, value):
+    shape = {"short_cutoff": 0.1, "roll_off": 0.1, "plateau": 1.0, name: value}
+    with pytest.raises(ValueError, match=f"{name} is {value}; it must be positive and finite"):
+        SelfAffineSpectrum(hurst=0.8, **shape)
