@@ -1,0 +1,302 @@
+"""One approach and retraction: the load schedule, the fronts it visits and the record of both."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront import jkr
+from crackfront.line import line_energy
+from crackfront.pinning import Field, first_radius, last_radius, n_angle, swept_adhesion
+from crackfront.relax import Direction, Relaxation, Status, relax
+from crackfront.units import WORK_OF_ADHESION
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class LoadSchedule:
+    """Penetrations 0, step, 2 step ... max, and back until contact is lost.
+
+    Parameters
+    ----------
+    max_penetration : float
+        Largest penetration; it is visited even where it is no multiple of the step.
+        (Units: reduced vertical length)
+    step : float
+        Difference of penetrations. (Units: reduced vertical length)
+
+    Raises
+    ------
+    ValueError
+        If the step is not positive, or the largest penetration is negative: the sphere makes
+        contact at 0.
+
+    Examples
+    --------
+    >>> list(LoadSchedule(0.5, 0.25).approach())
+    [0.0, 0.25, 0.5]
+    """
+
+    max_penetration: float
+    step: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.step) and self.step > 0):
+            raise ValueError(f"load step is {self.step}; it must be positive")
+        if not (math.isfinite(self.max_penetration) and self.max_penetration >= 0):
+            raise ValueError(
+                f"max penetration {self.max_penetration} never makes contact; the sphere touches "
+                "at 0, so ask for 0 or more"
+            )
+
+    @property
+    def _whole_steps(self) -> int:
+        """Number of whole steps that fit under the largest penetration."""
+        return math.floor(self.max_penetration / self.step * (1 + 1e-12))
+
+    def approach(self) -> Iterator[float]:
+        """Penetrations of the approach, increasing."""
+        for k in range(self._whole_steps + 1):
+            yield k * self.step
+        if self._whole_steps * self.step < self.max_penetration * (1 - 1e-12):
+            yield self.max_penetration
+
+    def retraction(self) -> Iterator[float]:
+        """Penetrations below the largest one, decreasing without end."""
+        k = self._whole_steps
+        if k * self.step >= self.max_penetration * (1 - 1e-12):
+            k -= 1
+        while True:
+            yield k * self.step
+            k -= 1
+
+
+@dataclass(frozen=True, slots=True)
+class CycleRecord:
+    """The metastable states that a cycle visited, in order.
+
+    Attributes
+    ----------
+    status : Status
+        What ended the cycle; a full cycle ends by losing contact.
+    end_penetration : float
+        Penetration at which it ended (where contact was lost).
+    penetration : (n_step,) array
+        Rigid body penetration b. (Units: reduced vertical length)
+    direction : (n_step,) int array
+        +1 in approach, -1 in retraction.
+    mean_radius, min_radius, max_radius, rms_radius : (n_step,) array
+        Radius of the front; the last is the rms of its deviation from the mean.
+        (Units: reduced lateral length)
+    force : (n_step,) array
+        Normal force. (Units: pi w_int R)
+    contact_area : (n_step,) array
+        Area within the front. (Units: reduced lateral length**2)
+    apparent_work_of_adhesion : (n_step,) array
+        <a G> / <a>, in equilibrium the mean of w_loc along the front. (Units: w_int)
+    least_travel : (n_step,) array
+        Smallest distance that any site has moved since its branch began.
+        (Units: reduced lateral length)
+    iterations : (n_step,) int array
+        Sweeps of the solver.
+    residual : (n_step,) array
+        Largest force along the motion that is left, relative to w_int per front length.
+    dissipated_energy : (n_step,) array or None
+        Energy lost in the jumps of each load step, where it was asked for.
+        (Units: pi w_int R times a reduced vertical length)
+    radius : (n_step, n_angle) array or None
+        The fronts, where they were asked for. (Units: reduced lateral length)
+    """
+
+    status: Status
+    end_penetration: float
+    penetration: Array
+    direction: NDArray[np.int64]
+    mean_radius: Array
+    min_radius: Array
+    max_radius: Array
+    rms_radius: Array
+    force: Array
+    contact_area: Array
+    apparent_work_of_adhesion: Array
+    least_travel: Array
+    iterations: NDArray[np.int64]
+    residual: Array
+    dissipated_energy: Array | None = None
+    radius: Array | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CycleState:
+    """One metastable state; each field is a row of the record that bears the same name."""
+
+    penetration: float
+    direction: Direction
+    mean_radius: float
+    min_radius: float
+    max_radius: float
+    rms_radius: float
+    force: float
+    contact_area: float
+    apparent_work_of_adhesion: float
+    least_travel: float
+    iterations: int
+    residual: float
+
+
+def run_cycle(
+    field: Field,
+    schedule: LoadSchedule,
+    *,
+    tolerance: float = 1e-8,
+    max_sweeps: int = 10_000_000,
+    solver: str = "reference",
+    record_fronts: bool = False,
+    record_energy: bool = False,
+    progress: Callable[[CycleState], None] | None = None,
+) -> CycleRecord:
+    """Quasi-static approach from first contact to the largest penetration, and back to pull-off.
+
+    Parameters
+    ----------
+    field : Field
+        Work of adhesion along the rays.
+    schedule : LoadSchedule
+        Penetrations to visit.
+    tolerance : float, optional
+        Largest force along the motion that may be left, relative to w_int per front length.
+    max_sweeps : int, optional
+        Limit on the sweeps of one load step.
+    solver : str, optional
+        A name in :data:`crackfront.relax.SOLVERS`.
+    record_fronts : bool, optional
+        Keep every front, not only its measures.
+    record_energy : bool, optional
+        Compute the energy that each load step dissipates.
+    progress : callable, optional
+        Called with every state as it is found.
+
+    Returns
+    -------
+    CycleRecord
+        All states in equilibrium, and what ended the cycle.
+
+    Raises
+    ------
+    ValueError
+        If a smooth sphere would already outgrow the field at the largest penetration, or the
+        solver is unknown.
+    """
+    _refuse_outgrown(field, schedule)
+    states: list[CycleState] = []
+    fronts: list[Array] = []
+    dissipated: list[float] = []
+    front = turn = np.full(n_angle(field), first_radius(field))
+    for penetration, direction in _loads(schedule):
+        outcome = relax(
+            front,
+            penetration,
+            direction,
+            field,
+            tolerance=tolerance,
+            max_sweeps=max_sweeps,
+            solver=solver,
+        )
+        if outcome.status is not Status.CONVERGED:
+            break
+        if record_energy:
+            dissipated.append(dissipated_energy(front, outcome.radius, penetration, field))
+        if states and states[-1].direction != direction:
+            turn = front
+        front = outcome.radius
+        states.append(_measure(outcome, penetration, direction, turn))
+        if record_fronts:
+            fronts.append(front)
+        if progress is not None:
+            progress(states[-1])
+    columns = {
+        item.name: np.array([getattr(state, item.name) for state in states])
+        for item in fields(CycleState)
+    }
+    return CycleRecord(
+        status=outcome.status,
+        end_penetration=penetration,
+        dissipated_energy=np.array(dissipated) if record_energy else None,
+        radius=np.array(fronts).reshape(-1, front.size) if record_fronts else None,
+        **columns,
+    )
+
+
+def dissipated_energy(before: Array, after: Array, penetration: float, field: Field) -> float:
+    """Energy that is lost when a front moves at fixed penetration.
+
+    Parameters
+    ----------
+    before, after : (n_angle,) array
+        Fronts inside the field. (Units: reduced lateral length)
+    penetration : float
+        Rigid body penetration b. (Units: reduced vertical length)
+    field : Field
+        Work of adhesion along the rays.
+
+    Returns
+    -------
+    float
+        Fall of the total energy, not negative for a quasi-static move.
+        (Units: pi w_int R times a reduced vertical length)
+    """
+    fall = _elastic_energy(before, penetration) - _elastic_energy(after, penetration)
+    return fall + swept_adhesion(before, after, field)
+
+
+def _elastic_energy(front: Array, penetration: float) -> float:
+    """Elastic energy of a front: rings of a smooth sphere, and the line."""
+    # No energy is released or stored where an edge in compression advances.
+    open_edge = np.maximum(front, math.sqrt(max(penetration, 0.0)))
+    return float(np.mean(jkr.elastic_energy(open_edge, penetration))) + line_energy(front)
+
+
+def _loads(schedule: LoadSchedule) -> Iterator[tuple[float, Direction]]:
+    """Penetrations with the direction in which each is reached."""
+    for penetration in schedule.approach():
+        yield penetration, 1
+    for penetration in schedule.retraction():
+        yield penetration, -1
+
+
+def _measure(
+    outcome: Relaxation, penetration: float, direction: Direction, turn: Array
+) -> CycleState:
+    """Quantities recorded of a front in equilibrium; the branch began at the front `turn`."""
+    front = outcome.radius
+    release = front * jkr.energy_release_rate(front, penetration)
+    return CycleState(
+        penetration=penetration,
+        direction=direction,
+        mean_radius=float(np.mean(front)),
+        min_radius=float(np.min(front)),
+        max_radius=float(np.max(front)),
+        rms_radius=float(np.std(front)),
+        force=float(np.mean(jkr.force(front, penetration))),
+        contact_area=float(np.pi * np.mean(front**2)),
+        apparent_work_of_adhesion=float(np.mean(release) / np.mean(front) / WORK_OF_ADHESION),
+        least_travel=float(np.min(np.abs(front - turn))),
+        iterations=outcome.sweeps,
+        residual=outcome.residual,
+    )
+
+
+def _refuse_outgrown(field: Field, schedule: LoadSchedule) -> None:
+    """Raise if a smooth sphere is larger than the field before its load is fully applied."""
+    smooth = jkr.equilibrium_radius(schedule.max_penetration)
+    if smooth >= last_radius(field):
+        raise ValueError(
+            f"contact outgrows the field: a smooth sphere at penetration "
+            f"{schedule.max_penetration} has radius {smooth:.4g}, the field ends at "
+            f"{last_radius(field):.4g}; enlarge the field or lower the penetration"
+        )

@@ -1,0 +1,177 @@
+"""Kinds of fields, named tuples of arrays so that one compiled solver serves them all."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import spline_filter
+
+from crackfront.adhesion import AdhesionMap
+
+Array = NDArray[np.float64]
+
+
+class PolarField(NamedTuple):
+    """Samples on the rays themselves.
+
+    Attributes
+    ----------
+    radii : (n_sample,) array
+        Increasing, positive. (Units: reduced lateral length)
+    products : (n_angle, n_sample) array
+        Radius times work of adhesion. (Units: reduced energy / length)
+    """
+
+    radii: Array
+    products: Array
+
+
+class TileField(NamedTuple):
+    """A periodic tile, evaluated by cubic B-splines when the front gets there.
+
+    The apex of the sphere is the tile's centre, half a side from its first point.
+
+    Attributes
+    ----------
+    coefficients : (n_x + 3, n_y + 3) array
+        Spline coefficients of the work of adhesion, three rows and columns repeated.
+    inverse_pixel : float
+        Points per length. (Units: 1 / reduced lateral length)
+    cosine, sine : (n_angle,) array
+        Directions of the rays.
+    spacing : float
+        Distance of samples along a ray; sample m lies at (m + 1) * spacing.
+    n_sample : int
+        Number of samples on a ray.
+    """
+
+    coefficients: Array
+    inverse_pixel: float
+    cosine: Array
+    sine: Array
+    spacing: float
+    n_sample: int
+
+
+Field = PolarField | TileField
+
+
+def n_angle(field: Field) -> int:
+    """Number of rays of a field."""
+    return field.products.shape[0] if isinstance(field, PolarField) else field.cosine.size
+
+
+def first_radius(field: Field) -> float:
+    """Radius of the innermost sample (Units: reduced lateral length)."""
+    return float(field.radii[0]) if isinstance(field, PolarField) else field.spacing
+
+
+def last_radius(field: Field) -> float:
+    """Radius of the outermost sample (Units: reduced lateral length)."""
+    if isinstance(field, PolarField):
+        return float(field.radii[-1])
+    return field.n_sample * field.spacing
+
+
+def polar_field(radii: Array, work_of_adhesion: Array) -> PolarField:
+    """Field from samples on rays at equally spaced angles.
+
+    Parameters
+    ----------
+    radii : (n_sample,) array
+        Increasing radii. A leading zero is dropped: the product vanishes there.
+        (Units: reduced lateral length)
+    work_of_adhesion : (n_sample, n_angle) array
+        Local work of adhesion. (Units: reduced energy / area, w_int = 1/pi)
+
+    Returns
+    -------
+    PolarField
+        Field whose front has `n_angle` sites.
+
+    Raises
+    ------
+    ValueError
+        If shapes disagree, radii do not increase or are negative, fewer than two samples or
+        fewer than four angles are given, or a value is not finite.
+    """
+    radii = np.asarray(radii, dtype=float)
+    values = np.asarray(work_of_adhesion, dtype=float)
+    if values.shape != (radii.size, values.shape[-1]) or radii.ndim != 1:
+        raise ValueError(
+            f"work of adhesion has shape {values.shape} for {radii.size} radii; it must be "
+            "(radius, angle)"
+        )
+    if not np.all(np.isfinite(radii)) or np.any(np.diff(radii) <= 0) or np.any(radii < 0):
+        raise ValueError("radii must be finite, not negative and strictly increasing; sort them")
+    _refuse_unusable(values, names=("radius", "angle"))
+    if radii[0] == 0:
+        radii, values = radii[1:], values[1:]
+    if radii.size < 2 or values.shape[1] < 4:
+        raise ValueError(
+            f"field has {radii.size} positive radii and {values.shape[1]} angles; at least 2 "
+            "radii and 4 angles are needed"
+        )
+    return PolarField(radii.copy(), np.ascontiguousarray((radii[:, None] * values).T))
+
+
+def tile_field(
+    adhesion: AdhesionMap, n_angle: int, spacing: float, largest_radius: float
+) -> TileField:
+    """Field from a periodic Cartesian tile.
+
+    Parameters
+    ----------
+    adhesion : AdhesionMap
+        Work of adhesion on the tile; the tile may be smaller than the contact.
+    n_angle : int
+        Number of sites of the front.
+    spacing : float
+        Distance of samples along a ray. (Units: reduced lateral length)
+    largest_radius : float
+        Radius that the front must not leave. (Units: reduced lateral length)
+
+    Returns
+    -------
+    TileField
+        Field whose front has `n_angle` sites.
+
+    Raises
+    ------
+    ValueError
+        If a count or length is too small, or a value of the tile is not finite.
+    """
+    values = np.asarray(adhesion.work_of_adhesion, dtype=float)
+    _refuse_unusable(values, names=("x", "y"))
+    if n_angle < 4:
+        raise ValueError(f"number of angles is {n_angle}; at least 4 are needed")
+    if not 0 < spacing < largest_radius / 2:
+        raise ValueError(
+            f"sample spacing {spacing} must be positive and below half the largest radius "
+            f"{largest_radius}"
+        )
+    coefficients = spline_filter(values, order=3, mode="grid-wrap")
+    angle = 2 * np.pi * np.arange(n_angle) / n_angle
+    return TileField(
+        coefficients=np.pad(coefficients, (0, 3), mode="wrap"),
+        inverse_pixel=1.0 / adhesion.pixel,
+        cosine=np.cos(angle),
+        sine=np.sin(angle),
+        spacing=float(spacing),
+        n_sample=int(np.ceil(largest_radius / spacing)),
+    )
+
+
+def _refuse_unusable(values: Array, names: tuple[str, str]) -> None:
+    """Raise if a field holds NaN or infinity, or nothing but zeros."""
+    bad = np.argwhere(~np.isfinite(values))
+    if bad.size:
+        place = ", ".join(f"{name} index {i}" for name, i in zip(names, bad[0], strict=True))
+        raise ValueError(
+            f"work of adhesion is {values[tuple(bad[0])]} at {place} ({len(bad)} such values); "
+            "replace them by finite values"
+        )
+    if not np.any(values):
+        raise ValueError("work of adhesion is zero everywhere; nothing adheres, so check the field")

@@ -1,0 +1,176 @@
+"""The quasi-static solver: the first metastable front in the direction of motion.
+
+A front that advances (direction +1) stops at the smallest front that is nowhere behind its start
+and that nowhere wants to advance; a receding one (direction -1) at the mirror image of that.
+Where the edge would be in compression (a^2 < b) no front can rest, in either direction.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.pinning import Field, n_angle, sample_product, sample_radius
+from crackfront.relax import forces
+from crackfront.relax.monotone import monotone_newton
+from crackfront.relax.reference import rosso_krauth
+
+Array = NDArray[np.float64]
+Direction = Literal[1, -1]
+
+
+class Status(enum.Enum):
+    """How a relaxation or a cycle ended; the value is the sentence that says it."""
+
+    CONVERGED = "the front is in equilibrium to the tolerance"
+    LOST_CONTACT = "contact was lost: no equilibrium is left at this penetration"
+    LEFT_FIELD_OUTWARD = (
+        "the front left the sampled field outward; enlarge the field or lower the penetration"
+    )
+    LEFT_FIELD_INWARD = (
+        "the front left the sampled field inward; add samples at smaller radii to the field"
+    )
+    STEP_LIMIT = (
+        "the solver reached its limit of sweeps before the tolerance; raise max_sweeps or the "
+        "tolerance"
+    )
+
+
+_CODES = {
+    forces.CONVERGED: Status.CONVERGED,
+    forces.INWARD: Status.LEFT_FIELD_INWARD,
+    forces.OUTWARD: Status.LEFT_FIELD_OUTWARD,
+    forces.LIMIT: Status.STEP_LIMIT,
+}
+
+SOLVERS = {"reference": rosso_krauth, "newton": monotone_newton}
+"""Solvers by name; each changes a front in place and returns (code, sweeps, residual)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Relaxation:
+    """Outcome of one relaxation.
+
+    Attributes
+    ----------
+    radius : (n_angle,) array
+        Front at the end. (Units: reduced lateral length)
+    status : Status
+        What ended it.
+    sweeps : int
+        Sweeps over the front, counted in pairs of FFTs.
+    residual : float
+        Largest force along the motion that is left, relative to w_int per front length.
+    """
+
+    radius: Array
+    status: Status
+    sweeps: int
+    residual: float
+
+
+def relax(
+    radius: Array,
+    penetration: float,
+    direction: Direction,
+    field: Field,
+    *,
+    tolerance: float = 1e-8,
+    max_sweeps: int = 10_000_000,
+    solver: str = "reference",
+) -> Relaxation:
+    r"""First metastable front in the direction of motion at fixed penetration.
+
+    Equilibrium is, per angle,
+
+    .. math:: a w_{loc}(a, \theta) = a G_{JKR}(b, a) + w_{int} (-\Delta_\theta)^{1/2} a .
+
+    Parameters
+    ----------
+    radius : (n_angle,) array
+        Front to start from; forces against the motion are left as they are.
+        (Units: reduced lateral length)
+    penetration : float
+        Rigid body penetration b. (Units: reduced vertical length)
+    direction : {1, -1}
+        +1 lets the contact grow, -1 lets it shrink.
+    field : Field
+        Work of adhesion along the rays.
+    tolerance : float, optional
+        Largest force along the motion that may be left, relative to w_int per front length.
+    max_sweeps : int, optional
+        Limit on the sweeps.
+    solver : str, optional
+        A name in :data:`SOLVERS`; ``"reference"`` is the paper's algorithm, ``"newton"`` the fast
+        one that finds the same states.
+
+    Returns
+    -------
+    Relaxation
+        The front, and how it was reached. Losing contact is an outcome, not an error.
+
+    Raises
+    ------
+    ValueError
+        If the front does not fit the field, or the solver is unknown.
+    RuntimeError
+        If the fast solver finds that it has passed an equilibrium, which is a defect.
+
+    References
+    ----------
+    .. [1] Rosso, Krauth, Phys. Rev. E 65, 025101 (2002).
+    .. [2] Sanner et al., Sci. Adv. (2024), supplement, Sec. II.
+    """
+    if solver not in SOLVERS:
+        raise ValueError(f"solver is {solver!r}; choose one of {', '.join(sorted(SOLVERS))}")
+    if radius.shape != (n_angle(field),):
+        raise ValueError(f"front has shape {radius.shape}; the field has {n_angle(field)} rays")
+    front = np.array(radius, dtype=float)
+    lowest = np.sqrt(max(penetration, 0.0))
+    if direction > 0:
+        np.maximum(front, lowest, out=front)
+    code, sweeps, residual = SOLVERS[solver](
+        front, float(penetration), int(direction), field, float(tolerance), int(max_sweeps)
+    )
+    if code == forces.TURNED:
+        raise RuntimeError(
+            f"the {solver} solver moved a site past its equilibrium at penetration {penetration}; "
+            "this is a defect, please report it and use the solver 'reference' meanwhile"
+        )
+    status = _CODES[code]
+    if status is Status.LEFT_FIELD_INWARD and not _can_rest_inside(field, penetration):
+        status = Status.LOST_CONTACT
+    return Relaxation(front, status, int(sweeps), float(residual))
+
+
+def front_force(radius: Array, penetration: float, field: Field) -> Array:
+    """Force that drives each site outward, a w_loc - a G - w_int (-Delta)^(1/2) a.
+
+    Parameters
+    ----------
+    radius : (n_angle,) array
+        Front. (Units: reduced lateral length)
+    penetration : float
+        Rigid body penetration b. (Units: reduced vertical length)
+    field : Field
+        Work of adhesion along the rays.
+
+    Returns
+    -------
+    (n_angle,) array
+        Force per angle; zero in equilibrium. (Units: reduced energy / length)
+    """
+    return np.asarray(forces.front_force(radius, float(penetration), field))
+
+
+def _can_rest_inside(field: Field, penetration: float) -> bool:
+    """Whether a smooth contact within the innermost samples has an equilibrium."""
+    inner = float(sample_radius(field, 0))
+    adhesion = np.mean([sample_product(field, ray, 0) for ray in range(n_angle(field))]) / inner
+    radius = np.linspace(0, inner, 201)[1:]
+    ring = forces.RING * np.maximum(radius**2 - penetration, 0.0) ** 2
+    return bool(np.any(radius * adhesion >= ring))

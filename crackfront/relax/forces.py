@@ -1,0 +1,160 @@
+"""Forces on the sites of a front and the hardening that lies ahead of them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+
+from crackfront.compiled import jit, kernel
+from crackfront.pinning import (
+    front_products,
+    recall,
+    sample_count,
+    sample_radius,
+    segment_below,
+)
+from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION
+
+Array = NDArray[np.float64]
+
+RING = CONTACT_MODULUS / (2 * np.pi)
+"""Factor of (a^2 - b)^2 in a G_JKR."""
+
+CONVERGED, INWARD, OUTWARD, LIMIT, BLOCKED, TURNED = range(6)
+"""Codes with which a compiled solver ends."""
+
+
+class Front(NamedTuple):
+    """A front with what is known of the field under it.
+
+    Attributes
+    ----------
+    radius : (n_angle,) array
+        Radius a of each site.
+    segment : (n_angle,) int array
+        Sample below the site (above it in the sense of the motion for a site on a sample).
+    product : (n_angle,) array
+        a w_loc under the site.
+    """
+
+    radius: Array
+    segment: NDArray[np.int64]
+    product: Array
+
+
+@jit
+def line_force(radius):
+    """w_int times the half-Laplacian of a front."""
+    modes = scipy.fft.rfft(radius)
+    for n in range(modes.size):
+        modes[n] *= WORK_OF_ADHESION * n
+    return scipy.fft.irfft(modes, radius.size)
+
+
+@kernel
+def ring_force(radius, penetration):
+    """Force a G_JKR of an open edge, zero in compression."""
+    opening = radius * radius - penetration
+    return RING * opening * opening if opening > 0.0 else 0.0
+
+
+@jit
+def front_force(radius, penetration, field):
+    """Force that drives each site outward."""
+    force = front_products(radius, field) - line_force(radius)
+    for i in range(radius.size):
+        force[i] -= ring_force(radius[i], penetration)
+    return force
+
+
+@kernel
+def locate(field, memory, ray, radius, segment, direction):
+    """Segment ahead of a radius that was in `segment` before it moved, and a w_loc there.
+
+    A negative segment says that the ray ends: -INWARD or -OUTWARD.
+    """
+    last = sample_count(field) - 2
+    if direction > 0:
+        while radius >= sample_radius(field, segment + 1):
+            segment += 1
+            if segment > last:
+                return -OUTWARD, 0.0
+    else:
+        while radius <= sample_radius(field, segment):
+            segment -= 1
+            if segment < 0:
+                return -INWARD, 0.0
+    inner, outer = sample_radius(field, segment), sample_radius(field, segment + 1)
+    start, end = recall(field, memory, ray, segment), recall(field, memory, ray, segment + 1)
+    return segment, start + (end - start) / (outer - inner) * (radius - inner)
+
+
+@jit
+def place_front(radius, field, memory, direction):
+    """Front at the given radii and a code: CONVERGED, or the side on which it left the field."""
+    segment = np.empty(radius.size, np.int64)
+    product = np.empty(radius.size)
+    code = CONVERGED
+    for i in range(radius.size):
+        low = segment_below(field, radius[i], direction)
+        segment[i], product[i] = locate(field, memory, i, radius[i], low, direction)
+        if segment[i] < 0:
+            code = -segment[i]
+    return Front(radius, segment, product), code
+
+
+@kernel
+def hardening(field, memory, ray, radius, product, segment, reach, penetration, direction):
+    """Stiffness D >= (f(0) - f(s)) / s for 0 < s <= reach, f the site's own drive after s.
+
+    On the linear pieces of a w_loc the chord is steepest at a sample or at the end of the reach;
+    a G is convex, so that its slope at the outer end bounds its chords.
+    """
+    furthest = radius + reach if direction > 0 else radius
+    opening = furthest * furthest - penetration
+    ring = 4 * RING * furthest * opening if opening > 0.0 else 0.0
+    steepest = -np.inf
+    last = sample_count(field) - 2
+    distance, value = 0.0, product
+    while 0 <= segment <= last:
+        ahead = segment + 1 if direction > 0 else segment
+        next_distance = direction * (sample_radius(field, ahead) - radius)
+        next_value = recall(field, memory, ray, ahead)
+        if next_distance >= reach:
+            if next_distance > distance:
+                part = (reach - distance) / (next_distance - distance)
+                next_value = value + (next_value - value) * part
+            return max(steepest, direction * (product - next_value) / reach) + ring
+        if next_distance > 0.0:
+            steepest = max(steepest, direction * (product - next_value) / next_distance)
+        distance, value = next_distance, next_value
+        segment += direction
+    return steepest + ring
+
+
+@jit
+def drive_sites(front, penetration, direction, drive):
+    """Fill in the force along the motion; return its largest and least value relative to w_int."""
+    radius, product = front.radius, front.product
+    line = line_force(radius)
+    most, least = 0.0, 0.0
+    for i in range(drive.size):
+        drive[i] = direction * (product[i] - ring_force(radius[i], penetration) - line[i])
+        relative = drive[i] / (radius[i] * WORK_OF_ADHESION)
+        most, least = max(most, relative), min(least, relative)
+    return most, least
+
+
+@kernel
+def move_site(field, memory, ray, radius, segment, step, penetration, direction):
+    """Where a site is after a step: a code, and its radius, segment and product."""
+    moved = radius + direction * step
+    if direction < 0 and moved * abs(moved) <= penetration:
+        return BLOCKED, radius, segment, 0.0
+    segment, product = locate(field, memory, ray, moved, segment, direction)
+    if segment < 0:
+        return -segment, radius, segment, 0.0
+    return CONVERGED, moved, segment, product

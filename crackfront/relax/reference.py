@@ -1,0 +1,72 @@
+"""The paper's algorithm (Rosso and Krauth), the reference that every other solver is held to."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crackfront.compiled import jit
+from crackfront.line import self_stiffness
+from crackfront.pinning import sample_count, sample_product, sample_radius, segment_below
+from crackfront.relax.forces import CONVERGED, INWARD, LIMIT, OUTWARD, RING, line_force
+from crackfront.units import WORK_OF_ADHESION
+
+_self_stiffness = jit(self_stiffness)
+
+
+@jit
+def rosso_krauth(radius, penetration, direction, field, tolerance, max_sweeps):
+    """Move every site by its own force over its own stiffness, at most to the next sample.
+
+    The front is changed in place. What a site leaves out when it moves, the pull of its
+    neighbours' moves, only pushes it on: no barrier is ever passed.
+    """
+    count, last = radius.size, sample_count(field) - 2
+    line_stiffness = WORK_OF_ADHESION * _self_stiffness(count)
+    lowest = np.sqrt(max(penetration, 0.0))
+    segment = np.empty(count, np.int64)
+    inner, outer = np.empty(count), np.empty(count)
+    start, end = np.empty(count), np.empty(count)
+    for i in range(count):
+        low = segment_below(field, radius[i], direction)
+        segment[i] = low
+        inner[i], outer[i] = sample_radius(field, low), sample_radius(field, low + 1)
+        start[i], end[i] = sample_product(field, i, low), sample_product(field, i, low + 1)
+    residual = np.inf
+    for sweep in range(max_sweeps):
+        line = line_force(radius)
+        residual = 0.0
+        for i in range(count):
+            a = radius[i]
+            slope = (end[i] - start[i]) / (outer[i] - inner[i])
+            opening = max(a * a - penetration, 0.0)
+            force = start[i] + slope * (a - inner[i]) - RING * opening * opening - line[i]
+            drive = direction * force
+            if drive <= 0.0 or (direction < 0 and a <= lowest):
+                continue
+            residual = max(residual, drive / (a * WORK_OF_ADHESION))
+            # a G is convex: over the segment ahead its slope is largest at the outer end.
+            furthest = outer[i] if direction > 0 else a
+            hardening = 4 * RING * furthest * max(furthest * furthest - penetration, 0.0)
+            stiffness = line_stiffness + hardening - slope
+            target = outer[i] if direction > 0 else max(inner[i], lowest)
+            moved = a + force / stiffness if stiffness > 0.0 else direction * np.inf
+            if direction * (moved - target) < 0.0:
+                radius[i] = moved
+                continue
+            radius[i] = target
+            if target > inner[i] and direction < 0:
+                continue
+            low = segment[i] + direction
+            if low < 0:
+                return INWARD, sweep + 1, residual
+            if low > last:
+                return OUTWARD, sweep + 1, residual
+            segment[i] = low
+            inner[i], outer[i] = sample_radius(field, low), sample_radius(field, low + 1)
+            if direction > 0:
+                start[i], end[i] = end[i], sample_product(field, i, low + 1)
+            else:
+                start[i], end[i] = sample_product(field, i, low), start[i]
+        if residual <= tolerance:
+            return CONVERGED, sweep + 1, residual
+    return LIMIT, max_sweeps, residual

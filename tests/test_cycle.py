@@ -1,0 +1,541 @@
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from crackfront import jkr, pinning
+from crackfront.adhesion import AdhesionMap, rough_adhesion
+from crackfront.cycle import LoadSchedule, dissipated_energy, run_cycle
+from crackfront.line import line_energy
+from crackfront.pinning import polar_field, swept_adhesion, tile_field
+from crackfront.relax import SOLVERS, Status, front_force, relax
+from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.synthesis import gaussian_field
+from crackfront.units import WORK_OF_ADHESION
+
+every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
+
+
+def noisy_field(seed, n_angle=12, amplitude=0.3, spacing=0.06, largest=2.8):
+    rng = np.random.default_rng(seed)
+    radii = spacing * np.arange(1, int(largest / spacing))
+    noise = rng.standard_normal((radii.size, n_angle))
+    return polar_field(radii, WORK_OF_ADHESION * (1 + amplitude * noise))
+
+
+def smooth_field(n_angle=8, spacing=0.02, largest=2.4, adhesion=1.0):
+    radii = spacing * np.arange(1, int(largest / spacing))
+    return polar_field(radii, np.full((radii.size, n_angle), adhesion * WORK_OF_ADHESION))
+
+
+def branch(record, direction):
+    return record.direction == direction
+
+
+# --- load schedule
+
+
+@given(st.floats(0.0, 3.0), st.floats(0.01, 1.0))
+def test_approach_goes_up_in_whole_steps_and_visits_the_largest_penetration(largest, step):
+    loads = list(LoadSchedule(largest, step).approach())
+    assert loads[0] == 0
+    assert loads[-1] == pytest.approx(largest, rel=1e-9, abs=1e-12)
+    assert np.all(np.diff(loads) > 0)
+    assert np.allclose(loads[:-1], step * np.arange(len(loads) - 1), rtol=1e-12, atol=0)
+
+
+@given(st.floats(0.0, 3.0), st.floats(0.01, 1.0))
+def test_retraction_comes_back_over_the_penetrations_of_the_approach(largest, step):
+    schedule = LoadSchedule(largest, step)
+    up = list(schedule.approach())
+    down = list(itertools.islice(schedule.retraction(), len(up) + 3))
+    assert down[: len(up) - 1] == up[-2::-1]
+    assert np.allclose(np.diff(down), -step, rtol=1e-9)
+    assert down[-1] < -2 * step
+
+
+@pytest.mark.parametrize("step", [0.1, 0.05, 0.01, 0.3, 1 / 3, 0.7, 2.0])
+def test_round_off_of_the_step_adds_no_penetration_and_leaves_none_out(step):
+    loads = list(LoadSchedule(1.0, step).approach())
+    assert len(loads) == int(np.ceil(1 / step - 1e-9)) + 1
+    assert loads[-1] == pytest.approx(1.0)
+
+
+def test_a_schedule_to_zero_penetration_only_touches():
+    schedule = LoadSchedule(0.0, 0.25)
+    assert list(schedule.approach()) == [0.0]
+    assert list(itertools.islice(schedule.retraction(), 3)) == [-0.25, -0.5, -0.75]
+
+
+@pytest.mark.parametrize("step", [0.0, -0.1, float("nan"), float("inf")])
+def test_a_load_step_that_is_not_positive_is_refused(step):
+    with pytest.raises(ValueError, match=f"load step is {step}; it must be positive"):
+        LoadSchedule(1.0, step)
+
+
+@pytest.mark.parametrize("largest", [-0.01, float("nan"), float("inf")])
+def test_a_penetration_that_never_makes_contact_is_refused(largest):
+    with pytest.raises(
+        ValueError, match=rf"max penetration {largest} never makes contact; .* ask for 0 or more"
+    ):
+        LoadSchedule(largest, 0.1)
+
+
+# --- smooth limit
+
+
+@every_solver
+@pytest.mark.parametrize("n_angle", [5, 8, 13])
+def test_every_state_of_a_smooth_sphere_is_jkr(solver, n_angle):
+    record = run_cycle(
+        smooth_field(n_angle), LoadSchedule(1.0, 0.1), tolerance=1e-14, solver=solver
+    )
+    exact = np.array([jkr.equilibrium_radius(b) for b in record.penetration])
+    assert np.allclose(record.mean_radius, exact, rtol=0, atol=1e-10)
+    assert np.allclose(record.force, jkr.equilibrium_force(exact), rtol=0, atol=1e-9)
+    assert np.allclose(record.apparent_work_of_adhesion, 1.0, rtol=0, atol=1e-10)
+    assert np.allclose(record.contact_area, np.pi * exact**2, rtol=0, atol=1e-9)
+    assert np.all(record.rms_radius < 1e-12)
+
+
+@every_solver
+def test_a_smooth_sphere_jumps_into_contact_at_zero_penetration(solver):
+    record = run_cycle(smooth_field(), LoadSchedule(0.2, 0.1), tolerance=1e-13, solver=solver)
+    assert record.penetration[0] == 0
+    assert record.mean_radius[0] == pytest.approx((8 / 3) ** (1 / 3), abs=1e-11)
+    assert record.force[0] == pytest.approx(-4 / 3, abs=1e-11)
+
+
+@every_solver
+@pytest.mark.parametrize("step", [0.1, 0.03, 0.007])
+def test_a_smooth_sphere_is_lost_at_the_first_load_below_its_pull_off(solver, step):
+    record = run_cycle(smooth_field(), LoadSchedule(0.0, step), solver=solver)
+    assert record.status is Status.LOST_CONTACT
+    assert record.end_penetration < jkr.pull_off_penetration()
+    assert record.penetration[-1] >= jkr.pull_off_penetration()
+    assert record.end_penetration == pytest.approx(record.penetration[-1] - step, rel=1e-12)
+
+
+@every_solver
+def test_a_smooth_sphere_has_no_hysteresis_after_the_jump(solver):
+    record = run_cycle(smooth_field(), LoadSchedule(1.0, 0.125), tolerance=1e-13, solver=solver)
+    up, down = branch(record, 1), branch(record, -1)
+    common = record.penetration[down] >= 0
+    back = record.mean_radius[down][common][::-1]
+    assert np.allclose(record.mean_radius[up][:-1], back, rtol=0, atol=1e-10)
+
+
+# --- axisymmetric disorder
+
+
+def ring_hysteresis(period, n_per_period, solver):
+    spacing = period / n_per_period
+    radii = spacing * np.arange(1, int(2.05 / spacing))
+    ring = WORK_OF_ADHESION * (1 + 0.2 * np.sin(2 * np.pi * radii / period))
+    field = polar_field(radii, np.repeat(ring[:, None], 8, axis=1))
+    record = run_cycle(field, LoadSchedule(1.2, 0.0025), solver=solver)
+    window = (record.penetration > 0.3 - 1e-9) & (record.penetration < 0.7 + 1e-9)
+    means = [
+        record.apparent_work_of_adhesion[window & branch(record, direction)].mean()
+        for direction in (-1, 1)
+    ]
+    return means[0] - means[1]
+
+
+@every_solver
+@pytest.mark.parametrize(
+    ("period", "n_per_period", "hysteresis", "digits"),
+    [(0.005, 128, 0.3886, 1e-4), (0.1, 256, 0.238, 1.5e-3)],
+)
+def test_rings_have_the_tabulated_hysteresis(solver, period, n_per_period, hysteresis, digits):
+    found = ring_hysteresis(period, n_per_period, solver)
+    assert found == pytest.approx(hysteresis, abs=digits)
+
+
+@every_solver
+def test_wide_rings_have_no_instability_and_no_hysteresis(solver):
+    # No instability for d > 2 pi delta / S, about 0.5 at these radii.
+    assert ring_hysteresis(0.7, 700, solver) == pytest.approx(0.0, abs=1e-4)
+
+
+@every_solver
+def test_rings_follow_the_running_extrema_of_the_equilibrium_penetration(solver):
+    spacing, period = 0.0005, 0.1
+    radii = spacing * np.arange(1, 4200)
+    ring = 1 + 0.2 * np.sin(2 * np.pi * radii / period)
+    field = polar_field(radii, np.repeat(WORK_OF_ADHESION * ring[:, None], 4, axis=1))
+    record = run_cycle(field, LoadSchedule(1.0, 0.05), tolerance=1e-12, solver=solver)
+    fine = np.linspace(0.5, 2.09, 400_001)
+    # The field as sampled: linear in radius times adhesion.
+    adhesion = np.interp(fine, radii, radii * ring) / fine
+    penetration = jkr.equilibrium_penetration(fine, adhesion)
+    # Approach: the running maximum. Retraction: the running minimum from outside, where the front
+    # was when the load turned.
+    turn = fine <= record.mean_radius[branch(record, 1)][-1]
+    outward = np.maximum.accumulate(penetration)
+    inward = np.minimum.accumulate(penetration[turn][::-1])[::-1]
+    for row in np.flatnonzero(record.penetration > 0):
+        load = record.penetration[row]
+        curve = outward if record.direction[row] > 0 else inward
+        place = min(np.searchsorted(curve, load), curve.size - 1)
+        assert record.mean_radius[row] == pytest.approx(fine[place], abs=1e-5)
+
+
+# --- what the record says
+
+
+@every_solver
+def test_the_measures_of_a_record_are_those_of_its_fronts(solver):
+    field = noisy_field(1)
+    record = run_cycle(field, LoadSchedule(0.8, 0.1), solver=solver, record_fronts=True)
+    assert record.radius.shape == (record.penetration.size, 12)
+    assert np.allclose(record.mean_radius, record.radius.mean(axis=1), rtol=1e-14)
+    assert np.array_equal(record.min_radius, record.radius.min(axis=1))
+    assert np.array_equal(record.max_radius, record.radius.max(axis=1))
+    assert np.allclose(record.rms_radius, record.radius.std(axis=1), rtol=1e-13)
+    assert np.allclose(record.contact_area, np.pi * (record.radius**2).mean(axis=1), rtol=1e-13)
+    load = record.penetration[:, None]
+    force = record.radius**3 + 1.5 * record.radius * (load - record.radius**2)
+    assert np.allclose(record.force, force.mean(axis=1), rtol=1e-12, atol=1e-13)
+
+
+@every_solver
+def test_least_travel_counts_from_the_start_of_its_own_branch(solver):
+    field = noisy_field(2)
+    record = run_cycle(field, LoadSchedule(0.8, 0.1), solver=solver, record_fronts=True)
+    up, down = branch(record, 1), branch(record, -1)
+    start, turn = pinning.first_radius(field), record.radius[up][-1]
+    assert np.allclose(record.least_travel[up], record.min_radius[up] - start, rtol=1e-13)
+    travel = (turn - record.radius[down]).min(axis=1)
+    assert np.allclose(record.least_travel[down], travel, rtol=1e-13, atol=1e-15)
+
+
+@every_solver
+@settings(max_examples=20)
+@given(seed=st.integers(0, 2**32 - 1), n_angle=st.integers(8, 24))
+def test_apparent_adhesion_is_the_mean_adhesion_along_the_front(solver, seed, n_angle):
+    field = noisy_field(seed, n_angle, amplitude=0.2)
+    record = run_cycle(
+        field, LoadSchedule(0.6, 0.2), tolerance=1e-12, solver=solver, record_fronts=True
+    )
+    for front, apparent in zip(record.radius, record.apparent_work_of_adhesion, strict=True):
+        held = front * pinning.front_adhesion(front, field) / WORK_OF_ADHESION
+        assert held.mean() / front.mean() == pytest.approx(apparent, abs=1e-10)
+
+
+@every_solver
+def test_fronts_and_energies_are_kept_only_where_asked_for(solver):
+    record = run_cycle(noisy_field(3), LoadSchedule(0.1, 0.1), solver=solver)
+    assert record.radius is None
+    assert record.dissipated_energy is None
+
+
+@every_solver
+def test_progress_is_told_of_every_state_in_order(solver):
+    seen = []
+    record = run_cycle(noisy_field(3), LoadSchedule(0.3, 0.1), solver=solver, progress=seen.append)
+    assert [state.penetration for state in seen] == list(record.penetration)
+    assert [state.direction for state in seen] == list(record.direction)
+    assert [state.mean_radius for state in seen] == list(record.mean_radius)
+
+
+@every_solver
+def test_all_residuals_are_within_the_tolerance(solver):
+    for tolerance in (1e-3, 1e-6, 1e-10):
+        record = run_cycle(
+            noisy_field(4), LoadSchedule(0.5, 0.1), tolerance=tolerance, solver=solver
+        )
+        assert np.all(record.residual <= tolerance)
+
+
+@every_solver
+@settings(max_examples=20)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_the_front_grows_in_approach_and_shrinks_in_retraction(solver, seed):
+    record = run_cycle(noisy_field(seed), LoadSchedule(0.8, 0.1), solver=solver, record_fronts=True)
+    moves = np.diff(record.radius, axis=0)
+    assert np.all(moves * record.direction[1:, None] >= 0)
+
+
+@every_solver
+@settings(max_examples=20)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_the_contact_is_never_smaller_in_retraction_than_in_approach(solver, seed):
+    record = run_cycle(noisy_field(seed), LoadSchedule(0.8, 0.1), solver=solver)
+    up, down = branch(record, 1), branch(record, -1)
+    n_common = min(up.sum() - 1, down.sum())
+    grown = record.mean_radius[up][:-1][::-1][:n_common]
+    assert np.all(record.mean_radius[down][:n_common] >= grown - 1e-8)
+
+
+@every_solver
+def test_a_finer_schedule_meets_the_same_states(solver):
+    field = noisy_field(6, n_angle=16)
+    coarse, fine = (
+        run_cycle(
+            field, LoadSchedule(0.8, step), tolerance=1e-12, solver=solver, record_fronts=True
+        )
+        for step in (0.2, 0.05)
+    )
+    for row in range(coarse.penetration.size):
+        same = (fine.direction == coarse.direction[row]) & np.isclose(
+            fine.penetration, coarse.penetration[row], atol=1e-12
+        )
+        assert np.allclose(fine.radius[same][0], coarse.radius[row], rtol=0, atol=1e-8)
+
+
+@every_solver
+def test_a_tile_runs_through_a_whole_cycle(solver):
+    noise = np.random.default_rng(7).standard_normal((32, 32))
+    adhesion = AdhesionMap(WORK_OF_ADHESION * (1 + 0.2 * noise), 0.1, 0.0, 0.0)
+    field = tile_field(adhesion, 32, 0.02, 2.8)
+    record = run_cycle(field, LoadSchedule(0.8, 0.1), solver=solver)
+    assert record.status is Status.LOST_CONTACT
+    assert record.end_penetration < -0.5
+    up, down = branch(record, 1), branch(record, -1)
+    assert record.apparent_work_of_adhesion[down][6] > record.apparent_work_of_adhesion[up][2]
+
+
+# --- rough spheres
+
+
+def rough_branches(energy, seed, solver):
+    """Means of the apparent adhesion in retraction and approach, and the measured energy."""
+    cutoff, n_point = 0.1, 160
+    spectrum = SelfAffineSpectrum(cutoff, cutoff, 0.8).with_elastic_energy(energy)
+    heights = gaussian_field(spectrum, n_point, 20 * cutoff, np.random.default_rng(seed))
+    adhesion = rough_adhesion(heights, 20 * cutoff / n_point)
+    field = tile_field(adhesion, 256, cutoff / 12, 2.8)
+    record = run_cycle(field, LoadSchedule(1.4, 0.05), tolerance=1e-6, solver=solver)
+    assert record.status is Status.LOST_CONTACT
+    steady = (record.penetration > 0.2) & (record.penetration < 0.7)
+    retraction, approach = (
+        record.apparent_work_of_adhesion[steady & branch(record, direction)].mean()
+        for direction in (-1, 1)
+    )
+    return retraction, approach, adhesion.elastic_energy
+
+
+@every_solver
+@pytest.mark.parametrize("seed", [0, 1])
+def test_hysteresis_grows_with_roughness_and_stays_below_perturbation_theory(solver, seed):
+    hysteresis = []
+    for requested in (0.002, 0.02, 0.05, 0.1):
+        retraction, approach, energy = rough_branches(requested, seed, solver)
+        hysteresis.append(retraction - approach)
+        # k = 4 is the limit of weak disorder and infinite size; this sphere is small.
+        assert retraction - approach < 2 * 4 * energy
+        assert (retraction + approach) / 2 == pytest.approx(1 - energy, abs=0.04)
+    assert np.all(np.diff(hysteresis) > 0)
+    # Below the Larkin length the front follows the disorder without an instability.
+    assert hysteresis[0] < 1e-3
+    assert hysteresis[-1] > 0.1
+
+
+# --- energy
+
+
+def energy(front, penetration, field, origin):
+    """Total energy written down once more: rings, line, minus the adhesion within the front."""
+    rings = 0.75 * (penetration**2 * front - 2 * front**3 * penetration / 3 + front**5 / 5)
+    return rings.mean() + line_energy(front) - swept_adhesion(origin, front, field)
+
+
+def test_dissipated_energy_is_the_fall_of_the_total_energy(rng):
+    field = noisy_field(8)
+    origin = np.full(12, pinning.first_radius(field))
+    before, after = rng.uniform(0.8, 1.3, 12), rng.uniform(1.3, 2.2, 12)
+    for one, other in ((before, after), (after, before)):
+        fall = energy(one, 0.4, field, origin) - energy(other, 0.4, field, origin)
+        assert dissipated_energy(one, other, 0.4, field) == pytest.approx(fall, rel=1e-12)
+
+
+def test_an_edge_in_compression_advances_without_storing_or_releasing_elastic_energy():
+    # Up to a = sqrt(b) the sphere itself closes the gap; only adhesion is gained.
+    field, before, after = smooth_field(), np.full(8, 0.3), np.full(8, 0.8)
+    gained = WORK_OF_ADHESION * np.pi * (0.8**2 - 0.3**2)
+    assert dissipated_energy(before, after, 0.64, field) == pytest.approx(gained, rel=1e-12)
+
+
+def test_the_force_on_a_site_is_the_derivative_of_the_dissipated_energy(rng):
+    field = noisy_field(9)
+    front = rng.uniform(1.31, 1.37, 12)
+    start = np.full(12, 1.0)
+    expected = 2 * np.pi / 12 * front_force(front, 0.2, field)
+    for site in range(12):
+        step = np.zeros(12)
+        # Both ends of the difference stay on one linear piece, samples are 0.06 apart.
+        step[site] = 1e-6
+        slope = dissipated_energy(start, front + step, 0.2, field) - dissipated_energy(
+            start, front - step, 0.2, field
+        )
+        assert slope / 2e-6 == pytest.approx(expected[site], rel=1e-6, abs=1e-7)
+
+
+def test_the_force_on_the_sphere_is_the_derivative_of_the_energy_in_penetration(rng):
+    field = noisy_field(10)
+    front, origin = rng.uniform(1.2, 1.9, 12), np.full(12, 0.06)
+    step = 1e-3
+    slope = (
+        energy(front, 0.3 + step, field, origin) - energy(front, 0.3 - step, field, origin)
+    ) / (2 * step)
+    assert jkr.force(front, 0.3).mean() == pytest.approx(slope, rel=1e-10)
+
+
+@every_solver
+@settings(max_examples=20)
+@given(seed=st.integers(0, 2**32 - 1), amplitude=st.sampled_from([0.0, 0.1, 0.4]))
+def test_no_load_step_creates_energy(solver, seed, amplitude):
+    record = run_cycle(
+        noisy_field(seed, amplitude=amplitude),
+        LoadSchedule(0.8, 0.1),
+        solver=solver,
+        record_energy=True,
+    )
+    assert record.dissipated_energy.shape == record.penetration.shape
+    assert np.all(record.dissipated_energy >= -1e-11)
+
+
+def closed_loop(field, step, solver, low=-0.2, high=0.8):
+    """Dissipated energy, and the loop integral by the trapezoidal rule, of a closed minor loop."""
+    n_step = round((high - low) / step)
+    up = low + step * np.arange(1, n_step + 1)
+    down = up[::-1] - step
+
+    def at(front, load, direction):
+        found = relax(front, load, direction, field, tolerance=1e-13, solver=solver)
+        assert found.status is Status.CONVERGED
+        return found.radius
+
+    front = at(np.full(12, 0.06), high, 1)
+    for load in down:
+        front = at(front, load, -1)
+    start, force, dissipated = front, [jkr.force(front, low).mean()], 0.0
+    for loads, direction in ((up, 1), (down, -1)):
+        for load in loads:
+            after = at(front, load, direction)
+            dissipated += dissipated_energy(front, after, load, field)
+            front = after
+            force.append(jkr.force(front, load).mean())
+    assert np.allclose(front, start, rtol=0, atol=1e-8)
+    loads = np.concatenate([[low], up, down])
+    return dissipated, np.trapezoid(force, loads)
+
+
+@every_solver
+@pytest.mark.parametrize("seed", [11, 12])
+def test_the_energies_of_a_closed_loop_equal_the_integral_of_the_force(solver, seed):
+    field = noisy_field(seed)
+    balance = [closed_loop(field, step, solver) for step in (0.1, 0.05, 0.025, 0.0125)]
+    dissipated, work = np.array(balance).T
+    gap = dissipated - work
+    assert work.min() > 0.05
+    # First order in the load step: halving it halves the gap, and extrapolation closes it.
+    assert np.allclose(gap[:-1] / gap[1:], 2.0, atol=0.02)
+    assert abs(2 * gap[-1] - gap[-2]) < 1e-3 * work[-1]
+
+
+@every_solver
+def test_each_load_step_works_exactly_what_it_stores_and_dissipates(solver):
+    # At a fixed front the force is linear in penetration, so this balance has no step error.
+    field = noisy_field(13)
+    record = run_cycle(
+        field,
+        LoadSchedule(0.8, 0.1),
+        tolerance=1e-12,
+        solver=solver,
+        record_fronts=True,
+        record_energy=True,
+    )
+    origin = np.full(12, 0.06)
+    stored = [
+        energy(front, load, field, origin)
+        for front, load in zip(record.radius, record.penetration, strict=True)
+    ]
+    for k in range(1, len(stored)):
+        before, load, last = record.radius[k - 1], record.penetration[k], record.penetration[k - 1]
+        work = (jkr.force(before, load) + jkr.force(before, last)).mean() / 2 * (load - last)
+        balance = stored[k] - stored[k - 1] + record.dissipated_energy[k]
+        assert work == pytest.approx(balance, abs=1e-12)
+
+
+@every_solver
+def test_a_smooth_cycle_dissipates_the_area_between_jump_in_and_pull_off(solver):
+    field = smooth_field(n_angle=4, spacing=0.01)
+    lowest = jkr.pull_off_penetration()
+    # Between the jumps only the stable branch exists, so the loop is the way out alone.
+    exact = -quad(lambda b: float(jkr.equilibrium_force(jkr.equilibrium_radius(b))), lowest, 0)[0]
+    found = []
+    for step in (0.04, 0.02, 0.01):
+        record = run_cycle(
+            field,
+            LoadSchedule(0.4, step),
+            tolerance=1e-12,
+            solver=solver,
+            record_fronts=True,
+            record_energy=True,
+        )
+        # The last jump, out of contact: all that is stored goes.
+        last, origin = record.radius[-1], np.full(4, 0.01)
+        pull_off = energy(last, record.end_penetration, field, origin)
+        found.append(record.dissipated_energy.sum() + pull_off)
+    # Of first order: the last load may lie anywhere within a step below pull-off.
+    error = np.abs(np.array(found) - exact)
+    assert np.all(error < 3 * np.array([0.04, 0.02, 0.01]))
+
+
+# --- how a cycle ends, and bad input
+
+
+@every_solver
+def test_a_cycle_that_leaves_the_field_inward_says_so_and_keeps_its_states(solver):
+    radii = 1.2 + 0.05 * np.arange(30)
+    field = polar_field(radii, np.full((30, 8), WORK_OF_ADHESION))
+    record = run_cycle(field, LoadSchedule(0.5, 0.1), solver=solver)
+    assert record.status is Status.LEFT_FIELD_INWARD
+    # A smooth sphere of radius 1.2 rests at a penetration of about -0.35.
+    assert record.end_penetration == pytest.approx(-0.4)
+    assert record.min_radius.min() > 1.2
+
+
+@every_solver
+def test_a_cycle_on_a_field_that_adheres_more_than_expected_may_leave_it_outward(solver):
+    field = smooth_field(largest=2.0, adhesion=3.0)
+    record = run_cycle(field, LoadSchedule(1.0, 0.25), solver=solver)
+    assert record.status is Status.LEFT_FIELD_OUTWARD
+    assert record.end_penetration in (0.0, 0.25, 0.5, 0.75, 1.0)
+    assert np.all(record.max_radius <= 2.0)
+
+
+@every_solver
+def test_a_cycle_ends_at_the_limit_of_sweeps_with_the_states_before_it(solver):
+    record = run_cycle(noisy_field(14), LoadSchedule(0.5, 0.1), max_sweeps=1, solver=solver)
+    assert record.status is Status.STEP_LIMIT
+    assert record.end_penetration == 0.0
+    assert record.penetration.size == 0
+    assert record.mean_radius.shape == (0,)
+
+
+@every_solver
+def test_a_record_without_states_keeps_the_shape_of_its_fronts(solver):
+    record = run_cycle(
+        noisy_field(14), LoadSchedule(0.5, 0.1), max_sweeps=1, solver=solver, record_fronts=True
+    )
+    assert record.radius.shape == (0, 12)
+
+
+def test_a_contact_that_outgrows_the_field_is_refused_before_it_starts():
+    field = smooth_field(largest=1.8)
+    with pytest.raises(
+        ValueError,
+        match=r"contact outgrows the field: a smooth sphere at penetration 1.5 has radius 1\.9",
+    ):
+        run_cycle(field, LoadSchedule(1.5, 0.1))
+
+
+def test_an_unknown_solver_is_refused():
+    with pytest.raises(ValueError, match="solver is 'newton'; choose one of"):
+        run_cycle(smooth_field(), LoadSchedule(1.0, 0.1), solver="newton")

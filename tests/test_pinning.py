@@ -1,0 +1,294 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from crackfront import pinning
+from crackfront.adhesion import AdhesionMap, chemical_adhesion
+from crackfront.pinning import front_adhesion, polar_field, swept_adhesion, tile_field
+from crackfront.units import WORK_OF_ADHESION
+
+
+def tile(values, pixel=0.1):
+    return AdhesionMap(np.asarray(values, dtype=float), pixel, 0.0, 0.0)
+
+
+def noisy_polar(seed=1, n_angle=8, n_sample=40, spacing=0.05):
+    rng = np.random.default_rng(seed)
+    radii = np.cumsum(spacing * rng.uniform(0.5, 1.5, n_sample))
+    adhesion = WORK_OF_ADHESION * (1 + 0.4 * rng.standard_normal((n_sample, n_angle)))
+    return radii, adhesion
+
+
+def wavy(x, y, period):
+    """A band-limited periodic field, three waves long at most."""
+    q = 2 * np.pi / period
+    return 1 + 0.3 * np.cos(q * x + 0.4) + 0.2 * np.sin(q * (2 * x - 3 * y) + 0.1)
+
+
+@st.composite
+def fronts_in_pairs(draw):
+    seed = draw(st.integers(0, 2**32 - 1))
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.1, 1.2, 8), rng.uniform(0.1, 1.2, 8)
+
+
+# --- polar samples
+
+
+def test_radius_times_adhesion_is_linear_between_the_samples_of_a_ray():
+    radii, adhesion = noisy_polar()
+    field = polar_field(radii, adhesion)
+    front = np.random.default_rng(2).uniform(radii[0], radii[-1], 8)
+    products = [np.interp(front[ray], radii, radii * adhesion[:, ray]) for ray in range(front.size)]
+    assert np.allclose(front * front_adhesion(front, field), products, rtol=1e-13)
+
+
+def test_samples_are_met_exactly_also_at_both_ends():
+    radii, adhesion = noisy_polar()
+    field = polar_field(radii, adhesion)
+    for sample in (0, 1, 17, radii.size - 1):
+        front = np.full(8, radii[sample])
+        assert np.allclose(front_adhesion(front, field), adhesion[sample], rtol=1e-13)
+
+
+def test_a_leading_zero_radius_changes_nothing():
+    radii, adhesion = noisy_polar()
+    field = polar_field(radii, adhesion)
+    padded = polar_field(
+        np.concatenate([[0.0], radii]), np.concatenate([np.ones((1, 8)), adhesion])
+    )
+    assert np.array_equal(padded.radii, field.radii)
+    assert np.array_equal(padded.products, field.products)
+
+
+def test_a_field_keeps_its_values_when_the_arrays_it_was_made_of_change():
+    radii, adhesion = noisy_polar()
+    field = polar_field(radii, adhesion)
+    before = front_adhesion(np.full(8, 0.5), field)
+    radii[:] = 7.0
+    adhesion[:] = 7.0
+    assert np.array_equal(front_adhesion(np.full(8, 0.5), field), before)
+
+
+def test_a_polar_field_states_its_rays_and_its_range():
+    radii, adhesion = noisy_polar()
+    field = polar_field(radii, adhesion)
+    assert pinning.n_angle(field) == 8
+    assert pinning.first_radius(field) == radii[0]
+    assert pinning.last_radius(field) == radii[-1]
+    assert pinning.sample_count(field) == radii.size
+    assert pinning.sample_radius(field, 3) == radii[3]
+    assert pinning.sample_product(field, 5, 3) == pytest.approx(radii[3] * adhesion[3, 5])
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_a_value_that_is_not_finite_is_refused_with_its_place(value):
+    radii, adhesion = noisy_polar()
+    adhesion[7, 3] = value
+    with pytest.raises(
+        ValueError,
+        match=rf"work of adhesion is {value} at radius index 7, angle index 3 \(1 such values\)",
+    ):
+        polar_field(radii, adhesion)
+
+
+def test_a_field_of_zeros_is_refused():
+    with pytest.raises(ValueError, match="zero everywhere; nothing adheres"):
+        polar_field(np.array([1.0, 2.0]), np.zeros((2, 8)))
+
+
+@pytest.mark.parametrize(
+    "radii", [[0.1, 0.1, 0.2], [0.1, 0.3, 0.2], [-0.1, 0.1, 0.2], [0.1, np.nan, 0.3]]
+)
+def test_radii_that_do_not_increase_are_refused(radii):
+    with pytest.raises(ValueError, match="not negative and strictly increasing; sort them"):
+        polar_field(np.array(radii), np.ones((3, 8)))
+
+
+@pytest.mark.parametrize("shape", [(4, 8), (8, 3), (3,), (3, 8, 1)])
+def test_a_field_of_another_shape_is_refused(shape):
+    with pytest.raises(ValueError, match=r"has shape .* for 3 radii; it must be \(radius, angle\)"):
+        polar_field(np.array([0.1, 0.2, 0.3]), np.ones(shape))
+
+
+@pytest.mark.parametrize(("n_sample", "n_angle"), [(1, 8), (4, 3)])
+def test_a_field_with_too_few_samples_or_angles_is_refused(n_sample, n_angle):
+    with pytest.raises(ValueError, match="at least 2 radii and 4 angles are needed"):
+        polar_field(0.1 * np.arange(1, n_sample + 1), np.ones((n_sample, n_angle)))
+
+
+# --- periodic tiles
+
+
+def test_a_tile_is_met_at_its_own_points_along_both_axes(rng):
+    values = 1 + 0.3 * rng.standard_normal((10, 10))
+    field = tile_field(tile(values), n_angle=4, spacing=0.1, largest_radius=1.2)
+    for sample in range(12):
+        ahead, behind = (5 + sample + 1) % 10, (5 - sample - 1) % 10
+        met = [values[ahead, 5], values[5, ahead], values[behind, 5], values[5, behind]]
+        found = [pinning.sample_product(field, ray, sample) for ray in range(4)]
+        assert np.allclose(found, 0.1 * (sample + 1) * np.array(met), rtol=1e-12)
+
+
+def test_the_apex_is_half_a_side_from_the_first_point_on_even_and_odd_tiles():
+    for n_point in (24, 25):
+        period = n_point * 0.1
+        x = 0.1 * np.arange(n_point)
+        values = 1 + 0.3 * np.cos(2 * np.pi * (x - period / 2) / period)[:, None] * np.ones(n_point)
+        field = tile_field(tile(values), 4, spacing=0.01, largest_radius=0.2)
+        # The field is symmetric about the apex, and highest there.
+        assert pinning.sample_product(field, 0, 9) == pytest.approx(
+            pinning.sample_product(field, 2, 9), rel=1e-13
+        )
+        assert pinning.sample_product(field, 0, 0) / 0.01 == pytest.approx(1.3, abs=1e-3)
+
+
+def test_interpolation_of_a_tile_converges_with_fourth_order():
+    errors = []
+    for n_point in (16, 32, 64):
+        pixel = 1.0 / n_point
+        x = pixel * np.arange(n_point) - 0.5
+        field = tile_field(tile(wavy(x[:, None], x[None, :], 1.0), pixel), 32, 0.0173, 1.6)
+        angle = 2 * np.pi * np.arange(32) / 32
+        error = 0.0
+        for sample in range(0, 90, 3):
+            radius = pinning.sample_radius(field, sample)
+            exact = wavy(radius * np.cos(angle), radius * np.sin(angle), 1.0)
+            found = [pinning.sample_product(field, ray, sample) / radius for ray in range(32)]
+            error = max(error, np.abs(found - exact).max())
+        errors.append(error)
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.all(orders > 3.7), (errors, orders)
+    assert errors[-1] < 1e-4
+
+
+def test_a_tile_smaller_than_the_contact_repeats(rng):
+    values = 1 + 0.3 * rng.standard_normal((12, 12))
+    # Doubling moves the apex to a corner of the original cell: roll by half a side.
+    doubled = np.roll(np.tile(values, (2, 2)), (6, 6), axis=(0, 1))
+    front = rng.uniform(0.1, 4.0, 16)
+    small = tile_field(tile(values), 16, 0.03, 4.0)
+    large = tile_field(tile(doubled), 16, 0.03, 4.0)
+    assert np.allclose(front_adhesion(front, small), front_adhesion(front, large), rtol=1e-12)
+
+
+def test_a_tile_may_have_sides_of_different_length(rng):
+    values = 1 + 0.3 * rng.standard_normal((8, 12))
+    field = tile_field(tile(values), 4, 0.1, 2.0)
+    for step in (0, 3, 11, 17):
+        radius = 0.1 * (step + 1)
+        along_x = values[(4 + step + 1) % 8, 6]
+        along_y = values[4, (6 + step + 1) % 12]
+        assert pinning.sample_product(field, 0, step) == pytest.approx(radius * along_x)
+        assert pinning.sample_product(field, 1, step) == pytest.approx(radius * along_y)
+
+
+def test_a_constant_tile_is_constant_everywhere():
+    field = tile_field(tile(np.full((5, 5), 0.7)), 7, 0.013, 3.0)
+    front = np.linspace(0.02, 2.9, 7)
+    assert np.allclose(front_adhesion(front, field), 0.7, rtol=1e-14)
+
+
+def test_the_rays_of_a_tile_sampled_one_by_one_are_the_same_field(rng):
+    values = 1 + 0.3 * rng.standard_normal((16, 16))
+    field = tile_field(tile(values), 12, 0.04, 1.5)
+    count = pinning.sample_count(field)
+    radii = np.array([pinning.sample_radius(field, k) for k in range(count)])
+    products = np.array(
+        [[pinning.sample_product(field, ray, k) for ray in range(12)] for k in range(count)]
+    )
+    polar = polar_field(radii, products / radii[:, None])
+    front = rng.uniform(0.05, 1.45, 12)
+    assert np.allclose(front_adhesion(front, polar), front_adhesion(front, field), rtol=1e-12)
+    assert pinning.last_radius(polar) == pinning.last_radius(field) >= 1.5
+    assert pinning.first_radius(polar) == pinning.first_radius(field) == 0.04
+
+
+def test_a_chemical_map_serves_as_a_field(rng):
+    adhesion = chemical_adhesion(0.1 * rng.standard_normal((8, 8)), 0.1)
+    field = tile_field(adhesion, 8, 0.05, 1.0)
+    assert pinning.n_angle(field) == 8
+    assert np.all(np.isfinite(front_adhesion(np.full(8, 0.5), field)))
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_tile_with_a_value_that_is_not_finite_is_refused_with_its_place(value):
+    values = np.ones((8, 8))
+    values[2, 5] = value
+    with pytest.raises(ValueError, match=f"work of adhesion is {value} at x index 2, y index 5"):
+        tile_field(tile(values), 8, 0.1, 1.0)
+
+
+def test_a_tile_of_zeros_is_refused():
+    with pytest.raises(ValueError, match="zero everywhere; nothing adheres"):
+        tile_field(tile(np.zeros((8, 8))), 8, 0.1, 1.0)
+
+
+def test_a_tile_for_fewer_than_four_angles_is_refused():
+    with pytest.raises(ValueError, match="number of angles is 3; at least 4 are needed"):
+        tile_field(tile(np.ones((8, 8))), 3, 0.1, 1.0)
+
+
+@pytest.mark.parametrize("spacing", [0.0, -0.1, 0.5, float("nan")])
+def test_a_sample_spacing_that_cannot_resolve_the_ray_is_refused(spacing):
+    with pytest.raises(ValueError, match=f"sample spacing {spacing} must be positive and below"):
+        tile_field(tile(np.ones((8, 8))), 8, spacing, 1.0)
+
+
+# --- swept adhesion
+
+
+@given(fronts_in_pairs())
+def test_a_constant_field_gives_its_value_times_the_swept_area(pair):
+    before, after = pair
+    radii = np.linspace(0.05, 1.3, 23)
+    field = polar_field(radii, np.full((23, 8), 0.4))
+    area = np.pi * np.mean(after**2 - before**2)
+    assert swept_adhesion(before, after, field) == pytest.approx(0.4 * area, rel=1e-11, abs=1e-12)
+
+
+@given(fronts_in_pairs())
+def test_swept_adhesion_is_antisymmetric(pair):
+    before, after = pair
+    field = polar_field(*noisy_polar())
+    there, back = swept_adhesion(before, after, field), swept_adhesion(after, before, field)
+    assert there == pytest.approx(-back, rel=1e-12, abs=1e-14)
+
+
+@given(fronts_in_pairs(), fronts_in_pairs())
+def test_swept_adhesion_does_not_depend_on_the_way(pair, other):
+    (before, after), (between, _) = pair, other
+    field = polar_field(*noisy_polar())
+    direct = swept_adhesion(before, after, field)
+    detour = swept_adhesion(before, between, field) + swept_adhesion(between, after, field)
+    assert direct == pytest.approx(detour, rel=1e-11, abs=1e-12)
+
+
+def test_the_derivative_of_swept_adhesion_is_the_product_under_the_site():
+    field = polar_field(*noisy_polar())
+    before, front = np.full(8, 0.2), np.linspace(0.31, 1.17, 8)
+    step = np.zeros(8)
+    step[3] = 1e-5
+    slope = swept_adhesion(before, front + step, field) - swept_adhesion(
+        before, front - step, field
+    )
+    expected = 2 * np.pi / 8 * (front * front_adhesion(front, field))[3]
+    assert slope / 2e-5 == pytest.approx(expected, rel=1e-8)
+
+
+def test_swept_adhesion_of_a_tile_is_that_of_its_samples(rng):
+    values = 1 + 0.3 * rng.standard_normal((16, 16))
+    field = tile_field(tile(values), 8, 0.04, 1.5)
+    radii = 0.04 * np.arange(1, 39)
+    before, after = rng.uniform(0.1, 1.4, 8), rng.uniform(0.1, 1.4, 8)
+    total = 0.0
+    for ray in range(8):
+        low, high = sorted((before[ray], after[ray]))
+        knots = np.concatenate([[low], radii[(radii > low) & (radii < high)], [high]])
+        samples = [pinning.sample_product(field, ray, k) for k in range(38)]
+        total += np.sign(after[ray] - before[ray]) * np.trapezoid(
+            np.interp(knots, radii, samples), knots
+        )
+    expected = 2 * np.pi * total / 8
+    assert swept_adhesion(before, after, field) == pytest.approx(expected, rel=1e-12)

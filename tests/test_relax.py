@@ -1,0 +1,705 @@
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from crackfront import jkr, pinning
+from crackfront.adhesion import AdhesionMap
+from crackfront.pinning import polar_field, tile_field
+from crackfront.relax import SOLVERS, Status, front_force, relax
+from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
+
+TIGHT = 1e-13
+"""Tolerance at which two fronts are compared; the fronts then agree to SAME."""
+SAME = 1e-8
+
+every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
+few = settings(max_examples=100)
+
+
+class Rays:
+    """A random field together with the plain arrays that the checks use."""
+
+    def __init__(self, seed, n_angle=12, amplitude=0.4, spacing=0.06, start=None, largest=2.8):
+        rng = np.random.default_rng(seed)
+        n_sample = int(largest / spacing)
+        self.radii = np.cumsum(spacing * rng.uniform(0.5, 1.5, n_sample))
+        if start is not None:
+            self.radii += start - self.radii[0]
+        noise = rng.standard_normal((n_sample, n_angle))
+        self.adhesion = WORK_OF_ADHESION * (1 + amplitude * noise)
+        self.field = polar_field(self.radii, self.adhesion)
+        self.n_angle = n_angle
+
+    def circle(self):
+        return np.full(self.n_angle, self.radii[0])
+
+    def force(self, front, penetration):
+        """The equation of equilibrium, written down once more with numpy alone."""
+        product = [
+            np.interp(a, self.radii, self.radii * self.adhesion[:, ray])
+            for ray, a in enumerate(front)
+        ]
+        ring = 3 / (8 * np.pi) * np.maximum(front**2 - penetration, 0) ** 2
+        modes = np.fft.rfft(front)
+        line = np.fft.irfft(np.arange(modes.size) * modes, front.size) / np.pi
+        return np.array(product) - ring - line
+
+    def residual(self, front, penetration, direction):
+        """Largest force along the motion, relative to w_int per front length."""
+        drive = direction * self.force(front, penetration) / front * np.pi
+        if direction < 0:
+            drive = drive[front > np.sqrt(max(penetration, 0.0))]
+        return max(0.0, drive.max(initial=0.0))
+
+
+@st.composite
+def rays(draw):
+    return Rays(
+        seed=draw(st.integers(0, 2**32 - 1)),
+        n_angle=draw(st.integers(8, 32)),
+        amplitude=draw(st.sampled_from([0.05, 0.2, 0.4, 0.8])),
+        spacing=draw(st.sampled_from([0.04, 0.08])),
+    )
+
+
+def tight(front, penetration, direction, field, solver):
+    return relax(front, penetration, direction, field, tolerance=TIGHT, solver=solver)
+
+
+def extent(outcome):
+    """Front of an outcome for comparisons: nothing where contact is lost."""
+    if outcome.status is Status.CONVERGED:
+        return outcome.radius
+    assert outcome.status in (Status.LOST_CONTACT, Status.LEFT_FIELD_INWARD)
+    return np.zeros_like(outcome.radius)
+
+
+def along(front, loads, direction, field, solver):
+    """Fronts at a sequence of loads until contact is lost."""
+    found = []
+    for load in loads:
+        outcome = tight(front, load, direction, field, solver)
+        found.append(extent(outcome))
+        if outcome.status is not Status.CONVERGED:
+            break
+        front = outcome.radius
+    return found
+
+
+def noisy_tile(seed, n_point=24, pixel=0.12, amplitude=0.3):
+    noise = np.random.default_rng(seed).standard_normal((n_point, n_point))
+    return AdhesionMap(WORK_OF_ADHESION * (1 + amplitude * noise), pixel, 0.0, 0.0)
+
+
+# --- exact answers: the smooth sphere
+
+
+@every_solver
+@pytest.mark.parametrize("n_angle", [4, 5, 7, 8, 13, 31, 32])
+def test_a_smooth_sphere_has_the_jkr_radius_for_any_number_of_sites(solver, n_angle):
+    radii = 0.05 * np.arange(1, 51)
+    field = polar_field(radii, np.full((50, n_angle), WORK_OF_ADHESION))
+    for penetration, radius in [(0.0, (8 / 3) ** (1 / 3)), (1.0, 1.783484193282)]:
+        outcome = relax(
+            np.full(n_angle, 0.05), penetration, 1, field, tolerance=1e-14, solver=solver
+        )
+        assert outcome.status is Status.CONVERGED
+        assert np.allclose(outcome.radius, radius, rtol=0, atol=2e-12)
+
+
+@every_solver
+def test_a_smooth_sphere_retracts_to_the_jkr_radius(solver):
+    field = polar_field(0.05 * np.arange(1, 51), np.full((50, 8), WORK_OF_ADHESION))
+    for penetration in (0.5, 0.0, -0.5, -0.9):
+        outcome = relax(np.full(8, 2.3), penetration, -1, field, tolerance=1e-14, solver=solver)
+        exact = jkr.equilibrium_radius(penetration)
+        assert np.allclose(outcome.radius, exact, rtol=0, atol=1e-10)
+
+
+@every_solver
+def test_a_smooth_sphere_loses_contact_just_below_its_pull_off_penetration(solver):
+    field = polar_field(0.01 * np.arange(1, 201), np.full((200, 8), WORK_OF_ADHESION))
+    front = np.full(8, 1.2)
+    held = relax(front, jkr.pull_off_penetration() + 1e-4, -1, field, solver=solver)
+    lost = relax(front, jkr.pull_off_penetration() - 1e-4, -1, field, solver=solver)
+    assert (held.status, lost.status) == (Status.CONVERGED, Status.LOST_CONTACT)
+    assert held.radius.min() > jkr.pull_off_radius()
+
+
+@every_solver
+@pytest.mark.parametrize("adhesion", [0.5, 0.9, 1.7])
+def test_a_uniform_field_scales_the_contact_by_the_power_of_its_adhesion(solver, adhesion):
+    field = polar_field(0.05 * np.arange(1, 61), np.full((60, 8), adhesion * WORK_OF_ADHESION))
+    outcome = relax(np.full(8, 0.05), 0.0, 1, field, tolerance=1e-14, solver=solver)
+    assert np.allclose(outcome.radius, (8 * adhesion / 3) ** (1 / 3), rtol=0, atol=2e-12)
+
+
+@every_solver
+@pytest.mark.parametrize("adhesion_sites", [8, 9])
+def test_a_distorted_front_on_a_uniform_field_becomes_a_circle(solver, adhesion_sites):
+    n_angle = adhesion_sites
+    field = polar_field(0.05 * np.arange(1, 51), np.full((50, n_angle), WORK_OF_ADHESION))
+    wave = 0.5 + 0.2 * np.cos(2 * np.pi * np.arange(n_angle) / n_angle)
+    outcome = tight(wave, 0.3, 1, field, solver)
+    assert np.allclose(outcome.radius, jkr.equilibrium_radius(0.3), atol=1e-11)
+
+
+# --- exact answers: axisymmetric disorder, a scalar equation
+
+
+def first_stop(radii, products, start, penetration, direction):
+    """First root of product - a G along the motion, segment by segment, by bisection."""
+
+    def force(a):
+        return np.interp(a, radii, products) - 3 / (8 * np.pi) * max(a * a - penetration, 0) ** 2
+
+    knots = np.concatenate([[start], radii[direction * (radii - start) > 0][::direction]])
+    for near, far in itertools.pairwise(knots):
+        # Fine pieces: a receding front may stop between two samples that both drive it.
+        places = np.linspace(near, far, 60)
+        stopped = np.flatnonzero([direction * force(a) <= 0 for a in places])
+        if stopped.size == 0:
+            continue
+        if stopped[0] == 0:
+            return places[0]
+        moving, resting = places[stopped[0] - 1], places[stopped[0]]
+        for _ in range(80):
+            middle = 0.5 * (moving + resting)
+            if direction * force(middle) > 0:
+                moving = middle
+            else:
+                resting = middle
+        return 0.5 * (moving + resting)
+    raise AssertionError("no stopping point")
+
+
+@every_solver
+@pytest.mark.parametrize("direction", [1, -1])
+def test_rings_stop_the_front_at_the_first_root_of_the_scalar_equation(solver, direction):
+    radii = 0.02 * np.arange(1, 126)
+    ring = WORK_OF_ADHESION * (1 + 0.2 * np.sin(2 * np.pi * radii / 0.17))
+    field = polar_field(radii, np.repeat(ring[:, None], 8, axis=1))
+    loads = np.linspace(-0.4, 1.0, 15)[::direction]
+    position = 0.3 if direction > 0 else 2.4
+    front = np.full(8, position)
+    for load in loads:
+        outcome = tight(front, load, direction, field, solver)
+        position = first_stop(radii, radii * ring, position, load, direction)
+        assert outcome.status is Status.CONVERGED
+        assert np.allclose(outcome.radius, position, rtol=0, atol=1e-11)
+        front = outcome.radius
+
+
+# --- no passing, and what follows from it
+
+
+@every_solver
+@pytest.mark.parametrize("direction", [1, -1])
+@few
+@given(data=st.data())
+def test_no_front_passes_another(solver, direction, data):
+    case = data.draw(rays())
+    rng = np.random.default_rng(data.draw(st.integers(0, 2**32 - 1)))
+    low, high = sorted(data.draw(st.tuples(st.floats(-0.6, 1.0), st.floats(-0.6, 1.0))))
+    inner = rng.uniform(0.3, 1.2, case.n_angle)
+    outer = inner + rng.uniform(0, 0.8, case.n_angle) * (rng.random(case.n_angle) < 0.5)
+    behind = tight(inner, low, direction, case.field, solver)
+    ahead = tight(outer, high, direction, case.field, solver)
+    assert np.all(extent(behind) <= extent(ahead) + SAME)
+
+
+@every_solver
+@few
+@given(case=rays(), cuts=st.lists(st.floats(0.0, 1.0), max_size=12))
+def test_the_front_after_approach_does_not_depend_on_the_load_steps(solver, case, cuts):
+    at_once = tight(case.circle(), 1.0, 1, case.field, solver)
+    in_steps = along(case.circle(), [*sorted(cuts), 1.0], 1, case.field, solver)
+    assert at_once.status is Status.CONVERGED
+    assert np.allclose(at_once.radius, in_steps[-1], rtol=0, atol=SAME)
+
+
+@every_solver
+@few
+@given(case=rays(), cuts=st.lists(st.floats(-0.4, 0.8), max_size=12))
+def test_the_front_after_retraction_does_not_depend_on_the_load_steps(solver, case, cuts):
+    turn = tight(case.circle(), 0.8, 1, case.field, solver).radius
+    at_once = tight(turn, -0.4, -1, case.field, solver)
+    in_steps = along(turn, [*sorted(cuts, reverse=True), -0.4], -1, case.field, solver)
+    assert np.allclose(extent(at_once), in_steps[-1], rtol=0, atol=SAME)
+
+
+@every_solver
+def test_one_load_step_of_two_fifths_and_four_hundred_small_ones_give_the_same_front(solver):
+    case = Rays(5, n_angle=16)
+    start = tight(case.circle(), 0.2, 1, case.field, solver).radius
+    at_once = tight(start, 0.6, 1, case.field, solver).radius
+    loads = 0.2 + 0.001 * np.arange(1, 401)
+    assert np.allclose(at_once, along(start, loads, 1, case.field, solver)[-1], atol=SAME)
+
+
+@every_solver
+@few
+@given(case=rays(), high=st.floats(0.1, 1.0), depth=st.floats(0.0, 0.8))
+def test_a_minor_loop_closes_on_the_state_at_which_it_was_left(solver, case, high, depth):
+    turn = tight(case.circle(), high, 1, case.field, solver)
+    down = tight(turn.radius, high - depth, -1, case.field, solver)
+    again = tight(np.maximum(extent(down), case.radii[0]), high, 1, case.field, solver)
+    assert np.allclose(again.radius, turn.radius, rtol=0, atol=SAME)
+
+
+@every_solver
+@few
+@given(case=rays(), depth=st.floats(0.0, 0.8))
+def test_a_minor_loop_closes_also_in_retraction(solver, case, depth):
+    top = tight(case.circle(), 1.2, 1, case.field, solver).radius
+    turn = tight(top, 0.3, -1, case.field, solver)
+    up = tight(turn.radius, min(0.3 + depth, 1.2), 1, case.field, solver)
+    again = tight(up.radius, 0.3, -1, case.field, solver)
+    assert np.allclose(extent(again), extent(turn), rtol=0, atol=SAME)
+
+
+@every_solver
+@few
+@given(case=rays(), data=st.data())
+def test_any_start_between_the_first_circle_and_the_front_ends_in_the_same_front(
+    solver, case, data
+):
+    from_contact = tight(case.circle(), 0.7, 1, case.field, solver).radius
+    rng = np.random.default_rng(data.draw(st.integers(0, 2**32 - 1)))
+    between = case.radii[0] + rng.random(case.n_angle) * (from_contact - case.radii[0])
+    again = tight(between, 0.7, 1, case.field, solver).radius
+    assert np.allclose(again, from_contact, rtol=0, atol=SAME)
+
+
+@every_solver
+@few
+@given(case=rays(), direction=st.sampled_from([1, -1]))
+def test_a_front_in_equilibrium_stays_where_it_is(solver, case, direction):
+    front = tight(
+        case.circle() if direction > 0 else case.circle() + 2.2, 0.4, direction, case.field, solver
+    )
+    if front.status is Status.CONVERGED:
+        again = tight(front.radius, 0.4, direction, case.field, solver)
+        assert np.allclose(again.radius, front.radius, rtol=0, atol=SAME)
+
+
+def slow_front(case, start, penetration, direction, rng):
+    """Chaotic relaxation in plain Python: single sites, random order, random parts of a step."""
+    front = np.array(start)
+    while True:
+        residual = direction * case.force(front, penetration)
+        if residual.max() < 1e-13:
+            return front
+        driven = np.flatnonzero(residual >= 1e-14)
+        site = rng.choice(driven)
+        a, force = front[site], residual[site]
+        ahead = case.radii[direction * (case.radii - a) > 1e-15]
+        target = ahead[0] if direction > 0 else ahead[-1]
+        near, far = sorted((a, target))
+        products = case.radii * case.adhesion[:, site]
+        slope = np.diff(np.interp([near, far], case.radii, products))[0] / (far - near)
+        hardest = far * max(far**2 - penetration, 0.0) * 3 / (2 * np.pi)
+        stiffness = case.n_angle / 4 / np.pi + hardest - slope
+        length = abs(target - a)
+        step = min(force / stiffness, length) if stiffness > 0 else length
+        # Whole steps mostly, so that it ends; else any part of what the force allows.
+        part = 1.0 if rng.random() < 0.7 else rng.random()
+        front[site] = target if part * step == length else a + direction * part * step
+
+
+@every_solver
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_any_order_of_single_forward_moves_ends_in_the_same_front(solver, direction, seed):
+    case = Rays(seed, n_angle=8, amplitude=0.3, spacing=0.12)
+    start = np.full(8, 1.0 if direction > 0 else 2.0)
+    penetration = 0.3 if direction > 0 else -0.1
+    slow = slow_front(case, start, penetration, direction, np.random.default_rng(seed))
+    fast = tight(start, penetration, direction, case.field, solver)
+    assert fast.status is Status.CONVERGED
+    assert np.abs(fast.radius - start).max() > 0.1
+    assert np.allclose(fast.radius, slow, rtol=0, atol=SAME)
+
+
+@every_solver
+@few
+@given(case=rays())
+def test_every_solver_ends_in_the_front_of_the_reference(solver, case):
+    loads = [0.0, 0.4, 0.8]
+    for direction, start in ((1, case.circle()), (-1, case.circle() + 2.2)):
+        found = along(start, loads[::direction], direction, case.field, solver)
+        expected = along(start, loads[::direction], direction, case.field, "reference")
+        assert len(found) == len(expected)
+        for one, other in zip(found, expected, strict=True):
+            assert np.allclose(one, other, rtol=0, atol=SAME)
+
+
+# --- what a state is
+
+
+@every_solver
+@few
+@given(case=rays(), direction=st.sampled_from([1, -1]), penetration=st.floats(-0.3, 1.0))
+def test_the_residual_recomputed_with_numpy_is_the_stated_one_and_within_the_tolerance(
+    solver, case, direction, penetration
+):
+    start = case.circle() if direction > 0 else case.circle() + 2.2
+    for tolerance in (1e-2, 1e-4, 1e-8):
+        outcome = relax(
+            start, penetration, direction, case.field, tolerance=tolerance, solver=solver
+        )
+        if outcome.status is Status.CONVERGED:
+            left = case.residual(outcome.radius, penetration, direction)
+            assert left <= tolerance
+            assert outcome.residual == pytest.approx(left, rel=1e-6, abs=1e-13)
+
+
+@few
+@given(case=rays(), penetration=st.floats(-0.5, 1.5))
+def test_the_force_is_the_equation_of_equilibrium(case, penetration):
+    rng = np.random.default_rng(1)
+    front = rng.uniform(0.3, 2.2, case.n_angle)
+    expected = case.force(front, penetration)
+    assert np.allclose(front_force(front, penetration, case.field), expected, atol=1e-12)
+
+
+@every_solver
+@few
+@given(case=rays(), penetration=st.floats(0.0, 1.0))
+def test_mean_adhesion_under_the_front_is_the_mean_release_rate(solver, case, penetration):
+    states = [tight(case.circle(), penetration, 1, case.field, solver)]
+    states.append(tight(states[0].radius, penetration - 0.3, -1, case.field, solver))
+    for state, load in zip(states, (penetration, penetration - 0.3), strict=True):
+        # Only where no site is held by another condition: its first circle, or compression.
+        lowest = max(case.radii[0], np.sqrt(max(load, 0.0)))
+        if state.status is Status.CONVERGED and state.radius.min() > lowest + 1e-9:
+            held = state.radius * pinning.front_adhesion(state.radius, case.field)
+            released = state.radius * jkr.energy_release_rate(state.radius, load)
+            assert held.mean() == pytest.approx(released.mean(), abs=1e-11)
+
+
+@every_solver
+@few
+@given(case=rays(), direction=st.sampled_from([1, -1]), penetration=st.floats(-0.3, 1.0))
+def test_no_site_moves_against_the_direction_of_motion(solver, case, direction, penetration):
+    start = case.circle() + (0.0 if direction > 0 else 2.0)
+    outcome = relax(start, penetration, direction, case.field, solver=solver)
+    assert np.all(direction * (outcome.radius - start) >= 0)
+
+
+@every_solver
+@few
+@given(case=rays(), direction=st.sampled_from([1, -1]), penetration=st.floats(-0.3, 1.0))
+def test_a_front_on_which_every_site_is_driven_ends_with_no_site_pushed_back(
+    solver, case, direction, penetration
+):
+    # An edge in compression is held open by the sphere itself, so start outside of that.
+    inner = max(case.radii[0], np.sqrt(max(penetration, 0.0)) + 1e-9)
+    start = np.full(case.n_angle, inner if direction > 0 else 2.2)
+    drive = direction * case.force(start, penetration)
+    outcome = tight(start, penetration, direction, case.field, solver)
+    if np.all(drive > 0) and outcome.status is Status.CONVERGED:
+        left = direction * case.force(outcome.radius, penetration)
+        assert np.all(left > -1e-12)
+
+
+@every_solver
+def test_the_front_that_relaxation_starts_from_is_not_changed(solver):
+    case = Rays(3)
+    start = case.circle()
+    relax(start, 0.5, 1, case.field, solver=solver)
+    assert np.array_equal(start, case.circle())
+
+
+@every_solver
+def test_the_same_call_gives_the_same_bits(solver):
+    case = Rays(4, n_angle=24)
+    first, again = (tight(case.circle(), 0.8, 1, case.field, solver) for _ in range(2))
+    assert np.array_equal(first.radius, again.radius)
+    assert (first.sweeps, first.residual) == (again.sweeps, again.residual)
+
+
+@every_solver
+def test_a_looser_tolerance_stops_behind_a_tighter_one(solver):
+    case = Rays(6, n_angle=16)
+    fronts = [
+        relax(case.circle(), 0.6, 1, case.field, tolerance=tolerance, solver=solver).radius
+        for tolerance in (1e-2, 1e-5, 1e-8, 1e-12)
+    ]
+    for looser, tighter in itertools.pairwise(fronts):
+        assert np.all(looser <= tighter + 1e-11)
+    assert np.allclose(fronts[2], fronts[3], atol=1e-5)
+
+
+# --- symmetries and units
+
+
+@every_solver
+@few
+@given(case=rays(), shift=st.integers(1, 31))
+def test_relabelling_and_mirroring_the_rays_relabel_and_mirror_the_front(solver, case, shift):
+    front = tight(case.circle(), 0.6, 1, case.field, solver).radius
+    rolled = polar_field(case.radii, np.roll(case.adhesion, shift, axis=1))
+    mirrored = polar_field(case.radii, case.adhesion[:, ::-1])
+    found = tight(case.circle(), 0.6, 1, rolled, solver).radius
+    assert np.allclose(found, np.roll(front, shift), rtol=0, atol=SAME)
+    found = tight(case.circle(), 0.6, 1, mirrored, solver).radius
+    assert np.allclose(found, front[::-1], rtol=0, atol=SAME)
+
+
+@every_solver
+@pytest.mark.parametrize("n_angle", [16, 24])
+def test_turning_the_tile_by_a_quarter_turns_the_front(solver, n_angle):
+    adhesion = noisy_tile(3)
+    # Turning about the apex, a grid point: the rotated array is moved on by one row.
+    turned = np.roll(np.rot90(adhesion.work_of_adhesion), 1, axis=0)
+    start = np.full(n_angle, 0.05)
+    fronts = [
+        tight(start, 0.5, 1, tile_field(tile, n_angle, 0.03, 2.6), solver).radius
+        for tile in (adhesion, AdhesionMap(turned, adhesion.pixel, 0.0, 0.0))
+    ]
+    assert np.ptp(fronts[0]) > 0.05
+    assert np.allclose(fronts[1], np.roll(fronts[0], n_angle // 4), rtol=0, atol=SAME)
+
+
+@every_solver
+def test_mirroring_the_tile_mirrors_the_front(solver):
+    adhesion = noisy_tile(4)
+    mirrored = np.roll(adhesion.work_of_adhesion[:, ::-1], 1, axis=1)
+    start = np.full(18, 0.05)
+    fronts = [
+        tight(start, 0.5, 1, tile_field(tile, 18, 0.03, 2.6), solver).radius
+        for tile in (adhesion, AdhesionMap(mirrored, adhesion.pixel, 0.0, 0.0))
+    ]
+    assert np.allclose(fronts[1], np.roll(fronts[0][::-1], 1), rtol=0, atol=SAME)
+
+
+@every_solver
+def test_a_tile_and_its_samples_on_the_rays_give_the_same_front(solver):
+    field = tile_field(noisy_tile(5), 20, 0.04, 2.6)
+    count = pinning.sample_count(field)
+    radii = np.array([pinning.sample_radius(field, k) for k in range(count)])
+    products = np.array(
+        [[pinning.sample_product(field, ray, k) for ray in range(20)] for k in range(count)]
+    )
+    polar = polar_field(radii, products / radii[:, None])
+    front = other = np.full(20, 0.04)
+    for penetration, direction in [(0.2, 1), (0.8, 1), (0.5, -1), (-0.2, -1), (0.4, 1)]:
+        one = tight(front, penetration, direction, field, solver)
+        two = tight(other, penetration, direction, polar, solver)
+        front, other = one.radius, two.radius
+        assert one.status is two.status is Status.CONVERGED
+        assert np.allclose(front, other, rtol=0, atol=SAME)
+
+
+@every_solver
+def test_finer_samples_of_a_smooth_tile_converge_to_one_front(solver):
+    n_point = 24
+    x = np.arange(n_point) / n_point
+    wave = np.cos(2 * np.pi * (2 * x[:, None] + x[None, :])) + np.cos(4 * np.pi * x[None, :])
+    adhesion = AdhesionMap(WORK_OF_ADHESION * (1 + 0.1 * wave), 1 / n_point, 0.0, 0.0)
+    fronts = [
+        tight(np.full(32, 0.5), 0.5, 1, tile_field(adhesion, 32, spacing, 2.6), solver).radius
+        for spacing in (0.02, 0.01, 0.005, 0.0025)
+    ]
+    errors = [np.abs(front - fronts[-1]).max() for front in fronts[:-1]]
+    # Linear between samples: second order in their distance.
+    assert errors[1] < errors[0] / 2.5
+    assert errors[2] < errors[1] / 2.5
+    assert errors[2] < 1e-3
+
+
+@every_solver
+def test_more_sites_on_a_smooth_weak_tile_converge_to_one_front(solver):
+    n_point = 24
+    x = 2.4 * np.arange(n_point) / n_point
+    wave = np.cos(2 * np.pi * (x[:, None] + x[None, :]) / 2.4) + np.sin(np.pi * x[None, :] / 0.6)
+    adhesion = AdhesionMap(WORK_OF_ADHESION * (1 + 0.05 * wave), 0.1, 0.0, 0.0)
+    fronts = []
+    for n_angle in (16, 32, 64):
+        field = tile_field(adhesion, n_angle, 0.01, 2.6)
+        front = relax(np.full(n_angle, 0.5), 0.5, 1, field, tolerance=1e-11, solver=solver).radius
+        fronts.append(front[:: n_angle // 16])
+    assert np.ptp(fronts[0]) > 0.02
+    coarse, fine = (np.abs(front - fronts[-1]).max() for front in fronts[:-1])
+    # The front is smooth, so its Fourier series converges fast.
+    assert fine < coarse / 10
+    assert fine < 1e-4
+
+
+@every_solver
+def test_a_front_solves_the_equation_of_equilibrium_in_si(solver):
+    case = Rays(8, n_angle=16, amplitude=0.3)
+    unit = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
+    outcome = tight(case.circle(), 0.5, 1, case.field, solver)
+    front = unit.lateral * outcome.radius
+    penetration = unit.vertical * 0.5
+    adhesion = unit.energy_per_area * pinning.front_adhesion(outcome.radius, case.field)
+    stress = (front**2 / unit.radius - penetration) * unit.contact_modulus
+    release = stress**2 / (np.pi * front) / (2 * unit.contact_modulus)
+    modes = np.fft.rfft(front)
+    line = np.fft.irfft(np.arange(modes.size) * modes, front.size)
+    left = front * adhesion - front * release - unit.work_of_adhesion * line
+    assert np.abs(left).max() < 1e-12 * unit.work_of_adhesion * front.max()
+    assert stress.min() > 0
+
+
+# --- traps
+
+
+@every_solver
+@few
+@given(case=rays(), start=st.floats(0.05, 0.8))
+def test_raising_the_load_by_two_at_once_meets_no_spurious_root_in_compression(solver, case, start):
+    front = np.full(case.n_angle, max(start, case.radii[0]))
+    at_once = tight(front, 2.0, 1, case.field, solver)
+    in_steps = along(front, np.linspace(0, 2, 21), 1, case.field, solver)
+    assert at_once.radius.min() >= np.sqrt(2.0)
+    assert np.allclose(at_once.radius, in_steps[-1], rtol=0, atol=SAME)
+
+
+@every_solver
+def test_a_front_stops_at_a_barrier_however_narrow_and_stays_there(solver):
+    # One weak ring of a hundredth of the way, and smooth adhesion on both sides.
+    radii = np.array([0.1, 1.199, 1.2, 1.201, 2.5])
+    weak = np.array([1.0, 1.0, 0.3, 1.0, 1.0])
+    field = polar_field(radii, WORK_OF_ADHESION * np.repeat(weak[:, None], 8, axis=1))
+    outcome = tight(np.full(8, 0.1), 0.0, 1, field, solver)
+    assert outcome.status is Status.CONVERGED
+    assert np.all((outcome.radius > 1.199) & (outcome.radius < 1.2))
+
+
+@every_solver
+def test_one_weak_site_holds_back_its_neighbours(solver):
+    adhesion = np.full((50, 16), WORK_OF_ADHESION)
+    adhesion[:, 5] *= 0.4
+    field = polar_field(0.05 * np.arange(1, 51), adhesion)
+    front = tight(np.full(16, 0.05), 0.3, 1, field, solver).radius
+    assert np.argmin(front) == 5
+    assert np.all(front < jkr.equilibrium_radius(0.3))
+    assert np.allclose(front[4::-1], np.roll(front, -6)[:5], atol=SAME)
+
+
+@every_solver
+@pytest.mark.parametrize("seed", range(4))
+def test_places_that_repel_do_not_break_the_front(solver, seed):
+    case = Rays(seed, n_angle=16, amplitude=0.9)
+    assert (case.adhesion < 0).sum() > 50
+    front = np.full(16, 1.0)
+    up = tight(front, 1.0, 1, case.field, solver)
+    assert up.status is Status.CONVERGED
+    assert case.residual(up.radius, 1.0, 1) < 1e-12
+    down = tight(up.radius, 0.2, -1, case.field, solver)
+    assert down.status is Status.CONVERGED
+    assert case.residual(down.radius, 0.2, -1) < 1e-12
+    assert np.all(down.radius >= np.sqrt(0.2))
+
+
+@every_solver
+def test_a_receding_front_does_not_open_an_edge_in_compression(solver):
+    adhesion = np.full((50, 8), -0.1)
+    field = polar_field(0.05 * np.arange(1, 51), adhesion)
+    # Between two samples, and on one.
+    for penetration in (0.83, 0.81):
+        outcome = tight(np.full(8, 2.0), penetration, -1, field, solver)
+        assert outcome.status is Status.CONVERGED
+        assert np.allclose(outcome.radius, np.sqrt(penetration), rtol=1e-13)
+
+
+@every_solver
+@pytest.mark.parametrize("direction", [1, -1])
+def test_uneven_radii_are_as_good_as_even_ones(solver, direction, rng):
+    # The product of the coarse samples is linear, so extra samples on it change nothing.
+    case = Rays(9, n_angle=12)
+    extra = np.sort(np.concatenate([case.radii, rng.uniform(case.radii[0], case.radii[-1], 90)]))
+    products = np.array(
+        [np.interp(extra, case.radii, case.radii * ray) for ray in case.adhesion.T]
+    ).T
+    refined = polar_field(extra, products / extra[:, None])
+    start = np.full(12, 0.5 if direction > 0 else 2.4)
+    front = tight(start, 0.3, direction, case.field, solver).radius
+    same = tight(start, 0.3, direction, refined, solver).radius
+    assert np.allclose(front, same, rtol=0, atol=SAME)
+
+
+@every_solver
+def test_a_front_may_start_exactly_on_the_samples(solver):
+    case = Rays(10, n_angle=12)
+    for sample in (0, 3, 20):
+        start = np.full(12, case.radii[sample])
+        up = tight(start, 0.7, 1, case.field, solver)
+        nudged = tight(start + 1e-12, 0.7, 1, case.field, solver)
+        assert np.allclose(up.radius, nudged.radius, rtol=0, atol=SAME)
+    start = np.full(12, case.radii[-1])
+    down = tight(start, 0.2, -1, case.field, solver)
+    nudged = tight(start - 1e-12, 0.2, -1, case.field, solver)
+    assert np.allclose(down.radius, nudged.radius, rtol=0, atol=SAME)
+
+
+# --- how a relaxation ends
+
+
+@every_solver
+def test_contact_is_lost_where_no_equilibrium_is_left(solver):
+    case = Rays(11, n_angle=12, amplitude=0.1)
+    outcome = relax(np.full(12, 1.0), -2.0, -1, case.field, solver=solver)
+    assert outcome.status is Status.LOST_CONTACT
+    assert "contact was lost" in outcome.status.value
+
+
+@every_solver
+def test_a_front_that_could_rest_further_in_has_left_the_field(solver):
+    case = Rays(12, n_angle=12, amplitude=0.05, start=1.3)
+    outcome = relax(np.full(12, 2.0), -0.5, -1, case.field, solver=solver)
+    assert outcome.status is Status.LEFT_FIELD_INWARD
+    assert "add samples at smaller radii" in outcome.status.value
+
+
+@every_solver
+def test_contact_below_pull_off_is_lost_even_if_the_field_has_a_hole(solver):
+    case = Rays(12, n_angle=12, amplitude=0.05, start=0.5)
+    outcome = relax(np.full(12, 2.0), -1.5, -1, case.field, solver=solver)
+    assert outcome.status is Status.LOST_CONTACT
+
+
+@every_solver
+def test_a_front_that_grows_beyond_the_field_has_left_it(solver):
+    case = Rays(13, n_angle=12, largest=1.5)
+    outcome = relax(case.circle(), 1.5, 1, case.field, solver=solver)
+    assert outcome.status is Status.LEFT_FIELD_OUTWARD
+    assert "enlarge the field or lower the penetration" in outcome.status.value
+
+
+@every_solver
+def test_the_step_limit_is_an_outcome_that_says_what_to_do(solver):
+    case = Rays(14, n_angle=16)
+    outcome = relax(case.circle(), 0.5, 1, case.field, max_sweeps=2, solver=solver)
+    assert outcome.status is Status.STEP_LIMIT
+    assert outcome.residual > 1e-8
+    assert "raise max_sweeps or the tolerance" in outcome.status.value
+    # What it reached so far is behind the front, so that it can go on from there.
+    rest = tight(outcome.radius, 0.5, 1, case.field, solver)
+    whole = tight(case.circle(), 0.5, 1, case.field, solver)
+    assert np.allclose(rest.radius, whole.radius, rtol=0, atol=SAME)
+
+
+@every_solver
+@pytest.mark.parametrize("n_angle", [11, 13])
+def test_a_front_of_another_number_of_sites_is_refused(solver, n_angle):
+    case = Rays(15, n_angle=12)
+    with pytest.raises(ValueError, match=rf"front has shape \({n_angle},\); the field has 12 rays"):
+        relax(np.full(n_angle, 0.5), 0.0, 1, case.field, solver=solver)
+
+
+def test_an_unknown_solver_is_refused_with_the_known_ones():
+    case = Rays(15)
+    with pytest.raises(ValueError, match=r"solver is 'fastest'; choose one of .*reference"):
+        relax(case.circle(), 0.0, 1, case.field, solver="fastest")
+
+
+def test_the_modulus_of_the_ring_is_that_of_the_reduced_units():
+    # The independent check above writes 3 / 8 pi; this ties it to the package's own constant.
+    assert CONTACT_MODULUS / (2 * np.pi) == pytest.approx(3 / (8 * np.pi), rel=1e-15)
