@@ -1,0 +1,28 @@
+"""From the records of runs to w_appr, w_retr, k and their uncertainties, on plain arrays."""
+
+from crackfront.fits.estimate import Estimate
+from crackfront.fits.notes import fit_notes, trend_sentence
+from crackfront.fits.report import PAPER_FACTOR, PERTURBATION_FACTOR, fit_table
+from crackfront.fits.result import Column, FieldKind, SweepFit, fit_columns
+from crackfront.fits.steady import STEADY_DEFINITION, SteadyAdhesion, steady_adhesion
+from crackfront.fits.sweep import FIT_DEFINITION, fit_sweep
+from crackfront.fits.table import SweepTable
+
+__all__ = [
+    "FIT_DEFINITION",
+    "PAPER_FACTOR",
+    "PERTURBATION_FACTOR",
+    "STEADY_DEFINITION",
+    "Column",
+    "Estimate",
+    "FieldKind",
+    "SteadyAdhesion",
+    "SweepFit",
+    "SweepTable",
+    "fit_columns",
+    "fit_notes",
+    "fit_sweep",
+    "fit_table",
+    "steady_adhesion",
+    "trend_sentence",
+]

@@ -1,0 +1,180 @@
+"""Figure of one cycle: force against mean radius between two JKR curves."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crackfront import jkr
+from crackfront.cycle import CycleRecord
+from crackfront.fits import PAPER_FACTOR, FieldKind, SteadyAdhesion
+from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
+
+Array = NDArray[np.float64]
+
+FEWEST_FOR_ARROW = 5
+"""States that a branch must have for a part of it to have a direction."""
+
+MOST_MARKERS = 60
+"""Markers on a branch, roughly; of more states only every second, third ... is marked."""
+
+
+def loop_figure(
+    record: CycleRecord,
+    steady: SteadyAdhesion,
+    *,
+    elastic_energy: float | None = None,
+    kind: FieldKind = "roughness",
+    title: str = "",
+) -> Figure:
+    """Force against mean radius of one cycle between its two JKR curves (main Fig. 3c).
+
+    Parameters
+    ----------
+    record : CycleRecord
+        The cycle.
+    steady : SteadyAdhesion
+        Its apparent works of adhesion; without values no curves are drawn.
+    elastic_energy : float, optional
+        Measured e_el, for the curves that the paper predicts. (Units: w_int)
+    kind : {"roughness", "chemical"}, optional
+        Whether they lie around w_int - e_el or w_int.
+    title : str, optional
+        Title of the figure.
+
+    Returns
+    -------
+    Figure
+        One column wide.
+    """
+    with house_style():
+        figure = blank_figure(COLUMN, 0.82 * COLUMN)
+        axes = figure.add_subplot()
+        draw_loop(axes, record, steady, elastic_energy=elastic_energy, kind=kind)
+        axes.set_title(title)
+        return figure
+
+
+def draw_loop(
+    axes: Axes,
+    record: CycleRecord,
+    steady: SteadyAdhesion,
+    *,
+    elastic_energy: float | None = None,
+    kind: FieldKind = "roughness",
+) -> None:
+    """Draw the two branches, their JKR curves and the window of the averages.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    record : CycleRecord
+        The cycle.
+    steady : SteadyAdhesion
+        Its apparent works of adhesion.
+    elastic_energy : float, optional
+        Measured e_el, for the curves that the paper predicts. (Units: w_int)
+    kind : {"roughness", "chemical"}, optional
+        Whether they lie around w_int - e_el or w_int.
+
+    Raises
+    ------
+    ValueError
+        If the record holds no state.
+    """
+    if record.mean_radius.size == 0:
+        raise ValueError("the record holds no state; there is no loop to draw")
+    radius = np.linspace(0.0, 1.2 * np.max(record.mean_radius), 300)
+    branches = (
+        (1, "approach", "appr", BLUE, "o", steady.approach),
+        (-1, "retraction", "retr", VERMILION, "s", steady.retraction),
+    )
+    for direction, name, short, colour, marker, adhesion in branches:
+        branch = record.direction == direction
+        axes.plot(
+            record.mean_radius[branch],
+            record.force[branch],
+            linestyle="none",
+            marker=marker,
+            markevery=max(1, np.count_nonzero(branch) // MOST_MARKERS),
+            markersize=2.8,
+            markerfacecolor="white",
+            markeredgewidth=0.6,
+            color=colour,
+            label=name,
+            zorder=3,
+        )
+        if np.isfinite(adhesion):
+            label = rf"JKR, $w_\mathrm{{{short}}} = {adhesion:.3f}\,w_\mathrm{{int}}$"
+            curve = jkr.equilibrium_force(radius, adhesion)
+            axes.plot(radius, curve, color=colour, linewidth=1.0, label=label, zorder=2)
+    if elastic_energy is not None:
+        centre = 1 - elastic_energy if kind == "roughness" else 1.0
+        _draw_prediction(axes, radius, centre, PAPER_FACTOR * elastic_energy)
+    if np.isfinite(steady.lowest_radius):
+        axes.axvspan(
+            steady.lowest_radius,
+            steady.highest_radius,
+            color="0.93",
+            linewidth=0,
+            zorder=0,
+            label="window of the averages",
+        )
+    axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
+    _set_limits(axes, record)
+    for direction, _, _, colour, _, _ in branches:
+        branch = record.direction == direction
+        _draw_motion(axes, record.mean_radius[branch], record.force[branch], colour)
+    axes.set_xlabel(r"mean contact radius / $(3\pi w_\mathrm{int}R^2/4E')^{1/3}$")
+    axes.set_ylabel(r"normal force / $\pi w_\mathrm{int} R$")
+    axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
+
+
+def _set_limits(axes: Axes, record: CycleRecord) -> None:
+    """Limits around the states, with room for the legend at the upper left."""
+    for values, setter, below, above in (
+        (record.mean_radius, axes.set_xlim, 0.12, 0.08),
+        (record.force, axes.set_ylim, 0.15, 0.2),
+    ):
+        low, high = float(np.min(values)), float(np.max(values))
+        span = max(high - low, 0.1)
+        setter(low - below * span, high + above * span)
+
+
+def _draw_motion(axes: Axes, radius: Array, force: Array, colour: str) -> None:
+    """Arrow beside the outer part of a branch, in the direction of motion."""
+    if radius.size < FEWEST_FOR_ARROW:
+        return
+    outwards = radius[-1] > radius[0]
+    ends = (np.array([0.6, 0.85] if outwards else [0.15, 0.4]) * (radius.size - 1)).astype(int)
+    to_axes = axes.transData + axes.transAxes.inverted()
+    tail, head = to_axes.transform(np.stack([radius[ends], force[ends]], axis=1))
+    along = (head - tail) / np.hypot(*(head - tail))
+    aside = 0.06 * np.array([-along[1], along[0]])
+    axes.annotate(
+        "",
+        xy=(tail + head) / 2 + aside + 0.07 * along,
+        xytext=(tail + head) / 2 + aside - 0.07 * along,
+        xycoords="axes fraction",
+        arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.0, "mutation_scale": 8},
+        zorder=4,
+    )
+
+
+def _draw_prediction(axes: Axes, radius: Array, centre: float, reach: float) -> None:
+    """JKR curves of the works of adhesion centre - reach, not below zero, and centre + reach."""
+    label: str | None = f"JKR, $k = {PAPER_FACTOR:g}$ (paper)"
+    for adhesion in (max(centre - reach, 0.0), centre + reach):
+        axes.plot(
+            radius,
+            jkr.equilibrium_force(radius, adhesion),
+            color="0.35",
+            linewidth=0.6,
+            dashes=(4, 2),
+            label=label,
+            zorder=1,
+        )
+        label = None

@@ -1,0 +1,139 @@
+"""Parts that the figures of a sweep share: points, lines, labels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from numpy.typing import NDArray
+
+from crackfront.fits import PAPER_FACTOR, PERTURBATION_FACTOR, Estimate, SweepFit, SweepTable
+from crackfront.plots.style import BLACK, COLOURS, MARKERS
+
+Array = NDArray[np.float64]
+
+
+def draw_estimates(
+    axes: Axes,
+    index: int,
+    abscissa: Array,
+    estimate: Estimate,
+    filled: NDArray[np.bool_],
+    label: str,
+) -> None:
+    """Points of one spectrum with their intervals, filled or open."""
+    colour, marker = spectrum_colour(index), MARKERS[index % len(MARKERS)]
+    reach = np.nan_to_num(estimate.high - estimate.value)
+    for chosen, face, edge, name in (
+        (filled, colour, "white", label),
+        (~filled, "white", colour, ""),
+    ):
+        if not np.any(chosen):
+            continue
+        axes.errorbar(
+            abscissa[chosen],
+            estimate.value[chosen],
+            yerr=reach[chosen],
+            linestyle="none",
+            marker=marker,
+            color=colour,
+            markerfacecolor=face,
+            markeredgecolor=edge,
+            markeredgewidth=0.4 if face == colour else 0.8,
+            markersize=4.2 if face == colour else 3.6,
+            elinewidth=0.7,
+            capthick=0.7,
+            label=name or None,
+            zorder=3,
+        )
+
+
+def draw_below(axes: Axes, index: int, abscissa: Array) -> None:
+    """Arrows at the lower edge, side by side for the spectra."""
+    for position in abscissa * 1.05 ** (index - 1):
+        axes.annotate(
+            "",
+            xy=(position, 0.005),
+            xytext=(position, 0.05),
+            xycoords=axes.get_xaxis_transform(),
+            arrowprops={
+                "arrowstyle": "->",
+                "color": spectrum_colour(index),
+                "linewidth": 0.8,
+                "mutation_scale": 5,
+                "shrinkA": 0,
+                "shrinkB": 0,
+            },
+        )
+
+
+def draw_fit(
+    axes: Axes, ends: Array, fit: SweepFit, curve: Callable[[float, Array], Array]
+) -> None:
+    """Line of the pooled k over the range of the fit."""
+    value, reach = float(fit.pooled.factor.value), float(fit.pooled.factor.high)
+    text = f"{value:.2f}"
+    if np.isfinite(reach):
+        text += rf" \pm {reach - value:.2f}"
+    axes.plot(
+        ends, curve(value, ends), color=BLACK, linewidth=1.2, label=f"pooled fit, $k = {text}$"
+    )
+
+
+def draw_theory(axes: Axes, ends: Array, curve: Callable[[float, Array], Array]) -> None:
+    """Lines of the paper's k and that of perturbation theory."""
+    for factor, dashes, name in (
+        (PAPER_FACTOR, (4, 2), "paper"),
+        (PERTURBATION_FACTOR, (1, 1.5), "perturbation theory"),
+    ):
+        axes.plot(
+            ends,
+            curve(factor, ends),
+            color="0.35",
+            linewidth=0.7,
+            dashes=dashes,
+            label=f"$k = {factor:g}$ ({name})",
+            zorder=1,
+        )
+
+
+def legend_entries(axes: Axes) -> tuple[list[Artist], list[str]]:
+    """Handles and labels, the spectra before the lines."""
+    handles, labels = axes.get_legend_handles_labels()
+    order = sorted(range(len(labels)), key=lambda entry: isinstance(handles[entry], Line2D))
+    return [handles[entry] for entry in order], [labels[entry] for entry in order]
+
+
+def label_decimals(axes: Axes) -> None:
+    """Label 1, 2 and 5 of every decade of the abscissa as decimal numbers."""
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def spectrum_label(table: SweepTable, index: int) -> str:
+    """Parameters of a spectrum."""
+    cutoff = rf"$\lambda_\mathrm{{s}}={table.short_cutoff[index]:g}$"
+    if table.roll_off[index] == table.short_cutoff[index]:
+        return f"flat, {cutoff}"
+    roll_off = rf"$\lambda_\mathrm{{r}}={table.roll_off[index]:g}$"
+    return f"{cutoff}, {roll_off}, $H={table.hurst[index]:g}$"
+
+
+def spectrum_colour(index: int) -> str:
+    """Colour of a spectrum."""
+    return COLOURS[index % len(COLOURS)]
+
+
+def spectrum_row(estimate: Estimate, index: int) -> Estimate:
+    """Estimates of one spectrum."""
+    return Estimate(*(values[index] for values in arrays(estimate)))
+
+
+def arrays(estimate: Estimate) -> tuple[Array, Array, Array, Array]:
+    """Arrays of an estimate."""
+    return estimate.value, estimate.standard_error, estimate.low, estimate.high

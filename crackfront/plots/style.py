@@ -1,0 +1,110 @@
+"""The look of every figure: sizes, colours, fonts, and how a figure is written."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+COLUMN, PAGE = 85 / 25.4, 170 / 25.4
+"""Widths in print of one column and of a page (Units: inch)."""
+
+BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+    "#000000",
+)
+"""Colours of Okabe and Ito, which the colour-blind tell apart."""
+
+COLOURS = (GREEN, BLUE, PURPLE, VERMILION, ORANGE, SKY, BLACK)
+MARKERS = ("s", "o", "^", "D", "v", "P", "X")
+"""One colour and marker a spectrum; after seven both repeat, out of step."""
+
+STYLE: dict[Any, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 7.0,
+    "mathtext.fontset": "dejavusans",
+    "axes.labelsize": 8.0,
+    "axes.linewidth": 0.6,
+    "axes.titlesize": 8.0,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "legend.fontsize": 6.0,
+    "legend.frameon": False,
+    "legend.handlelength": 1.8,
+    "legend.labelspacing": 0.35,
+    "legend.borderaxespad": 0.6,
+    "lines.linewidth": 1.0,
+    "lines.markersize": 3.6,
+    "lines.markeredgewidth": 0.8,
+    "errorbar.capsize": 1.5,
+    "figure.constrained_layout.use": True,
+    "pdf.fonttype": 42,
+    "savefig.dpi": 300,
+}
+
+
+@contextmanager
+def house_style() -> Iterator[None]:
+    """Style of all figures, whatever the user's own settings; left as it was found."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(STYLE)
+        yield
+
+
+def blank_figure(width: float, height: float) -> Figure:
+    """Empty figure on a canvas of its own; width and height in inches."""
+    figure = Figure(figsize=(width, height))
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save_figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
+    """Write a figure as PDF and PNG; equal figures give equal bytes.
+
+    Parameters
+    ----------
+    figure : Figure
+        A figure.
+    stem : Path
+        Path without suffix; its folder is made where it is missing.
+
+    Returns
+    -------
+    tuple of Path
+        The PDF and the PNG (300 dpi).
+    """
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    pdf, png = (stem.with_name(stem.name + suffix) for suffix in (".pdf", ".png"))
+    with house_style(), _fonts_without_dates():
+        figure.savefig(pdf, metadata={"CreationDate": None})
+        figure.savefig(png, metadata={"Software": None})
+    return pdf, png
+
+
+@contextmanager
+def _fonts_without_dates() -> Iterator[None]:
+    """Leave out the warning, once a font, that the fonts of matplotlib carry no date."""
+    logger = logging.getLogger("fontTools.ttLib.tables._h_e_a_d")
+    disabled, logger.disabled = logger.disabled, True
+    try:
+        yield
+    finally:
+        logger.disabled = disabled

@@ -1,0 +1,239 @@
+"""Figures of a sweep: the law, and how k depends on disorder and on size.
+
+Error bars are 95% intervals of the mean over realisations. Filled symbols lie in the range of the
+fit, open ones outside it; an arrow at the lower edge stands for a mean below the axes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from crackfront.fits import (
+    PAPER_FACTOR,
+    PERTURBATION_FACTOR,
+    Estimate,
+    FieldKind,
+    SweepFit,
+    SweepTable,
+)
+from crackfront.plots.parts import (
+    arrays,
+    draw_below,
+    draw_estimates,
+    draw_fit,
+    draw_theory,
+    label_decimals,
+    legend_entries,
+    spectrum_colour,
+    spectrum_label,
+    spectrum_row,
+)
+from crackfront.plots.style import COLUMN, PAGE, blank_figure, house_style
+from crackfront.spectrum import SelfAffineSpectrum
+
+
+def hysteresis_figure(table: SweepTable, fit: SweepFit) -> Figure:
+    """Hysteresis against the variance of w_loc, with the spectra in an inset (SI Fig. S-5).
+
+    Parameters
+    ----------
+    table : SweepTable
+        The sweep.
+    fit : SweepFit
+        Its fit.
+
+    Returns
+    -------
+    Figure
+        One column wide.
+    """
+    with house_style():
+        figure = blank_figure(COLUMN, 0.98 * COLUMN)
+        axes = figure.add_subplot()
+        draw_hysteresis(axes, table, fit)
+        inset = axes.inset_axes((0.685, 0.135, 0.29, 0.27))
+        draw_spectra(inset, table, fit.kind)
+        return figure
+
+
+def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
+    """Dependence of k on disorder and on size.
+
+    Parameters
+    ----------
+    table : SweepTable
+        The sweep.
+    fit : SweepFit
+        Its fit.
+
+    Returns
+    -------
+    Figure
+        A page wide: k against e_el, and its mean over the range against correlation length.
+    """
+    with house_style():
+        figure = blank_figure(PAGE, 0.42 * PAGE)
+        left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
+        draw_factor_by_disorder(left, table, fit)
+        draw_factor_by_length(right, table, fit)
+        factor = fit.cells.factor.value
+        highest = max(PERTURBATION_FACTOR, float(np.nanmax(factor)))
+        left.set_ylim(min(0.0, float(np.nanmin(factor))) - 0.05 * highest, 1.1 * highest)
+        handles, labels = legend_entries(left)
+        figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 4))
+        for axes, letter in ((left, "a"), (right, "b")):
+            axes.set_title(letter, loc="left", fontweight="bold")
+        return figure
+
+
+def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
+    """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the fit and the theory.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    table : SweepTable
+        The sweep.
+    fit : SweepFit
+        Its fit.
+    """
+    variance, hysteresis = fit.cells.w_rms**2, fit.cells.hysteresis
+    ends = np.array([np.nanmin(variance) / 1.8, np.nanmax(variance) * 1.8])
+    # Below its onset hysteresis falls to nothing; such points must not stretch the axes.
+    floor = 0.05 * PAPER_FACTOR / 2 * ends[0]
+    above = hysteresis.value[np.nan_to_num(hysteresis.value) > floor]
+    lowest = min(float(np.min(above, initial=np.inf)), PAPER_FACTOR / 2 * ends[0]) / 1.6
+    for index in range(table.spectrum.size):
+        label = spectrum_label(table, index)
+        row = spectrum_row(hysteresis, index)
+        below = np.nan_to_num(row.value, nan=np.inf) <= floor
+        draw_below(axes, index, variance[index, below])
+        shown = Estimate(*(np.where(below, np.nan, values) for values in arrays(row)))
+        draw_estimates(axes, index, variance[index], shown, fit.in_range, label)
+    fitted = 4 * np.array([fit.lowest_elastic_energy, fit.highest_elastic_energy])
+    draw_fit(axes, fitted, fit, lambda factor, abscissa: factor / 2 * abscissa)
+    draw_theory(axes, ends, lambda factor, abscissa: factor / 2 * abscissa)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(ends[0], ends[1])
+    axes.set_ylim(lowest, PERTURBATION_FACTOR / 2 * ends[1] * 4)
+    axes.set_xlabel(r"disorder $(w_\mathrm{rms}/w_\mathrm{int})^2$")
+    axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
+    axes.legend(*legend_entries(axes), loc="upper left")
+
+
+def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -> None:
+    """Draw the spectra, all scaled to one variance of w_loc.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    table : SweepTable
+        The sweep, of which only the spectra are used.
+    kind : {"roughness", "chemical"}, optional
+        Whether they are spectra of heights or of w_loc.
+    """
+    lowest = np.pi / np.max(table.roll_off)
+    densities = []
+    for index in range(table.spectrum.size):
+        spectrum = SelfAffineSpectrum(
+            float(table.short_cutoff[index]),
+            float(table.roll_off[index]),
+            float(table.hurst[index]),
+        )
+        scale = spectrum.elastic_energy if kind == "roughness" else spectrum.mean_square(0)
+        cutoff = 2 * np.pi / spectrum.short_cutoff
+        wavevector = np.geomspace(lowest, cutoff, 200)
+        density = spectrum.density(wavevector) / scale
+        densities.append(density)
+        axes.plot(
+            np.append(wavevector, cutoff),
+            np.append(density, np.finfo(float).tiny),
+            color=spectrum_colour(index),
+            linewidth=0.8,
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(lowest, 2.5 * 2 * np.pi / np.min(table.short_cutoff))
+    axes.set_ylim(np.min(densities) / 10, np.max(densities) * 5)
+    axes.set_xlabel("$q$ (reduced)", labelpad=0, fontsize=6)
+    unit = r"w_\mathrm{int}/e_\mathrm{el}" if kind == "roughness" else r"/ w_\mathrm{rms}^2"
+    axes.set_ylabel(rf"$C(q)\,{unit}$", labelpad=1, fontsize=6)
+    axes.tick_params(labelsize=5.5, pad=1.5)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(numticks=4))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def draw_factor_by_disorder(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
+    """Draw mean k against measured e_el, the pooled mean over the range and the theory.
+
+    Points of different spectra are set off sideways by up to 6% so that their bars do not hide
+    each other.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    table : SweepTable
+        The sweep.
+    fit : SweepFit
+        Its fit.
+    """
+    energy, n_spectrum = fit.cells.e_el, table.spectrum.size
+    aside = 1 + 0.12 * (np.arange(n_spectrum) - (n_spectrum - 1) / 2) / max(n_spectrum - 1, 1)
+    for index in range(n_spectrum):
+        label = spectrum_label(table, index)
+        abscissa = energy[index] * aside[index]
+        draw_estimates(
+            axes, index, abscissa, spectrum_row(fit.cells.factor, index), fit.in_range, label
+        )
+    ends = np.array([np.nanmin(energy) / 1.4, np.nanmax(energy) * 1.4])
+    fitted = np.array([fit.lowest_elastic_energy, fit.highest_elastic_energy])
+    draw_fit(axes, fitted, fit, lambda factor, abscissa: np.full(abscissa.shape, factor))
+    draw_theory(axes, ends, lambda factor, abscissa: np.full(abscissa.shape, factor))
+    axes.set_xscale("log")
+    axes.set_xlim(ends[0], ends[1])
+    label_decimals(axes)
+    axes.set_xlabel(r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$")
+    axes.set_ylabel(r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$")
+
+
+def draw_factor_by_length(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
+    """Draw k, averaged over the range, against the correlation length.
+
+    Spectra of one shape are joined by a line.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    table : SweepTable
+        The sweep.
+    fit : SweepFit
+        Its fit.
+    """
+    length, factor = table.correlation_length, fit.spectra.factor
+    for shape in np.unique(table.shape):
+        family = np.flatnonzero(table.shape == shape)
+        family = family[np.argsort(length[family])]
+        axes.plot(length[family], factor.value[family], color="0.6", linewidth=0.6, zorder=1)
+    for index in range(table.spectrum.size):
+        here = Estimate(*(values[[index]] for values in arrays(factor)))
+        draw_estimates(axes, index, length[[index]], here, np.array([True]), "")
+    ends = np.array([np.min(length) / 1.6, np.max(length) * 1.6])
+    draw_theory(axes, ends, lambda factor, abscissa: np.full(abscissa.shape, factor))
+    axes.set_xscale("log")
+    axes.set_xlim(ends[0], ends[1])
+    label_decimals(axes)
+    axes.set_xlabel("correlation length of $w_\\mathrm{loc}$ (reduced length)")
+    axes.set_title(
+        rf"mean over ${fit.lowest_elastic_energy:g}\leq e_\mathrm{{el}}/w_\mathrm{{int}}"
+        rf"\leq {fit.highest_elastic_energy:g}$",
+        fontsize=7,
+    )

@@ -1,0 +1,413 @@
+"""w_appr and w_retr of exact records; the fit of planted laws."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crackfront import fits, jkr
+from crackfront.cycle import CycleRecord, LoadSchedule, run_cycle
+from crackfront.fits import Estimate, SweepFit, SweepTable, fit_sweep, steady_adhesion
+from crackfront.fits.estimate import combination, mean_estimate, resample_counts, student_estimate
+from crackfront.pinning import polar_field
+from crackfront.relax import Status
+from crackfront.units import WORK_OF_ADHESION
+
+AMPLITUDES = np.array([0.005, 0.01, 0.02, 0.05, 0.1])
+LENGTHS = np.array([0.02, 0.04, 0.08])
+LAW = ("factor", "factor_by_sums", "exponent", "midpoint_slope", "disorder_slope")
+
+
+def smooth_record(w_appr, w_retr, n_state=9):
+    """Two branches of smooth JKR spheres between radius 1.2 and 1.8."""
+    radius = np.concatenate([np.linspace(1.2, 1.8, n_state), np.linspace(1.75, 0.9, n_state)])
+    direction = np.repeat([1, -1], n_state)
+    adhesion = np.where(direction > 0, w_appr, w_retr)
+    zero = np.zeros(radius.size)
+    return CycleRecord(
+        status=Status.LOST_CONTACT,
+        end_penetration=-0.5,
+        penetration=jkr.equilibrium_penetration(radius, adhesion),
+        direction=direction,
+        mean_radius=radius,
+        min_radius=radius,
+        max_radius=radius,
+        rms_radius=zero,
+        force=jkr.equilibrium_force(radius, adhesion),
+        contact_area=np.pi * radius**2,
+        apparent_work_of_adhesion=adhesion,
+        least_travel=np.abs(radius - np.where(direction > 0, 0.0, 1.8)),
+        iterations=zero.astype(int),
+        residual=zero,
+    )
+
+
+def synthetic_table(
+    rng, law, *, noise=0.1, n_realisation=4, lengths=LENGTHS, amplitudes=AMPLITUDES
+):
+    """A sweep over flat spectra with k = law(e_el, spectrum) and noise shared by amplitudes."""
+    n_spectrum = len(lengths)
+    column = (n_spectrum, 1, n_realisation)
+    whole = (n_spectrum, amplitudes.size, n_realisation)
+    energy = amplitudes[:, None] * (1 + 0.02 * rng.standard_normal(column))
+    planted = np.array([law(amplitudes, index) for index in range(n_spectrum)])[..., None]
+    factor = planted + noise * (
+        0.8 * rng.standard_normal(column) + 0.6 * rng.standard_normal(whole)
+    )
+    midpoint = 1 - energy + 0.2 * noise * np.sqrt(energy) * rng.standard_normal(whole)
+    w_appr, w_retr = midpoint - factor * energy, midpoint + factor * energy
+    return SweepTable(
+        spectrum=np.array([f"flat-{length}" for length in lengths]),
+        short_cutoff=np.array(lengths),
+        roll_off=np.array(lengths),
+        hurst=np.full(n_spectrum, 0.8),
+        correlation_length=np.array(lengths),
+        e_el_requested=amplitudes,
+        e_el=energy,
+        w_rms=2 * np.sqrt(energy),
+        w_appr=w_appr,
+        w_retr=w_retr,
+        w_appr_from_force=w_appr + 0.001,
+        w_retr_from_force=w_retr - 0.002,
+    )
+
+
+def constant(energy, _):
+    """k = 3 everywhere."""
+    return np.full(energy.shape, 3.0)
+
+
+def fit_all(table, **options) -> SweepFit:
+    """Fit over all amplitudes, with few bootstrap samples."""
+    options = {"n_bootstrap": 400, "seed": 0} | options
+    return fit_sweep(table, lowest_elastic_energy=0.005, highest_elastic_energy=0.1, **options)
+
+
+def with_gaps(table, gaps):
+    """The table with NaN where simulations failed."""
+    columns = ("w_appr", "w_retr", "w_appr_from_force", "w_retr_from_force")
+    return replace(
+        table, **{name: np.where(gaps, np.nan, getattr(table, name)) for name in columns}
+    )
+
+
+def covered(estimate: Estimate, truth):
+    """Whether the interval holds the truth."""
+    return (estimate.low <= truth) & (truth <= estimate.high)
+
+
+def test_smooth_branches_return_their_works_of_adhesion_to_round_off():
+    steady = steady_adhesion(smooth_record(0.8, 1.3), correlation_length=0.1)
+    assert steady.sentence == ""
+    assert steady.approach == pytest.approx(0.8, rel=1e-14)
+    assert steady.retraction == pytest.approx(1.3, rel=1e-14)
+    assert steady.hysteresis == pytest.approx(0.5, rel=1e-13)
+    assert steady.midpoint == pytest.approx(1.05, rel=1e-14)
+    assert steady.approach_from_force == pytest.approx(0.8, rel=1e-13)
+    assert steady.retraction_from_force == pytest.approx(1.3, rel=1e-13)
+
+
+def test_both_branches_are_averaged_over_one_window_of_radii_without_transients():
+    record = smooth_record(0.8, 1.3)
+    drifting = replace(record, apparent_work_of_adhesion=record.mean_radius)
+    steady = steady_adhesion(drifting, correlation_length=0.2)
+    # Retraction starts at 1.8: its first steady state lies 0.2 below. Approach starts at 1.2.
+    window = (record.mean_radius >= 1.2) & (record.mean_radius <= 1.6)
+    approach = window & (record.direction > 0)
+    last = np.max(record.mean_radius[(record.direction < 0) & (record.mean_radius <= 1.6)])
+    assert steady.lowest_radius == 1.2
+    assert steady.highest_radius == last
+    assert steady.approach == pytest.approx(
+        np.mean(record.mean_radius[approach & (record.mean_radius <= last)])
+    )
+    assert steady.approach < 1.6
+    assert steady.n_approach == np.count_nonzero(approach & (record.mean_radius <= last))
+
+
+def test_a_field_without_disorder_has_its_own_work_of_adhesion_on_both_branches():
+    radii = np.linspace(0.02, 2.2, 110)
+    field = polar_field(radii, np.full((radii.size, 16), 0.9 * WORK_OF_ADHESION))
+    record = run_cycle(field, LoadSchedule(1.0, 0.1), tolerance=1e-12)
+    steady = steady_adhesion(record, correlation_length=0.05)
+    values = (
+        steady.approach,
+        steady.retraction,
+        steady.approach_from_force,
+        steady.retraction_from_force,
+    )
+    np.testing.assert_allclose(values, 0.9, rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("record", "length", "words"),
+    [
+        (smooth_record(0.8, 1.3), 0.9, "9 steady states in approach and 1 in retraction; 3 each"),
+        (smooth_record(0.8, 1.3, n_state=2), 0.1, "2 steady states in approach and 1"),
+        (smooth_record(0.8, 1.3), 0.55, "share"),
+    ],
+)
+def test_too_few_steady_states_give_no_value_and_say_why(record, length, words):
+    steady = steady_adhesion(record, correlation_length=length)
+    assert np.isnan([steady.approach, steady.retraction, steady.approach_from_force]).all()
+    assert words in steady.sentence
+
+
+@pytest.mark.parametrize("length", [0.0, -1.0, np.nan, np.inf])
+def test_a_correlation_length_that_is_none_is_refused(length):
+    with pytest.raises(ValueError, match="correlation length"):
+        steady_adhesion(smooth_record(0.8, 1.3), length)
+
+
+def test_without_noise_the_fit_returns_the_planted_law_to_round_off(rng):
+    fit = fit_all(synthetic_table(rng, constant, noise=0.0))
+    for law, shape in ((fit.spectra, (3,)), (fit.pooled, ())):
+        for name, truth in zip(LAW, (3.0, 3.0, 2.0, 1.0, 0.0), strict=True):
+            estimate = getattr(law, name)
+            np.testing.assert_allclose(estimate.value, np.full(shape, truth), atol=1e-11)
+            np.testing.assert_allclose(estimate.high - estimate.low, np.zeros(shape), atol=1e-9)
+    assert fit.pooled_size_slope.value == pytest.approx(0.0, abs=1e-11)
+
+
+def test_a_planted_exponent_is_recovered(rng):
+    table = synthetic_table(rng, lambda energy, _: 3 * energy**-0.2, noise=0.0)
+    np.testing.assert_allclose(fit_all(table).spectra.exponent.value, 1.6, rtol=1e-9)
+
+
+def test_planted_trends_with_disorder_and_size_are_recovered(rng):
+    table = synthetic_table(
+        rng, lambda energy, index: 3 - 0.3 * np.log2(2 * np.sqrt(energy)) - 0.5 * index, noise=0.0
+    )
+    fit = fit_all(table)
+    np.testing.assert_allclose(fit.spectra.disorder_slope.value, -0.3, rtol=1e-9)
+    # One spectrum more is one doubling of the correlation length.
+    np.testing.assert_allclose(fit.size_slope.value, -0.5, rtol=1e-9)
+    np.testing.assert_allclose(fit.pooled_size_slope.value, -0.5, rtol=1e-9)
+    np.testing.assert_allclose(fit.pooled.factor.value, np.mean(fit.cells.factor.value))
+
+
+def test_intervals_cover_the_truth_as_often_as_they_say(rng):
+    n_table = 200
+    hits = dict.fromkeys(LAW, 0.0)
+    pooled = dict.fromkeys((*LAW, "size"), 0.0)
+    for seed in range(n_table):
+        fit = fit_all(synthetic_table(rng, constant), n_bootstrap=200, seed=seed)
+        for name, truth in zip(LAW, (3.0, 3.0, 2.0, 1.0, 0.0), strict=True):
+            hits[name] += np.mean(covered(getattr(fit.spectra, name), truth)) / n_table
+            pooled[name] += covered(getattr(fit.pooled, name), truth) / n_table
+        pooled["size"] += covered(fit.pooled_size_slope, 0.0) / n_table
+    # Three standard deviations of a binomial around 0.95 are 0.046.
+    assert all(0.90 <= share <= 0.99 for share in hits.values()), hits
+    assert all(0.90 <= share <= 1.0 for share in pooled.values()), pooled
+
+
+def test_realisations_are_resampled_with_all_their_amplitudes(rng):
+    # The realisations differ by one number that all their amplitudes share.
+    shared = synthetic_table(rng, constant, noise=0.0, n_realisation=6)
+    offset = rng.standard_normal((3, 1, 6)) * shared.e_el
+    shared = replace(shared, w_retr=shared.w_retr + offset, w_appr=shared.w_appr - offset)
+    fit = fit_all(shared, n_bootstrap=4000)
+    single = mean_estimate((3 * shared.e_el + offset)[:, 0] / shared.e_el[:, 0])[0]
+    np.testing.assert_allclose(fit.spectra.factor.standard_error, single.standard_error, rtol=0.06)
+    # Resampled apart, the noise would average out over five amplitudes.
+    assert np.all(fit.spectra.factor.standard_error > 2 * single.standard_error / np.sqrt(5))
+
+
+def test_point_estimates_do_not_depend_on_the_order_of_realisations_or_the_seed(rng):
+    table = synthetic_table(rng, constant)
+    columns = ("e_el", "w_rms", "w_appr", "w_retr", "w_appr_from_force", "w_retr_from_force")
+    shuffled = replace(table, **{name: getattr(table, name)[..., [2, 0, 3, 1]] for name in columns})
+    first, second = fit_all(table), fit_all(shuffled, seed=5)
+    for name in LAW:
+        for one, other in ((first.spectra, second.spectra), (first.pooled, second.pooled)):
+            np.testing.assert_allclose(
+                getattr(one, name).value, getattr(other, name).value, rtol=1e-11
+            )
+    assert not np.array_equal(
+        first.spectra.factor.standard_error, second.spectra.factor.standard_error
+    )
+
+
+def test_equal_seeds_give_equal_intervals(rng):
+    table = synthetic_table(rng, constant)
+    np.testing.assert_array_equal(
+        fit_all(table).pooled.factor.low, fit_all(table).pooled.factor.low
+    )
+
+
+def test_a_constant_midpoint_shift_is_found_and_is_improbable():
+    table = synthetic_table(np.random.default_rng(1), constant, noise=0.01)
+    shifted = replace(table, w_appr=table.w_appr - 0.05, w_retr=table.w_retr - 0.05)
+    as_planted, fit = fit_all(table), fit_all(shifted)
+    assert as_planted.midpoint_probability > 0.01
+    assert fit.midpoint_probability < 1e-4
+    assert fit.midpoint_largest > as_planted.midpoint_largest
+    assert np.all(fit.spectra.midpoint_slope.low > 1)
+
+
+def test_a_chemical_field_leaves_the_midpoint_at_w_int():
+    table = synthetic_table(np.random.default_rng(1), constant, noise=0.01)
+    chemical = replace(table, w_appr=table.w_appr + table.e_el, w_retr=table.w_retr + table.e_el)
+    fit = fit_all(chemical, kind="chemical")
+    assert covered(fit.pooled.midpoint_slope, 0.0)
+    assert fit.midpoint_probability > 0.01
+    assert fit_all(chemical).midpoint_probability < 1e-4
+    assert "| paper |  |  | 3 | 3 | 2 | 0 | 0 |" in fits.fit_table(fit)
+
+
+def test_failed_simulations_are_left_out_and_told(rng):
+    table = synthetic_table(rng, constant, noise=0.0)
+    gaps = np.zeros(table.e_el.shape, dtype=bool)
+    gaps[0, 4, :3] = gaps[1, 0, :] = gaps[2] = True
+    fit = fit_all(with_gaps(table, gaps))
+    np.testing.assert_allclose(fit.spectra.factor.value, [3, 3, np.nan], rtol=1e-11)
+    assert fit.pooled.factor.value == pytest.approx(3.0)
+    np.testing.assert_array_equal(fit.n_failed, [3, 4, 20])
+    np.testing.assert_array_equal(fit.n_realisation, [4, 4, 0])
+    np.testing.assert_array_equal(fit.cells.count[0], [4, 4, 4, 4, 1])
+    notes = "\n".join(fits.fit_notes(fit))
+    assert "flat-0.02: simulations in the range without a value: 3" in notes
+    assert "flat-0.04: no value at e_el = 0.005 w_int" in notes
+    assert "flat-0.08: no simulation in the range has a value" in notes
+
+
+def test_one_realisation_gives_values_but_no_intervals_and_says_so(rng):
+    fit = fit_all(synthetic_table(rng, constant, n_realisation=1))
+    assert np.isfinite(fit.spectra.factor.value).all()
+    for law in (fit.spectra, fit.pooled):
+        for name in LAW:
+            estimate = getattr(law, name)
+            assert np.isnan([estimate.low, estimate.high, estimate.standard_error]).all()
+    assert np.isnan(fit.midpoint_largest)
+    assert any("one realisation gives no interval" in note for note in fits.fit_notes(fit))
+    assert "(no interval)" in fits.fit_table(fit)
+
+
+def test_a_single_amplitude_and_a_single_spectrum_give_k_but_no_trend(rng):
+    table = synthetic_table(rng, constant, lengths=LENGTHS[:1], amplitudes=AMPLITUDES[-1:])
+    fit = fit_all(table)
+    assert covered(fit.pooled.factor, 3.0)
+    assert np.isnan(fit.pooled.exponent.value)
+    assert np.isnan(fit.pooled.disorder_slope.value)
+    assert np.isnan(fit.pooled_size_slope.value)
+    sentence = fits.trend_sentence(fit)
+    assert "its trend with w_rms needs two amplitudes" in sentence
+    assert "its trend with size needs two spectra of one shape" in sentence
+
+
+def test_size_is_compared_only_among_spectra_of_one_shape(rng):
+    table = synthetic_table(rng, lambda energy, index: constant(energy, 0) - index, noise=0.0)
+    wide = replace(table, roll_off=table.roll_off * np.array([1, 1, 16]))
+    np.testing.assert_array_equal(wide.shape == wide.shape[0], [True, True, False])
+    assert fit_all(wide).pooled_size_slope.value == pytest.approx(-1.0)
+    unlike = replace(table, roll_off=table.roll_off * np.array([1, 4, 16]))
+    assert np.isnan(fit_all(unlike).pooled_size_slope.value)
+    # A flat spectrum has a Hurst exponent without effect.
+    assert np.unique(replace(table, hurst=np.array([0.1, 0.5, 1.0])).shape).size == 1
+
+
+def test_a_k_that_depends_on_disorder_is_called_no_constant(rng):
+    falling = synthetic_table(rng, lambda energy, _: 3 - 0.5 * np.log2(energy / 0.005))
+    sentence = fits.trend_sentence(fit_all(falling))
+    assert "not a constant" in sentence
+    assert "changes by -" in sentence
+    level = fits.trend_sentence(fit_all(synthetic_table(np.random.default_rng(1), constant)))
+    assert "not a constant" in level
+
+
+def test_a_range_below_the_onset_of_hysteresis_is_pointed_out(rng):
+    table = synthetic_table(rng, lambda energy, _: np.where(energy > 0.01, 3.0, -0.3), noise=0.0)
+    fit = fit_all(table)
+    notes = "\n".join(fits.fit_notes(fit))
+    assert "reaches below the onset" in notes
+    assert "mean hysteresis at e_el = 0.005, 0.01 w_int is not positive" in notes
+    assert np.isfinite(fit.pooled.exponent.value)
+
+
+def test_the_table_shows_theory_range_and_every_estimate(rng):
+    text = fits.fit_table(fit_all(synthetic_table(rng, constant)))
+    for words in (
+        "e_el/w_int from 0.005 to 0.1 (5 of 5 amplitudes); 60 simulations, 0 without",
+        "| paper |  |  | 3 | 3 | 2 | 1 | 0 |",
+        "| 2nd-order perturbation theory |  |  | 4 | 4 | 2 | 1 | 0 |",
+        "not a constant",
+        "| flat-0.02 | 0.0010 | 0.0010 | -0.0020 | 0.0020 |",
+    ):
+        assert words in text
+    assert "nan" not in text
+    for block in text.split("\n\n"):
+        rows = [line for line in block.splitlines() if line.startswith("|")]
+        assert len({row.count("|") for row in rows}) <= 1
+
+
+def test_every_array_of_a_fit_comes_out_with_its_dimensions(rng):
+    fit = fit_all(synthetic_table(rng, constant))
+    size = {"spectrum": 3, "amplitude": 5}
+    columns = {column.name: column for column in fits.fit_columns(fit)}
+    for column in columns.values():
+        assert column.values.shape == tuple(size[dim] for dim in column.dims), column.name
+        assert column.long_name
+    assert columns["pooled_factor_low"].values == fit.pooled.factor.low
+    np.testing.assert_array_equal(columns["cell_factor"].values, fit.cells.factor.value)
+    assert {"exponent_standard_error", "from_force_approach", "size_slope_high"} <= set(columns)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"lowest_elastic_energy": 0.2, "highest_elastic_energy": 0.1}, "two positive ends"),
+        ({"lowest_elastic_energy": 0.0, "highest_elastic_energy": 0.1}, "two positive ends"),
+        ({"lowest_elastic_energy": np.nan, "highest_elastic_energy": 0.1}, "two positive ends"),
+        ({"lowest_elastic_energy": 0.3, "highest_elastic_energy": 0.4}, "no amplitude lies"),
+        (
+            {"lowest_elastic_energy": 0.01, "highest_elastic_energy": 0.1, "n_bootstrap": 1},
+            "n_bootstrap is 1",
+        ),
+    ],
+)
+def test_a_range_that_holds_nothing_is_refused(rng, options, words):
+    with pytest.raises(ValueError, match=words):
+        fit_sweep(synthetic_table(rng, constant), **options)
+
+
+def test_a_sweep_in_which_everything_failed_is_refused(rng):
+    table = synthetic_table(rng, constant)
+    with pytest.raises(ValueError, match="none of the 60 simulations"):
+        fit_all(with_gaps(table, np.ones(table.e_el.shape, dtype=bool)))
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "words"),
+    [
+        ("hurst", np.ones(2), "hurst has shape"),
+        ("w_appr", np.ones((3, 5, 2)), "w_appr has shape"),
+        ("e_el", np.zeros((3, 5, 4)), "measured e_el is 0.0"),
+    ],
+)
+def test_a_table_whose_arrays_disagree_is_refused(rng, name, values, words):
+    with pytest.raises(ValueError, match=words):
+        replace(synthetic_table(rng, constant), **{name: values})
+
+
+def test_a_mean_has_the_textbook_interval():
+    estimate, count = mean_estimate(np.array([1.0, 2.0, np.nan, 3.0, 6.0]))
+    assert count == 4
+    assert estimate.value == 3.0
+    assert estimate.standard_error == pytest.approx(np.sqrt(14 / 3 / 4))
+    assert estimate.high - 3.0 == pytest.approx(3.182446305284263 * np.sqrt(14 / 3 / 4))
+
+
+def test_bootstrap_samples_of_n_minus_one_give_the_standard_error_of_a_mean(rng):
+    values = rng.standard_normal(4)
+    counts = resample_counts(200_000, 4, rng)
+    assert np.all(np.sum(counts, axis=1) == 3)
+    assert np.std(counts @ values / 3) == pytest.approx(np.std(values, ddof=1) / 2, rel=0.01)
+
+
+def test_a_combination_of_independent_estimates_follows_welch():
+    parts = student_estimate(np.array([1.0, 2.0, np.nan]), np.array([0.3, 0.4, np.nan]), [3, 3, 0])
+    both = combination(parts, np.array([3, 3, 0]), np.array([1.0, 1.0, 0.0]))
+    assert both.value == 3.0
+    assert both.standard_error == pytest.approx(0.5)
+    freedom = 0.25**2 / (0.09**2 / 3 + 0.16**2 / 3)
+    assert both.high == pytest.approx(student_estimate(3.0, 0.5, freedom).high, rel=1e-12)
+    assert np.isnan(combination(parts, np.array([3, 3, 0]), np.zeros(3)).value)
