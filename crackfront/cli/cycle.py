@@ -1,0 +1,108 @@
+"""`crackfront cycle`: one approach and retraction on a field from a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from crackfront.cli.report import FILE, announce_compilation
+
+if TYPE_CHECKING:
+    from crackfront.pinning import Field
+
+
+@click.command()
+@click.option("--field", "field_file", type=FILE, required=True, help="netCDF file of the field.")
+@click.option("--max-penetration", type=float, required=True, help="Largest penetration.")
+@click.option("--step", type=float, required=True, help="Difference of penetrations.")
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(min=0, min_open=True),
+    default=1e-8,
+    show_default=True,
+    help="Force that may be left, relative to w_int per front length.",
+)
+@click.option("--solver", default="reference", show_default=True, help="Name of the solver.")
+@click.option(
+    "--max-sweeps",
+    type=click.IntRange(min=1),
+    default=10_000_000,
+    show_default=True,
+    help="Limit on the sweeps of one load step.",
+)
+@click.option(
+    "--record",
+    type=click.Choice(["fronts", "energy"]),
+    multiple=True,
+    help="Record the fronts, the dissipated energy too; may be repeated.",
+)
+@click.option(
+    "--angles",
+    type=click.IntRange(min=4),
+    help="Sites of the front on a tile.  [default: the power of 2 that gives one or more a pixel "
+    "on the largest circle]",
+)
+@click.option(
+    "--samples-per-pixel",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Samples along a ray on a tile, per pixel.  [default: 4]",
+)
+@click.option("--output", type=FILE, required=True, help="netCDF file of the cycle.")
+def cycle(
+    field_file: Path,
+    max_penetration: float,
+    step: float,
+    tolerance: float,
+    solver: str,
+    max_sweeps: int,
+    record: tuple[str, ...],
+    angles: int | None,
+    samples_per_pixel: float | None,
+    output: Path,
+) -> None:
+    """Run one approach and retraction on a field from a file.
+
+    The field is a periodic tile work_of_adhesion(x, y), whose centre is the apex of the sphere,
+    or samples work_of_adhesion(radius, angle), whose angles are the sites of the front. All
+    quantities are in reduced units: R = 1, w_int = 1/pi, E' = 3/4.
+
+    The exit code is 0 where the cycle ended by losing contact and 1 where it ended early; the
+    output is written in both cases. It is 2 where the input cannot be used.
+    """
+    from crackfront.adhesion import AdhesionMap
+    from crackfront.cycle import LoadSchedule, run_cycle
+    from crackfront.dataset import read_field, write_cycle
+    from crackfront.provenance import provenance
+    from crackfront.relax import Status
+    from crackfront.scene import tile_contact
+
+    schedule = LoadSchedule(max_penetration, step)
+    given = read_field(field_file)
+    field: Field
+    if isinstance(given, AdhesionMap):
+        field, directions = tile_contact(given, max_penetration, angles, samples_per_pixel), None
+    elif angles is None and samples_per_pixel is None:
+        field, directions = given.field, given.angles
+    else:
+        raise ValueError(
+            "--angles and --samples-per-pixel are for tiles; a polar field brings its own samples"
+        )
+    announce_compilation()
+    outcome = run_cycle(
+        field,
+        schedule,
+        tolerance=tolerance,
+        max_sweeps=max_sweeps,
+        solver=solver,
+        record_fronts="fronts" in record,
+        record_energy="energy" in record,
+    )
+    write_cycle(output, outcome, provenance(), directions)
+    click.echo(f"{outcome.penetration.size} states: {output}")
+    if outcome.status is not Status.LOST_CONTACT:
+        raise click.ClickException(
+            f"at penetration {outcome.end_penetration:.6g} {outcome.status.value}"
+        )
+    click.echo(f"contact was lost at penetration {outcome.end_penetration:.6g}")

@@ -1,0 +1,201 @@
+"""The steps of a sweep: plan, simulate, aggregate, fit, figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from crackfront.cli.report import FILE, fill_store, launch
+
+# The rest is imported where it is used, so that --help does not wait for it.
+if TYPE_CHECKING:
+    from crackfront.fits import SweepFit
+    from crackfront.scene import Simulation
+    from crackfront.store import Store
+    from crackfront.sweep import NamedSpectrum, Sweep
+
+_configuration = click.argument("configuration", type=FILE)
+_output = click.option(
+    "--output", type=FILE, help="Folder of the results.  [default: results/<configuration's name>]"
+)
+
+
+@click.command()
+@_configuration
+@_output
+def plan(configuration: Path, output: Path | None) -> None:
+    """Print the shards of a sweep, their sizes and what is stored of them."""
+    from crackfront.scene import resolution
+
+    sweep, store = _sweep_and_store(configuration, output)
+    click.echo("spectrum          lambda_s  lambda_r     H  angles  samples  points  stored")
+    for item in sweep.spectra:
+        shape, shard = item.spectrum, sweep.shard(item)
+        sizes = resolution(shape, sweep.numerics, sweep.schedule.max_penetration)
+        stored = sum(store.path(simulation).exists() for simulation in shard)
+        click.echo(
+            f"{item.name:16}  {shape.short_cutoff:8.4g}  {shape.roll_off:8.4g}  {shape.hurst:4.2f}"
+            f"  {sizes.n_angle:6}  {1 / sizes.spacing:7.4g}  {sizes.n_point:6}"
+            f"  {stored:3}/{len(shard)}"
+        )
+    energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
+    click.echo(f"{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}")
+    click.echo(f"{sweep.n_realisation} realisations; {_n_simulation(sweep)} simulations")
+    click.echo("samples: per reduced length along a ray; points: along a side of the tile")
+    click.echo(f"results in {store.folder}/")
+
+
+@click.command()
+@_configuration
+@_output
+@click.option("--spectrum", help="Only this spectrum.  [default: all]")
+@click.option(
+    "--ranks",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    help="MPI ranks that simulate, beside one that hands out the work; 1 runs without MPI.",
+)
+@click.option(
+    "--launcher",
+    envvar="CRACKFRONT_LAUNCHER",
+    help="What starts the ranks, as in 'srun -K1 --mpi=pmi2'; also from CRACKFRONT_LAUNCHER.  "
+    "[default: mpiexec beside this Python]",
+)
+def simulate(
+    configuration: Path,
+    output: Path | None,
+    spectrum: str | None,
+    ranks: int,
+    launcher: str | None,
+) -> None:
+    """Run the simulations of a sweep that are not stored yet."""
+    from crackfront import parallel
+
+    if not parallel.is_manager(ranks):
+        parallel.serve_tasks("crackfront.store")
+        return
+    sweep, store = _sweep_and_store(configuration, output)
+    items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
+    simulations = [one for item in items for one in sweep.shard(item)]
+    inventory = store.inventory(simulations)
+    busy = min(ranks, len(inventory.missing))
+    if busy > 1 and not parallel.under_mpi():
+        arguments = ["simulate", str(configuration), "--ranks", str(busy)]
+        arguments += ["--output", str(store.folder)]
+        arguments += [] if spectrum is None else ["--spectrum", spectrum]
+        launch(arguments, busy, launcher)
+        return
+    click.echo(
+        f"{configuration}: {len(simulations) - len(inventory.missing)} of {len(simulations)} "
+        "simulations are stored"
+    )
+    for sentence in inventory.unreadable:
+        click.echo(f"Warning: {sentence}; it is computed anew", err=True)
+    fill_store(store, inventory.missing, configuration)
+    for item in items:
+        manifest = store.write_manifest(item, sweep.shard(item))
+    click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
+
+
+@click.command()
+@_configuration
+@_output
+def aggregate(configuration: Path, output: Path | None) -> None:
+    """Collect the stored simulations of a sweep in hysteresis.nc."""
+    from crackfront.dataset import COMPLETE
+    from crackfront.provenance import provenance
+
+    sweep, store = _sweep_and_store(configuration, output)
+    path, statuses = store.aggregate(sweep, provenance(configuration.read_text(encoding="utf-8")))
+    others = {status: count for status, count in statuses.items() if status != COMPLETE}
+    if others:
+        told = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
+        click.echo(
+            f"Warning: {sum(others.values())} of {_n_simulation(sweep)} simulations have no "
+            f"value: {told}",
+            err=True,
+        )
+    click.echo(f"hysteresis: {path}")
+
+
+@click.command()
+@_configuration
+@_output
+def fit(configuration: Path, output: Path | None) -> None:
+    """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the last."""
+    from crackfront.dataset import write_fit
+    from crackfront.provenance import provenance
+
+    sweep, store = _sweep_and_store(configuration, output)
+    fitted = _fitted(sweep, store)
+    paths = write_fit(store.folder, fitted, provenance(configuration.read_text(encoding="utf-8")))
+    click.echo(paths[2].read_text(encoding="utf-8"))
+    click.echo(f"fit: {', '.join(map(str, paths))}")
+
+
+@click.command()
+@_configuration
+@_output
+def figures(configuration: Path, output: Path | None) -> None:
+    """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
+    from crackfront import plots
+    from crackfront.dataset import read_simulation
+    from crackfront.fits import steady_adhesion
+
+    sweep, store = _sweep_and_store(configuration, output)
+    fitted = _fitted(sweep, store)
+    item, simulation = _loop_example(sweep)
+    result = read_simulation(store.path(simulation), simulation)
+    steady = steady_adhesion(result.record, sweep.correlation_length(item))
+    loop = plots.loop_figure(
+        result.record, steady, elastic_energy=result.elastic_energy, title=simulation.label
+    )
+    drawn = {
+        "hysteresis": plots.hysteresis_figure(fitted.table, fitted),
+        "loop": loop,
+        "factor": plots.factor_figure(fitted.table, fitted),
+    }
+    for name, figure in drawn.items():
+        for path in plots.save_figure(figure, store.folder / "figures" / name):
+            click.echo(f"figure: {path}")
+
+
+def _sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, Store]:
+    """Sweep of a configuration file, and its store."""
+    from crackfront.config import load_configuration
+    from crackfront.store import Store
+
+    sweep = load_configuration(configuration)
+    return sweep, Store(Path("results") / configuration.stem if output is None else output)
+
+
+def _n_simulation(sweep: Sweep) -> int:
+    """Number of simulations of a sweep."""
+    return len(sweep.spectra) * len(sweep.elastic_energies) * sweep.n_realisation
+
+
+def _fitted(sweep: Sweep, store: Store) -> SweepFit:
+    """Fit of a sweep, always the same for the same table."""
+    from crackfront.dataset import read_table
+    from crackfront.fits import fit_sweep
+
+    return fit_sweep(
+        read_table(store.folder / "hysteresis.nc"),
+        lowest_elastic_energy=sweep.fit.lowest_elastic_energy,
+        highest_elastic_energy=sweep.fit.highest_elastic_energy,
+        n_bootstrap=sweep.fit.n_bootstrap,
+        seed=sweep.seed,
+    )
+
+
+def _loop_example(sweep: Sweep) -> tuple[NamedSpectrum, Simulation]:
+    """The simulation that comes nearest to the paper's Fig. 3c."""
+    self_affine = [
+        item for item in sweep.spectra if item.spectrum.roll_off > item.spectrum.short_cutoff
+    ]
+    item = (self_affine or sweep.spectra)[0]
+    energy = min(sweep.elastic_energies, key=lambda value: abs(value - 0.05))
+    return item, sweep.simulation(item, energy, 0)

@@ -1,0 +1,81 @@
+"""Configuration files: read, validated in full, and turned into a :class:`Sweep`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from crackfront.config.reading import ConfigurationError, content_of, sentences
+from crackfront.config.sections import Configuration
+from crackfront.cycle import LoadSchedule
+from crackfront.scene import Numerics
+from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.sweep import FitRange, NamedSpectrum, Sweep
+from crackfront.units import Scales
+
+__all__ = ["ConfigurationError", "load_configuration"]
+
+
+def load_configuration(path: Path) -> Sweep:
+    """Sweep of a configuration file.
+
+    Parameters
+    ----------
+    path : Path
+        YAML file.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file cannot be read, is no YAML mapping, or anything in it is unknown, missing or
+        out of range; one sentence for each.
+    """
+    content = content_of(path)
+    try:
+        configuration = Configuration.model_validate(content)
+    except ValidationError as error:
+        raise ConfigurationError(
+            "\n".join(f"{path}: {sentence}" for sentence in sentences(error.errors()))
+        ) from error
+    return _sweep(configuration)
+
+
+def _sweep(configuration: Configuration) -> Sweep:
+    """Frozen parameters in reduced units."""
+    scales = None if configuration.scales is None else Scales(**dict(configuration.scales))
+    lateral, vertical = (scales.lateral, scales.vertical) if scales else (1.0, 1.0)
+    numerics, load, fit = configuration.numerics, configuration.load, configuration.fit
+    return Sweep(
+        seed=configuration.seed,
+        kind=configuration.field,
+        scales=scales,
+        spectra=tuple(
+            NamedSpectrum(
+                item.name,
+                SelfAffineSpectrum(
+                    short_cutoff=item.short_cutoff / lateral,
+                    roll_off=(item.roll_off or item.short_cutoff) / lateral,
+                    hurst=item.hurst,
+                ),
+            )
+            for item in configuration.spectra
+        ),
+        elastic_energies=configuration.amplitudes.elastic_energies,
+        n_realisation=configuration.realisations,
+        numerics=Numerics(
+            angles=numerics.angles,
+            angles_per_cutoff=numerics.angles_per_cutoff or 1.0,
+            samples_per_cutoff=numerics.samples_per_cutoff,
+            pixels_per_cutoff=numerics.pixels_per_cutoff,
+            tile_roll_offs=numerics.tile.roll_offs,
+            tile_cutoffs=numerics.tile.cutoffs,
+            tolerance=numerics.tolerance,
+            max_sweeps=numerics.max_sweeps,
+            solver=numerics.solver,
+        ),
+        schedule=LoadSchedule(load.max_penetration / vertical, load.step / vertical),
+        record_fronts="fronts" in configuration.record,
+        record_energy="energy" in configuration.record,
+        fit=FitRange(fit.lowest_elastic_energy, fit.highest_elastic_energy, fit.bootstrap),
+    )

@@ -1,0 +1,199 @@
+"""The schema of a configuration: its sections, what each key may be, and what must agree."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from crackfront.relax import SOLVERS
+from crackfront.scene import FieldKind
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Count = Annotated[int, Field(ge=1)]
+Energy = Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False)]
+Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
+
+
+class Section(BaseModel):
+    """A mapping of the file; unknown keys and conversions are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class ScalesSection(Section):
+    """Scene in SI units."""
+
+    radius: Positive
+    work_of_adhesion: Positive
+    contact_modulus: Positive
+
+
+class SpectrumSection(Section):
+    """Shape of one spectrum."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
+    short_cutoff: Positive
+    roll_off: Positive | None = None
+    hurst: Annotated[float, Field(gt=0, le=1)]
+
+    @model_validator(mode="after")
+    def _ordered(self) -> SpectrumSection:
+        if self.roll_off is not None and self.roll_off < self.short_cutoff:
+            raise _wrong(
+                f"roll_off {self.roll_off:g} is shorter than short_cutoff {self.short_cutoff:g}; "
+                "lower the cutoff or raise the roll-off (equal values give a flat spectrum)"
+            )
+        return self
+
+
+class AmplitudesSection(Section):
+    """Amplitudes relative to w_int, in one of two measures."""
+
+    elastic_energy: Annotated[tuple[Energy, ...], Field(min_length=1)] | None = None
+    work_of_adhesion_rms: Annotated[tuple[Rms, ...], Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _one_measure(self) -> AmplitudesSection:
+        if (self.elastic_energy is None) == (self.work_of_adhesion_rms is None):
+            raise _wrong(
+                "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms; "
+                + ("remove one" if self.elastic_energy else "give one")
+            )
+        _refuse_repeated("amplitude", self.elastic_energy or self.work_of_adhesion_rms or ())
+        return self
+
+    @property
+    def elastic_energies(self) -> tuple[float, ...]:
+        """e_el / w_int, from w_rms^2 = 4 e_el w_int where the rms is given."""
+        if self.elastic_energy is not None:
+            return self.elastic_energy
+        return tuple(rms**2 / 4 for rms in self.work_of_adhesion_rms or ())
+
+
+class TileSection(Section):
+    """Side of the periodic tile."""
+
+    roll_offs: Positive
+    cutoffs: Annotated[float, Field(ge=1, allow_inf_nan=False)]
+
+
+class NumericsSection(Section):
+    """Resolution and solver, as in :class:`crackfront.scene.Numerics`."""
+
+    angles: Annotated[int, Field(ge=4)] | None = None
+    angles_per_cutoff: Positive | None = None
+    samples_per_cutoff: Positive
+    pixels_per_cutoff: Positive
+    tile: TileSection
+    tolerance: Annotated[float, Field(gt=0, lt=1)]
+    max_sweeps: Count
+    solver: str
+
+    @model_validator(mode="after")
+    def _usable(self) -> NumericsSection:
+        if (self.angles is None) == (self.angles_per_cutoff is None):
+            raise _wrong(
+                "numerics need exactly one of angles and angles_per_cutoff; "
+                + ("remove one" if self.angles else "give one")
+            )
+        if self.pixels_per_cutoff < 2:
+            raise _wrong(
+                f"pixels_per_cutoff is {self.pixels_per_cutoff:g}, so that short_cutoff is below "
+                "two pixels; it must be 2 or more"
+            )
+        if self.solver not in SOLVERS:
+            raise _wrong(
+                f"solver {self.solver!r} is unknown; choose one of {', '.join(sorted(SOLVERS))}"
+            )
+        return self
+
+
+class LoadSection(Section):
+    """Penetrations to visit."""
+
+    max_penetration: Annotated[float, Field(allow_inf_nan=False)]
+    step: Positive
+
+    @model_validator(mode="after")
+    def _makes_contact(self) -> LoadSection:
+        if self.max_penetration < 0:
+            raise _wrong(
+                f"max_penetration is {self.max_penetration:g}, which never makes contact; the "
+                "sphere touches at 0, so it must be 0 or more"
+            )
+        return self
+
+
+class FitSection(Section):
+    """Range of the fit."""
+
+    lowest_elastic_energy: Positive
+    highest_elastic_energy: Energy
+    bootstrap: Count
+
+    @model_validator(mode="after")
+    def _ordered(self) -> FitSection:
+        if self.lowest_elastic_energy > self.highest_elastic_energy:
+            raise _wrong(
+                f"lowest_elastic_energy {self.lowest_elastic_energy:g} is above "
+                f"highest_elastic_energy {self.highest_elastic_energy:g}; swap them"
+            )
+        return self
+
+
+class Configuration(Section):
+    """The whole file."""
+
+    seed: Annotated[int, Field(ge=0)]
+    field: FieldKind
+    scales: ScalesSection | None = None
+    spectra: Annotated[tuple[SpectrumSection, ...], Field(min_length=1)]
+    amplitudes: AmplitudesSection
+    realisations: Count
+    numerics: NumericsSection
+    load: LoadSection
+    record: tuple[Literal["fronts", "energy"], ...] = ()
+    fit: FitSection
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Configuration:
+        _refuse_repeated("spectrum name", [spectrum.name for spectrum in self.spectra])
+        if self.field == "chemical" and self.amplitudes.elastic_energy is not None:
+            raise _wrong(
+                "amplitudes.elastic_energy has no meaning for a chemical field; give "
+                "amplitudes.work_of_adhesion_rms"
+            )
+        energies, fit = self.amplitudes.elastic_energies, self.fit
+        if not any(
+            fit.lowest_elastic_energy <= energy <= fit.highest_elastic_energy for energy in energies
+        ):
+            raise _wrong(
+                f"no amplitude lies in the range of the fit, e_el from "
+                f"{fit.lowest_elastic_energy:g} to {fit.highest_elastic_energy:g}; widen the range"
+            )
+        return self
+
+
+def _wrong(sentence: str) -> PydanticCustomError:
+    """Error of a section as a whole."""
+    return PydanticCustomError("section", "{sentence}", {"sentence": sentence})
+
+
+def _refuse_repeated(what: str, values: Any) -> None:
+    """Raise if a value stands twice."""
+    for position, value in enumerate(values):
+        if value in values[:position]:
+            raise _wrong(f"{what} {value!r} stands twice; remove or change one")
+
+
+SECTIONS: dict[str, type[Section]] = {
+    "scales": ScalesSection,
+    "spectra": SpectrumSection,
+    "amplitudes": AmplitudesSection,
+    "numerics": NumericsSection,
+    "tile": TileSection,
+    "load": LoadSection,
+    "fit": FitSection,
+}

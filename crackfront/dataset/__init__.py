@@ -1,0 +1,22 @@
+"""The only owner of xarray and netCDF: the schema, reading, writing and aggregation."""
+
+from crackfront.dataset.cycles import read_cycle, read_simulation, write_cycle, write_simulation
+from crackfront.dataset.fields import PolarSamples, read_field
+from crackfront.dataset.files import UnreadableFileError, write_text
+from crackfront.dataset.fit import write_fit
+from crackfront.dataset.tables import COMPLETE, read_table, write_hysteresis
+
+__all__ = [
+    "COMPLETE",
+    "PolarSamples",
+    "UnreadableFileError",
+    "read_cycle",
+    "read_field",
+    "read_simulation",
+    "read_table",
+    "write_cycle",
+    "write_fit",
+    "write_hysteresis",
+    "write_simulation",
+    "write_text",
+]

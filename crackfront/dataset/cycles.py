@@ -1,0 +1,153 @@
+"""Files of single cycles: the curves, what they cost, and whose they are."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, fields
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crackfront.cycle import CycleRecord
+from crackfront.dataset.files import UnreadableFileError, labelled, read_dataset, write_dataset
+from crackfront.dataset.schema import ANGLES, COSTS, CURVES, DISSIPATED, RADIUS
+from crackfront.provenance import Provenance
+from crackfront.relax import Status
+from crackfront.scene import Simulation, SimulationResult
+
+Array = NDArray[np.float64]
+
+
+def write_cycle(
+    path: Path, record: CycleRecord, origin: Provenance, angles: Array | None = None
+) -> None:
+    """Write the record of one cycle.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    record : CycleRecord
+        What to write.
+    origin : Provenance
+        Where it comes from.
+    angles : (n_angle,) array, optional
+        Angles of the sites, if not 0, 2 pi / N, ... (Units: rad)
+    """
+    write_dataset(path, _cycle_dataset(record, angles), origin)
+
+
+def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> None:
+    """Write what one simulation of a sweep found and what it cost.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    result : SimulationResult
+        What to write.
+    origin : Provenance
+        Where it comes from.
+    """
+    costs = (
+        result.elastic_energy,
+        result.work_of_adhesion_rms,
+        result.seconds,
+        result.cpu_seconds,
+        result.peak_memory,
+    )
+    simulation = result.simulation
+    dataset = _cycle_dataset(result.record, None).assign(
+        {item.name: labelled(item, value) for item, value in zip(COSTS, costs, strict=True)}
+    )
+    dataset.attrs |= {
+        "simulation": simulation.label,
+        "key": simulation.key,
+        "seed": np.int64(simulation.seed),
+        "kind": simulation.kind,
+        "solver": simulation.solver,
+        "tolerance": simulation.tolerance,
+        "elastic_energy_requested": simulation.elastic_energy,
+        "short_cutoff": simulation.spectrum.short_cutoff,
+        "roll_off": simulation.spectrum.roll_off,
+        "hurst": simulation.spectrum.hurst,
+        **asdict(simulation.resolution),
+    }
+    write_dataset(path, dataset, origin)
+
+
+def read_cycle(path: Path) -> CycleRecord:
+    """Record of one cycle.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+
+    Raises
+    ------
+    UnreadableFileError
+        If the file is missing, truncated or holds no cycle.
+    """
+    return _record(path, read_dataset(path))
+
+
+def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
+    """Stored result of a simulation.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    simulation : Simulation
+        Whose result it must be.
+
+    Raises
+    ------
+    UnreadableFileError
+        If the file is missing, truncated or that of another simulation.
+    """
+    dataset = read_dataset(path)
+    if dataset.attrs.get("key") != simulation.key:
+        raise UnreadableFileError(f"{path} is not the result of {simulation.label}; remove it")
+    record = _record(path, dataset)
+    missing = [item.name for item in COSTS if item.name not in dataset]
+    if missing:
+        raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; remove it")
+    costs = (float(dataset[item.name]) for item in COSTS)
+    return SimulationResult(simulation, record, *costs)
+
+
+def _cycle_dataset(record: CycleRecord, angles: Array | None) -> xr.Dataset:
+    """Labelled curves of a record."""
+    variables = {item.name: labelled(item, getattr(record, item.name)) for item in CURVES}
+    if record.dissipated_energy is not None:
+        variables[DISSIPATED.name] = labelled(DISSIPATED, record.dissipated_energy)
+    if record.radius is not None:
+        count = record.radius.shape[1]
+        directions = 2 * np.pi * np.arange(count) / count if angles is None else angles
+        variables[RADIUS.name] = labelled(RADIUS, record.radius)
+        variables[ANGLES.name] = labelled(ANGLES, directions)
+    attributes = {
+        "status": record.status.name.lower(),
+        "status_sentence": record.status.value,
+        "end_penetration": record.end_penetration,
+    }
+    return xr.Dataset(variables, attrs=attributes)
+
+
+def _record(path: Path, dataset: xr.Dataset) -> CycleRecord:
+    """Record that a dataset holds."""
+    missing = [item.name for item in CURVES if item.name not in dataset]
+    name = str(dataset.attrs.get("status", "")).upper()
+    if missing or name not in Status.__members__ or "end_penetration" not in dataset.attrs:
+        what = ", ".join(missing) or "a known status"
+        raise UnreadableFileError(f"{path} holds no cycle: it lacks {what}")
+    known = {item.name for item in fields(CycleRecord)}
+    columns = {
+        str(name): np.asarray(values) for name, values in dataset.data_vars.items() if name in known
+    }
+    return CycleRecord(
+        status=Status[name], end_penetration=float(dataset.attrs["end_penetration"]), **columns
+    )

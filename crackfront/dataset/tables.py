@@ -1,0 +1,213 @@
+"""The file of a whole sweep: every simulation's apparent work of adhesion, status and cost."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from crackfront.cycle import CycleRecord
+from crackfront.dataset.files import UnreadableFileError, labelled, read_dataset, write_dataset
+from crackfront.dataset.schema import AMPLITUDE, COORDINATES, HYSTERESIS
+from crackfront.fits import STEADY_DEFINITION, SteadyAdhesion, SweepTable, steady_adhesion
+from crackfront.provenance import Provenance
+from crackfront.scene import SimulationResult, resolution
+from crackfront.sweep import NamedSpectrum, Sweep
+
+COMPLETE = "lost_contact"
+"""Status of a simulation that has values."""
+
+NO_STEADY_PART = "no_steady_part"
+"""Status of a complete cycle without enough steady states."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Cell:
+    """One simulation in the file; each field but the first is a variable of that name."""
+
+    result: SimulationResult
+    w_appr: float
+    w_retr: float
+    hysteresis: float
+    midpoint: float
+    w_appr_from_force: float
+    w_retr_from_force: float
+    hysteresis_from_force: float
+    e_el: float
+    w_rms: float
+    seconds: float
+    cpu_seconds: float
+    peak_memory: float
+    iterations: int
+    n_step: int
+    n_approach: int
+    n_retraction: int
+    lowest_radius: float
+    highest_radius: float
+    pull_off_force: float
+    end_penetration: float
+    status: str
+    status_sentence: str
+    seed: int
+    curve: str
+
+
+def write_hysteresis(
+    path: Path,
+    sweep: Sweep,
+    result_of: Callable[[NamedSpectrum, float, int], SimulationResult],
+    origin: Provenance,
+) -> Counter[str]:
+    """Write the file of a sweep.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    sweep : Sweep
+        Its parameters.
+    result_of : callable
+        Result of a spectrum, an amplitude and a realisation.
+    origin : Provenance
+        Where it comes from.
+
+    Returns
+    -------
+    Counter
+        Number of simulations of every status.
+    """
+    cells = [
+        _cell(result_of(item, energy, realisation), sweep.correlation_length(item))
+        for item in sweep.spectra
+        for energy in sweep.elastic_energies
+        for realisation in range(sweep.n_realisation)
+    ]
+    shape = (len(sweep.spectra), len(sweep.elastic_energies), sweep.n_realisation)
+    variables = {
+        item.name: labelled(item, np.array([getattr(cell, item.name) for cell in cells]))
+        for item in HYSTERESIS
+    }
+    variables = {
+        name: (dims, values.reshape(shape), attributes)
+        for name, (dims, values, attributes) in variables.items()
+    }
+    dataset = xr.Dataset(variables, coords=_coordinates(sweep), attrs=_attributes(sweep))
+    write_dataset(path, dataset, origin)
+    return Counter(cell.status for cell in cells)
+
+
+def read_table(path: Path) -> SweepTable:
+    """Arrays of a sweep that a fit needs.
+
+    Parameters
+    ----------
+    path : Path
+        File that :func:`write_hysteresis` wrote.
+
+    Raises
+    ------
+    ValueError
+        If the file is missing, truncated or that of something else.
+    """
+    dataset = read_dataset(path)
+    sources = {name: name for name in SweepTable.__dataclass_fields__}
+    sources["e_el_requested"] = AMPLITUDE
+    missing = [name for name in sources.values() if name not in dataset]
+    if missing:
+        raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; aggregate the sweep again")
+    columns = {name: np.asarray(dataset[source]) for name, source in sources.items()}
+    columns["spectrum"] = columns["spectrum"].astype(np.str_)
+    return SweepTable(**columns)
+
+
+def _cell(result: SimulationResult, correlation_length: float) -> _Cell:
+    """What the file says about one simulation."""
+    record, simulation = result.record, result.simulation
+    steady = steady_adhesion(record, correlation_length)
+    status, sentence = _status(record, steady)
+    known = status == COMPLETE
+    return _Cell(
+        result=result,
+        w_appr=steady.approach if known else np.nan,
+        w_retr=steady.retraction if known else np.nan,
+        hysteresis=steady.hysteresis if known else np.nan,
+        midpoint=steady.midpoint if known else np.nan,
+        w_appr_from_force=steady.approach_from_force if known else np.nan,
+        w_retr_from_force=steady.retraction_from_force if known else np.nan,
+        hysteresis_from_force=(
+            steady.retraction_from_force - steady.approach_from_force if known else np.nan
+        ),
+        e_el=result.elastic_energy,
+        w_rms=result.work_of_adhesion_rms,
+        seconds=result.seconds,
+        cpu_seconds=result.cpu_seconds,
+        peak_memory=result.peak_memory,
+        iterations=int(np.sum(record.iterations)),
+        n_step=record.penetration.size,
+        n_approach=steady.n_approach,
+        n_retraction=steady.n_retraction,
+        lowest_radius=steady.lowest_radius,
+        highest_radius=steady.highest_radius,
+        pull_off_force=float(np.min(record.force, initial=np.inf)) if known else np.nan,
+        end_penetration=record.end_penetration,
+        status=status,
+        status_sentence=sentence,
+        seed=simulation.seed,
+        curve=f"{simulation.stem}.nc",
+    )
+
+
+def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
+    """How a simulation ended, in a word and in a sentence."""
+    status = record.status.name.lower()
+    if status == COMPLETE and steady.sentence:
+        return NO_STEADY_PART, steady.sentence
+    return status, record.status.value
+
+
+def _coordinates(sweep: Sweep) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
+    """Labelled coordinates of a sweep."""
+    spectra = [item.spectrum for item in sweep.spectra]
+    tiles = [
+        resolution(spectrum, sweep.numerics, sweep.schedule.max_penetration) for spectrum in spectra
+    ]
+    energies = np.array(sweep.elastic_energies)
+    columns = (
+        np.array([item.name for item in sweep.spectra]),
+        np.array([spectrum.short_cutoff for spectrum in spectra]),
+        np.array([spectrum.roll_off for spectrum in spectra]),
+        np.array([spectrum.hurst for spectrum in spectra]),
+        np.array([sweep.correlation_length(item) for item in sweep.spectra]),
+        np.array([tile.n_angle for tile in tiles]),
+        np.array([tile.spacing for tile in tiles]),
+        np.array([tile.tile_side for tile in tiles]),
+        np.array([tile.n_point for tile in tiles]),
+        energies,
+        2 * np.sqrt(energies),
+        np.arange(sweep.n_realisation),
+    )
+    return {
+        item.name: labelled(item, values) for item, values in zip(COORDINATES, columns, strict=True)
+    }
+
+
+def _attributes(sweep: Sweep) -> dict[str, str | float]:
+    """Attributes of the file of a sweep."""
+    attributes: dict[str, str | float] = {
+        "title": f"adhesion hysteresis, {sweep.kind}",
+        "kind": sweep.kind,
+        "definition": STEADY_DEFINITION,
+        "sweep_seed": sweep.seed,
+    }
+    if sweep.scales is not None:
+        attributes |= {f"scale_{name}": value for name, value in asdict(sweep.scales).items()}
+        attributes |= {
+            "lateral_unit_in_metres": sweep.scales.lateral,
+            "vertical_unit_in_metres": sweep.scales.vertical,
+            "force_unit_in_newtons": sweep.scales.force,
+        }
+    return attributes

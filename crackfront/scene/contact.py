@@ -1,0 +1,86 @@
+"""From the parameters of a simulation, or a given tile, to the field of the contact."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crackfront import jkr
+from crackfront.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
+from crackfront.pinning import TileField, tile_field
+from crackfront.scene.parameters import Simulation, power_of_two
+from crackfront.synthesis import gaussian_field
+from crackfront.units import WORK_OF_ADHESION
+
+
+def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
+    """Work of adhesion on the tile of a simulation.
+
+    The noise of a realisation is scaled to the amplitude, so that all amplitudes of a spectrum
+    see the same surface.
+    """
+    tile = simulation.resolution
+    pixel = tile.tile_side / tile.n_point
+    rng = np.random.default_rng(simulation.seed)
+    unit = simulation.spectrum.with_elastic_energy(1.0)
+    if simulation.kind == "roughness":
+        heights = gaussian_field(unit, tile.n_point, tile.tile_side, rng)
+        heights *= math.sqrt(simulation.elastic_energy)
+        return rough_adhesion(heights, pixel)
+    fluctuation = gaussian_field(unit, tile.n_point, tile.tile_side, rng)
+    fluctuation *= 2 * math.sqrt(simulation.elastic_energy / unit.mean_square(0.0))
+    return chemical_adhesion(fluctuation, pixel)
+
+
+def contact_field(
+    adhesion: AdhesionMap, n_angle: int, spacing: float, max_penetration: float
+) -> TileField:
+    """Field of a tile that no front can leave up to a penetration.
+
+    By no passing, a front stays inside the circle in equilibrium with the tile's largest work of
+    adhesion; a tenth more allows for the overshoot of the splines between the points.
+
+    Parameters
+    ----------
+    adhesion : AdhesionMap
+        Work of adhesion on the tile.
+    n_angle : int
+        Sites of the front.
+    spacing : float
+        Distance of samples along a ray. (Units: reduced lateral length)
+    max_penetration : float
+        Largest penetration. (Units: reduced vertical length)
+    """
+    # nanmax: the refusal of values that are not finite, with their place, is tile_field's.
+    strongest = max(1.0, float(np.nanmax(adhesion.work_of_adhesion)) / WORK_OF_ADHESION)
+    largest = 1.1 * jkr.equilibrium_radius(max_penetration, strongest)
+    return tile_field(adhesion, n_angle, spacing, largest)
+
+
+def tile_contact(
+    adhesion: AdhesionMap,
+    max_penetration: float,
+    n_angle: int | None = None,
+    samples_per_pixel: float | None = None,
+) -> TileField:
+    """Field of a given tile, resolved by its pixels where nothing else is asked for.
+
+    Parameters
+    ----------
+    adhesion : AdhesionMap
+        Work of adhesion on the tile.
+    max_penetration : float
+        Largest penetration. (Units: reduced vertical length)
+    n_angle : int, optional
+        Sites of the front; by default one or more a pixel on the smooth contact's largest
+        circle, a power of 2.
+    samples_per_pixel : float, optional
+        Samples along a ray per pixel, by default 4.
+    """
+    circle = 2 * math.pi * jkr.equilibrium_radius(max_penetration)
+    if n_angle is None:
+        n_angle = power_of_two(circle / adhesion.pixel)
+    return contact_field(
+        adhesion, n_angle, adhesion.pixel / (samples_per_pixel or 4), max_penetration
+    )

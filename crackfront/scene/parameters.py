@@ -1,0 +1,241 @@
+"""What determines one simulation of a sweep: its parameters, sizes, key and seed."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import math
+from dataclasses import astuple, dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from scipy.fft import next_fast_len
+
+from crackfront import jkr
+from crackfront.compiled import solver_fingerprint
+from crackfront.cycle import LoadSchedule
+from crackfront.spectrum import SelfAffineSpectrum
+
+FieldKind = Literal["roughness", "chemical"]
+
+
+@dataclass(frozen=True, slots=True)
+class Numerics:
+    """Resolution relative to the short cutoff, and the solver.
+
+    Attributes
+    ----------
+    angles : int or None
+        Number of sites of the front; where None, `angles_per_cutoff` decides.
+    angles_per_cutoff : float
+        Sites per short cutoff on the smooth contact's largest circle, rounded up to a power of 2.
+    samples_per_cutoff : float
+        Samples per short cutoff along a ray.
+    pixels_per_cutoff : float
+        Points of the tile per short cutoff, 2 or more.
+    tile_roll_offs, tile_cutoffs : float
+        Side of the tile in roll-off wavelengths, and at least so many short cutoffs.
+    tolerance : float
+        Largest force along the motion that may be left, relative to w_int per front length.
+    max_sweeps : int
+        Limit on the sweeps of one load step.
+    solver : str
+        A name in :data:`crackfront.relax.SOLVERS`.
+    """
+
+    angles: int | None
+    angles_per_cutoff: float
+    samples_per_cutoff: float
+    pixels_per_cutoff: float
+    tile_roll_offs: float
+    tile_cutoffs: float
+    tolerance: float
+    max_sweeps: int
+    solver: str
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """Sizes that the numerics give to one spectrum.
+
+    Attributes
+    ----------
+    n_angle : int
+        Sites of the front.
+    spacing : float
+        Distance of samples along a ray. (Units: reduced lateral length)
+    tile_side : float
+        Side of the periodic tile. (Units: reduced lateral length)
+    n_point : int
+        Points along a side of the tile.
+    """
+
+    n_angle: int
+    spacing: float
+    tile_side: float
+    n_point: int
+
+
+def resolution(
+    spectrum: SelfAffineSpectrum, numerics: Numerics, max_penetration: float
+) -> Resolution:
+    """Sizes of the front and of the tile for one spectrum.
+
+    Parameters
+    ----------
+    spectrum : SelfAffineSpectrum
+        Spectrum of the surface. (Units: reduced lateral length)
+    numerics : Numerics
+        Resolution relative to the short cutoff.
+    max_penetration : float
+        Largest penetration. (Units: reduced vertical length)
+
+    Examples
+    --------
+    >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
+    >>> numerics = Numerics(None, 2, 8, 4, 10, 20, 1e-6, 1000, "reference")
+    >>> resolution(flat, numerics, max_penetration=1.0)
+    Resolution(n_angle=256, spacing=0.0125, tile_side=2.0, n_point=80)
+    """
+    cutoff = spectrum.short_cutoff
+    circle = 2 * math.pi * jkr.equilibrium_radius(max_penetration)
+    sites = circle / cutoff * numerics.angles_per_cutoff
+    side = max(numerics.tile_roll_offs * spectrum.roll_off, numerics.tile_cutoffs * cutoff)
+    points = math.ceil(side / cutoff * numerics.pixels_per_cutoff * (1 - 1e-12))
+    return Resolution(
+        n_angle=numerics.angles or power_of_two(sites),
+        spacing=cutoff / numerics.samples_per_cutoff,
+        tile_side=side,
+        n_point=next_fast_len(points, real=True),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Simulation:
+    """Everything that determines one cycle, and the name of its spectrum.
+
+    Attributes
+    ----------
+    spectrum_name : str
+        Name of the spectrum in the configuration; the only item without effect on the result.
+    kind : {"roughness", "chemical"}
+        What the spectrum describes: heights, or the work of adhesion itself.
+    spectrum : SelfAffineSpectrum
+        Shape of the spectrum; its plateau has no effect. (Units: reduced lateral length)
+    elastic_energy : float
+        Requested e_el / w_int; for a chemical field the equivalent (w_rms / w_int)^2 / 4.
+    realisation : int
+        Number of the realisation of the noise.
+    sweep_seed : int
+        Seed of the sweep.
+    resolution : Resolution
+        Sizes of the front and of the tile.
+    schedule : LoadSchedule
+        Penetrations to visit.
+    tolerance, max_sweeps, solver
+        As in :class:`Numerics`.
+    record_fronts, record_energy : bool
+        What to record beside the curves.
+    """
+
+    spectrum_name: str
+    kind: FieldKind
+    spectrum: SelfAffineSpectrum
+    elastic_energy: float
+    realisation: int
+    sweep_seed: int
+    resolution: Resolution
+    schedule: LoadSchedule
+    tolerance: float
+    max_sweeps: int
+    solver: str
+    record_fronts: bool
+    record_energy: bool
+
+    @property
+    def key(self) -> str:
+        """Sixteen hexadecimal digits that change with anything that determines the result."""
+        shape = (self.spectrum.short_cutoff, self.spectrum.roll_off, self.spectrum.hurst)
+        content = {
+            "kind": self.kind,
+            "spectrum": shape,
+            "elastic_energy": self.elastic_energy,
+            "realisation": self.realisation,
+            "seed": self.sweep_seed,
+            "resolution": astuple(self.resolution),
+            "load": astuple(self.schedule),
+            "numerics": (self.tolerance, self.max_sweeps, self.solver),
+            "record": (self.record_fronts, self.record_energy),
+            "sources": scene_fingerprint(),
+        }
+        text = json.dumps(content, sort_keys=True, allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    @property
+    def label(self) -> str:
+        """What a person calls this simulation."""
+        return f"{self.spectrum_name} e_el={self.elastic_energy:g} r={self.realisation}"
+
+    @property
+    def stem(self) -> str:
+        """Name of its file, without a suffix."""
+        return f"{self.spectrum_name}-e{self.elastic_energy:g}-r{self.realisation}-{self.key}"
+
+    @property
+    def seed(self) -> int:
+        """Seed of the surface: `numpy.random.default_rng(seed)` gives its noise.
+
+        It follows from the seed of the sweep, the spectrum, the tile's side and the number of
+        the realisation, never from a position in a list. All amplitudes and all grids share it.
+        """
+        spectrum = self.spectrum
+        lengths = (spectrum.short_cutoff, spectrum.roll_off, self.resolution.tile_side)
+        # Ten digits: the same surface whether lengths were given in metres or reduced.
+        text = " ".join(f"{value:.10g}" for value in (*lengths, spectrum.hurst))
+        words = np.frombuffer(hashlib.sha256(text.encode()).digest(), dtype="<u4")
+        sequence = np.random.SeedSequence(
+            self.sweep_seed, spawn_key=(*(int(word) for word in words), self.realisation)
+        )
+        return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))
+
+    @property
+    def expected_cost(self) -> float:
+        """Expected time in arbitrary units, to start the longest first."""
+        # Sweeps and sites are both in proportion to N; weak disorder takes the most sweeps.
+        return self.resolution.n_angle**2 / (1 + 3 * self.elastic_energy)
+
+
+@functools.cache
+def scene_fingerprint() -> str:
+    """Twelve hexadecimal digits that change with the solver's sources and with this folder's."""
+    digest = hashlib.sha256(solver_fingerprint().encode())
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def correlation_length(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
+    """Wavelength of the mean wavevector of w_loc, weighted by its variance.
+
+    Parameters
+    ----------
+    kind : {"roughness", "chemical"}
+        What the spectrum describes.
+    spectrum : SelfAffineSpectrum
+        Its shape. (Units: length)
+
+    Returns
+    -------
+    float
+        Correlation length. (Units: length)
+    """
+    if kind == "roughness":
+        return spectrum.correlation_length
+    return 2 * math.pi * spectrum.mean_square(0.0) / spectrum.mean_square(0.5)
+
+
+def power_of_two(least: float) -> int:
+    """Smallest power of two that is 4 or more and not below a number."""
+    return int(2 ** math.ceil(math.log2(max(4.0, least * (1 - 1e-12)))))

@@ -1,0 +1,104 @@
+"""One simulation from its parameters to its result, and what it cost."""
+
+from __future__ import annotations
+
+import functools
+import resource
+import sys
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from crackfront.adhesion import chemical_adhesion
+from crackfront.cycle import CycleRecord, LoadSchedule, run_cycle
+from crackfront.scene.contact import contact_field, simulation_adhesion
+from crackfront.scene.parameters import Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationResult:
+    """What one simulation found and what it cost.
+
+    Attributes
+    ----------
+    simulation : Simulation
+        What was simulated.
+    record : CycleRecord
+        The states of the cycle, with the status that ended it.
+    elastic_energy : float
+        e_el measured on the tile. (Units: w_int)
+    work_of_adhesion_rms : float
+        w_rms measured on the tile. (Units: w_int)
+    seconds : float
+        Wall time of synthesis and cycle.
+    cpu_seconds : float
+        Processor time of the same.
+    peak_memory : float
+        Largest memory of the process since it started, earlier simulations included.
+        (Units: bytes)
+    """
+
+    simulation: Simulation
+    record: CycleRecord
+    elastic_energy: float
+    work_of_adhesion_rms: float
+    seconds: float
+    cpu_seconds: float
+    peak_memory: float
+
+
+def run_simulation(simulation: Simulation) -> SimulationResult:
+    """Synthesise the surface of a simulation and run its cycle.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What to simulate.
+
+    Raises
+    ------
+    ValueError
+        If the realised surface does not allow full conformity, e_el >= w_int.
+    """
+    compile_solver(simulation.solver)
+    wall, cpu = time.perf_counter(), time.process_time()
+    adhesion = simulation_adhesion(simulation)
+    field = contact_field(
+        adhesion,
+        simulation.resolution.n_angle,
+        simulation.resolution.spacing,
+        simulation.schedule.max_penetration,
+    )
+    record = run_cycle(
+        field,
+        simulation.schedule,
+        tolerance=simulation.tolerance,
+        max_sweeps=simulation.max_sweeps,
+        solver=simulation.solver,
+        record_fronts=simulation.record_fronts,
+        record_energy=simulation.record_energy,
+    )
+    return SimulationResult(
+        simulation=simulation,
+        record=record,
+        elastic_energy=adhesion.elastic_energy,
+        work_of_adhesion_rms=adhesion.rms,
+        seconds=time.perf_counter() - wall,
+        cpu_seconds=time.process_time() - cpu,
+        peak_memory=_peak_memory(),
+    )
+
+
+@functools.cache
+def compile_solver(solver: str) -> None:
+    """Compile what a simulation calls, or load it, once a process, on a tiny smooth contact."""
+    smooth = chemical_adhesion(np.zeros((4, 4)), pixel=1.0)
+    field = contact_field(smooth, n_angle=8, spacing=0.1, max_penetration=0.0)
+    run_cycle(field, LoadSchedule(0.0, 0.5), tolerance=1e-3, solver=solver, record_energy=True)
+
+
+def _peak_memory() -> float:
+    """High-water mark of this process in bytes; Linux counts in KiB, macOS in bytes."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return float(peak * (1 if sys.platform == "darwin" else 1024))

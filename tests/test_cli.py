@@ -1,0 +1,261 @@
+"""The command: one cycle on any field, the steps of a sweep, exit codes and sentences."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+from crackfront import __version__, jkr
+from crackfront.cli import main
+from crackfront.units import WORK_OF_ADHESION
+
+TEST = Path(__file__).parents[1] / "config/test.yaml"
+
+
+def run(*arguments):
+    """Result of a command."""
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+def refused(*arguments):
+    """Sentence of a command that is refused."""
+    result = run(*arguments)
+    assert result.exit_code == 2, result.output
+    assert "Traceback" not in result.output
+    [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
+    return sentence
+
+
+@pytest.fixture
+def smooth_tile(tmp_path):
+    """File of a tile of w_int everywhere."""
+    positions = np.linspace(0, 2, 8, endpoint=False)
+    xr.Dataset(
+        {"work_of_adhesion": (("x", "y"), np.full((8, 8), WORK_OF_ADHESION))},
+        coords={"x": positions, "y": positions},
+    ).to_netcdf(tmp_path / "F.nc")
+    return tmp_path / "F.nc"
+
+
+@pytest.fixture
+def rough_rays(tmp_path, rng):
+    """File of random samples on eight rays, angles first."""
+    radii = 0.05 * np.arange(1, 61)
+    values = WORK_OF_ADHESION * (1 + 0.3 * rng.uniform(-1, 1, (8, 60)))
+    xr.Dataset(
+        {"work_of_adhesion": (("angle", "radius"), values)},
+        coords={"radius": radii, "angle": -np.pi + 2 * np.pi * np.arange(8) / 8},
+    ).to_netcdf(tmp_path / "F.nc")
+    return tmp_path / "F.nc"
+
+
+def cycle(field, tmp_path, *more, penetration=1, step=0.25):
+    """Result of a cycle on the field of a file."""
+    return run(
+        *("cycle", "--field", field, "--max-penetration", penetration, "--step", step),
+        *("--output", tmp_path / "out.nc", *more),
+    )
+
+
+def test_a_cycle_on_a_smooth_tile_is_that_of_jkr(smooth_tile, tmp_path):
+    result = cycle(smooth_tile, tmp_path, "--tolerance", "1e-10")
+    assert result.exit_code == 0, result.output
+    dataset = xr.load_dataset(tmp_path / "out.nc")
+    expected = [0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0, -0.25, -0.5, -0.75]
+    assert np.array_equal(dataset["penetration"], expected)
+    assert np.array_equal(dataset["direction"], [1] * 5 + [-1] * 7)
+    assert dataset["penetration"].dims == ("step",)
+    assert dataset.attrs["status"] == "lost_contact"
+    radii = [jkr.equilibrium_radius(penetration) for penetration in expected]
+    assert dataset["mean_radius"].values == pytest.approx(radii, rel=1e-8)
+    assert dataset["force"].values == pytest.approx(
+        jkr.equilibrium_force(np.array(radii)), abs=1e-8
+    )
+    assert np.all(dataset["residual"] <= 1e-10)
+    assert "radius" not in dataset
+
+
+def test_a_cycle_on_rays_has_one_site_an_angle_and_records_what_is_asked_for(rough_rays, tmp_path):
+    result = cycle(rough_rays, tmp_path, "--record", "fronts", "--record", "energy")
+    assert result.exit_code == 0, result.output
+    dataset = xr.load_dataset(tmp_path / "out.nc")
+    assert dataset["radius"].dims == ("step", "angle")
+    assert dataset.sizes["angle"] == 8
+    assert dataset["angle"].values[0] == pytest.approx(-np.pi)
+    assert np.array_equal(dataset["radius"].mean("angle"), dataset["mean_radius"])
+    assert np.all(dataset["dissipated_energy"] > -1e-12)
+
+
+def test_the_command_of_the_issue_works_as_it_stands(rough_rays, tmp_path):
+    command = (
+        "cycle --field F.nc --max-penetration 1 --step 0.05 --tolerance 1e-8 --solver reference "
+        "--record fronts --output out.nc"
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "crackfront", *command.split()],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "out.nc" in done.stdout
+    dataset = xr.load_dataset(tmp_path / "out.nc")
+    assert dataset["penetration"].max() == 1
+    assert dataset.attrs["command"].endswith("--output out.nc")
+
+
+def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(rough_rays, tmp_path):
+    result = cycle(rough_rays, tmp_path, "--max-sweeps", 3)
+    assert result.exit_code == 1
+    assert "the solver reached its limit of sweeps" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+    assert xr.load_dataset(tmp_path / "out.nc").attrs["status"] == "step_limit"
+
+
+def test_a_front_that_leaves_its_field_is_told_with_exit_code_one(tmp_path):
+    radii = np.linspace(0.1, 1.9, 40)
+    sticky = np.where(radii > 1.5, 3.0, 1.0)[:, None] * np.full((1, 8), WORK_OF_ADHESION)
+    xr.Dataset(
+        {"work_of_adhesion": (("radius", "angle"), sticky)}, coords={"radius": radii}
+    ).to_netcdf(tmp_path / "F.nc")
+    result = cycle(tmp_path / "F.nc", tmp_path)
+    assert result.exit_code == 1
+    assert "left the sampled field outward; enlarge the field" in result.stderr
+    assert xr.load_dataset(tmp_path / "out.nc").attrs["status"] == "left_field_outward"
+
+
+def test_a_contact_that_outgrows_its_field_is_refused_before_it_starts(rough_rays, tmp_path):
+    result = cycle(rough_rays, tmp_path, penetration=50)
+    assert result.exit_code == 2
+    assert "contact outgrows the field" in result.stderr
+    assert not (tmp_path / "out.nc").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--max-penetration", -1), "max penetration -1.0 never makes contact"),
+        (("--step", 0), "load step is 0.0; it must be positive"),
+        (("--step", "nan"), "load step is nan; it must be positive"),
+        (("--solver", "none"), "solver"),
+        (("--field", "none.nc"), "none.nc does not exist"),
+        (("--angles", 16), "--angles and --samples-per-pixel are for tiles"),
+    ],
+    ids=lambda value: str(value[0]) if isinstance(value, tuple) else "",
+)
+def test_bad_options_of_a_cycle_are_refused(rough_rays, tmp_path, options, sentence):
+    result = cycle(rough_rays, tmp_path, *options)
+    assert result.exit_code == 2
+    assert sentence in result.stderr
+    assert not (tmp_path / "out.nc").exists()
+
+
+def test_the_resolution_of_a_tile_can_be_chosen(smooth_tile, tmp_path):
+    options = ("--angles", 12, "--samples-per-pixel", 2, "--record", "fronts")
+    assert cycle(smooth_tile, tmp_path, *options).exit_code == 0
+    assert xr.load_dataset(tmp_path / "out.nc").sizes["angle"] == 12
+
+
+def test_a_sweep_runs_from_its_plan_to_its_figures(tmp_path):
+    output = ("--output", tmp_path / "out")
+    plan = run("plan", TEST, *output)
+    assert "8 simulations" in plan.output
+    assert "0/4" in plan.output
+    simulate = run("simulate", TEST, *output)
+    assert "[8/8]" in simulate.output
+    assert "4/4" in run("plan", TEST, *output).output
+    again = run("simulate", TEST, *output)
+    assert "8 of 8 simulations are stored" in again.output
+    assert "[1/" not in again.output
+    for command in ("aggregate", "fit", "figures"):
+        result = run(command, TEST, *output)
+        assert result.exit_code == 0, result.output
+        assert str(tmp_path / "out") in result.output
+    made = {path.name for path in (tmp_path / "out/figures").iterdir()}
+    assert made == {
+        f"{name}.{suffix}" for name in ("hysteresis", "loop", "factor") for suffix in ("pdf", "png")
+    }
+    assert (tmp_path / "out/fit.md").read_text(encoding="utf-8").startswith("# ")
+
+
+def test_one_spectrum_can_be_run_alone(tmp_path):
+    result = run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
+    assert result.exit_code == 0
+    assert {path.name.split("-")[0] for path in (tmp_path / "curves").iterdir()} == {"rough"}
+    assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.json"]
+
+
+def test_a_truncated_result_is_named_and_replaced(tmp_path):
+    run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
+    broken = min((tmp_path / "curves").iterdir())
+    broken.write_bytes(broken.read_bytes()[:5000])
+    result = run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
+    assert result.exit_code == 0
+    [warning] = result.stderr.splitlines()
+    assert str(broken) in warning
+    assert "computed anew" in warning
+    assert "[1/1]" in result.output
+
+
+def test_simulations_without_a_value_are_counted(tmp_path):
+    limited = tmp_path / "limited.yaml"
+    limited.write_text(TEST.read_text().replace("max_sweeps: 100000", "max_sweeps: 2"))
+    assert run("simulate", limited, "--output", tmp_path).exit_code == 0
+    result = run("aggregate", limited, "--output", tmp_path)
+    assert result.exit_code == 0
+    assert "8 of 8 simulations have no value: 8 step_limit" in result.stderr
+    assert "has a value" in refused("fit", limited, "--output", tmp_path)
+
+
+def test_simulations_that_cannot_be_stored_are_told_and_give_exit_code_one(tmp_path):
+    (tmp_path / "curves").write_text("a file where the folder should be")
+    result = run("simulate", TEST, "--output", tmp_path)
+    assert result.exit_code == 1
+    assert "8 of 8 simulations could not be run or stored, the first is flat" in result.stderr
+    assert not (tmp_path / "shards").exists()
+
+
+def test_missing_input_of_the_later_steps_is_refused(tmp_path):
+    output = ("--output", tmp_path)
+    assert "8 of 8 simulations are missing or unreadable" in refused("aggregate", TEST, *output)
+    assert "hysteresis.nc does not exist" in refused("fit", TEST, *output)
+    assert "hysteresis.nc does not exist" in refused("figures", TEST, *output)
+
+
+@pytest.mark.parametrize("command", ["plan", "simulate", "aggregate", "fit", "figures"])
+def test_a_bad_configuration_is_refused_by_every_command(tmp_path, command):
+    bad = tmp_path / "bad.yaml"
+    bad.write_text(TEST.read_text().replace("hurst: 0.8", "hurst: 1.8"))
+    assert "spectra[1].hurst is 1.8" in refused(command, bad, "--output", tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_misspelt_spectrum_is_refused(tmp_path):
+    sentence = refused("simulate", TEST, "--spectrum", "flatt", "--output", tmp_path / "out")
+    assert "did you mean flat?" in sentence
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("ranks", [0, -1, "two"])
+def test_bad_numbers_of_ranks_are_refused(tmp_path, ranks):
+    result = run("simulate", TEST, "--ranks", ranks, "--output", tmp_path / "out")
+    assert result.exit_code == 2
+
+
+def test_the_version_is_that_of_the_package():
+    assert __version__ in run("--version").output
+
+
+def test_help_imports_nothing_heavy():
+    code = (
+        "import sys, crackfront.cli\n"
+        "heavy = {'numpy', 'numba', 'xarray', 'matplotlib', 'mpi4py', 'pydantic', 'yaml'}\n"
+        "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)

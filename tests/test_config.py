@@ -1,0 +1,286 @@
+"""Configurations: what is accepted, and one clear sentence for everything that is not."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from crackfront.config import ConfigurationError, load_configuration
+from crackfront.units import Scales
+
+ROOT = Path(__file__).parents[1]
+
+GOOD = """
+seed: 1
+field: roughness
+spectra:
+  - {name: flat, short_cutoff: 0.1, hurst: 1.0}
+  - {name: rough, short_cutoff: 0.1, roll_off: 0.2, hurst: 0.8}
+amplitudes: {elastic_energy: [0.02, 0.1]}
+realisations: 2
+numerics:
+  angles_per_cutoff: 2
+  samples_per_cutoff: 8
+  pixels_per_cutoff: 4
+  tile: {roll_offs: 10, cutoffs: 20}
+  tolerance: 1e-6
+  max_sweeps: 100000
+  solver: reference
+load: {max_penetration: 1.0, step: 0.1}
+fit: {lowest_elastic_energy: 0.01, highest_elastic_energy: 0.1, bootstrap: 500}
+"""
+
+
+def written(tmp_path, text):
+    """File with a text."""
+    path = tmp_path / "sweep.yaml"
+    path.write_text(text)
+    return path
+
+
+def changed(old, new):
+    """The good text with a change that does happen."""
+    assert GOOD.count(old) == 1
+    return GOOD.replace(old, new)
+
+
+def refusal(tmp_path, text):
+    """What a text is refused for, without the name of the file."""
+    path = written(tmp_path, text)
+    with pytest.raises(ConfigurationError) as caught:
+        load_configuration(path)
+    message = str(caught.value)
+    assert all(line.startswith(str(path)) for line in message.splitlines())
+    return message.replace(str(path), "").lstrip(": ")
+
+
+@pytest.mark.parametrize("name", ["test", "default", "paper"])
+def test_the_configurations_of_the_project_are_valid(name):
+    sweep = load_configuration(ROOT / "config" / f"{name}.yaml")
+    assert len({item.name for item in sweep.spectra}) == len(sweep.spectra)
+
+
+def test_the_paper_configuration_has_the_spectra_of_the_paper():
+    sweep = load_configuration(ROOT / "config/paper.yaml")
+    shapes = [
+        (item.spectrum.short_cutoff, item.spectrum.roll_off, item.spectrum.hurst)
+        for item in sweep.spectra
+    ]
+    assert shapes[0][:2] == (0.005, 0.005)
+    assert shapes[1:] == [(0.000625, 0.01, 0.8), (0.000625, 0.1, 0.3), (0.005, 0.1, 0.3)]
+
+
+def test_the_default_configuration_does_what_the_issue_asks_for():
+    sweep = load_configuration(ROOT / "config/default.yaml")
+    assert sweep.elastic_energies[0] == 0.002
+    assert sweep.elastic_energies[-1] == 0.15
+    assert len(sweep.elastic_energies) >= 6
+    assert sweep.n_realisation >= 4
+    assert {0.8, 0.3} <= {item.spectrum.hurst for item in sweep.spectra}
+
+
+def test_a_roll_off_that_is_not_given_makes_a_flat_spectrum(tmp_path):
+    flat = load_configuration(written(tmp_path, GOOD)).named("flat").spectrum
+    assert flat.roll_off == flat.short_cutoff == 0.1
+
+
+def test_numbers_with_an_exponent_but_no_point_are_numbers(tmp_path):
+    assert load_configuration(written(tmp_path, GOOD)).numerics.tolerance == 1e-6
+
+
+def test_an_rms_is_converted_to_the_energy_of_full_conformity(tmp_path):
+    text = changed("elastic_energy: [0.02, 0.1]", "work_of_adhesion_rms: [0.2, 0.6]")
+    energies = load_configuration(written(tmp_path, text)).elastic_energies
+    assert energies == pytest.approx((0.01, 0.09), rel=1e-15)
+
+
+def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
+    scales = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.93e6)
+    content = yaml.safe_load(GOOD)
+    content["numerics"]["tolerance"] = 1e-6
+    content["scales"] = {"radius": 1.25e-3, "work_of_adhesion": 63e-3, "contact_modulus": 0.93e6}
+    for spectrum in content["spectra"]:
+        for name in {"short_cutoff", "roll_off"} & set(spectrum):
+            spectrum[name] *= scales.lateral
+    for name in ("max_penetration", "step"):
+        content["load"][name] *= scales.vertical
+    reduced = load_configuration(written(tmp_path, GOOD))
+    metres = load_configuration(written(tmp_path, yaml.safe_dump(content)))
+    for one, other in zip(reduced.spectra, metres.spectra, strict=True):
+        assert other.spectrum.short_cutoff == pytest.approx(one.spectrum.short_cutoff, rel=1e-14)
+        assert other.spectrum.roll_off == pytest.approx(one.spectrum.roll_off, rel=1e-14)
+        # The same surface, although the lengths differ by round-off.
+        assert metres.simulation(other, 0.1, 0).seed == reduced.simulation(one, 0.1, 0).seed
+    assert metres.schedule.max_penetration == pytest.approx(1.0, rel=1e-14)
+    assert metres.scales == scales
+
+
+BAD = {
+    "unknown key": (
+        ("realisations: 2", "realisation: 2\nrealisations: 2"),
+        "unknown key realisation; did you mean realisations?",
+    ),
+    "unknown key in a list": (
+        ("roll_off: 0.2", "rolloff: 0.2"),
+        "unknown key spectra[1].rolloff; did you mean roll_off?",
+    ),
+    "unknown key deep down": (
+        ("cutoffs: 20", "cutoffs: 20, sides: 3"),
+        "unknown key numerics.tile.sides; the keys here are roll_offs, cutoffs",
+    ),
+    "missing key": (("seed: 1\n", ""), "key seed is missing; add it"),
+    "key twice": (("seed: 1", "seed: 1\nseed: 2"), "is no valid YAML in line 2: key 'seed' stands"),
+    "hurst above one": (
+        ("hurst: 0.8", "hurst: 1.2"),
+        "spectra[1].hurst is 1.2; it must be less than or equal to 1",
+    ),
+    "hurst zero": (("hurst: 0.8", "hurst: 0"), "spectra[1].hurst is 0; it must be greater than 0"),
+    "roll-off below the cutoff": (
+        ("roll_off: 0.2", "roll_off: 0.05"),
+        "spectra[1]: roll_off 0.05 is shorter than short_cutoff 0.1; lower the cutoff",
+    ),
+    "cutoff below two pixels": (
+        ("pixels_per_cutoff: 4", "pixels_per_cutoff: 1.5"),
+        "pixels_per_cutoff is 1.5, so that short_cutoff is below two pixels; it must be 2 or more",
+    ),
+    "no full conformity": (
+        ("[0.02, 0.1]", "[0.02, 1.0]"),
+        "amplitudes.elastic_energy[1] is 1.0; it must be less than 1",
+    ),
+    "rms of no full conformity": (
+        ("elastic_energy: [0.02, 0.1]", "work_of_adhesion_rms: [2.5]"),
+        "amplitudes.work_of_adhesion_rms[0] is 2.5; it must be less than 2",
+    ),
+    "negative amplitude": (
+        ("[0.02, 0.1]", "[-0.02]"),
+        "amplitudes.elastic_energy[0] is -0.02; it must be greater than 0",
+    ),
+    "no amplitude": (
+        ("[0.02, 0.1]", "[]"),
+        "amplitudes.elastic_energy is []; it must have at least one entry",
+    ),
+    "amplitude twice": (("[0.02, 0.1]", "[0.1, 0.1]"), "amplitude 0.1 stands twice"),
+    "no measure of amplitude": (
+        ("amplitudes: {elastic_energy: [0.02, 0.1]}", "amplitudes: {}"),
+        "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms; give one",
+    ),
+    "two measures of amplitude": (
+        ("[0.02, 0.1]", "[0.02, 0.1], work_of_adhesion_rms: [0.2]"),
+        "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms; remove one",
+    ),
+    "energy of a chemical field": (
+        ("field: roughness", "field: chemical"),
+        "amplitudes.elastic_energy has no meaning for a chemical field; give",
+    ),
+    "unknown field": (
+        ("field: roughness", "field: rough"),
+        "field is 'rough'; it must be 'roughness' or 'chemical'",
+    ),
+    "no realisation": (
+        ("realisations: 2", "realisations: 0"),
+        "realisations is 0; it must be greater than or equal to 1",
+    ),
+    "part of a realisation": (
+        ("realisations: 2", "realisations: 2.5"),
+        "realisations is 2.5; it must be a valid integer",
+    ),
+    "negative sweeps": (
+        ("max_sweeps: 100000", "max_sweeps: -1"),
+        "numerics.max_sweeps is -1; it must be greater than or equal to 1",
+    ),
+    "text for a number": (
+        ("short_cutoff: 0.1, hurst", "short_cutoff: small, hurst"),
+        "spectra[0].short_cutoff is 'small'; it must be a valid number",
+    ),
+    "truth for a number": (("seed: 1", "seed: true"), "seed is True; it must be a valid integer"),
+    "not a number": (("step: 0.1", "step: .nan"), "load.step is nan; it must be"),
+    "infinity": (
+        ("max_penetration: 1.0", "max_penetration: .inf"),
+        "load.max_penetration is inf; it must be finite",
+    ),
+    "no contact": (
+        ("max_penetration: 1.0", "max_penetration: -0.5"),
+        "load: max_penetration is -0.5, which never makes contact; the sphere touches at 0",
+    ),
+    "step zero": (("step: 0.1", "step: 0"), "load.step is 0; it must be greater than 0"),
+    "name twice": (("name: rough", "name: flat"), "spectrum name 'flat' stands twice"),
+    "name of a path": (
+        ("name: rough", "name: a/b"),
+        "spectra[1].name is 'a/b'; it must consist of letters, digits, _ and -",
+    ),
+    "no spectra": (
+        (GOOD[GOOD.index("spectra:") : GOOD.index("amplitudes:")], "spectra: []\n"),
+        "spectra is []; it must have at least one entry",
+    ),
+    "list for a mapping": (
+        ("load: {max_penetration: 1.0, step: 0.1}", "load: [1.0, 0.1]"),
+        "load is [1.0, 0.1]; it must be a mapping of keys",
+    ),
+    "unknown solver": (
+        ("solver: reference", "solver: none-such"),
+        "numerics: solver 'none-such' is unknown; choose one of",
+    ),
+    "angles twice": (
+        ("angles_per_cutoff: 2", "angles_per_cutoff: 2\n  angles: 128"),
+        "numerics need exactly one of angles and angles_per_cutoff; remove one",
+    ),
+    "three angles": (
+        ("angles_per_cutoff: 2", "angles: 3"),
+        "numerics.angles is 3; it must be greater than or equal to 4",
+    ),
+    "unknown record": (
+        ("realisations: 2", "realisations: 2\nrecord: [front]"),
+        "record[0] is 'front'; it must be 'fronts' or 'energy'",
+    ),
+    "fit upside down": (
+        ("lowest_elastic_energy: 0.01", "lowest_elastic_energy: 0.5"),
+        "fit: lowest_elastic_energy 0.5 is above highest_elastic_energy 0.1; swap them",
+    ),
+    "no YAML": (("seed: 1", "seed: [1"), "is no valid YAML in line"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_is_refused_with_a_sentence(tmp_path, case):
+    (old, new), sentence = BAD[case]
+    message = refusal(tmp_path, changed(old, new))
+    assert sentence in message
+    assert len(message.splitlines()) == 1
+    assert "Value error" not in message
+
+
+def test_a_fit_range_without_amplitude_is_refused(tmp_path):
+    text = changed("highest_elastic_energy: 0.1", "highest_elastic_energy: 0.015")
+    assert "no amplitude lies in the range of the fit, e_el from 0.01 to 0.015" in refusal(
+        tmp_path, text
+    )
+
+
+def test_every_error_has_its_own_sentence(tmp_path):
+    text = changed("seed: 1", "seed: -1").replace("step: 0.1", "step: -1")
+    assert len(refusal(tmp_path, text).splitlines()) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("", "is empty; write a configuration like config/test.yaml"),
+        ("- 1\n- 2\n", "holds a list; the top level must be a mapping of keys"),
+        ("just text", "holds a str; the top level must be a mapping of keys"),
+        ("!!python/object/apply:os.getcwd []", "is no valid YAML in line 1"),
+    ],
+)
+def test_a_file_that_is_no_mapping_is_refused(tmp_path, text, sentence):
+    assert sentence in refusal(tmp_path, text)
+
+
+def test_a_file_that_is_no_text_is_refused(tmp_path):
+    path = tmp_path / "sweep.yaml"
+    path.write_bytes(b"\xff\xfe\x00seed")
+    with pytest.raises(ConfigurationError, match="is no UTF-8 text"):
+        load_configuration(path)
+
+
+def test_a_file_that_does_not_exist_is_refused(tmp_path):
+    with pytest.raises(ConfigurationError, match=r"none.yaml cannot be read: No such file"):
+        load_configuration(tmp_path / "none.yaml")

@@ -1,0 +1,200 @@
+"""Tasks over ranks: dynamic, the same as without, and no failure that hangs or stays silent."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+from crackfront import parallel
+from crackfront.cli import main
+from crackfront.config import load_configuration
+from crackfront.parallel import default_launcher, launch_ranks, run_tasks
+from crackfront.provenance import provenance
+from crackfront.store import Store
+
+ROOT = Path(__file__).parents[1]
+TEST = str(ROOT / "config/test.yaml")
+COSTS = {"seconds", "cpu_seconds", "peak_memory"}
+
+
+def double(number):
+    """Twice a number."""
+    return 2 * number
+
+
+def crackfront(*arguments, ranks=None, timeout=120, **environment):
+    """Run the command, directly or as ranks of MPI."""
+    command = [sys.executable, "-m", "crackfront", *arguments]
+    if ranks is not None:
+        mpi = [*default_launcher().split(), "-n", str(ranks), sys.executable, "-m", "mpi4py"]
+        command = [*mpi, "-m", "crackfront", *arguments]
+    variables = {**os.environ, "OMP_NUM_THREADS": "1", **environment}
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=timeout, env=variables, check=False
+    )
+
+
+def dataset(folder):
+    """The aggregated file, without costs and origin."""
+    path, _ = Store(folder).aggregate(load_configuration(Path(TEST)), provenance())
+    return xr.load_dataset(path).drop_vars(COSTS)
+
+
+def test_without_mpi_tasks_run_one_after_the_other_in_order():
+    assert list(run_tasks(double, [3, 1, 2])) == [(3, 6), (1, 2), (2, 4)]
+    assert not parallel.under_mpi()
+
+
+def test_without_mpi_an_exception_reaches_the_caller():
+    with pytest.raises(ZeroDivisionError):
+        list(run_tasks((1).__truediv__, [0]))
+
+
+def test_one_rank_does_not_import_mpi(tmp_path):
+    code = (
+        "import sys; from crackfront.cli import main; "
+        f"main(['simulate', {TEST!r}, '--output', {str(tmp_path)!r}], standalone_mode=False); "
+        "assert 'mpi4py' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120, capture_output=True)
+
+
+def test_a_launcher_that_does_not_exist_is_refused():
+    with pytest.raises(ValueError, match="launcher 'no-such-mpiexec' cannot be started"):
+        launch_ranks(["plan"], 2, "no-such-mpiexec --flag")
+
+
+def test_a_launcher_that_is_nowhere_is_refused(monkeypatch, tmp_path):
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ValueError, match="there is no mpiexec beside"):
+        default_launcher()
+
+
+@pytest.mark.mpi
+def test_results_are_the_same_bits_for_any_number_of_ranks_and_without_mpi(tmp_path):
+    outputs = {name: tmp_path / name for name in ("serial", "mpi1", "mpi2", "mpi4")}
+    serial = CliRunner().invoke(main, ["simulate", TEST, "--output", str(outputs["serial"])])
+    assert serial.exit_code == 0, serial.output
+    runs = [
+        crackfront("simulate", TEST, "--output", str(outputs["mpi1"]), ranks=2),
+        crackfront("simulate", TEST, "--output", str(outputs["mpi2"]), "--ranks", "2"),
+        crackfront("simulate", TEST, "--output", str(outputs["mpi4"]), "--ranks", "4"),
+    ]
+    for run in runs:
+        assert run.returncode == 0, run.stderr
+        assert "[8/8]" in run.stdout
+    # Two processes have two high-water marks, and these grow one after the other.
+    peaks = [xr.load_dataset(path)["peak_memory"].item() for path in outputs["mpi2"].rglob("*.nc")]
+    assert len(set(peaks)) > 1
+    serial = dataset(outputs["serial"])
+    assert np.all(np.isfinite(serial["hysteresis"]))
+    for name in ("mpi1", "mpi2", "mpi4"):
+        # equals compares names, labels and every value.
+        assert serial.equals(dataset(outputs[name]))
+        for path in sorted((outputs["serial"] / "curves").iterdir()):
+            one, other = (
+                xr.load_dataset(outputs[which] / "curves" / path.name) for which in ("serial", name)
+            )
+            assert one.drop_vars(COSTS).equals(other.drop_vars(COSTS))
+
+
+@pytest.mark.mpi
+def test_a_wrong_number_of_ranks_is_one_sentence_and_no_simulation(tmp_path):
+    run = crackfront("simulate", TEST, "--output", str(tmp_path), "--ranks", "2", ranks=2)
+    assert run.returncode != 0
+    assert run.stderr.count("MPI started 2 rank(s) where 3 were expected") == 1
+    assert "Traceback" not in run.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.mpi
+def test_a_launcher_of_another_mpi_is_no_silent_serial_run(tmp_path):
+    # What such a launcher starts: ranks that each believe to be alone.
+    lonely = [sys.executable, "-m", "mpi4py", "-m", "crackfront", "simulate", TEST]
+    run = subprocess.run(
+        [*lonely, "--output", str(tmp_path), "--ranks", "2"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert run.returncode != 0
+    assert "MPI started 1 rank(s) where 3 were expected" in run.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.mpi
+def test_an_exception_in_a_task_ends_the_job_at_once(tmp_path):
+    script = tmp_path / "failing.py"
+    script.write_text(
+        "from crackfront import parallel\n"
+        "if parallel.is_manager(2):\n"
+        "    list(parallel.run_tasks((1).__truediv__, [1, 0, 1, 1]))\n"
+        "else:\n"
+        "    parallel.serve_tasks('operator')\n"
+    )
+    mpi = [*default_launcher().split(), "-n", "3", sys.executable, "-m", "mpi4py"]
+    run = subprocess.run(
+        [*mpi, str(script)], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert run.returncode != 0
+    assert "ZeroDivisionError" in run.stderr
+
+
+def children(process):
+    """Identifiers of the descendants of a process."""
+    listed = subprocess.run(["ps", "-eo", "pid=,ppid="], capture_output=True, text=True, check=True)
+    parents = dict(map(int, line.split()) for line in listed.stdout.splitlines())
+    found = {process}
+    for _ in parents:
+        grown = found | {child for child, parent in parents.items() if parent in found}
+        if grown == found:
+            break
+        found = grown
+    return found - {process}
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(
+    "end", [signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
+)
+def test_after_a_kill_only_what_is_missing_is_computed(tmp_path, end):
+    """A rank is killed, or the whole command is told to end, after some simulations."""
+    text = Path(TEST).read_text(encoding="utf-8").replace("angles: 128", "angles: 512")
+    configuration = tmp_path / "sweep.yaml"
+    configuration.write_text(text.replace("realisations: 2", "realisations: 6"))
+    arguments = ["simulate", str(configuration), "--output", str(tmp_path / "out"), "--ranks", "2"]
+    with subprocess.Popen(
+        [sys.executable, "-m", "crackfront", *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    ) as process:
+        for line in process.stdout:
+            if line.startswith("[3/"):
+                break
+        ranks = children(process.pid)
+        if end is signal.SIGTERM:
+            process.terminate()
+        else:
+            os.kill(max(ranks), signal.SIGKILL)
+        output = process.stdout.read()
+    assert process.returncode != 0
+    assert "the same command continues with the others" in output
+    time.sleep(1)
+    assert not ranks & children(1)
+    stored = {path: path.stat().st_mtime_ns for path in (tmp_path / "out/curves").glob("*.nc")}
+    assert 3 <= len(stored) < 24
+    again = crackfront(*arguments)
+    assert again.returncode == 0, again.stderr
+    assert f"{len(stored)} of 24 simulations are stored" in again.stdout
+    assert all(path.stat().st_mtime_ns == moment for path, moment in stored.items())
+    assert len(list((tmp_path / "out/curves").glob("*.nc"))) == 24

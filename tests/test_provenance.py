@@ -1,0 +1,67 @@
+"""The origin that every file states."""
+
+import shlex
+import subprocess
+import sys
+
+import pytest
+
+from crackfront import __version__
+from crackfront import provenance as module
+from crackfront.compiled import solver_fingerprint
+from crackfront.provenance import git_commit, package_fingerprint, provenance
+
+
+@pytest.fixture(autouse=True)
+def _forget_the_commit():
+    git_commit.cache_clear()
+    yield
+    git_commit.cache_clear()
+
+
+def test_the_origin_names_version_sources_command_and_configuration():
+    origin = provenance("seed: 1\n")
+    assert origin.crackfront_version == __version__
+    assert origin.solver_fingerprint == solver_fingerprint()
+    assert origin.command == shlex.join(sys.argv)
+    assert origin.configuration == "seed: 1\n"
+
+
+@pytest.mark.parametrize("error", [FileNotFoundError("git"), subprocess.TimeoutExpired("git", 10)])
+def test_without_git_the_commit_is_unknown(monkeypatch, error):
+    def fail(*_, **__):
+        raise error
+
+    monkeypatch.setattr(subprocess, "run", fail)
+    assert git_commit() == "unknown"
+
+
+def test_outside_of_a_repository_the_commit_is_unknown(monkeypatch, tmp_path):
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
+    monkeypatch.setattr(module, "PACKAGE", tmp_path)
+    assert git_commit() == "unknown"
+
+
+def test_a_commit_is_named_in_full_and_changes_are_told(monkeypatch, tmp_path):
+    git = ["git", "-C", str(tmp_path), "-c", "user.name=a", "-c", "user.email=a@b"]
+    (tmp_path / "a.py").write_text("1\n")
+    for command in (["init", "-q"], ["add", "a.py"], ["commit", "-qm", "a"]):
+        subprocess.run([*git, *command], check=True, capture_output=True)
+    monkeypatch.setattr(module, "PACKAGE", tmp_path)
+    clean = git_commit()
+    (tmp_path / "a.py").write_text("2\n")
+    git_commit.cache_clear()
+    assert len(clean) == 40
+    assert git_commit() == f"{clean}-dirty"
+
+
+def test_the_fingerprint_of_the_package_changes_with_any_source(monkeypatch, tmp_path):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder/a.py").write_text("1\n")
+    monkeypatch.setattr(module, "PACKAGE", tmp_path)
+    package_fingerprint.cache_clear()
+    before = package_fingerprint()
+    (tmp_path / "folder/a.py").write_text("2\n")
+    package_fingerprint.cache_clear()
+    assert package_fingerprint() != before
+    package_fingerprint.cache_clear()

@@ -1,0 +1,215 @@
+"""One simulation of a sweep: its sizes, its seed, its key, its field and its result."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from crackfront import jkr
+from crackfront.cycle import LoadSchedule
+from crackfront.pinning import last_radius
+from crackfront.relax import Status
+from crackfront.scene import (
+    Numerics,
+    Resolution,
+    Simulation,
+    contact_field,
+    correlation_length,
+    resolution,
+    run_simulation,
+    simulation_adhesion,
+    tile_contact,
+)
+from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.units import WORK_OF_ADHESION
+
+NUMERICS = Numerics(
+    angles=None,
+    angles_per_cutoff=2,
+    samples_per_cutoff=8,
+    pixels_per_cutoff=4,
+    tile_roll_offs=10,
+    tile_cutoffs=20,
+    tolerance=1e-6,
+    max_sweeps=100_000,
+    solver="reference",
+)
+SIMULATION = Simulation(
+    spectrum_name="rough",
+    kind="roughness",
+    spectrum=SelfAffineSpectrum(short_cutoff=0.2, roll_off=0.4, hurst=0.8),
+    elastic_energy=0.05,
+    realisation=0,
+    sweep_seed=1,
+    resolution=Resolution(n_angle=64, spacing=0.025, tile_side=4.0, n_point=80),
+    schedule=LoadSchedule(0.5, 0.25),
+    tolerance=1e-6,
+    max_sweeps=100_000,
+    solver="reference",
+    record_fronts=False,
+    record_energy=False,
+)
+
+
+def test_the_tile_resolves_the_cutoff_and_holds_the_roll_off():
+    spectrum = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.7, hurst=0.5)
+    sizes = resolution(spectrum, NUMERICS, 1.0)
+    assert sizes.tile_side == pytest.approx(7.0, rel=1e-15)
+    assert sizes.tile_side / sizes.n_point <= 0.1 / 4
+    assert sizes.spacing == 0.1 / 8
+
+
+def test_a_flat_spectrum_gets_the_smallest_tile_in_cutoffs():
+    flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=0.5)
+    assert resolution(flat, NUMERICS, 1.0).tile_side == 2.0
+
+
+def test_the_front_has_a_power_of_two_of_sites_enough_for_the_largest_circle():
+    spectrum = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=0.5)
+    n_angle = resolution(spectrum, NUMERICS, 1.0).n_angle
+    least = 2 * np.pi * jkr.equilibrium_radius(1.0) / 0.1 * 2
+    assert n_angle & (n_angle - 1) == 0
+    assert least <= n_angle < 2 * least
+
+
+def test_given_angles_are_taken_as_they_are():
+    assert resolution(SIMULATION.spectrum, replace(NUMERICS, angles=90), 1.0).n_angle == 90
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"kind": "chemical"},
+        {"spectrum": SelfAffineSpectrum(0.2, 0.4, 0.81)},
+        {"elastic_energy": 0.0500001},
+        {"realisation": 1},
+        {"sweep_seed": 2},
+        {"resolution": Resolution(64, 0.025, 4.0, 81)},
+        {"schedule": LoadSchedule(0.5, 0.125)},
+        {"tolerance": 1e-7},
+        {"max_sweeps": 1},
+        {"solver": "other"},
+        {"record_fronts": True},
+        {"record_energy": True},
+    ],
+    ids=lambda change: next(iter(change)),
+)
+def test_the_key_changes_with_everything_that_determines_the_result(change):
+    assert replace(SIMULATION, **change).key != SIMULATION.key
+
+
+def test_every_item_but_the_name_is_in_the_key():
+    # With the test above: a new item of a simulation needs a line there.
+    assert len(fields(Simulation)) == 13
+    assert replace(SIMULATION, spectrum_name="other").key == SIMULATION.key
+
+
+def test_the_plateau_of_a_spectrum_is_not_in_the_key():
+    scaled = SIMULATION.spectrum.with_elastic_energy(0.3)
+    assert replace(SIMULATION, spectrum=scaled).key == SIMULATION.key
+
+
+def test_the_key_changes_with_the_sources_of_the_solver(monkeypatch):
+    before = SIMULATION.key
+    monkeypatch.setattr("crackfront.scene.parameters.scene_fingerprint", lambda: "other")
+    assert SIMULATION.key != before
+
+
+def test_amplitudes_and_grids_share_the_seed_of_a_realisation():
+    finer = Resolution(n_angle=128, spacing=0.0125, tile_side=4.0, n_point=160)
+    for change in ({"elastic_energy": 0.1}, {"resolution": finer}, {"spectrum_name": "b"}):
+        assert replace(SIMULATION, **change).seed == SIMULATION.seed
+
+
+def test_realisations_spectra_tiles_and_sweeps_have_seeds_of_their_own():
+    changes = (
+        {},
+        {"realisation": 1},
+        {"sweep_seed": 2},
+        {"spectrum": SelfAffineSpectrum(0.2, 0.4, 0.9)},
+        {"spectrum": SelfAffineSpectrum(0.2, 0.5, 0.8)},
+        {"resolution": Resolution(64, 0.025, 5.0, 80)},
+    )
+    seeds = [replace(SIMULATION, **change).seed for change in changes]
+    assert len(set(seeds)) == len(seeds)
+    assert all(0 <= seed < 2**63 for seed in seeds)
+
+
+def test_the_seed_is_the_same_for_ever():
+    # A change of this number changes the surfaces of all sweeps.
+    assert SIMULATION.seed == 9036307460067312527
+
+
+def test_amplitudes_of_a_realisation_are_one_surface_scaled():
+    weak = simulation_adhesion(replace(SIMULATION, elastic_energy=0.02))
+    strong = simulation_adhesion(replace(SIMULATION, elastic_energy=0.08))
+    fluctuations = [
+        field.work_of_adhesion - WORK_OF_ADHESION * (1 - field.elastic_energy)
+        for field in (weak, strong)
+    ]
+    assert fluctuations[1] == pytest.approx(2 * fluctuations[0], rel=1e-9, abs=1e-15)
+    assert strong.elastic_energy == pytest.approx(4 * weak.elastic_energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["roughness", "chemical"])
+def test_the_tile_has_the_requested_rms_on_average(kind):
+    wanted = replace(SIMULATION, kind=kind, elastic_energy=0.05)
+    squares = [
+        simulation_adhesion(replace(wanted, realisation=realisation)).rms ** 2
+        for realisation in range(20)
+    ]
+    # The error of one tile is below 5 %.
+    assert np.mean(squares) == pytest.approx(4 * 0.05, rel=0.04)
+
+
+def test_a_chemical_field_has_the_spectrum_itself_and_keeps_the_mean():
+    field = simulation_adhesion(replace(SIMULATION, kind="chemical"))
+    assert np.mean(field.work_of_adhesion) == pytest.approx(WORK_OF_ADHESION, rel=1e-12)
+    flat = SelfAffineSpectrum(short_cutoff=0.2, roll_off=0.2, hurst=0.8)
+    # C(q) = const: <q> = 2 q_s / 3, while roughness weighs by q once more: <q> = 3 q_s / 4.
+    assert correlation_length("chemical", flat) == pytest.approx(0.2 * 3 / 2)
+    assert correlation_length("roughness", flat) == pytest.approx(0.2 * 4 / 3)
+
+
+@pytest.mark.parametrize("strength", [0.0, 0.5, 3.0])
+def test_a_smooth_contact_of_the_strongest_adhesion_stays_inside_the_field(strength):
+    adhesion = simulation_adhesion(replace(SIMULATION, kind="chemical"))
+    adhesion = replace(adhesion, work_of_adhesion=adhesion.work_of_adhesion * strength + 0.01)
+    field = contact_field(adhesion, 8, 0.1, 0.7)
+    strongest = np.max(adhesion.work_of_adhesion) / WORK_OF_ADHESION
+    assert last_radius(field) > jkr.equilibrium_radius(0.7, max(strongest, 1.0))
+
+
+def test_a_given_tile_is_resolved_by_its_pixels():
+    adhesion = simulation_adhesion(SIMULATION)
+    field = tile_contact(adhesion, 1.0)
+    assert field.spacing == adhesion.pixel / 4
+    assert field.cosine.size >= 2 * np.pi * jkr.equilibrium_radius(1.0) / adhesion.pixel
+    chosen = tile_contact(adhesion, 1.0, n_angle=12, samples_per_pixel=2)
+    assert (chosen.cosine.size, chosen.spacing) == (12, adhesion.pixel / 2)
+
+
+def test_a_simulation_completes_its_cycle_and_says_what_it_cost():
+    result = run_simulation(replace(SIMULATION, record_fronts=True))
+    assert result.record.status is Status.LOST_CONTACT
+    assert result.record.radius.shape[1] == 64
+    assert result.elastic_energy == pytest.approx(0.05, rel=0.3)
+    assert result.seconds > 0
+    assert result.peak_memory > 1e7
+
+
+def test_a_simulation_gives_the_same_bits_again():
+    first, again = run_simulation(SIMULATION), run_simulation(SIMULATION)
+    assert np.array_equal(first.record.force, again.record.force)
+    assert first.work_of_adhesion_rms == again.work_of_adhesion_rms
+
+
+def test_a_step_limit_is_a_status_and_no_error():
+    assert run_simulation(replace(SIMULATION, max_sweeps=1)).record.status is Status.STEP_LIMIT
+
+
+def test_weak_disorder_is_expected_to_take_longest():
+    weak = replace(SIMULATION, elastic_energy=0.002)
+    assert weak.expected_cost > SIMULATION.expected_cost
+    finer = replace(SIMULATION, resolution=replace(SIMULATION.resolution, n_angle=128))
+    assert finer.expected_cost > weak.expected_cost

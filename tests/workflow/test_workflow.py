@@ -1,0 +1,94 @@
+"""The whole workflow by Snakemake on the configuration `test`, with real ranks of MPI."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+ROOT = Path(__file__).parents[2]
+COSTS = {"seconds", "cpu_seconds", "peak_memory"}
+
+
+def snakemake(folder, *settings, sweep=ROOT / "config/test.yaml", ranks=2):
+    """Run the workflow in a folder of its own."""
+    command = [
+        *(sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")),
+        *("--profile", str(ROOT / "workflow/profiles/default"), "--directory", str(folder)),
+        *("--cores", "2", "--config", f"sweep={sweep}", f"ranks={ranks}", *settings),
+    ]
+    return subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+    )
+
+
+def states(folder):
+    """Names and moments of all results."""
+    return {path: path.stat().st_mtime_ns for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.mpi
+def test_the_workflow_gives_the_same_with_one_rank_and_with_two(tmp_path):
+    datasets = []
+    for ranks in (1, 2):
+        folder = tmp_path / str(ranks)
+        folder.mkdir()
+        done = snakemake(folder, ranks=ranks)
+        assert done.returncode == 0, done.stderr
+        results = folder / "results/test"
+        assert str(Path("results/test/fit.md")) in done.stdout
+        for name in ("hysteresis.pdf", "hysteresis.png", "loop.pdf", "factor.png"):
+            assert (results / "figures" / name).stat().st_size > 1000
+        datasets.append(xr.load_dataset(results / "hysteresis.nc").drop_vars(COSTS))
+    assert datasets[0].equals(datasets[1])
+
+
+def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path):
+    sweep = tmp_path / "sweep.yaml"
+    lines = (ROOT / "config/test.yaml").read_text(encoding="utf-8").splitlines(keepends=True)
+    sweep.write_text("".join(line for line in lines if "name: rough" not in line))
+    assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
+    results = tmp_path / "results/sweep"
+    before = states(results)
+    idle = snakemake(tmp_path, sweep=sweep, ranks=1)
+    assert idle.returncode == 0
+    assert states(results) == before
+    sweep.write_text(sweep.read_text().replace("realisations: 2", "realisations: 3"))
+    more = snakemake(tmp_path, sweep=sweep, ranks=1)
+    assert more.returncode == 0, more.stderr
+    after = states(results)
+    curves = {path for path in after if path.parent.name == "curves"}
+    assert len(curves) == 6
+    assert {path for path in before if before[path] == after[path]} == curves & set(before)
+    assert xr.load_dataset(results / "hysteresis.nc").sizes["realisation"] == 3
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (("hurst: 0.8", "hurst: 1.8"), "spectra[1].hurst is 1.8; it must be"),
+        (("seed: 1", "sed: 1"), "unknown key sed; did you mean seed?"),
+    ],
+)
+def test_the_workflow_refuses_a_bad_configuration_before_it_starts(tmp_path, change, sentence):
+    sweep = tmp_path / "sweep.yaml"
+    sweep.write_text((ROOT / "config/test.yaml").read_text(encoding="utf-8").replace(*change))
+    done = snakemake(tmp_path, sweep=sweep)
+    assert done.returncode != 0
+    assert sentence in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "results").exists()
+
+
+def test_the_workflow_refuses_unknown_settings(tmp_path):
+    done = snakemake(tmp_path, "rank=2")
+    assert done.returncode != 0
+    assert "--config knows no rank; its keys are sweep (a file) and ranks" in done.stderr
+    assert not (tmp_path / "results").exists()
