@@ -11,7 +11,16 @@ from numpy.typing import NDArray
 
 from crackfront import jkr
 from crackfront.line import line_energy
-from crackfront.pinning import Field, first_radius, last_radius, n_angle, swept_adhesion
+from crackfront.pinning import (
+    Field,
+    first_radius,
+    front_adhesion,
+    front_products,
+    last_radius,
+    make_memory,
+    n_angle,
+    swept_adhesion,
+)
 from crackfront.relax import Direction, Relaxation, Status, relax
 from crackfront.units import WORK_OF_ADHESION
 
@@ -109,6 +118,10 @@ class CycleRecord:
     dissipated_energy : (n_step,) array or None
         Energy lost in the jumps of each load step, where it was asked for.
         (Units: pi w_int R times a reduced vertical length)
+    pull_off_energy : float or None
+        Energy lost when the contact vanishes after the last state; with it the dissipated energies
+        sum up to the loop integral of F db. None where energies were not asked for or contact was
+        not lost. (Units: as dissipated_energy)
     radius : (n_step, n_angle) array or None
         The fronts, where they were asked for. (Units: reduced lateral length)
     """
@@ -128,6 +141,7 @@ class CycleRecord:
     iterations: NDArray[np.int64]
     residual: Array
     dissipated_energy: Array | None = None
+    pull_off_energy: float | None = None
     radius: Array | None = None
 
 
@@ -155,7 +169,7 @@ def run_cycle(
     *,
     tolerance: float = 1e-8,
     max_sweeps: int = 10_000_000,
-    solver: str = "reference",
+    solver: str = "newton",
     record_fronts: bool = False,
     record_energy: bool = False,
     progress: Callable[[CycleState], None] | None = None,
@@ -189,13 +203,15 @@ def run_cycle(
     Raises
     ------
     ValueError
-        If a smooth sphere would already outgrow the field at the largest penetration, or the
-        solver is unknown.
+        If a smooth sphere would already outgrow the field at the largest penetration, the field
+        begins too far outside to make contact in, or the solver is unknown.
     """
     _refuse_outgrown(field, schedule)
+    _refuse_untouched(field)
     states: list[CycleState] = []
     fronts: list[Array] = []
     dissipated: list[float] = []
+    memory = make_memory(field)
     front = turn = np.full(n_angle(field), first_radius(field))
     for penetration, direction in _loads(schedule):
         outcome = relax(
@@ -206,6 +222,7 @@ def run_cycle(
             tolerance=tolerance,
             max_sweeps=max_sweeps,
             solver=solver,
+            memory=memory,
         )
         if outcome.status is not Status.CONVERGED:
             break
@@ -223,9 +240,11 @@ def run_cycle(
         item.name: np.array([getattr(state, item.name) for state in states])
         for item in fields(CycleState)
     }
+    lost = record_energy and outcome.status is Status.LOST_CONTACT
     return CycleRecord(
         status=outcome.status,
         end_penetration=penetration,
+        pull_off_energy=_contact_energy(front, penetration, field) if lost else None,
         dissipated_energy=np.array(dissipated) if record_energy else None,
         radius=np.array(fronts).reshape(-1, front.size) if record_fronts else None,
         **columns,
@@ -252,6 +271,15 @@ def dissipated_energy(before: Array, after: Array, penetration: float, field: Fi
     """
     fall = _elastic_energy(before, penetration) - _elastic_energy(after, penetration)
     return fall + swept_adhesion(before, after, field)
+
+
+def _contact_energy(front: Array, penetration: float, field: Field) -> float:
+    """Energy of a contact above that of none."""
+    innermost = np.full(front.size, first_radius(field))
+    # Within the first sample the product falls linearly to zero at the apex.
+    core = np.pi * first_radius(field) * np.mean(front_products(innermost, field))
+    outside = swept_adhesion(innermost, front, field)
+    return _elastic_energy(front, penetration) - outside - float(core)
 
 
 def _elastic_energy(front: Array, penetration: float) -> float:
@@ -299,4 +327,18 @@ def _refuse_outgrown(field: Field, schedule: LoadSchedule) -> None:
             f"contact outgrows the field: a smooth sphere at penetration "
             f"{schedule.max_penetration} has radius {smooth:.4g}, the field ends at "
             f"{last_radius(field):.4g}; enlarge the field or lower the penetration"
+        )
+
+
+def _refuse_untouched(field: Field) -> None:
+    """Raise if the innermost circle of a field is too large for contact to be made in it."""
+    radius = first_radius(field)
+    needed = float(jkr.apparent_work_of_adhesion(radius, 0.0))
+    adhesion = front_adhesion(np.full(n_angle(field), radius), field) / WORK_OF_ADHESION
+    # A circle that needs next to no adhesion is the first touch, whatever is found there.
+    if needed > max(float(np.mean(adhesion)), 1e-3):
+        raise ValueError(
+            f"field begins at radius {radius:.4g}, where a contact at penetration 0 needs a mean "
+            f"work of adhesion of {needed:.4g} w_int but finds {np.mean(adhesion):.4g}; "
+            "add samples at smaller radii"
         )

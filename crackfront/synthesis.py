@@ -41,13 +41,18 @@ def gaussian_field(
     Raises
     ------
     ValueError
-        If the shortest wavelength is below two pixels, or the tile is shorter than the shortest
-        wavelength so that it holds no mode.
+        If the tile has no extent, the shortest wavelength is below two pixels, or the tile is
+        shorter than the shortest wavelength so that it holds no mode.
 
     References
     ----------
     .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. II.
     """
+    if n_point < 4 or not 0 < length < math.inf:
+        raise ValueError(
+            f"tile of {n_point} points and side {length} cannot hold a surface; use at least 4 "
+            "points and a positive side"
+        )
     pixel = length / n_point
     if spectrum.short_cutoff < 2 * pixel * (1 - 1e-12):
         raise ValueError(

@@ -57,7 +57,10 @@ def same(one: CycleRecord, other: CycleRecord):
 def without_states(record: CycleRecord, status: Status):
     """A record that ended before its first state."""
     columns = {item.name: getattr(record, item.name) for item in fields(CycleRecord)[2:]}
-    empty = {name: None if values is None else values[:0] for name, values in columns.items()}
+    empty = {
+        name: values[:0] if isinstance(values, np.ndarray) else None
+        for name, values in columns.items()
+    }
     return CycleRecord(status=status, end_penetration=0.0, **empty)
 
 
@@ -80,7 +83,7 @@ def test_a_cycle_without_states_is_read_back(tmp_path, result):
 
 
 def test_the_columns_of_a_cycle_are_those_of_the_record():
-    optional = {"status", "end_penetration", "dissipated_energy", "radius"}
+    optional = {"status", "end_penetration", "dissipated_energy", "pull_off_energy", "radius"}
     columns = {item.name for item in fields(CycleRecord)} - optional
     assert {item.name for item in CURVES} == columns
 

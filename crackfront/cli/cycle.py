@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ import click
 from crackfront.cli.report import FILE, announce_compilation
 
 if TYPE_CHECKING:
+    from crackfront.cycle import CycleState
     from crackfront.pinning import Field
 
 
@@ -24,7 +26,12 @@ if TYPE_CHECKING:
     show_default=True,
     help="Force that may be left, relative to w_int per front length.",
 )
-@click.option("--solver", default="reference", show_default=True, help="Name of the solver.")
+@click.option(
+    "--solver",
+    default="newton",
+    show_default=True,
+    help="newton, or reference (the paper's algorithm); both find the same states.",
+)
 @click.option(
     "--max-sweeps",
     type=click.IntRange(min=1),
@@ -98,6 +105,7 @@ def cycle(
         solver=solver,
         record_fronts="fronts" in record,
         record_energy="energy" in record,
+        progress=_report,
     )
     write_cycle(output, outcome, provenance(), directions)
     click.echo(f"{outcome.penetration.size} states: {output}")
@@ -106,3 +114,11 @@ def cycle(
             f"at penetration {outcome.end_penetration:.6g} {outcome.status.value}"
         )
     click.echo(f"contact was lost at penetration {outcome.end_penetration:.6g}")
+
+
+def _report(state: CycleState) -> None:
+    """Tell on a terminal which state was found last."""
+    if sys.stderr.isatty():
+        branch = "approach" if state.direction > 0 else "retraction"
+        line = f"{branch} to penetration {state.penetration:8.4f}, radius {state.mean_radius:.4f}"
+        click.echo(f"\r{line}", nl=False, err=True)

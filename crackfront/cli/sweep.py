@@ -151,7 +151,11 @@ def figures(configuration: Path, output: Path | None) -> None:
     result = read_simulation(store.path(simulation), simulation)
     steady = steady_adhesion(result.record, sweep.correlation_length(item))
     loop = plots.loop_figure(
-        result.record, steady, elastic_energy=result.elastic_energy, title=simulation.label
+        result.record,
+        steady,
+        elastic_energy=result.elastic_energy,
+        kind=sweep.kind,
+        title=simulation.label,
     )
     drawn = {
         "hysteresis": plots.hysteresis_figure(fitted.table, fitted),
@@ -188,6 +192,7 @@ def _fitted(sweep: Sweep, store: Store) -> SweepFit:
         highest_elastic_energy=sweep.fit.highest_elastic_energy,
         n_bootstrap=sweep.fit.n_bootstrap,
         seed=sweep.seed,
+        kind=sweep.kind,
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -129,11 +130,13 @@ def _cycle_dataset(record: CycleRecord, angles: Array | None) -> xr.Dataset:
         directions = 2 * np.pi * np.arange(count) / count if angles is None else angles
         variables[RADIUS.name] = labelled(RADIUS, record.radius)
         variables[ANGLES.name] = labelled(ANGLES, directions)
-    attributes = {
+    attributes: dict[str, str | float] = {
         "status": record.status.name.lower(),
         "status_sentence": record.status.value,
         "end_penetration": record.end_penetration,
     }
+    if record.pull_off_energy is not None:
+        attributes["pull_off_energy"] = record.pull_off_energy
     return xr.Dataset(variables, attrs=attributes)
 
 
@@ -144,10 +147,14 @@ def _record(path: Path, dataset: xr.Dataset) -> CycleRecord:
     if missing or name not in Status.__members__ or "end_penetration" not in dataset.attrs:
         what = ", ".join(missing) or "a known status"
         raise UnreadableFileError(f"{path} holds no cycle: it lacks {what}")
-    known = {item.name for item in fields(CycleRecord)}
-    columns = {
+    known = {item.name for item in fields(CycleRecord)} - {"pull_off_energy"}
+    columns: dict[str, Any] = {
         str(name): np.asarray(values) for name, values in dataset.data_vars.items() if name in known
     }
+    pull_off = dataset.attrs.get("pull_off_energy")
     return CycleRecord(
-        status=Status[name], end_penetration=float(dataset.attrs["end_penetration"]), **columns
+        status=Status[name],
+        end_penetration=float(dataset.attrs["end_penetration"]),
+        pull_off_energy=None if pull_off is None else float(pull_off),
+        **columns,
     )

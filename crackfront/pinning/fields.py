@@ -99,7 +99,7 @@ def polar_field(radii: Array, work_of_adhesion: Array) -> PolarField:
     """
     radii = np.asarray(radii, dtype=float)
     values = np.asarray(work_of_adhesion, dtype=float)
-    if values.shape != (radii.size, values.shape[-1]) or radii.ndim != 1:
+    if radii.ndim != 1 or values.ndim != 2 or values.shape[0] != radii.size:
         raise ValueError(
             f"work of adhesion has shape {values.shape} for {radii.size} radii; it must be "
             "(radius, angle)"
@@ -145,9 +145,13 @@ def tile_field(
     """
     values = np.asarray(adhesion.work_of_adhesion, dtype=float)
     _refuse_unusable(values, names=("x", "y"))
+    if values.ndim != 2:
+        raise ValueError(f"work of adhesion has shape {values.shape}; a tile must be (x, y)")
+    if not 0 < adhesion.pixel < np.inf:
+        raise ValueError(f"pixel is {adhesion.pixel}; it must be positive and finite")
     if n_angle < 4:
         raise ValueError(f"number of angles is {n_angle}; at least 4 are needed")
-    if not 0 < spacing < largest_radius / 2:
+    if not 0 < spacing < largest_radius / 2 < np.inf:
         raise ValueError(
             f"sample spacing {spacing} must be positive and below half the largest radius "
             f"{largest_radius}"

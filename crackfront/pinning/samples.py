@@ -13,6 +13,7 @@ from numba import types
 from numba.extending import overload
 from numpy.typing import NDArray
 
+from crackfront.compiled import kernel
 from crackfront.pinning.fields import Field, PolarField, TileField
 
 Array = NDArray[np.float64]
@@ -101,16 +102,20 @@ class SampleMemory(NamedTuple):
     ----------
     products : (n_angle, MEMORY) array
         Products at samples; sample m of a ray has the place m modulo MEMORY.
-    samples : (n_angle, MEMORY) int array
-        Which sample each place holds.
+    first, last : (n_angle,) int array
+        Range of samples that each ray holds.
     """
 
     products: Array
-    samples: NDArray[np.int32]
+    first: NDArray[np.int64]
+    last: NDArray[np.int64]
 
 
 MEMORY = 64
 """Samples of a ray that are remembered."""
+
+_BLOCK = 8
+"""Samples evaluated together: neighbours on a ray use the same part of the tile."""
 
 
 def make_memory(field: Field) -> SampleMemory:
@@ -118,34 +123,67 @@ def make_memory(field: Field) -> SampleMemory:
     return _pick(field, _polar_memory, _tile_memory)(field)
 
 
-def recall(field: Field, memory: SampleMemory, ray: int, sample: int) -> float:
-    """Product at a sample of a ray, from memory where it has been asked for before."""
-    return _pick(field, _polar_recall, _tile_recall)(field, memory, ray, sample)
+def fetch(field: Field, memory: SampleMemory, ray: int, first: int, last: int) -> None:
+    """Make sure that the memory holds a range of at most MEMORY samples of a ray."""
+    return _pick(field, _polar_fetch, _tile_fetch)(field, memory, ray, first, last)
+
+
+def peek(field: Field, memory: SampleMemory, ray: int, sample: int) -> float:
+    """Product at a sample of a ray that has been fetched."""
+    return _pick(field, _polar_peek, _tile_peek)(field, memory, ray, sample)
 
 
 def _polar_memory(field: Any) -> SampleMemory:
     """Nothing: a polar field is its own memory."""
-    return SampleMemory(np.empty((0, 0)), np.empty((0, 0), np.int32))
+    return SampleMemory(np.empty((0, 0)), np.empty(0, np.int64), np.empty(0, np.int64))
 
 
 def _tile_memory(field: Any) -> SampleMemory:
     """Empty places for the rays of a tile."""
-    size = (field.cosine.size, MEMORY)
-    return SampleMemory(np.empty(size), np.full(size, -1, np.int32))
+    count = field.cosine.size
+    return SampleMemory(
+        np.empty((count, MEMORY)), np.zeros(count, np.int64), np.full(count, -1, np.int64)
+    )
 
 
-def _polar_recall(field: Any, memory: Any, ray: int, sample: int) -> float:
+def _polar_fetch(field: Any, memory: Any, ray: int, first: int, last: int) -> None:
+    """Nothing to do: all samples are there."""
+
+
+def _tile_fetch(field: Any, memory: Any, ray: int, first: int, last: int) -> None:
+    """Evaluate samples where some are missing; the test stays small so that it is inlined."""
+    if first < memory.first[ray] or last > memory.last[ray]:
+        fill_tile(field, memory, ray, first, last)
+
+
+@kernel
+def fill_tile(field, memory, ray, first, last):
+    """Evaluate the samples that are missing, in blocks, and forget the furthest ones."""
+    low, high = memory.first[ray], memory.last[ray]
+    if first > high + 1 or last < low - 1 or high < low:
+        low, high = first, first - 1
+    if last > high:
+        for sample in range(high + 1, max(last, high + _BLOCK) + 1):
+            memory.products[ray, sample % MEMORY] = sample_product(field, ray, sample)
+        high = max(last, high + _BLOCK)
+        low = max(low, high - MEMORY + 1)
+    if first < low:
+        target = max(min(first, low - _BLOCK), 0)
+        for sample in range(target, low):
+            memory.products[ray, sample % MEMORY] = sample_product(field, ray, sample)
+        low = target
+        high = min(high, low + MEMORY - 1)
+    memory.first[ray], memory.last[ray] = low, high
+
+
+def _polar_peek(field: Any, memory: Any, ray: int, sample: int) -> float:
     """Product at a sample of a polar field."""
     return field.products[ray, sample]
 
 
-def _tile_recall(field: Any, memory: Any, ray: int, sample: int) -> float:
-    """Product at a sample of a tile, evaluated when its place holds another."""
-    place = sample % MEMORY
-    if memory.samples[ray, place] != sample:
-        memory.samples[ray, place] = sample
-        memory.products[ray, place] = sample_product(field, ray, sample)
-    return memory.products[ray, place]
+def _tile_peek(field: Any, memory: Any, ray: int, sample: int) -> float:
+    """Product at a sample of a tile, from memory."""
+    return memory.products[ray, sample % MEMORY]
 
 
 @overload(make_memory)
@@ -153,9 +191,14 @@ def _overload_memory(field: Any) -> Any:
     return _chooser(_polar_memory, _tile_memory)(field)
 
 
-@overload(recall)
-def _overload_recall(field: Any, memory: Any, ray: int, sample: int) -> Any:
-    return _chooser(_polar_recall, _tile_recall)(field)
+@overload(fetch)
+def _overload_fetch(field: Any, memory: Any, ray: int, first: int, last: int) -> Any:
+    return _chooser(_polar_fetch, _tile_fetch)(field)
+
+
+@overload(peek)
+def _overload_peek(field: Any, memory: Any, ray: int, sample: int) -> Any:
+    return _chooser(_polar_peek, _tile_peek)(field)
 
 
 @overload(sample_radius)

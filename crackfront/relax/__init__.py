@@ -8,13 +8,23 @@ Where the edge would be in compression (a^2 < b) no front can rest, in either di
 from __future__ import annotations
 
 import enum
+import math
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.pinning import Field, n_angle, sample_product, sample_radius
+from crackfront.pinning import (
+    Field,
+    SampleMemory,
+    first_radius,
+    last_radius,
+    make_memory,
+    n_angle,
+    sample_product,
+    sample_radius,
+)
 from crackfront.relax import forces
 from crackfront.relax.monotone import monotone_newton
 from crackfront.relax.reference import rosso_krauth
@@ -81,7 +91,8 @@ def relax(
     *,
     tolerance: float = 1e-8,
     max_sweeps: int = 10_000_000,
-    solver: str = "reference",
+    solver: str = "newton",
+    memory: SampleMemory | None = None,
 ) -> Relaxation:
     r"""First metastable front in the direction of motion at fixed penetration.
 
@@ -107,6 +118,9 @@ def relax(
     solver : str, optional
         A name in :data:`SOLVERS`; ``"reference"`` is the paper's algorithm, ``"newton"`` the fast
         one that finds the same states.
+    memory : SampleMemory, optional
+        Samples remembered from earlier relaxations on the same field (see
+        :func:`crackfront.pinning.make_memory`); changed in place, without effect on the result.
 
     Returns
     -------
@@ -116,7 +130,8 @@ def relax(
     Raises
     ------
     ValueError
-        If the front does not fit the field, or the solver is unknown.
+        If the front does not fit the field or is not finite, the solver or the direction is
+        unknown, the tolerance is below round-off, or the limit on the sweeps is not positive.
     RuntimeError
         If the fast solver finds that it has passed an equilibrium, which is a defect.
 
@@ -125,16 +140,17 @@ def relax(
     .. [1] Rosso, Krauth, Phys. Rev. E 65, 025101 (2002).
     .. [2] Sanner et al., Sci. Adv. (2024), supplement, Sec. II.
     """
-    if solver not in SOLVERS:
-        raise ValueError(f"solver is {solver!r}; choose one of {', '.join(sorted(SOLVERS))}")
-    if radius.shape != (n_angle(field),):
-        raise ValueError(f"front has shape {radius.shape}; the field has {n_angle(field)} rays")
+    _refuse_unusable(radius, penetration, direction, field, tolerance, max_sweeps, solver)
     front = np.array(radius, dtype=float)
     lowest = np.sqrt(max(penetration, 0.0))
     if direction > 0:
         np.maximum(front, lowest, out=front)
+    if direction > 0 and np.max(front) >= last_radius(field):
+        return Relaxation(front, Status.LEFT_FIELD_OUTWARD, 0, np.inf)
+    if memory is None:
+        memory = make_memory(field)
     code, sweeps, residual = SOLVERS[solver](
-        front, float(penetration), int(direction), field, float(tolerance), int(max_sweeps)
+        front, float(penetration), int(direction), field, memory, float(tolerance), int(max_sweeps)
     )
     if code == forces.TURNED:
         raise RuntimeError(
@@ -165,6 +181,40 @@ def front_force(radius: Array, penetration: float, field: Field) -> Array:
         Force per angle; zero in equilibrium. (Units: reduced energy / length)
     """
     return np.asarray(forces.front_force(radius, float(penetration), field))
+
+
+def _refuse_unusable(
+    radius: Array,
+    penetration: float,
+    direction: int,
+    field: Field,
+    tolerance: float,
+    max_sweeps: int,
+    solver: str,
+) -> None:
+    """Raise if a relaxation cannot start."""
+    if solver not in SOLVERS:
+        raise ValueError(f"solver is {solver!r}; choose one of {', '.join(sorted(SOLVERS))}")
+    if direction not in (1, -1):
+        raise ValueError(f"direction is {direction}; it must be 1 (approach) or -1 (retraction)")
+    if radius.shape != (n_angle(field),):
+        raise ValueError(f"front has shape {radius.shape}; the field has {n_angle(field)} rays")
+    if not (np.all(np.isfinite(radius)) and math.isfinite(penetration)):
+        raise ValueError(f"front or penetration ({penetration}) is not finite; check both")
+    inner, outer = first_radius(field), last_radius(field)
+    if np.min(radius) < inner or np.max(radius) > outer:
+        raise ValueError(
+            f"front spans radii {np.min(radius):.6g} to {np.max(radius):.6g}; the field is sampled "
+            f"from {inner:.6g} to {outer:.6g}, so start inside it"
+        )
+    round_off = float(np.finfo(float).eps) * radius.size
+    if not tolerance >= round_off:
+        raise ValueError(
+            f"tolerance {tolerance} is below the round-off of a front of {radius.size} sites "
+            f"({round_off:.1e}); raise it"
+        )
+    if max_sweeps < 1:
+        raise ValueError(f"max_sweeps is {max_sweeps}; it must be at least 1")
 
 
 def _can_rest_inside(field: Field, penetration: float) -> bool:

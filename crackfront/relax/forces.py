@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from crackfront.compiled import jit, kernel
 from crackfront.pinning import (
+    fetch,
     front_products,
-    recall,
+    peek,
     sample_count,
     sample_radius,
     segment_below,
@@ -70,7 +71,7 @@ def front_force(radius, penetration, field):
     return force
 
 
-@kernel
+@kernel(inline="always")
 def locate(field, memory, ray, radius, segment, direction):
     """Segment ahead of a radius that was in `segment` before it moved, and a w_loc there.
 
@@ -88,7 +89,8 @@ def locate(field, memory, ray, radius, segment, direction):
             if segment < 0:
                 return -INWARD, 0.0
     inner, outer = sample_radius(field, segment), sample_radius(field, segment + 1)
-    start, end = recall(field, memory, ray, segment), recall(field, memory, ray, segment + 1)
+    fetch(field, memory, ray, segment, segment + 1)
+    start, end = peek(field, memory, ray, segment), peek(field, memory, ray, segment + 1)
     return segment, start + (end - start) / (outer - inner) * (radius - inner)
 
 
@@ -106,7 +108,7 @@ def place_front(radius, field, memory, direction):
     return Front(radius, segment, product), code
 
 
-@kernel
+@kernel(inline="always")
 def hardening(field, memory, ray, radius, product, segment, reach, penetration, direction):
     """Stiffness D >= (f(0) - f(s)) / s for 0 < s <= reach, f the site's own drive after s.
 
@@ -118,11 +120,17 @@ def hardening(field, memory, ray, radius, product, segment, reach, penetration, 
     ring = 4 * RING * furthest * opening if opening > 0.0 else 0.0
     steepest = -np.inf
     last = sample_count(field) - 2
+    spacing = sample_radius(field, 1) - sample_radius(field, 0)
+    further = int(reach / spacing) + 1
+    if direction > 0:
+        fetch(field, memory, ray, segment, min(segment + 1 + further, last + 1))
+    else:
+        fetch(field, memory, ray, max(segment - further, 0), segment + 1)
     distance, value = 0.0, product
     while 0 <= segment <= last:
         ahead = segment + 1 if direction > 0 else segment
         next_distance = direction * (sample_radius(field, ahead) - radius)
-        next_value = recall(field, memory, ray, ahead)
+        next_value = peek(field, memory, ray, ahead)
         if next_distance >= reach:
             if next_distance > distance:
                 part = (reach - distance) / (next_distance - distance)
@@ -149,12 +157,7 @@ def drive_sites(front, penetration, direction, drive):
 
 
 @kernel
-def move_site(field, memory, ray, radius, segment, step, penetration, direction):
-    """Where a site is after a step: a code, and its radius, segment and product."""
-    moved = radius + direction * step
-    if direction < 0 and moved * abs(moved) <= penetration:
-        return BLOCKED, radius, segment, 0.0
-    segment, product = locate(field, memory, ray, moved, segment, direction)
-    if segment < 0:
-        return -segment, radius, segment, 0.0
-    return CONVERGED, moved, segment, product
+def is_compressed(radius, step, penetration):
+    """Whether a receding site would come to lie where its edge is in compression."""
+    moved = radius - step
+    return moved * abs(moved) <= penetration

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from crackfront.compiled import jit
-from crackfront.pinning import make_memory, sample_radius
+from crackfront.pinning import sample_radius
 from crackfront.relax.forces import (
     BLOCKED,
     CONVERGED,
@@ -52,28 +52,29 @@ _ROUND_OFF = 1e-9
 
 
 @jit
-def monotone_newton(radius, penetration, direction, field, tolerance, max_sweeps):
+def monotone_newton(radius, penetration, direction, field, memory, tolerance, max_sweeps):
     """First metastable front in the direction of motion; the front is changed in place.
 
     Returns a code, the number of FFT pairs and the largest drive left.
     """
     if radius.size <= 2 * HALF_BAND:
-        return rosso_krauth(radius, penetration, direction, field, tolerance, max_sweeps)
-    code, pairs, residual = _run(radius, penetration, direction, field, tolerance, max_sweeps)
+        return rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_sweeps)
+    code, pairs, residual = _run(
+        radius, penetration, direction, field, memory, tolerance, max_sweeps
+    )
     if code == BLOCKED:
         # The edge of the contact is near compression: the reference knows how to stop there.
         code, sweeps, residual = rosso_krauth(
-            radius, penetration, direction, field, tolerance, max_sweeps - pairs
+            radius, penetration, direction, field, memory, tolerance, max_sweeps - pairs
         )
         pairs += sweeps
     return code, pairs, residual
 
 
 @jit
-def _run(radius, penetration, direction, field, tolerance, max_sweeps):
+def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
     """Alternate between windows around the largest drives and steps of the whole front."""
     count = radius.size
-    memory = make_memory(field)
     front, code = place_front(radius, field, memory, direction)
     unit = np.zeros(count)
     unit[0] = 1.0

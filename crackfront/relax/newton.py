@@ -9,7 +9,14 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from crackfront.compiled import jit
-from crackfront.relax.forces import CONVERGED, hardening, line_force, move_site
+from crackfront.relax.forces import (
+    BLOCKED,
+    CONVERGED,
+    hardening,
+    is_compressed,
+    line_force,
+    locate,
+)
 from crackfront.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -168,28 +175,33 @@ def newton_step(newton, field, memory, front, drive, b, direction, furthest, sla
             break
         share = 0.0 if far else share
     if not safe or np.max(step) == 0.0:
-        _own_steps(newton, field, memory, front, drive, b, direction)
+        _own_steps(newton, field, memory, front, drive, b, direction, furthest)
+    if direction < 0:
+        # All or none: the step of a site is safe only together with those of the others.
+        for i in range(count):
+            if is_compressed(radius[i], step[i], b):
+                return BLOCKED, pairs
     for i in range(count):
-        code, moved, low, value = move_site(
-            field, memory, i, radius[i], segment[i], step[i], b, direction
-        )
-        if code != CONVERGED:
-            return code, pairs
+        moved = radius[i] + direction * step[i]
+        low, value = locate(field, memory, i, moved, segment[i], direction)
+        if low < 0:
+            return -low, pairs
         radius[i], segment[i], product[i] = moved, low, value
         reach[i] = 2 * step[i]
     return CONVERGED, pairs
 
 
 @jit
-def _own_steps(newton, field, memory, front, drive, b, direction):
+def _own_steps(newton, field, memory, front, drive, b, direction, furthest):
     """Steps of each site by its own force alone, the others held; always safe."""
     count = drive.size
     line = WORK_OF_ADHESION * count / 4 * (1 - (count % 2) / count**2)
+    newton.step[:] = 0.0
     for i in range(count):
-        newton.step[i] = 0.0
         if drive[i] > 0.0:
+            reach = min(drive[i] / line, furthest)
             ahead = hardening(
-                field, memory, i, front.radius[i], front.product[i], front.segment[i],
-                drive[i] / line, b, direction,
+                field, memory, i, front.radius[i], front.product[i], front.segment[i], reach,
+                b, direction,
             )  # fmt: skip
-            newton.step[i] = drive[i] / (line + max(ahead, 0.0))
+            newton.step[i] = min(drive[i] / (line + max(ahead, 0.0)), reach)

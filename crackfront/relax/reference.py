@@ -7,14 +7,14 @@ import numpy as np
 from crackfront.compiled import jit
 from crackfront.line import self_stiffness
 from crackfront.pinning import sample_count, sample_product, sample_radius, segment_below
-from crackfront.relax.forces import CONVERGED, INWARD, LIMIT, OUTWARD, RING, line_force
+from crackfront.relax.forces import CONVERGED, INWARD, LIMIT, OUTWARD, RING, line_force, ring_force
 from crackfront.units import WORK_OF_ADHESION
 
 _self_stiffness = jit(self_stiffness)
 
 
 @jit
-def rosso_krauth(radius, penetration, direction, field, tolerance, max_sweeps):
+def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_sweeps):
     """Move every site by its own force over its own stiffness, at most to the next sample.
 
     The front is changed in place. What a site leaves out when it moves, the pull of its
@@ -31,42 +31,46 @@ def rosso_krauth(radius, penetration, direction, field, tolerance, max_sweeps):
         segment[i] = low
         inner[i], outer[i] = sample_radius(field, low), sample_radius(field, low + 1)
         start[i], end[i] = sample_product(field, i, low), sample_product(field, i, low + 1)
+    drive = np.empty(count)
     residual = np.inf
-    for sweep in range(max_sweeps):
+    for sweep in range(1, max_sweeps + 1):
         line = line_force(radius)
         residual = 0.0
         for i in range(count):
             a = radius[i]
             slope = (end[i] - start[i]) / (outer[i] - inner[i])
-            opening = max(a * a - penetration, 0.0)
-            force = start[i] + slope * (a - inner[i]) - RING * opening * opening - line[i]
-            drive = direction * force
-            if drive <= 0.0 or (direction < 0 and a <= lowest):
+            force = start[i] + slope * (a - inner[i]) - ring_force(a, penetration) - line[i]
+            resting = direction < 0 and a <= lowest
+            drive[i] = 0.0 if resting else max(direction * force, 0.0)
+            residual = max(residual, drive[i] / (a * WORK_OF_ADHESION))
+        if residual <= tolerance:
+            return CONVERGED, sweep, residual
+        for i in range(count):
+            if drive[i] == 0.0:
                 continue
-            residual = max(residual, drive / (a * WORK_OF_ADHESION))
+            a = radius[i]
+            slope = (end[i] - start[i]) / (outer[i] - inner[i])
             # a G is convex: over the segment ahead its slope is largest at the outer end.
             furthest = outer[i] if direction > 0 else a
             hardening = 4 * RING * furthest * max(furthest * furthest - penetration, 0.0)
             stiffness = line_stiffness + hardening - slope
             target = outer[i] if direction > 0 else max(inner[i], lowest)
-            moved = a + force / stiffness if stiffness > 0.0 else direction * np.inf
+            moved = a + direction * drive[i] / stiffness if stiffness > 0.0 else direction * np.inf
             if direction * (moved - target) < 0.0:
                 radius[i] = moved
                 continue
             radius[i] = target
-            if target > inner[i] and direction < 0:
+            if direction < 0 and target > inner[i]:
                 continue
             low = segment[i] + direction
             if low < 0:
-                return INWARD, sweep + 1, residual
+                return INWARD, sweep, residual
             if low > last:
-                return OUTWARD, sweep + 1, residual
+                return OUTWARD, sweep, residual
             segment[i] = low
             inner[i], outer[i] = sample_radius(field, low), sample_radius(field, low + 1)
             if direction > 0:
                 start[i], end[i] = end[i], sample_product(field, i, low + 1)
             else:
                 start[i], end[i] = sample_product(field, i, low), start[i]
-        if residual <= tolerance:
-            return CONVERGED, sweep + 1, residual
     return LIMIT, max_sweeps, residual

@@ -12,7 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.compiled import jit, kernel
-from crackfront.relax.forces import CONVERGED, hardening, move_site, ring_force
+from crackfront.relax.forces import (
+    BLOCKED,
+    CONVERGED,
+    hardening,
+    is_compressed,
+    locate,
+    ring_force,
+)
 from crackfront.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -139,16 +146,20 @@ def _move(window, field, memory, front, first, count, b, direction):
     """Take the step and bring the drive within the window up to date."""
     radius, segment, product = front.radius, front.segment, front.product
     drive, step, coupling = window.drive, window.step, window.coupling
+    if direction < 0:
+        # All or none: the step of a site is safe only together with those of its neighbours.
+        for j in range(count):
+            if is_compressed(radius[(first + j) % radius.size], step[j], b):
+                return BLOCKED
     i = first
     for j in range(count):
-        code, moved, ahead, value = move_site(
-            field, memory, i, radius[i], segment[i], step[j], b, direction
-        )
-        if code != CONVERGED:
-            return code
+        moved = radius[i] + direction * step[j]
+        low, value = locate(field, memory, i, moved, segment[i], direction)
+        if low < 0:
+            return -low
         rings = ring_force(moved, b) - ring_force(radius[i], b)
         drive[j] += direction * (value - product[i] - rings)
-        radius[i], segment[i], product[i] = moved, ahead, value
+        radius[i], segment[i], product[i] = moved, low, value
         i = i + 1 if i + 1 < radius.size else 0
     for j in range(count):
         row = coupling[LONGEST - j : LONGEST - j + count]

@@ -1,0 +1,100 @@
+"""The fast solver finds the states of the reference, on fields that give it no reason to."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from crackfront.adhesion import rough_adhesion
+from crackfront.cycle import LoadSchedule, run_cycle
+from crackfront.pinning import polar_field, tile_field
+from crackfront.relax import Status, relax
+from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.synthesis import gaussian_field
+
+
+def rough_tile(elastic_energy, *, cutoff, roll_off, hurst, n_angle, seed):
+    spectrum = SelfAffineSpectrum(cutoff, roll_off, hurst).with_elastic_energy(elastic_energy)
+    n_point = 128
+    pixel = cutoff / 4
+    heights = gaussian_field(spectrum, n_point, n_point * pixel, np.random.default_rng(seed))
+    return tile_field(rough_adhesion(heights, pixel), n_angle, cutoff / 16, 3.0)
+
+
+def outcomes(front, penetration, direction, field):
+    """Both solvers from the same start."""
+    return [
+        relax(front, penetration, direction, field, tolerance=1e-11, solver=solver)
+        for solver in ("reference", "newton")
+    ]
+
+
+@settings(max_examples=60)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    n_angle=st.integers(15, 48),
+    amplitude=st.sampled_from([0.0, 0.02, 0.1, 0.4, 0.8, 2.0]),
+    spacing=st.sampled_from([0.02, 0.05, 0.1]),
+    penetration=st.floats(-0.5, 1.0),
+    direction=st.sampled_from([1, -1]),
+    ragged=st.booleans(),
+)
+def test_the_fast_solver_stops_where_the_reference_stops(
+    seed, n_angle, amplitude, spacing, penetration, direction, ragged
+):
+    rng = np.random.default_rng(seed)
+    radii = np.arange(0.2, 3.4, spacing)
+    adhesion = (1 + amplitude * rng.standard_normal((radii.size, n_angle))) / np.pi
+    field = polar_field(radii, adhesion)
+    start = np.full(n_angle, 0.25 if direction > 0 else 2.5)
+    if ragged:
+        # Sites that start with a force against the motion must wait for the others.
+        start = rng.uniform(0.25, 2.0, n_angle)
+    expected, found = outcomes(start, penetration, direction, field)
+    assert found.status is expected.status
+    if expected.status is Status.CONVERGED:
+        assert np.max(np.abs(found.radius - expected.radius)) < 1e-8
+        assert found.residual <= 1e-11
+
+
+@pytest.mark.parametrize(
+    ("elastic_energy", "cutoff", "roll_off", "hurst"),
+    [
+        (0.0025, 0.08, 0.08, 1.0),
+        (0.04, 0.08, 0.08, 1.0),
+        (0.177, 0.08, 0.08, 1.0),
+        (0.05, 0.08, 0.32, 0.3),
+        (0.05, 0.08, 0.32, 0.8),
+    ],
+)
+def test_a_whole_cycle_on_roughness_equals_that_of_the_reference(
+    elastic_energy, cutoff, roll_off, hurst
+):
+    field = rough_tile(
+        elastic_energy, cutoff=cutoff, roll_off=roll_off, hurst=hurst, n_angle=300, seed=5
+    )
+    reference, newton = (
+        run_cycle(field, LoadSchedule(0.6, 0.2), tolerance=1e-10, solver=s, record_fronts=True)
+        for s in ("reference", "newton")
+    )
+    assert newton.status is reference.status is Status.LOST_CONTACT
+    assert newton.end_penetration == reference.end_penetration
+    assert np.max(np.abs(newton.radius - reference.radius)) < 1e-6 * cutoff
+    assert newton.iterations.sum() < reference.iterations.sum()
+
+
+@pytest.mark.parametrize("solver", ["reference", "newton"])
+def test_a_tolerance_below_round_off_is_refused(solver):
+    field = polar_field(np.linspace(0.2, 3.0, 60), np.full((60, 32), 1 / np.pi))
+    with pytest.raises(ValueError, match="below the round-off of a front of 32 sites"):
+        relax(np.full(32, 0.2), 0.0, 1, field, tolerance=1e-15, solver=solver)
+
+
+def test_the_fast_solver_stops_at_an_edge_in_compression():
+    # Adhesion that repels: the front recedes until its edge would be in compression.
+    radii = np.linspace(0.2, 3.0, 60)
+    field = polar_field(radii, np.full((60, 32), -0.5))
+    expected, found = outcomes(np.full(32, 2.0), 1.0, -1, field)
+    assert np.allclose(found.radius, 1.0, rtol=0, atol=1e-12)
+    assert np.array_equal(found.radius, expected.radius)
+    assert found.status is expected.status
