@@ -32,7 +32,7 @@ READY    = .venv/.ready-$(MPI)
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test nightly lint lock clean help
+.PHONY: all env test nightly benchmark lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP)
@@ -85,6 +85,9 @@ nightly: env  ## Run all tests, the slow ones too
 	@mkdir -p $(dir $(REPORT))
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT)
+
+benchmark: env  ## Time the solvers against the reference (about 15 minutes)
+	$(IN_ENV) .venv/bin/python -m benchmarks --output results/benchmark
 
 lint: env  ## Style, format, types, import floors, format of the rules
 	.venv/bin/ruff check

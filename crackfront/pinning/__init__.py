@@ -14,7 +14,13 @@ from crackfront.pinning.fields import (
     polar_field,
     tile_field,
 )
-from crackfront.pinning.rays import front_adhesion, front_products, segment_below, swept_adhesion
+from crackfront.pinning.rays import (
+    front_adhesion,
+    front_products,
+    sampled_on_rays,
+    segment_below,
+    swept_adhesion,
+)
 from crackfront.pinning.samples import (
     SampleMemory,
     fetch,
@@ -42,6 +48,7 @@ __all__ = [
     "sample_count",
     "sample_product",
     "sample_radius",
+    "sampled_on_rays",
     "segment_below",
     "swept_adhesion",
     "tile_field",

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.compiled import jit
-from crackfront.pinning.fields import Field
+from crackfront.pinning.fields import Field, PolarField, TileField
 from crackfront.pinning.samples import sample_count, sample_product, sample_radius
 
 Array = NDArray[np.float64]
@@ -97,3 +97,30 @@ def swept_adhesion(before: Array, after: Array, field: Field) -> float:
         (Units: reduced energy)
     """
     return float(_swept_adhesion(before, after, field))
+
+
+@jit
+def _sample_rays(field):
+    """Products at all samples of all rays."""
+    products = np.empty((field.cosine.size, field.n_sample))
+    for ray in range(products.shape[0]):
+        for sample in range(products.shape[1]):
+            products[ray, sample] = sample_product(field, ray, sample)
+    return products
+
+
+def sampled_on_rays(field: TileField) -> PolarField:
+    """The same field with all samples evaluated beforehand, as the paper's code has it.
+
+    Parameters
+    ----------
+    field : TileField
+        Field on a tile.
+
+    Returns
+    -------
+    PolarField
+        Field with identical samples; it takes n_angle * n_sample numbers of memory.
+    """
+    radii = field.spacing * np.arange(1, field.n_sample + 1, dtype=np.float64)
+    return PolarField(radii, _sample_rays(field))

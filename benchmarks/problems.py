@@ -1,0 +1,109 @@
+"""The registry of benchmark problems: a field, a load schedule and a tolerance each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from crackfront.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
+from crackfront.cycle import LoadSchedule
+from crackfront.pinning import PolarField, TileField, sampled_on_rays, tile_field
+from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.synthesis import gaussian_field
+
+LARGEST_RADIUS = 2.6
+"""Where the fields end. (Units: reduced lateral length)"""
+
+PIXELS_PER_CUTOFF = 8
+"""Resolution of the tiles."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One cycle from penetration 0 to 1 and back to pull-off, at a tolerance of 1e-8.
+
+    Attributes
+    ----------
+    group : str
+        The table that the problem belongs to.
+    rms : float
+        w_rms / w_int.
+    spectrum : SelfAffineSpectrum
+        A flat one is the spectrum of the work of adhesion, another that of the heights.
+        (Units: reduced lateral length)
+    n_angle : int
+        Sites of the front.
+    step : float
+        Load step. (Units: reduced vertical length)
+    samples_per_cutoff : int
+        Samples along a ray per short cutoff.
+    on_tile : bool
+        Evaluate the field from its tile where the front is, instead of sampling all rays first.
+    """
+
+    group: str
+    rms: float
+    spectrum: SelfAffineSpectrum
+    n_angle: int
+    step: float = 0.1
+    samples_per_cutoff: int = 16
+    on_tile: bool = False
+
+    @property
+    def schedule(self) -> LoadSchedule:
+        """Loads of the cycle."""
+        return LoadSchedule(1.0, self.step)
+
+    @property
+    def label(self) -> str:
+        """What the tables call it."""
+        spectrum = self.spectrum
+        shape = f"flat {spectrum.short_cutoff:g}"
+        if spectrum.roll_off > spectrum.short_cutoff:
+            shape = f"({spectrum.short_cutoff:g}, {spectrum.roll_off:g}, {spectrum.hurst:g})"
+        storage = ", on tile" if self.on_tile else ""
+        return f"{shape}, w_rms {self.rms:g}, N {self.n_angle}, step {self.step:g}{storage}"
+
+    def as_tile(self) -> Problem:
+        """The same problem with its field evaluated from the tile."""
+        return replace(self, on_tile=True)
+
+    def field(self, seed: int) -> PolarField | TileField:
+        """Field of a realisation."""
+        cutoff = self.spectrum.short_cutoff
+        pixel = cutoff / PIXELS_PER_CUTOFF
+        n_point = PIXELS_PER_CUTOFF * max(64, round(8 * self.spectrum.roll_off / cutoff))
+        adhesion = self._adhesion(n_point, pixel, seed)
+        tile = tile_field(adhesion, self.n_angle, cutoff / self.samples_per_cutoff, LARGEST_RADIUS)
+        return tile if self.on_tile else sampled_on_rays(tile)
+
+    def _adhesion(self, n_point: int, pixel: float, seed: int) -> AdhesionMap:
+        """Work of adhesion on a tile."""
+        rng = np.random.default_rng(np.random.SeedSequence(entropy=seed))
+        if self.spectrum.roll_off > self.spectrum.short_cutoff:
+            spectrum = self.spectrum.with_elastic_energy(self.rms**2 / 4)
+            return rough_adhesion(gaussian_field(spectrum, n_point, n_point * pixel, rng), pixel)
+        noise = gaussian_field(self.spectrum, n_point, n_point * pixel, rng)
+        return chemical_adhesion(self.rms * noise / np.std(noise), pixel)
+
+
+def _flat(cutoff: float) -> SelfAffineSpectrum:
+    """Flat spectrum."""
+    return SelfAffineSpectrum(cutoff, cutoff, 1.0)
+
+
+PROBLEMS = (
+    *(Problem("disorder", rms, _flat(0.02), 4096) for rms in (0.05, 0.1, 0.2, 0.4, 0.84, 2.0)),
+    Problem("disorder", 0.4, _flat(0.02), 4096, on_tile=True),
+    Problem("disorder", 0.4, _flat(0.02), 4096, step=0.002),
+    Problem("disorder", 0.45, SelfAffineSpectrum(0.02, 0.4, 0.3), 4096),
+    Problem("disorder", 0.45, SelfAffineSpectrum(0.02, 0.32, 0.8), 4096),
+    *(
+        Problem("scaling", rms, _flat(cutoff), round(81.92 / cutoff))
+        for rms in (0.1, 0.4)
+        for cutoff in (0.08, 0.04, 0.02, 0.01)
+    ),
+    Problem("smoke", 0.4, _flat(0.16), 256, step=0.5),
+)
+"""All problems; those of the group `smoke` are for the tests."""
