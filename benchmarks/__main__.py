@@ -153,7 +153,8 @@ def report(rows: list[Row], repeats: int) -> str:
         "is the largest difference of the fronts over all load steps.",
         "",
         f"Machine: {processor()}, {os.cpu_count()} cores, Python "
-        f"{platform.python_version()}; crackfront {origin.crackfront_version}, commit {origin.git_commit}.",
+        f"{platform.python_version()}; crackfront {origin.crackfront_version}, "
+        f"commit {origin.git_commit}.",
     ]
     for group in dict.fromkeys(row.group for row in rows):
         chosen = [row for row in rows if row.group == group]
