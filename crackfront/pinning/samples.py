@@ -111,7 +111,7 @@ class SampleMemory(NamedTuple):
     last: NDArray[np.int64]
 
 
-MEMORY = 64
+MEMORY = 128
 """Samples of a ray that are remembered."""
 
 _BLOCK = 8

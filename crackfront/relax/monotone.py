@@ -44,7 +44,7 @@ _MARGIN = 10
 _ROUNDS = 12
 """Steps of one window before the whole front is looked at again."""
 
-_FURTHEST = 32
+_FURTHEST = 64
 """Longest step, in samples."""
 
 _ROUND_OFF = 1e-9
