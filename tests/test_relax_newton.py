@@ -83,6 +83,27 @@ def test_a_whole_cycle_on_roughness_equals_that_of_the_reference(
     assert newton.iterations.sum() < reference.iterations.sum()
 
 
+@pytest.mark.slow
+def test_over_a_dense_schedule_the_solvers_differ_by_the_tolerance_alone():
+    field = rough_tile(0.04, cutoff=0.16, roll_off=0.16, hurst=1.0, n_angle=256, seed=2)
+    differences = []
+    for tolerance in (1e-8, 1e-10):
+        reference, newton = (
+            run_cycle(
+                field,
+                LoadSchedule(0.4, 0.002),
+                tolerance=tolerance,
+                solver=solver,
+                record_fronts=True,
+            )
+            for solver in ("reference", "newton")
+        )
+        assert newton.radius.shape == reference.radius.shape
+        differences.append(np.max(np.abs(newton.radius - reference.radius)) / 0.16)
+    assert differences[0] < 1e-4
+    assert differences[1] < differences[0] / 20
+
+
 @pytest.mark.parametrize("solver", ["reference", "newton"])
 def test_a_tolerance_below_round_off_is_refused(solver):
     field = polar_field(np.linspace(0.2, 3.0, 60), np.full((60, 32), 1 / np.pi))
