@@ -188,6 +188,6 @@ def run_task(task: Task) -> Finished:
     try:
         result = run_simulation(task.simulation)
         write_simulation(task.path, result, task.origin)
-    except (ValueError, OSError, MemoryError, ArithmeticError) as error:
+    except (ValueError, OSError, MemoryError, ArithmeticError, RuntimeError) as error:
         return Finished("", 0.0, str(error) or type(error).__name__)
     return Finished(result.record.status.name.lower(), result.seconds, "")

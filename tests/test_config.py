@@ -284,3 +284,9 @@ def test_a_file_that_is_no_text_is_refused(tmp_path):
 def test_a_file_that_does_not_exist_is_refused(tmp_path):
     with pytest.raises(ConfigurationError, match=r"none.yaml cannot be read: No such file"):
         load_configuration(tmp_path / "none.yaml")
+
+
+def test_a_tolerance_below_round_off_is_refused_before_anything_runs(tmp_path):
+    path = written(tmp_path, GOOD.replace("tolerance: 1e-6", "tolerance: 1e-20"))
+    with pytest.raises(ConfigurationError, match="below the round-off of the 256 sites of flat"):
+        load_configuration(path)

@@ -147,3 +147,12 @@ def test_a_complete_sweep_is_aggregated(store):
     path, statuses = store.aggregate(SWEEP, provenance("text"))
     assert statuses == {"lost_contact": 8}
     assert read_table(path).w_appr.shape == (2, 2, 2)
+
+
+def test_a_defect_that_the_solver_finds_in_itself_does_not_end_the_sweep(store, monkeypatch):
+    def defective(simulation):
+        raise RuntimeError("the solver moved a site past its equilibrium")
+
+    monkeypatch.setattr(stores, "run_simulation", defective)
+    ended = [finished.error for _, finished in fill(store, FLAT[:2])]
+    assert ended == ["the solver moved a site past its equilibrium"] * 2

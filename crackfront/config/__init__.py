@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -9,7 +10,7 @@ from pydantic import ValidationError
 from crackfront.config.reading import ConfigurationError, content_of, sentences
 from crackfront.config.sections import Configuration
 from crackfront.cycle import LoadSchedule
-from crackfront.scene import Numerics
+from crackfront.scene import Numerics, resolution
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.sweep import FitRange, NamedSpectrum, Sweep
 from crackfront.units import Scales
@@ -38,7 +39,22 @@ def load_configuration(path: Path) -> Sweep:
         raise ConfigurationError(
             "\n".join(f"{path}: {sentence}" for sentence in sentences(error.errors()))
         ) from error
-    return _sweep(configuration)
+    sweep = _sweep(configuration)
+    _refuse_round_off(path, sweep)
+    return sweep
+
+
+def _refuse_round_off(path: Path, sweep: Sweep) -> None:
+    """Raise if a front has so many sites that round-off exceeds the tolerance."""
+    numerics = sweep.numerics
+    for item in sweep.spectra:
+        sizes = resolution(item.spectrum, numerics, sweep.schedule.max_penetration)
+        round_off = sys.float_info.epsilon * sizes.n_angle
+        if numerics.tolerance < round_off:
+            raise ConfigurationError(
+                f"{path}: numerics: tolerance is {numerics.tolerance}, below the round-off of the "
+                f"{sizes.n_angle} sites of {item.name} ({round_off:.1e}); raise it"
+            )
 
 
 def _sweep(configuration: Configuration) -> Sweep:
