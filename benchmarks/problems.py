@@ -8,7 +8,7 @@ import numpy as np
 
 from crackfront.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
 from crackfront.cycle import LoadSchedule
-from crackfront.pinning import PolarField, TileField, sampled_on_rays, tile_field
+from crackfront.pinning import Interpolation, PolarField, TileField, sampled_on_rays, tile_field
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.synthesis import gaussian_field
 
@@ -38,6 +38,8 @@ class Problem:
         Load step. (Units: reduced vertical length)
     samples_per_cutoff : int
         Samples along a ray per short cutoff.
+    interpolation : {"linear", "cubic"}
+        Pieces between samples.
     on_tile : bool
         Evaluate the field from its tile where the front is, instead of sampling all rays first.
     """
@@ -48,6 +50,7 @@ class Problem:
     n_angle: int
     step: float = 0.1
     samples_per_cutoff: int = 16
+    interpolation: Interpolation = "linear"
     on_tile: bool = False
 
     @property
@@ -62,7 +65,8 @@ class Problem:
         shape = f"flat {spectrum.short_cutoff:g}"
         if spectrum.roll_off > spectrum.short_cutoff:
             shape = f"({spectrum.short_cutoff:g}, {spectrum.roll_off:g}, {spectrum.hurst:g})"
-        storage = ", on tile" if self.on_tile else ""
+        pieces = f", {self.samples_per_cutoff} cubic" if self.interpolation == "cubic" else ""
+        storage = pieces + (", on tile" if self.on_tile else "")
         return f"{shape}, w_rms {self.rms:g}, N {self.n_angle}, step {self.step:g}{storage}"
 
     def as_tile(self) -> Problem:
@@ -75,7 +79,8 @@ class Problem:
         pixel = cutoff / PIXELS_PER_CUTOFF
         n_point = PIXELS_PER_CUTOFF * max(64, round(8 * self.spectrum.roll_off / cutoff))
         adhesion = self._adhesion(n_point, pixel, seed)
-        tile = tile_field(adhesion, self.n_angle, cutoff / self.samples_per_cutoff, LARGEST_RADIUS)
+        spacing = cutoff / self.samples_per_cutoff
+        tile = tile_field(adhesion, self.n_angle, spacing, LARGEST_RADIUS, self.interpolation)
         return tile if self.on_tile else sampled_on_rays(tile)
 
     def _adhesion(self, n_point: int, pixel: float, seed: int) -> AdhesionMap:
@@ -96,6 +101,18 @@ def _flat(cutoff: float) -> SelfAffineSpectrum:
 PROBLEMS = (
     *(Problem("disorder", rms, _flat(0.02), 4096) for rms in (0.05, 0.1, 0.2, 0.4, 0.84, 2.0)),
     Problem("disorder", 0.4, _flat(0.02), 4096, on_tile=True),
+    *(
+        Problem(
+            "disorder",
+            rms,
+            _flat(0.02),
+            4096,
+            samples_per_cutoff=5,
+            interpolation="cubic",
+            on_tile=True,
+        )
+        for rms in (0.1, 0.4)
+    ),
     Problem("disorder", 0.4, _flat(0.02), 4096, step=0.002),
     Problem("disorder", 0.45, SelfAffineSpectrum(0.02, 0.4, 0.3), 4096),
     Problem("disorder", 0.45, SelfAffineSpectrum(0.02, 0.32, 0.8), 4096),

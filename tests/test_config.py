@@ -20,7 +20,8 @@ amplitudes: {elastic_energy: [0.02, 0.1]}
 realisations: 2
 numerics:
   angles_per_cutoff: 2
-  samples_per_cutoff: 8
+  samples_per_cutoff: 4
+  interpolation: cubic
   pixels_per_cutoff: 4
   tile: {roll_offs: 10, cutoffs: 20}
   tolerance: 1e-6
@@ -288,5 +289,5 @@ def test_a_file_that_does_not_exist_is_refused(tmp_path):
 
 def test_a_tolerance_below_round_off_is_refused_before_anything_runs(tmp_path):
     path = written(tmp_path, GOOD.replace("tolerance: 1e-6", "tolerance: 1e-20"))
-    with pytest.raises(ConfigurationError, match="below the round-off of the 256 sites of flat"):
+    with pytest.raises(ConfigurationError, match="below the round-off of the 240 sites of flat"):
         load_configuration(path)

@@ -190,19 +190,79 @@ def test_a_constant_tile_is_constant_everywhere():
     assert np.allclose(front_adhesion(front, field), 0.7, rtol=1e-14)
 
 
-def test_the_rays_of_a_tile_sampled_one_by_one_are_the_same_field(rng):
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+def test_the_rays_of_a_tile_sampled_beforehand_are_the_same_field(rng, interpolation):
     values = 1 + 0.3 * rng.standard_normal((16, 16))
-    field = tile_field(tile(values), 12, 0.04, 1.5)
-    count = pinning.sample_count(field)
-    radii = np.array([pinning.sample_radius(field, k) for k in range(count)])
-    products = np.array(
-        [[pinning.sample_product(field, ray, k) for ray in range(12)] for k in range(count)]
-    )
-    polar = polar_field(radii, products / radii[:, None])
+    field = tile_field(tile(values), 12, 0.04, 1.5, interpolation)
+    polar = pinning.sampled_on_rays(field)
     front = rng.uniform(0.05, 1.45, 12)
-    assert np.allclose(front_adhesion(front, polar), front_adhesion(front, field), rtol=1e-12)
+    assert np.allclose(front_adhesion(front, polar), front_adhesion(front, field), rtol=1e-13)
     assert pinning.last_radius(polar) == pinning.last_radius(field) >= 1.5
     assert pinning.first_radius(polar) == pinning.first_radius(field) == 0.04
+
+
+def test_straight_pieces_of_a_tile_join_its_samples(rng):
+    values = 1 + 0.3 * rng.standard_normal((16, 16))
+    field = tile_field(tile(values), 12, 0.04, 1.5, "linear")
+    radii = 0.04 * np.arange(1, 39)
+    front = rng.uniform(0.05, 1.45, 12)
+    for ray in range(12):
+        samples = [pinning.sample_product(field, ray, k) for k in range(38)]
+        expected = np.interp(front[ray], radii, samples)
+        found = front[ray] * front_adhesion(front, field)[ray]
+        assert found == pytest.approx(expected, rel=1e-13)
+
+
+@pytest.mark.parametrize(("interpolation", "order"), [("linear", 2), ("cubic", 4)])
+def test_pieces_converge_to_the_tile_with_their_order(interpolation, order):
+    n_point = 32
+    x = 1.6 / n_point * np.arange(n_point)
+    smooth = tile(wavy(x[:, None], x[None, :], 1.6), 1.6 / n_point)
+    fine = tile_field(smooth, 16, 1e-4, 1.5)
+    front = np.random.default_rng(3).uniform(0.3, 1.4, 16)
+    expected = front_adhesion(front, fine)
+    spacings = np.array([0.04, 0.02, 0.01])
+    errors = [
+        np.sqrt(
+            np.mean(
+                [
+                    (front_adhesion(front + shift, field) - front_adhesion(front + shift, fine))
+                    ** 2
+                    for shift in np.linspace(0, 0.05, 40)
+                ]
+            )
+        )
+        for spacing in spacings
+        for field in [tile_field(smooth, 16, spacing, 1.5, interpolation)]
+    ]
+    assert np.all(np.isfinite(expected))
+    observed = np.polyfit(np.log(spacings), np.log(errors), 1)[0]
+    assert observed == pytest.approx(order, abs=0.3)
+
+
+@pytest.mark.parametrize("kind", ["tile", "polar"])
+def test_cubic_pieces_have_one_slope_where_they_meet(rng, kind):
+    if kind == "tile":
+        field = tile_field(tile(1 + 0.3 * rng.standard_normal((16, 16))), 8, 0.05, 1.5)
+    else:
+        radii = 0.05 * np.arange(1, 31)
+        field = polar_field(radii, 1 + 0.3 * rng.standard_normal((30, 8)), "cubic")
+    for sample in (3, 11, 20):
+        radius, step = pinning.sample_radius(field, sample), 1e-7
+        inner, at, outer = (
+            (radius + way) * front_adhesion(np.full(8, radius + way), field)
+            for way in (-step, 0.0, step)
+        )
+        assert np.allclose((outer - at) / step, (at - inner) / step, rtol=0, atol=1e-3)
+        slopes = [pinning.evaluate(field, ray, sample)[1] for ray in range(8)]
+        assert np.allclose((outer - inner) / (2 * step), slopes, rtol=0, atol=1e-3)
+
+
+def test_an_unknown_interpolation_is_refused():
+    with pytest.raises(ValueError, match="interpolation is 'quintic'; choose one of cubic, linear"):
+        polar_field(*noisy_polar(), interpolation="quintic")
+    with pytest.raises(ValueError, match="interpolation is 'quintic'; choose one of cubic, linear"):
+        tile_field(tile(np.ones((8, 8))), 8, 0.1, 1.0, "quintic")
 
 
 def test_a_chemical_map_serves_as_a_field(rng):
@@ -277,18 +337,28 @@ def test_the_derivative_of_swept_adhesion_is_the_product_under_the_site():
     assert slope / 2e-5 == pytest.approx(expected, rel=1e-8)
 
 
-def test_swept_adhesion_of_a_tile_is_that_of_its_samples(rng):
-    values = 1 + 0.3 * rng.standard_normal((16, 16))
-    field = tile_field(tile(values), 8, 0.04, 1.5)
-    radii = 0.04 * np.arange(1, 39)
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+def test_swept_adhesion_of_a_tile_is_the_integral_of_its_products(rng, interpolation):
+    field = tile_field(tile(1 + 0.3 * rng.standard_normal((16, 16))), 8, 0.04, 1.5, interpolation)
     before, after = rng.uniform(0.1, 1.4, 8), rng.uniform(0.1, 1.4, 8)
-    total = 0.0
-    for ray in range(8):
-        low, high = sorted((before[ray], after[ray]))
-        knots = np.concatenate([[low], radii[(radii > low) & (radii < high)], [high]])
-        samples = [pinning.sample_product(field, ray, k) for k in range(38)]
-        total += np.sign(after[ray] - before[ray]) * np.trapezoid(
-            np.interp(knots, radii, samples), knots
-        )
-    expected = 2 * np.pi * total / 8
-    assert swept_adhesion(before, after, field) == pytest.approx(expected, rel=1e-12)
+    share = np.linspace(0, 1, 20001)
+    fronts = before[:, None] + (after - before)[:, None] * share
+    products = np.array([front * front_adhesion(front, field) for front in fronts.T])
+    expected = 2 * np.pi / 8 * np.sum((after - before) * np.trapezoid(products, share, axis=0))
+    assert swept_adhesion(before, after, field) == pytest.approx(expected, rel=1e-7)
+
+
+def test_splines_of_a_band_limited_tile_keep_the_amplitudes_of_its_modes():
+    n_point, pixel = 32, 0.1
+    x = pixel * np.arange(n_point)
+    q = 2 * np.pi / (4 * pixel)
+    wave = tile(1 + 0.5 * np.cos(q * x)[:, None] * np.ones(n_point), pixel)
+    amplitudes = {}
+    for band_limited in (False, True):
+        field = tile_field(wave, 4, 0.001, 3.2, band_limited=band_limited)
+        radii = np.array([pinning.sample_radius(field, k) for k in range(3200)])
+        values = np.array([pinning.sample_product(field, 0, k) for k in range(3200)]) / radii
+        # The apex is 16 points, four waves, from the first point.
+        amplitudes[band_limited] = 2 * np.mean((values - 1) * np.cos(q * radii)) / 0.5
+    assert amplitudes[True] == pytest.approx(1, abs=1e-5)
+    assert amplitudes[False] == pytest.approx(0.986, abs=1e-3)

@@ -486,12 +486,7 @@ def test_mirroring_the_tile_mirrors_the_front(solver):
 @every_solver
 def test_a_tile_and_its_samples_on_the_rays_give_the_same_front(solver):
     field = tile_field(noisy_tile(5), 20, 0.04, 2.6)
-    count = pinning.sample_count(field)
-    radii = np.array([pinning.sample_radius(field, k) for k in range(count)])
-    products = np.array(
-        [[pinning.sample_product(field, ray, k) for ray in range(20)] for k in range(count)]
-    )
-    polar = polar_field(radii, products / radii[:, None])
+    polar = pinning.sampled_on_rays(field)
     front = other = np.full(20, 0.04)
     for penetration, direction in [(0.2, 1), (0.8, 1), (0.5, -1), (-0.2, -1), (0.4, 1)]:
         one = tight(front, penetration, direction, field, solver)
@@ -503,19 +498,22 @@ def test_a_tile_and_its_samples_on_the_rays_give_the_same_front(solver):
 
 @every_solver
 def test_finer_samples_of_a_smooth_tile_converge_to_one_front(solver):
-    n_point = 24
+    n_point = 96
     x = np.arange(n_point) / n_point
     wave = np.cos(2 * np.pi * (2 * x[:, None] + x[None, :])) + np.cos(4 * np.pi * x[None, :])
     adhesion = AdhesionMap(WORK_OF_ADHESION * (1 + 0.1 * wave), 1 / n_point, 0.0, 0.0)
-    fronts = [
-        tight(np.full(32, 0.5), 0.5, 1, tile_field(adhesion, 32, spacing, 2.6), solver).radius
-        for spacing in (0.02, 0.01, 0.005, 0.0025)
-    ]
-    errors = [np.abs(front - fronts[-1]).max() for front in fronts[:-1]]
-    # Linear between samples: second order in their distance.
-    assert errors[1] < errors[0] / 2.5
-    assert errors[2] < errors[1] / 2.5
-    assert errors[2] < 1e-3
+
+    def front(spacing, interpolation):
+        field = tile_field(adhesion, 32, spacing, 2.6, interpolation)
+        return tight(np.full(32, 0.5), 0.5, 1, field, solver).radius
+
+    spacings = np.array([0.02, 0.01, 0.005])
+    exact = front(0.00125, "cubic")
+    for interpolation, order, largest in [("linear", 2, 1e-3), ("cubic", 4, 1e-5)]:
+        errors = [np.abs(front(spacing, interpolation) - exact).max() for spacing in spacings]
+        observed = np.polyfit(np.log(spacings), np.log(errors), 1)[0]
+        assert observed == pytest.approx(order, abs=0.5)
+        assert errors[-1] < largest
 
 
 @every_solver

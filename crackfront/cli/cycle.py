@@ -12,7 +12,7 @@ from crackfront.cli.report import FILE, announce_compilation
 
 if TYPE_CHECKING:
     from crackfront.cycle import CycleState
-    from crackfront.pinning import Field
+    from crackfront.pinning import Field, Interpolation
 
 
 @click.command()
@@ -48,13 +48,17 @@ if TYPE_CHECKING:
 @click.option(
     "--angles",
     type=click.IntRange(min=4),
-    help="Sites of the front on a tile.  [default: the power of 2 that gives one or more a pixel "
-    "on the largest circle]",
+    help="Sites of the front on a tile.  [default: one or more a pixel on the largest circle]",
 )
 @click.option(
     "--samples-per-pixel",
     type=click.FloatRange(min=0, min_open=True),
-    help="Samples along a ray on a tile, per pixel.  [default: 4]",
+    help="Samples along a ray on a tile, per pixel.  [default: 2, or 4 where linear]",
+)
+@click.option(
+    "--interpolation",
+    type=click.Choice(["cubic", "linear"]),
+    help="Pieces between samples of a ray.  [default: cubic on a tile, linear on polar samples]",
 )
 @click.option("--output", type=FILE, required=True, help="netCDF file of the cycle.")
 def cycle(
@@ -67,6 +71,7 @@ def cycle(
     record: tuple[str, ...],
     angles: int | None,
     samples_per_pixel: float | None,
+    interpolation: Interpolation | None,
     output: Path,
 ) -> None:
     """Run one approach and retraction on a field from a file.
@@ -86,10 +91,12 @@ def cycle(
     from crackfront.scene import tile_contact
 
     schedule = LoadSchedule(max_penetration, step)
-    given = read_field(field_file)
+    given = read_field(field_file, interpolation or "linear")
     field: Field
     if isinstance(given, AdhesionMap):
-        field, directions = tile_contact(given, max_penetration, angles, samples_per_pixel), None
+        pieces = interpolation or "cubic"
+        field = tile_contact(given, max_penetration, angles, samples_per_pixel, pieces)
+        directions = None
     elif angles is None and samples_per_pixel is None:
         field, directions = given.field, given.angles
     else:

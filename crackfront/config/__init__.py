@@ -83,6 +83,7 @@ def _sweep(configuration: Configuration) -> Sweep:
             angles=numerics.angles,
             angles_per_cutoff=numerics.angles_per_cutoff or 1.0,
             samples_per_cutoff=numerics.samples_per_cutoff,
+            interpolation=numerics.interpolation,
             pixels_per_cutoff=numerics.pixels_per_cutoff,
             tile_roll_offs=numerics.tile.roll_offs,
             tile_cutoffs=numerics.tile.cutoffs,

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from crackfront.pinning import Interpolation
 from crackfront.relax import SOLVERS
 from crackfront.scene import FieldKind
 
@@ -85,6 +86,7 @@ class NumericsSection(Section):
     angles: Annotated[int, Field(ge=4)] | None = None
     angles_per_cutoff: Positive | None = None
     samples_per_cutoff: Positive
+    interpolation: Interpolation
     pixels_per_cutoff: Positive
     tile: TileSection
     tolerance: Annotated[float, Field(gt=0, lt=1)]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crackfront.adhesion import AdhesionMap
 from crackfront.dataset.files import UnreadableFileError, read_dataset
-from crackfront.pinning import PolarField, polar_field
+from crackfront.pinning import Interpolation, PolarField, polar_field
 from crackfront.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ class PolarSamples:
     angles: Array
 
 
-def read_field(path: Path) -> AdhesionMap | PolarSamples:
+def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionMap | PolarSamples:
     """Work of adhesion of a file: a periodic tile, or samples on rays.
 
     The variable `work_of_adhesion` is in reduced units, in which w_int is 1/pi. Its dimensions
@@ -49,6 +49,8 @@ def read_field(path: Path) -> AdhesionMap | PolarSamples:
     ----------
     path : Path
         netCDF file.
+    interpolation : {"linear", "cubic"}, optional
+        Pieces between samples on rays; without effect on a tile.
 
     Raises
     ------
@@ -68,7 +70,7 @@ def read_field(path: Path) -> AdhesionMap | PolarSamples:
             f"{path}: {NAME} is {values.dtype} of ({', '.join(map(str, values.dims))}); it must be "
             "numbers of (x, y) or of (radius, angle)"
         )
-    return _tile(path, values) if "x" in dims else _rays(path, values)
+    return _tile(path, values) if "x" in dims else _rays(path, values, interpolation)
 
 
 def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
@@ -102,7 +104,7 @@ def _spacing(path: Path, values: xr.DataArray, name: str) -> float:
     return mean
 
 
-def _rays(path: Path, values: xr.DataArray) -> PolarSamples:
+def _rays(path: Path, values: xr.DataArray, interpolation: Interpolation) -> PolarSamples:
     """Field of samples on rays."""
     if "radius" not in values.coords:
         raise UnreadableFileError(f"{path}: {NAME} has no coordinate radius; give the radii")
@@ -117,4 +119,5 @@ def _rays(path: Path, values: xr.DataArray) -> PolarSamples:
                 f"{np.max(angles):.6g}; they must be equally spaced over the whole circle, in rad"
             )
     samples = np.asarray(values.transpose("radius", "angle"), dtype=float)
-    return PolarSamples(polar_field(np.asarray(values["radius"], dtype=float), samples), angles)
+    radii = np.asarray(values["radius"], dtype=float)
+    return PolarSamples(polar_field(radii, samples, interpolation), angles)

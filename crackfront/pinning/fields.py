@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import fftfreq, irfft2, rfft2, rfftfreq
+from scipy.interpolate import CubicSpline
 from scipy.ndimage import spline_filter
 
 from crackfront.adhesion import AdhesionMap
 
 Array = NDArray[np.float64]
+Interpolation = Literal["cubic", "linear"]
 
 
 class PolarField(NamedTuple):
@@ -22,10 +25,14 @@ class PolarField(NamedTuple):
         Increasing, positive. (Units: reduced lateral length)
     products : (n_angle, n_sample) array
         Radius times work of adhesion. (Units: reduced energy / length)
+    slopes : (n_angle, n_sample) array
+        Derivatives of the products along the rays, (0, 0) where the pieces are linear.
+        (Units: reduced energy / area)
     """
 
     radii: Array
     products: Array
+    slopes: Array
 
 
 class TileField(NamedTuple):
@@ -45,6 +52,8 @@ class TileField(NamedTuple):
         Distance of samples along a ray; sample m lies at (m + 1) * spacing.
     n_sample : int
         Number of samples on a ray.
+    cubic : bool
+        Whether the product between samples is cubic, of the same slopes as the tile, or linear.
     """
 
     coefficients: Array
@@ -53,6 +62,7 @@ class TileField(NamedTuple):
     sine: Array
     spacing: float
     n_sample: int
+    cubic: bool
 
 
 Field = PolarField | TileField
@@ -75,7 +85,9 @@ def last_radius(field: Field) -> float:
     return field.n_sample * field.spacing
 
 
-def polar_field(radii: Array, work_of_adhesion: Array) -> PolarField:
+def polar_field(
+    radii: Array, work_of_adhesion: Array, interpolation: Interpolation = "linear"
+) -> PolarField:
     """Field from samples on rays at equally spaced angles.
 
     Parameters
@@ -85,6 +97,9 @@ def polar_field(radii: Array, work_of_adhesion: Array) -> PolarField:
         (Units: reduced lateral length)
     work_of_adhesion : (n_sample, n_angle) array
         Local work of adhesion. (Units: reduced energy / area, w_int = 1/pi)
+    interpolation : {"linear", "cubic"}, optional
+        How radius times work of adhesion goes on between the samples of a ray: straight, or as a
+        cubic spline through all of them.
 
     Returns
     -------
@@ -95,8 +110,9 @@ def polar_field(radii: Array, work_of_adhesion: Array) -> PolarField:
     ------
     ValueError
         If shapes disagree, radii do not increase or are negative, fewer than two samples or
-        fewer than four angles are given, or a value is not finite.
+        fewer than four angles are given, a value is not finite, or the interpolation is unknown.
     """
+    _refuse_unknown(interpolation)
     radii = np.asarray(radii, dtype=float)
     values = np.asarray(work_of_adhesion, dtype=float)
     if radii.ndim != 1 or values.ndim != 2 or values.shape[0] != radii.size:
@@ -114,11 +130,21 @@ def polar_field(radii: Array, work_of_adhesion: Array) -> PolarField:
             f"field has {radii.size} positive radii and {values.shape[1]} angles; at least 2 "
             "radii and 4 angles are needed"
         )
-    return PolarField(radii.copy(), np.ascontiguousarray((radii[:, None] * values).T))
+    products = np.ascontiguousarray((radii[:, None] * values).T)
+    slopes = np.empty((0, 0))
+    if interpolation == "cubic":
+        slopes = np.ascontiguousarray(CubicSpline(radii, products, axis=1)(radii, 1))
+    return PolarField(radii.copy(), products, slopes)
 
 
 def tile_field(
-    adhesion: AdhesionMap, n_angle: int, spacing: float, largest_radius: float
+    adhesion: AdhesionMap,
+    n_angle: int,
+    spacing: float,
+    largest_radius: float,
+    interpolation: Interpolation = "cubic",
+    *,
+    band_limited: bool = False,
 ) -> TileField:
     """Field from a periodic Cartesian tile.
 
@@ -132,6 +158,12 @@ def tile_field(
         Distance of samples along a ray. (Units: reduced lateral length)
     largest_radius : float
         Radius that the front must not leave. (Units: reduced lateral length)
+    interpolation : {"cubic", "linear"}, optional
+        How radius times work of adhesion goes on between the samples of a ray: as a cubic with the
+        slopes of the tile, or straight.
+    band_limited : bool, optional
+        The tile was synthesised from modes: the splines keep their amplitudes, rather than pass
+        through the points, which weakens a wave of 4 pixels by 1.4% along each axis.
 
     Returns
     -------
@@ -141,8 +173,10 @@ def tile_field(
     Raises
     ------
     ValueError
-        If a count or length is too small, or a value of the tile is not finite.
+        If a count or length is too small, a value of the tile is not finite, or the interpolation
+        is unknown.
     """
+    _refuse_unknown(interpolation)
     values = np.asarray(adhesion.work_of_adhesion, dtype=float)
     _refuse_unusable(values, names=("x", "y"))
     if values.ndim != 2:
@@ -156,7 +190,10 @@ def tile_field(
             f"sample spacing {spacing} must be positive and below half the largest radius "
             f"{largest_radius}"
         )
-    coefficients = spline_filter(values, order=3, mode="grid-wrap")
+    if band_limited:
+        coefficients = _mode_coefficients(values)
+    else:
+        coefficients = spline_filter(values, order=3, mode="grid-wrap")
     angle = 2 * np.pi * np.arange(n_angle) / n_angle
     return TileField(
         coefficients=np.pad(coefficients, (0, 3), mode="wrap"),
@@ -165,7 +202,25 @@ def tile_field(
         sine=np.sin(angle),
         spacing=float(spacing),
         n_sample=int(np.ceil(largest_radius / spacing)),
+        cubic=interpolation == "cubic",
     )
+
+
+def _mode_coefficients(values: Array) -> Array:
+    """Coefficients of cubic B-splines that keep the amplitude of every mode of the points."""
+    n_x, n_y = values.shape
+    modes = rfft2(values)
+    # A mode of f waves a pixel comes out of the splines multiplied by sinc(f)^4.
+    modes /= np.sinc(fftfreq(n_x))[:, None] ** 4
+    modes /= np.sinc(rfftfreq(n_y))[None, :] ** 4
+    return np.asarray(irfft2(modes, s=(n_x, n_y)))
+
+
+def _refuse_unknown(interpolation: str) -> None:
+    """Raise if an interpolation is not known."""
+    if interpolation not in get_args(Interpolation):
+        known = ", ".join(get_args(Interpolation))
+        raise ValueError(f"interpolation is {interpolation!r}; choose one of {known}")
 
 
 def _refuse_unusable(values: Array, names: tuple[str, str]) -> None:

@@ -1,4 +1,4 @@
-"""The field under and between fronts: linear between the samples of a ray."""
+"""The field under and between fronts."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from crackfront.compiled import jit
 from crackfront.pinning.fields import Field, PolarField, TileField
-from crackfront.pinning.samples import sample_count, sample_product, sample_radius
+from crackfront.pinning.pieces import blend, evaluate_piece
+from crackfront.pinning.samples import evaluate, sample_count, sample_radius
 
 Array = NDArray[np.float64]
 
@@ -33,8 +34,7 @@ def front_products(radius, field):
     for i in range(radius.size):
         low = segment_below(field, radius[i], 1)
         inner, outer = sample_radius(field, low), sample_radius(field, low + 1)
-        start, end = sample_product(field, i, low), sample_product(field, i, low + 1)
-        products[i] = start + (end - start) / (outer - inner) * (radius[i] - inner)
+        products[i] = blend(evaluate_piece(field, i, low), (radius[i] - inner) / (outer - inner))
     return products
 
 
@@ -58,14 +58,15 @@ def front_adhesion(radius: Array, field: Field) -> Array:
 
 @jit
 def _ray_adhesion(field, ray, inner, outer):
-    """Integral of the product along a ray, exact for its linear pieces."""
+    """Integral of the product along a ray, by Simpson's rule, which is exact for its pieces."""
     total, low, position = 0.0, segment_below(field, inner, 1), inner
     while position < outer:
         left, right = sample_radius(field, low), sample_radius(field, low + 1)
-        start, end = sample_product(field, ray, low), sample_product(field, ray, low + 1)
+        piece = evaluate_piece(field, ray, low)
         stop = min(right, outer)
-        middle = 0.5 * (position + stop)
-        total += (start + (end - start) / (right - left) * (middle - left)) * (stop - position)
+        first, last = (position - left) / (right - left), (stop - left) / (right - left)
+        values = blend(piece, first) + 4 * blend(piece, 0.5 * (first + last)) + blend(piece, last)
+        total += values / 6 * (stop - position)
         position, low = stop, low + 1
     return total
 
@@ -101,12 +102,12 @@ def swept_adhesion(before: Array, after: Array, field: Field) -> float:
 
 @jit
 def _sample_rays(field):
-    """Products at all samples of all rays."""
-    products = np.empty((field.cosine.size, field.n_sample))
-    for ray in range(products.shape[0]):
-        for sample in range(products.shape[1]):
-            products[ray, sample] = sample_product(field, ray, sample)
-    return products
+    """Products and slopes at all samples of all rays."""
+    samples = np.empty((2, field.cosine.size, field.n_sample))
+    for ray in range(samples.shape[1]):
+        for sample in range(samples.shape[2]):
+            samples[0, ray, sample], samples[1, ray, sample] = evaluate(field, ray, sample)
+    return samples
 
 
 def sampled_on_rays(field: TileField) -> PolarField:
@@ -123,4 +124,5 @@ def sampled_on_rays(field: TileField) -> PolarField:
         Field with identical samples; it takes n_angle * n_sample numbers of memory.
     """
     radii = field.spacing * np.arange(1, field.n_sample + 1, dtype=np.float64)
-    return PolarField(radii, _sample_rays(field))
+    products, slopes = _sample_rays(field)
+    return PolarField(radii, products, slopes if field.cubic else np.empty((0, 0)))

@@ -10,12 +10,16 @@ from numpy.typing import NDArray
 
 from crackfront.compiled import jit, kernel
 from crackfront.pinning import (
+    blend,
     fetch,
     front_products,
-    peek,
+    hull_until,
+    is_cubic,
+    peek_piece,
     sample_count,
     sample_radius,
     segment_below,
+    steepest_inside,
 )
 from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
@@ -90,8 +94,8 @@ def locate(field, memory, ray, radius, segment, direction):
                 return -INWARD, 0.0
     inner, outer = sample_radius(field, segment), sample_radius(field, segment + 1)
     fetch(field, memory, ray, segment, segment + 1)
-    start, end = peek(field, memory, ray, segment), peek(field, memory, ray, segment + 1)
-    return segment, start + (end - start) / (outer - inner) * (radius - inner)
+    piece = peek_piece(field, memory, ray, segment)
+    return segment, blend(piece, (radius - inner) / (outer - inner))
 
 
 @jit
@@ -112,33 +116,45 @@ def place_front(radius, field, memory, direction):
 def hardening(field, memory, ray, radius, product, segment, reach, penetration, direction):
     """Stiffness D >= (f(0) - f(s)) / s for 0 < s <= reach, f the site's own drive after s.
 
-    On the linear pieces of a w_loc the chord is steepest at a sample or at the end of the reach;
-    a G is convex, so that its slope at the outer end bounds its chords.
+    On the piece under the site the steepest chord of a w_loc is exact; further pieces lie in the
+    hull of their control points, so that no chord is steeper than the steepest to one of those.
+    a G is convex: its slope at the outer end bounds its chords.
     """
     furthest = radius + reach if direction > 0 else radius
     opening = furthest * furthest - penetration
     ring = 4 * RING * furthest * opening if opening > 0.0 else 0.0
-    steepest = -np.inf
     last = sample_count(field) - 2
-    spacing = sample_radius(field, 1) - sample_radius(field, 0)
-    further = int(reach / spacing) + 1
+    inner, outer = sample_radius(field, segment), sample_radius(field, segment + 1)
+    inverse = 1.0 / (outer - inner)
+    further = int(reach * inverse) + 1
     if direction > 0:
         fetch(field, memory, ray, segment, min(segment + 1 + further, last + 1))
     else:
         fetch(field, memory, ray, max(segment - further, 0), segment + 1)
-    distance, value = 0.0, product
-    while 0 <= segment <= last:
-        ahead = segment + 1 if direction > 0 else segment
-        next_distance = direction * (sample_radius(field, ahead) - radius)
-        next_value = peek(field, memory, ray, ahead)
-        if next_distance >= reach:
-            if next_distance > distance:
-                part = (reach - distance) / (next_distance - distance)
-                next_value = value + (next_value - value) * part
-            return max(steepest, direction * (product - next_value) / reach) + ring
-        if next_distance > 0.0:
-            steepest = max(steepest, direction * (product - next_value) / next_distance)
-        distance, value = next_distance, next_value
+    distance = outer - radius if direction > 0 else radius - inner
+    piece = peek_piece(field, memory, ray, segment)
+    cubic = is_cubic(field)
+    if cubic:
+        t, within = (radius - inner) * inverse, min(reach, distance) * inverse
+        steepest = steepest_inside(piece, t, within, direction) * inverse
+    else:
+        steepest = (piece[0] - piece[3]) * inverse
+    segment += direction
+    while distance < reach and 0 <= segment <= last:
+        width = sample_radius(field, segment + 1) - sample_radius(field, segment)
+        part = min(1.0, (reach - distance) / width)
+        piece = peek_piece(field, memory, ray, segment)
+        if cubic:
+            first, second, end = hull_until(piece, part, direction)
+            third = part * width / 3
+            steepest = max(steepest, direction * (product - first) / (distance + third))
+            steepest = max(steepest, direction * (product - second) / (distance + 2 * third))
+        else:
+            near, far = (piece[0], piece[3]) if direction > 0 else (piece[3], piece[0])
+            end = near + part * (far - near)
+        chord = direction * (product - end) / (distance + part * width)
+        steepest = max(steepest, chord)
+        distance += width
         segment += direction
     return steepest + ring
 

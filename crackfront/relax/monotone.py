@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from crackfront.compiled import jit
-from crackfront.pinning import sample_radius
+from crackfront.pinning import sample_radius, samples_ahead
 from crackfront.relax.forces import (
     BLOCKED,
     CONVERGED,
@@ -43,9 +43,6 @@ _MARGIN = 10
 
 _ROUNDS = 12
 """Steps of one window before the whole front is looked at again."""
-
-_FURTHEST = 64
-"""Longest step, in samples."""
 
 _ROUND_OFF = 1e-9
 """Backward drive, relative to w_int, that round-off may cause."""
@@ -81,7 +78,7 @@ def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
     row = line_force(unit)
     window, newton = make_window(row), make_newton(count)
     drive, active = np.empty(count), np.empty(count, np.bool_)
-    furthest = _FURTHEST * (sample_radius(field, 1) - sample_radius(field, 0))
+    furthest = samples_ahead(field) * (sample_radius(field, 1) - sample_radius(field, 0))
     collective = _line_outweighs_field(field, memory, front, row, penetration, direction)
     # A backward force within the tolerance counts as equilibrium.
     slack = tolerance * WORK_OF_ADHESION * np.min(radius)

@@ -6,7 +6,15 @@ import numpy as np
 
 from crackfront.compiled import jit
 from crackfront.line import self_stiffness
-from crackfront.pinning import sample_count, sample_product, sample_radius, segment_below
+from crackfront.pinning import (
+    blend,
+    fetch,
+    peek_piece,
+    sample_count,
+    sample_radius,
+    segment_below,
+    steepest_inside,
+)
 from crackfront.relax.forces import CONVERGED, INWARD, LIMIT, OUTWARD, RING, line_force, ring_force
 from crackfront.units import WORK_OF_ADHESION
 
@@ -18,19 +26,19 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
     """Move every site by its own force over its own stiffness, at most to the next sample.
 
     The front is changed in place. What a site leaves out when it moves, the pull of its
-    neighbours' moves, only pushes it on: no barrier is ever passed.
+    neighbours' moves, only pushes it on: no barrier is ever passed. The stiffness of a cubic piece
+    is that of its steepest chord from the site to the next sample; a linear piece has only one.
     """
     count, last = radius.size, sample_count(field) - 2
     line_stiffness = WORK_OF_ADHESION * _self_stiffness(count)
     lowest = np.sqrt(max(penetration, 0.0))
     segment = np.empty(count, np.int64)
     inner, outer = np.empty(count), np.empty(count)
-    start, end = np.empty(count), np.empty(count)
     for i in range(count):
         low = segment_below(field, radius[i], direction)
         segment[i] = low
         inner[i], outer[i] = sample_radius(field, low), sample_radius(field, low + 1)
-        start[i], end[i] = sample_product(field, i, low), sample_product(field, i, low + 1)
+        fetch(field, memory, i, low, low + 1)
     drive = np.empty(count)
     residual = np.inf
     for sweep in range(1, max_sweeps + 1):
@@ -38,8 +46,9 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
         residual = 0.0
         for i in range(count):
             a = radius[i]
-            slope = (end[i] - start[i]) / (outer[i] - inner[i])
-            force = start[i] + slope * (a - inner[i]) - ring_force(a, penetration) - line[i]
+            piece = peek_piece(field, memory, i, segment[i])
+            product = blend(piece, (a - inner[i]) / (outer[i] - inner[i]))
+            force = product - ring_force(a, penetration) - line[i]
             resting = direction < 0 and a <= lowest
             drive[i] = 0.0 if resting else max(direction * force, 0.0)
             residual = max(residual, drive[i] / (a * WORK_OF_ADHESION))
@@ -49,11 +58,15 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
             if drive[i] == 0.0:
                 continue
             a = radius[i]
-            slope = (end[i] - start[i]) / (outer[i] - inner[i])
+            width = outer[i] - inner[i]
+            piece = peek_piece(field, memory, i, segment[i])
+            rest = outer[i] - a if direction > 0 else a - inner[i]
+            t = (a - inner[i]) / width
+            steepest = steepest_inside(piece, t, rest / width, direction) / width
             # a G is convex: over the segment ahead its slope is largest at the outer end.
             furthest = outer[i] if direction > 0 else a
             hardening = 4 * RING * furthest * max(furthest * furthest - penetration, 0.0)
-            stiffness = line_stiffness + hardening - slope
+            stiffness = line_stiffness + hardening + steepest
             target = outer[i] if direction > 0 else max(inner[i], lowest)
             moved = a + direction * drive[i] / stiffness if stiffness > 0.0 else direction * np.inf
             if direction * (moved - target) < 0.0:
@@ -69,8 +82,5 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
                 return OUTWARD, sweep, residual
             segment[i] = low
             inner[i], outer[i] = sample_radius(field, low), sample_radius(field, low + 1)
-            if direction > 0:
-                start[i], end[i] = end[i], sample_product(field, i, low + 1)
-            else:
-                start[i], end[i] = sample_product(field, i, low), start[i]
+            fetch(field, memory, i, low, low + 1)
     return LIMIT, max_sweeps, residual

@@ -8,8 +8,8 @@ import numpy as np
 
 from crackfront import jkr
 from crackfront.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
-from crackfront.pinning import TileField, tile_field
-from crackfront.scene.parameters import Simulation, power_of_two
+from crackfront.pinning import Interpolation, TileField, tile_field
+from crackfront.scene.parameters import Simulation, n_site
 from crackfront.synthesis import gaussian_field
 from crackfront.units import WORK_OF_ADHESION
 
@@ -34,7 +34,13 @@ def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
 
 
 def contact_field(
-    adhesion: AdhesionMap, n_angle: int, spacing: float, max_penetration: float
+    adhesion: AdhesionMap,
+    n_angle: int,
+    spacing: float,
+    max_penetration: float,
+    interpolation: Interpolation = "cubic",
+    *,
+    band_limited: bool = False,
 ) -> TileField:
     """Field of a tile that no front can leave up to a penetration.
 
@@ -51,11 +57,13 @@ def contact_field(
         Distance of samples along a ray. (Units: reduced lateral length)
     max_penetration : float
         Largest penetration. (Units: reduced vertical length)
+    interpolation, band_limited
+        As in :func:`crackfront.pinning.tile_field`.
     """
     # nanmax: the refusal of values that are not finite, with their place, is tile_field's.
     strongest = max(1.0, float(np.nanmax(adhesion.work_of_adhesion)) / WORK_OF_ADHESION)
     largest = 1.1 * jkr.equilibrium_radius(max_penetration, strongest)
-    return tile_field(adhesion, n_angle, spacing, largest)
+    return tile_field(adhesion, n_angle, spacing, largest, interpolation, band_limited=band_limited)
 
 
 def tile_contact(
@@ -63,6 +71,7 @@ def tile_contact(
     max_penetration: float,
     n_angle: int | None = None,
     samples_per_pixel: float | None = None,
+    interpolation: Interpolation = "cubic",
 ) -> TileField:
     """Field of a given tile, resolved by its pixels where nothing else is asked for.
 
@@ -74,13 +83,16 @@ def tile_contact(
         Largest penetration. (Units: reduced vertical length)
     n_angle : int, optional
         Sites of the front; by default one or more a pixel on the smooth contact's largest
-        circle, a power of 2.
+        circle, a product of 2, 3 and 5.
     samples_per_pixel : float, optional
-        Samples along a ray per pixel, by default 4.
+        Samples along a ray per pixel, by default 2, or 4 where they are joined by straight pieces.
+    interpolation : {"cubic", "linear"}, optional
+        Pieces between samples.
     """
     circle = 2 * math.pi * jkr.equilibrium_radius(max_penetration)
     if n_angle is None:
-        n_angle = power_of_two(circle / adhesion.pixel)
+        n_angle = n_site(circle / adhesion.pixel)
+    density = samples_per_pixel or (2 if interpolation == "cubic" else 4)
     return contact_field(
-        adhesion, n_angle, adhesion.pixel / (samples_per_pixel or 4), max_penetration
+        adhesion, n_angle, adhesion.pixel / density, max_penetration, interpolation
     )

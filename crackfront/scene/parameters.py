@@ -16,6 +16,7 @@ from scipy.fft import next_fast_len
 from crackfront import jkr
 from crackfront.compiled import solver_fingerprint
 from crackfront.cycle import LoadSchedule
+from crackfront.pinning import Interpolation
 from crackfront.spectrum import SelfAffineSpectrum
 
 FieldKind = Literal["roughness", "chemical"]
@@ -30,9 +31,12 @@ class Numerics:
     angles : int or None
         Number of sites of the front; where None, `angles_per_cutoff` decides.
     angles_per_cutoff : float
-        Sites per short cutoff on the smooth contact's largest circle, rounded up to a power of 2.
+        Sites per short cutoff on the smooth contact's largest circle, rounded up to an even
+        product of 2, 3 and 5.
     samples_per_cutoff : float
         Samples per short cutoff along a ray.
+    interpolation : {"cubic", "linear"}
+        Pieces between samples.
     pixels_per_cutoff : float
         Points of the tile per short cutoff, 2 or more.
     tile_roll_offs, tile_cutoffs : float
@@ -48,6 +52,7 @@ class Numerics:
     angles: int | None
     angles_per_cutoff: float
     samples_per_cutoff: float
+    interpolation: Interpolation
     pixels_per_cutoff: float
     tile_roll_offs: float
     tile_cutoffs: float
@@ -66,6 +71,8 @@ class Resolution:
         Sites of the front.
     spacing : float
         Distance of samples along a ray. (Units: reduced lateral length)
+    interpolation : {"cubic", "linear"}
+        Pieces between samples.
     tile_side : float
         Side of the periodic tile. (Units: reduced lateral length)
     n_point : int
@@ -74,6 +81,7 @@ class Resolution:
 
     n_angle: int
     spacing: float
+    interpolation: Interpolation
     tile_side: float
     n_point: int
 
@@ -95,9 +103,9 @@ def resolution(
     Examples
     --------
     >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
-    >>> numerics = Numerics(None, 2, 8, 4, 10, 20, 1e-6, 1000, "reference")
+    >>> numerics = Numerics(None, 2, 4, "cubic", 4, 10, 20, 1e-6, 1000, "reference")
     >>> resolution(flat, numerics, max_penetration=1.0)
-    Resolution(n_angle=256, spacing=0.0125, tile_side=2.0, n_point=80)
+    Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
     cutoff = spectrum.short_cutoff
     circle = 2 * math.pi * jkr.equilibrium_radius(max_penetration)
@@ -105,8 +113,9 @@ def resolution(
     side = max(numerics.tile_roll_offs * spectrum.roll_off, numerics.tile_cutoffs * cutoff)
     points = math.ceil(side / cutoff * numerics.pixels_per_cutoff * (1 - 1e-12))
     return Resolution(
-        n_angle=numerics.angles or power_of_two(sites),
+        n_angle=numerics.angles or n_site(sites),
         spacing=cutoff / numerics.samples_per_cutoff,
+        interpolation=numerics.interpolation,
         tile_side=side,
         n_point=next_fast_len(points, real=True),
     )
@@ -236,6 +245,6 @@ def correlation_length(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
     return 2 * math.pi * spectrum.mean_square(0.0) / spectrum.mean_square(0.5)
 
 
-def power_of_two(least: float) -> int:
-    """Smallest power of two that is 4 or more and not below a number."""
-    return int(2 ** math.ceil(math.log2(max(4.0, least * (1 - 1e-12)))))
+def n_site(least: float) -> int:
+    """Even number of sites, 4 or more and not below a number, whose transforms are fast."""
+    return 2 * int(next_fast_len(math.ceil(max(4.0, least * (1 - 1e-12)) / 2), real=True))

@@ -69,6 +69,8 @@ def run_simulation(simulation: Simulation) -> SimulationResult:
         simulation.resolution.n_angle,
         simulation.resolution.spacing,
         simulation.schedule.max_penetration,
+        simulation.resolution.interpolation,
+        band_limited=True,
     )
     record = run_cycle(
         field,
