@@ -25,6 +25,7 @@ PHYSICS = (
     "pinning",
     "relax",
     "cycle",
+    "steady",
 )
 """Modules (or folders) whose sources determine the numbers of a simulation."""
 

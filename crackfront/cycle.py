@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
@@ -163,6 +164,98 @@ class CycleState:
     residual: float
 
 
+class FrontHistory:
+    """A front that follows a load from one metastable state to the next, and their record.
+
+    Parameters
+    ----------
+    field : Field
+        Work of adhesion along the rays.
+    front : (n_angle,) array
+        Where it begins, in contact that is just made. (Units: reduced lateral length)
+    tolerance, max_sweeps, solver, record_fronts, record_energy, progress
+        As in :func:`run_cycle`.
+    """
+
+    def __init__(
+        self,
+        field: Field,
+        front: Array,
+        *,
+        tolerance: float = 1e-8,
+        max_sweeps: int = 10_000_000,
+        solver: str = "newton",
+        record_fronts: bool = False,
+        record_energy: bool = False,
+        progress: Callable[[CycleState], None] | None = None,
+    ) -> None:
+        self.states: list[CycleState] = []
+        self._field = field
+        self._memory = make_memory(field)
+        self._front = self._turn = front
+        self._begun = True
+        self._solve = functools.partial(
+            relax,
+            field=field,
+            tolerance=tolerance,
+            max_sweeps=max_sweeps,
+            solver=solver,
+            memory=self._memory,
+        )
+        self._fronts: list[Array] | None = [] if record_fronts else None
+        self._dissipated: list[float] | None = [] if record_energy else None
+        self._progress = progress
+
+    def begin(self, front: Array) -> None:
+        """Begin a branch at a front, no matter how it was reached; its first step has no energy."""
+        self._front = self._turn = front
+        self._begun = False
+
+    def follow(self, penetration: float, direction: Direction) -> Status:
+        """Go to the next state, and record it if there is one."""
+        outcome = self._solve(self._front, penetration, direction)
+        self._status, self._penetration = outcome.status, penetration
+        if outcome.status is not Status.CONVERGED:
+            return outcome.status
+        before, self._front = self._front, outcome.radius
+        if self.states and self.states[-1].direction != direction:
+            self._turn = before
+        self.states.append(_measure(outcome, penetration, direction, self._turn))
+        if self._dissipated is not None:
+            lost = dissipated_energy(before, self._front, penetration, self._field)
+            self._dissipated.append(lost if self._begun else math.nan)
+        self._begun = True
+        if self._fronts is not None:
+            self._fronts.append(self._front)
+        if self._progress is not None:
+            self._progress(self.states[-1])
+        return outcome.status
+
+    def record(self, status: Status | None = None) -> CycleRecord:
+        """All states so far.
+
+        Parameters
+        ----------
+        status : Status, optional
+            What ended the history, if not the last relaxation.
+        """
+        columns = {
+            item.name: np.array([getattr(state, item.name) for state in self.states])
+            for item in fields(CycleState)
+        }
+        status = status or self._status
+        lost = self._dissipated is not None and status is Status.LOST_CONTACT
+        front, penetration = self._front, self._penetration
+        return CycleRecord(
+            status=status,
+            end_penetration=penetration,
+            pull_off_energy=_contact_energy(front, penetration, self._field) if lost else None,
+            dissipated_energy=None if self._dissipated is None else np.array(self._dissipated),
+            radius=None if self._fronts is None else np.array(self._fronts).reshape(-1, front.size),
+            **columns,
+        )
+
+
 def run_cycle(
     field: Field,
     schedule: LoadSchedule,
@@ -206,49 +299,22 @@ def run_cycle(
         If a smooth sphere would already outgrow the field at the largest penetration, the field
         begins too far outside to make contact in, or the solver is unknown.
     """
-    _refuse_outgrown(field, schedule)
+    refuse_outgrown(field, schedule.max_penetration)
     _refuse_untouched(field)
-    states: list[CycleState] = []
-    fronts: list[Array] = []
-    dissipated: list[float] = []
-    memory = make_memory(field)
-    front = turn = np.full(n_angle(field), first_radius(field))
-    for penetration, direction in _loads(schedule):
-        outcome = relax(
-            front,
-            penetration,
-            direction,
-            field,
-            tolerance=tolerance,
-            max_sweeps=max_sweeps,
-            solver=solver,
-            memory=memory,
-        )
-        if outcome.status is not Status.CONVERGED:
-            break
-        if record_energy:
-            dissipated.append(dissipated_energy(front, outcome.radius, penetration, field))
-        if states and states[-1].direction != direction:
-            turn = front
-        front = outcome.radius
-        states.append(_measure(outcome, penetration, direction, turn))
-        if record_fronts:
-            fronts.append(front)
-        if progress is not None:
-            progress(states[-1])
-    columns = {
-        item.name: np.array([getattr(state, item.name) for state in states])
-        for item in fields(CycleState)
-    }
-    lost = record_energy and outcome.status is Status.LOST_CONTACT
-    return CycleRecord(
-        status=outcome.status,
-        end_penetration=penetration,
-        pull_off_energy=_contact_energy(front, penetration, field) if lost else None,
-        dissipated_energy=np.array(dissipated) if record_energy else None,
-        radius=np.array(fronts).reshape(-1, front.size) if record_fronts else None,
-        **columns,
+    history = FrontHistory(
+        field,
+        np.full(n_angle(field), first_radius(field)),
+        tolerance=tolerance,
+        max_sweeps=max_sweeps,
+        solver=solver,
+        record_fronts=record_fronts,
+        record_energy=record_energy,
+        progress=progress,
     )
+    for penetration, direction in _loads(schedule):
+        if history.follow(penetration, direction) is not Status.CONVERGED:
+            break
+    return history.record()
 
 
 def dissipated_energy(before: Array, after: Array, penetration: float, field: Field) -> float:
@@ -319,14 +385,14 @@ def _measure(
     )
 
 
-def _refuse_outgrown(field: Field, schedule: LoadSchedule) -> None:
+def refuse_outgrown(field: Field, max_penetration: float) -> None:
     """Raise if a smooth sphere is larger than the field before its load is fully applied."""
-    smooth = jkr.equilibrium_radius(schedule.max_penetration)
+    smooth = jkr.equilibrium_radius(max_penetration)
     if smooth >= last_radius(field):
         raise ValueError(
-            f"contact outgrows the field: a smooth sphere at penetration "
-            f"{schedule.max_penetration} has radius {smooth:.4g}, the field ends at "
-            f"{last_radius(field):.4g}; enlarge the field or lower the penetration"
+            f"contact outgrows the field: a smooth sphere at penetration {max_penetration} has "
+            f"radius {smooth:.4g}, the field ends at {last_radius(field):.4g}; enlarge the field "
+            "or lower the penetration"
         )
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from crackfront.cycle import LoadSchedule
 from crackfront.scene import FieldKind, Numerics, Simulation, correlation_length, resolution
 from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.steady import SteadySchedule
 from crackfront.units import Scales
 
 
@@ -65,8 +66,8 @@ class Sweep:
         Realisations of the noise for every spectrum.
     numerics : Numerics
         Resolution and solver.
-    schedule : LoadSchedule
-        Penetrations to visit.
+    schedule : LoadSchedule or SteadySchedule
+        Penetrations to visit: full cycles, or the steady parts of their branches.
     record_fronts, record_energy : bool
         What to record beside the curves.
     fit : FitRange
@@ -80,7 +81,7 @@ class Sweep:
     elastic_energies: tuple[float, ...]
     n_realisation: int
     numerics: Numerics
-    schedule: LoadSchedule
+    schedule: LoadSchedule | SteadySchedule
     record_fronts: bool
     record_energy: bool
     fit: FitRange

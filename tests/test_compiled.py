@@ -76,7 +76,7 @@ def test_every_module_that_compiles_a_kernel_is_part_of_the_fingerprint():
 
 def test_every_module_that_a_simulation_imports_is_part_of_the_fingerprint():
     show = (
-        "import sys, crackfront.synthesis, crackfront.cycle;"
+        "import sys, crackfront.synthesis, crackfront.steady;"
         "print(*[name for name in sys.modules if name.startswith('crackfront.')])"
     )
     loaded = subprocess.run(

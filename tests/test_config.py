@@ -6,6 +6,7 @@ import pytest
 import yaml
 
 from crackfront.config import ConfigurationError, load_configuration
+from crackfront.steady import SteadySchedule
 from crackfront.units import Scales
 
 ROOT = Path(__file__).parents[1]
@@ -55,7 +56,7 @@ def refusal(tmp_path, text):
     return message.replace(str(path), "").lstrip(": ")
 
 
-@pytest.mark.parametrize("name", ["test", "default", "paper"])
+@pytest.mark.parametrize("name", ["test", "default", "paper", "fig3c"])
 def test_the_configurations_of_the_project_are_valid(name):
     sweep = load_configuration(ROOT / "config" / f"{name}.yaml")
     assert len({item.name for item in sweep.spectra}) == len(sweep.spectra)
@@ -114,6 +115,21 @@ def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
         assert metres.simulation(other, 0.1, 0).seed == reduced.simulation(one, 0.1, 0).seed
     assert metres.schedule.max_penetration == pytest.approx(1.0, rel=1e-14)
     assert metres.scales == scales
+
+
+def test_steady_loads_are_read_in_both_units(tmp_path):
+    text = GOOD.replace("step: 0.1", "steady: {start: 0.25, travel: 2.0, error: 0.1}")
+    assert load_configuration(written(tmp_path, text)).schedule == SteadySchedule(
+        0.25, 1.0, 2.0, 0.1
+    )
+    scales = Scales(radius=1e-3, work_of_adhesion=0.05, contact_modulus=1e6)
+    content = yaml.safe_load(text)
+    content["scales"] = {"radius": 1e-3, "work_of_adhesion": 0.05, "contact_modulus": 1e6}
+    content["load"]["max_penetration"] *= scales.vertical
+    content["load"]["steady"]["start"] *= scales.vertical
+    metres = load_configuration(written(tmp_path, yaml.safe_dump(content))).schedule
+    assert metres.start == pytest.approx(0.25, rel=1e-14)
+    assert (metres.travel, metres.error) == (2.0, 0.1)
 
 
 BAD = {
@@ -202,6 +218,19 @@ BAD = {
     "no contact": (
         ("max_penetration: 1.0", "max_penetration: -0.5"),
         "load: max_penetration is -0.5, which never makes contact; the sphere touches at 0",
+    ),
+    "steady beside step": (
+        ("step: 0.1}", "step: 0.1, steady: {start: 0.5, travel: 2, error: 0.1}}"),
+        "exactly one of step (full cycles) and steady (parts of them); remove one",
+    ),
+    "no load": (("step: 0.1}", "}"), "and steady (parts of them); give one"),
+    "steady start too deep": (
+        ("step: 0.1}", "steady: {start: 1.0, travel: 2, error: 0.1}}"),
+        "load: steady.start 1 is not below max_penetration 1; lower it or penetrate deeper",
+    ),
+    "steady without error": (
+        ("step: 0.1}", "steady: {start: 0.5, travel: 2}}"),
+        "key load.steady.error is missing; add it",
     ),
     "step zero": (("step: 0.1", "step: 0"), "load.step is 0; it must be greater than 0"),
     "name twice": (("name: rough", "name: flat"), "spectrum name 'flat' stands twice"),

@@ -67,6 +67,8 @@ def _reported(
     """Outcomes with their lines: a bar on a terminal, else a line each."""
     from tqdm import tqdm
 
+    from crackfront.dataset import COMPLETE
+
     terminal = sys.stderr.isatty()
     with tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar:
         for count, (simulation, finished) in enumerate(outcomes, start=1):
@@ -75,7 +77,7 @@ def _reported(
                 line += f", {finished.seconds:.2f} s"
             if not terminal:
                 click.echo(f"[{count}/{total}] {line}")
-            elif finished.status != "lost_contact":
+            elif finished.status not in COMPLETE:
                 bar.write(line)
             bar.update()
             yield line, finished

@@ -110,7 +110,7 @@ def aggregate(configuration: Path, output: Path | None) -> None:
 
     sweep, store = _sweep_and_store(configuration, output)
     path, statuses = store.aggregate(sweep, provenance(configuration.read_text(encoding="utf-8")))
-    others = {status: count for status, count in statuses.items() if status != COMPLETE}
+    others = {status: count for status, count in statuses.items() if status not in COMPLETE}
     if others:
         told = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
         click.echo(

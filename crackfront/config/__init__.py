@@ -8,10 +8,11 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from crackfront.config.reading import ConfigurationError, content_of, sentences
-from crackfront.config.sections import Configuration
+from crackfront.config.sections import Configuration, LoadSection
 from crackfront.cycle import LoadSchedule
 from crackfront.scene import Numerics, resolution
 from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.steady import SteadySchedule
 from crackfront.sweep import FitRange, NamedSpectrum, Sweep
 from crackfront.units import Scales
 
@@ -91,8 +92,17 @@ def _sweep(configuration: Configuration) -> Sweep:
             max_sweeps=numerics.max_sweeps,
             solver=numerics.solver,
         ),
-        schedule=LoadSchedule(load.max_penetration / vertical, load.step / vertical),
+        schedule=_schedule(load, vertical),
         record_fronts="fronts" in configuration.record,
         record_energy="energy" in configuration.record,
         fit=FitRange(fit.lowest_elastic_energy, fit.highest_elastic_energy, fit.bootstrap),
     )
+
+
+def _schedule(load: LoadSection, vertical: float) -> LoadSchedule | SteadySchedule:
+    """Penetrations to visit, lengths divided by a unit."""
+    deepest, steady = load.max_penetration / vertical, load.steady
+    if load.step is not None:
+        return LoadSchedule(deepest, load.step / vertical)
+    assert steady is not None, "the schema asks for one of the two"
+    return SteadySchedule(steady.start / vertical, deepest, steady.travel, steady.error)

@@ -112,11 +112,20 @@ class NumericsSection(Section):
         return self
 
 
+class SteadySection(Section):
+    """Steady parts of the branches only, as in :class:`crackfront.steady.SteadySchedule`."""
+
+    start: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    travel: Positive
+    error: Positive
+
+
 class LoadSection(Section):
     """Penetrations to visit."""
 
     max_penetration: Annotated[float, Field(allow_inf_nan=False)]
-    step: Positive
+    step: Positive | None = None
+    steady: SteadySection | None = None
 
     @model_validator(mode="after")
     def _makes_contact(self) -> LoadSection:
@@ -124,6 +133,16 @@ class LoadSection(Section):
             raise _wrong(
                 f"max_penetration is {self.max_penetration:g}, which never makes contact; the "
                 "sphere touches at 0, so it must be 0 or more"
+            )
+        if (self.steady is None) == (self.step is None):
+            raise _wrong(
+                "load needs exactly one of step (full cycles) and steady (parts of them); "
+                + ("give one" if self.step is None else "remove one")
+            )
+        if self.steady is not None and self.steady.start >= self.max_penetration:
+            raise _wrong(
+                f"steady.start {self.steady.start:g} is not below max_penetration "
+                f"{self.max_penetration:g}; lower it or penetrate deeper"
             )
         return self
 
@@ -197,5 +216,6 @@ SECTIONS: dict[str, type[Section]] = {
     "numerics": NumericsSection,
     "tile": TileSection,
     "load": LoadSection,
+    "steady": SteadySection,
     "fit": FitSection,
 }

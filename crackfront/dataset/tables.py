@@ -18,8 +18,8 @@ from crackfront.provenance import Provenance
 from crackfront.scene import SimulationResult, resolution
 from crackfront.sweep import NamedSpectrum, Sweep
 
-COMPLETE = "lost_contact"
-"""Status of a simulation that has values."""
+COMPLETE = ("lost_contact", "steady")
+"""Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
 
 NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
@@ -32,6 +32,8 @@ class _Cell:
     result: SimulationResult
     w_appr: float
     w_retr: float
+    w_appr_error: float
+    w_retr_error: float
     hysteresis: float
     midpoint: float
     w_appr_from_force: float
@@ -129,11 +131,14 @@ def _cell(result: SimulationResult, correlation_length: float) -> _Cell:
     record, simulation = result.record, result.simulation
     steady = steady_adhesion(record, correlation_length)
     status, sentence = _status(record, steady)
-    known = status == COMPLETE
+    known = status in COMPLETE
+    cycle = status == COMPLETE[0]
     return _Cell(
         result=result,
         w_appr=steady.approach if known else np.nan,
         w_retr=steady.retraction if known else np.nan,
+        w_appr_error=steady.approach_error if known else np.nan,
+        w_retr_error=steady.retraction_error if known else np.nan,
         hysteresis=steady.hysteresis if known else np.nan,
         midpoint=steady.midpoint if known else np.nan,
         w_appr_from_force=steady.approach_from_force if known else np.nan,
@@ -152,7 +157,7 @@ def _cell(result: SimulationResult, correlation_length: float) -> _Cell:
         n_retraction=steady.n_retraction,
         lowest_radius=steady.lowest_radius,
         highest_radius=steady.highest_radius,
-        pull_off_force=float(np.min(record.force, initial=np.inf)) if known else np.nan,
+        pull_off_force=float(np.min(record.force, initial=np.inf)) if cycle else np.nan,
         end_penetration=record.end_penetration,
         status=status,
         status_sentence=sentence,
@@ -164,7 +169,7 @@ def _cell(result: SimulationResult, correlation_length: float) -> _Cell:
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
     """How a simulation ended, in a word and in a sentence."""
     status = record.status.name.lower()
-    if status == COMPLETE and steady.sentence:
+    if status in COMPLETE and steady.sentence:
         return NO_STEADY_PART, steady.sentence
     return status, record.status.value
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from crackfront import jkr
 from crackfront.cycle import CycleRecord
+from crackfront.steady import standard_error
 
 Array = NDArray[np.float64]
 
@@ -24,7 +25,9 @@ STEADY_DEFINITION = (
     "same window of mean radii, the overlap of the ranges of their steady states, one state of "
     f"the load schedule one vote, at least {FEWEST_STATES} states each. An experimenter's "
     "estimate is the work of adhesion of the JKR curve F = a^3 - sqrt(6 w a^3) (reduced units) "
-    "that fits force against mean radius best, by least squares of the force over the same states."
+    "that fits force against mean radius best, by least squares of the force over the same states. "
+    "The standard errors are those of the means over the states of one realisation; states closer "
+    "than a correlation length count as one."
 )
 """What `w_appr` and `w_retr` mean; stored in every file that holds them."""
 
@@ -37,6 +40,8 @@ class SteadyAdhesion:
     ----------
     approach, retraction : float
         w_appr and w_retr; NaN where the record holds no steady window. (Units: w_int)
+    approach_error, retraction_error : float
+        Standard errors of the two, by :func:`crackfront.steady.standard_error`. (Units: w_int)
     hysteresis, midpoint : float
         w_retr - w_appr and their mean. (Units: w_int)
     approach_from_force, retraction_from_force : float
@@ -51,6 +56,8 @@ class SteadyAdhesion:
 
     approach: float
     retraction: float
+    approach_error: float
+    retraction_error: float
     hysteresis: float
     midpoint: float
     approach_from_force: float
@@ -111,10 +118,16 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
             "deeper or use a smaller load step",
         )
     values = record.apparent_work_of_adhesion
+    errors = [
+        standard_error(values[branch], radius[branch], correlation_length)
+        for branch in (approach, retraction)
+    ]
     w_appr, w_retr = float(np.mean(values[approach])), float(np.mean(values[retraction]))
     return SteadyAdhesion(
         approach=w_appr,
         retraction=w_retr,
+        approach_error=errors[0],
+        retraction_error=errors[1],
         hysteresis=w_retr - w_appr,
         midpoint=(w_retr + w_appr) / 2,
         approach_from_force=_adhesion_from_force(radius[approach], record.force[approach]),
@@ -138,4 +151,4 @@ def _adhesion_from_force(radius: Array, force: Array) -> float:
 def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
     """A result without values, and why."""
     nan = math.nan
-    return SteadyAdhesion(nan, nan, nan, nan, nan, nan, nan, nan, *counts, sentence)
+    return SteadyAdhesion(*(nan,) * 10, *counts, sentence)

@@ -38,6 +38,7 @@ class Status(enum.Enum):
 
     CONVERGED = "the front is in equilibrium to the tolerance"
     LOST_CONTACT = "contact was lost: no equilibrium is left at this penetration"
+    STEADY = "the steady parts of both branches have been measured"
     LEFT_FIELD_OUTWARD = (
         "the front left the sampled field outward; enlarge the field or lower the penetration"
     )

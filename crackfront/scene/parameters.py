@@ -18,6 +18,7 @@ from crackfront.compiled import solver_fingerprint
 from crackfront.cycle import LoadSchedule
 from crackfront.pinning import Interpolation
 from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.steady import SteadySchedule
 
 FieldKind = Literal["roughness", "chemical"]
 
@@ -141,8 +142,8 @@ class Simulation:
         Seed of the sweep.
     resolution : Resolution
         Sizes of the front and of the tile.
-    schedule : LoadSchedule
-        Penetrations to visit.
+    schedule : LoadSchedule or SteadySchedule
+        Penetrations to visit: a full cycle, or the steady parts of its branches.
     tolerance, max_sweeps, solver
         As in :class:`Numerics`.
     record_fronts, record_energy : bool
@@ -156,7 +157,7 @@ class Simulation:
     realisation: int
     sweep_seed: int
     resolution: Resolution
-    schedule: LoadSchedule
+    schedule: LoadSchedule | SteadySchedule
     tolerance: float
     max_sweeps: int
     solver: str

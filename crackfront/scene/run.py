@@ -13,7 +13,8 @@ import numpy as np
 from crackfront.adhesion import chemical_adhesion
 from crackfront.cycle import CycleRecord, LoadSchedule, run_cycle
 from crackfront.scene.contact import contact_field, simulation_adhesion
-from crackfront.scene.parameters import Simulation
+from crackfront.scene.parameters import Simulation, correlation_length
+from crackfront.steady import run_steady
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,9 +73,17 @@ def run_simulation(simulation: Simulation) -> SimulationResult:
         simulation.resolution.interpolation,
         band_limited=True,
     )
-    record = run_cycle(
+    if isinstance(simulation.schedule, LoadSchedule):
+        run = functools.partial(run_cycle, schedule=simulation.schedule)
+    else:
+        run = functools.partial(
+            run_steady,
+            schedule=simulation.schedule,
+            correlation_length=correlation_length(simulation.kind, simulation.spectrum),
+            elastic_energy=simulation.elastic_energy,
+        )
+    record = run(
         field,
-        simulation.schedule,
         tolerance=simulation.tolerance,
         max_sweeps=simulation.max_sweeps,
         solver=simulation.solver,

@@ -1,0 +1,205 @@
+"""The steady parts of both branches alone, without the cycle around them.
+
+A branch begins at a circle on which every site moves forward, not at first contact or at pull-off.
+By no passing, a front that starts at a circle is the same as one that comes from further behind as
+soon as that one has passed the circle everywhere: the start is forgotten exactly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront import jkr
+from crackfront.cycle import CycleRecord, CycleState, FrontHistory, refuse_outgrown
+from crackfront.pinning import Field, first_radius, front_adhesion, last_radius, n_angle
+from crackfront.relax import Direction, Status
+
+Array = NDArray[np.float64]
+
+FEWEST_STATES = 5
+"""Steady states from which a standard error is told."""
+
+_N_CIRCLE = 64
+"""Circles that are tried as a start."""
+
+
+@dataclass(frozen=True, slots=True)
+class SteadySchedule:
+    """Approach from a penetration until w_appr is known well enough, and back over the same radii.
+
+    Parameters
+    ----------
+    start : float
+        Penetration at which the approach begins. (Units: reduced vertical length)
+    max_penetration : float
+        Largest penetration. (Units: reduced vertical length)
+    travel : float
+        Way of a smooth front from state to state, in correlation lengths of w_loc.
+    error : float
+        Standard error of w_appr at which the approach turns, in units of e_el: that of its k.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive, or there is no way from the start to the largest penetration.
+    """
+
+    start: float
+    max_penetration: float
+    travel: float
+    error: float
+
+    def __post_init__(self) -> None:
+        for name in ("travel", "error"):
+            if not 0 < getattr(self, name) < math.inf:
+                raise ValueError(f"steady {name} is {getattr(self, name)}; it must be positive")
+        if not 0 <= self.start < self.max_penetration < math.inf:
+            raise ValueError(
+                f"steady start {self.start} must be 0 or more and below the largest penetration "
+                f"{self.max_penetration}"
+            )
+
+
+def run_steady(
+    field: Field,
+    schedule: SteadySchedule,
+    *,
+    correlation_length: float,
+    elastic_energy: float,
+    tolerance: float = 1e-8,
+    max_sweeps: int = 10_000_000,
+    solver: str = "newton",
+    record_fronts: bool = False,
+    record_energy: bool = False,
+    progress: Callable[[CycleState], None] | None = None,
+) -> CycleRecord:
+    """Approach and retraction over the radii that an estimate of the hysteresis needs.
+
+    Each branch begins at a circle on which every site moves forward. The approach goes on until
+    w_appr has the requested standard error or the largest penetration is reached; the retraction,
+    from there, until it has left the radii over which the approach was steady.
+
+    Parameters
+    ----------
+    field : Field
+        Work of adhesion along the rays.
+    schedule : SteadySchedule
+        Where to begin and when to stop.
+    correlation_length : float
+        Distance that every site must travel before a branch counts as steady.
+        (Units: reduced lateral length)
+    elastic_energy : float
+        Unit of the requested error. (Units: w_int)
+    tolerance, max_sweeps, solver, record_fronts, record_energy, progress
+        As in :func:`crackfront.cycle.run_cycle`.
+
+    Returns
+    -------
+    CycleRecord
+        The states; its status is `STEADY` where both branches were measured. The energy that the
+        first step of a branch dissipates has no meaning and is NaN.
+
+    Raises
+    ------
+    ValueError
+        If a smooth sphere would outgrow the field, or the solver is unknown.
+    """
+    refuse_outgrown(field, schedule.max_penetration)
+    history = FrontHistory(
+        field,
+        np.full(n_angle(field), first_radius(field)),
+        tolerance=tolerance,
+        max_sweeps=max_sweeps,
+        solver=solver,
+        record_fronts=record_fronts,
+        record_energy=record_energy,
+        progress=progress,
+    )
+    step = schedule.travel * correlation_length * _penetration_slope(schedule.start)
+    n_step = math.floor((schedule.max_penetration - schedule.start) / step)
+    turn, target = n_step, schedule.error * elastic_energy
+    history.begin(forward_circle(field, schedule.start, 1))
+    for k in range(n_step + 1):
+        if history.follow(schedule.start + k * step, 1) is not Status.CONVERGED:
+            return history.record()
+        steady = [item for item in history.states if item.least_travel >= correlation_length]
+        radius = np.array([item.mean_radius for item in steady])
+        values = np.array([item.apparent_work_of_adhesion for item in steady])
+        if standard_error(values, radius, correlation_length) <= target:
+            turn = k
+            break
+    lowest = np.min(radius, initial=math.inf)
+    history.begin(forward_circle(field, schedule.start + turn * step, -1))
+    k = turn
+    while history.follow(schedule.start + k * step, -1) is Status.CONVERGED:
+        if history.states[-1].mean_radius < lowest:
+            return history.record(Status.STEADY)
+        k -= 1
+    return history.record()
+
+
+def forward_circle(field: Field, penetration: float, direction: Direction) -> Array:
+    """A circle near the smooth contact's on which every site moves forward.
+
+    Parameters
+    ----------
+    field : Field
+        Work of adhesion along the rays.
+    penetration : float
+        Rigid body penetration, not negative. (Units: reduced vertical length)
+    direction : {1, -1}
+        +1 in approach, -1 in retraction.
+
+    Returns
+    -------
+    (n_angle,) array
+        Front. Where no such circle is found it is, in approach, that within which the edge is in
+        compression, so that no front can rest inside; in retraction the end of the field.
+        (Units: reduced lateral length)
+    """
+    smooth = jkr.equilibrium_radius(penetration)
+    furthest = last_radius(field)
+    if direction > 0:
+        furthest = max(math.sqrt(penetration), first_radius(field))
+    for radius in np.linspace(smooth, furthest, _N_CIRCLE):
+        circle = np.full(n_angle(field), radius)
+        drive = front_adhesion(circle, field) - jkr.energy_release_rate(circle, penetration)
+        if np.all(direction * drive > 0):
+            return circle
+    return np.full(n_angle(field), furthest)
+
+
+def standard_error(values: Array, radius: Array, correlation_length: float) -> float:
+    """Standard error of the mean apparent work of adhesion over steady states of one branch.
+
+    States that are closer to each other than one correlation length count as one.
+
+    Parameters
+    ----------
+    values : (n_state,) array
+        Apparent work of adhesion. (Units: w_int)
+    radius : (n_state,) array
+        Mean radius. (Units: reduced lateral length)
+    correlation_length : float
+        That of w_loc. (Units: reduced lateral length)
+
+    Returns
+    -------
+    float
+        Standard error, infinite for fewer than :data:`FEWEST_STATES` states. (Units: w_int)
+    """
+    if values.size < FEWEST_STATES:
+        return math.inf
+    independent = min(values.size, 1 + np.ptp(radius) / correlation_length)
+    return float(np.std(values, ddof=1) / math.sqrt(independent))
+
+
+def _penetration_slope(penetration: float) -> float:
+    """Penetration per radius of a smooth contact, d(a^2 - sqrt(8a/3)) / da."""
+    radius = jkr.equilibrium_radius(penetration)
+    return 2 * radius - math.sqrt(2 / (3 * radius))

@@ -1,0 +1,202 @@
+"""The steady parts alone: the states of the full cycle, at a part of its cost."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crackfront import jkr
+from crackfront.cycle import CycleState, FrontHistory, LoadSchedule
+from crackfront.fits import steady_adhesion
+from crackfront.pinning import first_radius, front_adhesion, polar_field
+from crackfront.relax import Status
+from crackfront.scene import (
+    Resolution,
+    Simulation,
+    contact_field,
+    correlation_length,
+    run_simulation,
+    simulation_adhesion,
+)
+from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.steady import SteadySchedule, forward_circle, run_steady, standard_error
+from crackfront.units import WORK_OF_ADHESION
+
+SPECTRUM = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
+LENGTH = correlation_length("roughness", SPECTRUM)
+SCHEDULE = SteadySchedule(start=0.4, max_penetration=1.0, travel=0.15, error=1e-6)
+
+
+def simulation(elastic_energy=0.04, realisation=0, schedule=SCHEDULE):
+    return Simulation(
+        spectrum_name="flat",
+        kind="roughness",
+        spectrum=SPECTRUM,
+        elastic_energy=elastic_energy,
+        realisation=realisation,
+        sweep_seed=3,
+        resolution=Resolution(320, 0.025, "cubic", 4.0, 160),
+        schedule=schedule,
+        tolerance=1e-9,
+        max_sweeps=10**7,
+        solver="newton",
+        record_fronts=True,
+        record_energy=False,
+    )
+
+
+def field_of(one):
+    sizes = one.resolution
+    return contact_field(
+        simulation_adhesion(one), sizes.n_angle, sizes.spacing, 1.6, band_limited=True
+    )
+
+
+@pytest.mark.parametrize("elastic_energy", [0.0005, 0.01, 0.04, 0.177])
+def test_its_fronts_are_those_of_the_full_cycle(elastic_energy):
+    one = simulation(elastic_energy)
+    field = field_of(one)
+    steady = run_simulation(one).record
+    assert steady.status is Status.STEADY
+    # The cycle goes deeper, so that both of its branches are steady over the same radii.
+    cycle = FrontHistory(
+        field, np.full(320, first_radius(field)), tolerance=1e-9, record_fronts=True
+    )
+    n_approach = np.count_nonzero(steady.direction > 0)
+    for penetration in (*steady.penetration[:n_approach], 1.6):
+        cycle.follow(penetration, 1)
+    for penetration in steady.penetration[n_approach:]:
+        cycle.follow(penetration, -1)
+    expected = cycle.record()
+    found = np.delete(expected.radius, n_approach, axis=0)
+    travel = np.delete(expected.least_travel, n_approach)
+    compared = (travel >= LENGTH) & (steady.least_travel >= LENGTH)
+    assert np.count_nonzero(compared[:n_approach]) >= 5
+    assert np.count_nonzero(compared[n_approach:]) >= 3
+    difference = np.max(np.abs(found - steady.radius)[compared])
+    assert difference < 1e-5 * SPECTRUM.short_cutoff
+
+
+def test_it_passes_the_same_radii_in_both_directions_and_not_many_more():
+    record = run_simulation(simulation()).record
+    approach, retraction = record.direction > 0, record.direction < 0
+    steady = approach & (record.least_travel >= LENGTH)
+    lowest = record.mean_radius[steady].min()
+    assert np.count_nonzero(record.mean_radius[retraction] < lowest) == 1
+    assert record.penetration[approach][0] == 0.4
+    assert 0.95 < record.penetration[approach][-1] <= 1.0
+    adhesion = steady_adhesion(record, LENGTH)
+    assert adhesion.sentence == ""
+    assert adhesion.n_retraction >= 5
+
+
+def test_the_approach_ends_when_the_requested_error_is_met():
+    found = {}
+    for error in (1e-6, 1.0, 3.0):
+        record = run_simulation(simulation(schedule=replace(SCHEDULE, error=error))).record
+        steady = (record.direction > 0) & (record.least_travel >= LENGTH)
+        values, radius = record.apparent_work_of_adhesion[steady], record.mean_radius[steady]
+        reached = standard_error(values, radius, LENGTH)
+        before = standard_error(values[:-1], radius[:-1], LENGTH)
+        found[error] = values.size
+        if error > 1e-3:
+            assert reached <= error * 0.04 < before
+    assert found[3.0] <= found[1.0] < found[1e-6]
+
+
+def test_the_hysteresis_agrees_with_that_of_the_full_cycle_at_a_part_of_the_work():
+    differences, work = [], []
+    for realisation in range(6):
+        one = simulation(realisation=realisation)
+        steady = run_simulation(one).record
+        cycle = run_simulation(replace(one, schedule=LoadSchedule(1.6, 0.05))).record
+        differences.append(
+            steady_adhesion(steady, LENGTH).hysteresis - steady_adhesion(cycle, LENGTH).hysteresis
+        )
+        work.append(steady.iterations.sum() / cycle.iterations.sum())
+    error = np.std(differences, ddof=1) / math.sqrt(len(differences))
+    assert abs(np.mean(differences)) < 4 * error
+    assert np.mean(work) < 0.75
+
+
+def test_every_site_moves_forward_on_the_circle_of_the_start():
+    field = field_of(simulation(0.01))
+    for penetration in (0.0, 0.3, 1.0):
+        for direction, nearby in ((1, 0.3), (-1, 1.7)):
+            circle = forward_circle(field, penetration, direction)
+            assert np.ptp(circle) == 0
+            release = jkr.energy_release_rate(circle, penetration)
+            assert np.all(direction * (front_adhesion(circle, field) - release) > 0)
+            nearest = jkr.equilibrium_radius(penetration, nearby)
+            assert np.all(direction * (circle - nearest) > 0)
+
+
+def test_where_the_surface_repels_the_start_is_the_edge_in_compression():
+    radii = 0.05 * np.arange(1, 61)
+    adhesion = np.full((60, 8), WORK_OF_ADHESION)
+    adhesion[:, 3] = -0.1
+    field = polar_field(radii, adhesion)
+    assert np.allclose(forward_circle(field, 0.81, 1), 0.9)
+    assert np.all(forward_circle(field, 0.0, 1) == 0.05)
+    assert np.all(forward_circle(polar_field(radii, 40 * adhesion), 0.0, -1) == 3.0)
+
+
+def test_contact_that_is_lost_on_the_way_back_is_told():
+    radii = 0.01 * np.arange(1, 301)
+    # Adhesion falls off inside: the retraction cannot reach the radii of the approach.
+    strength = np.where(radii < 1.75, 0.02, 1.0)
+    field = polar_field(radii, WORK_OF_ADHESION * np.repeat(strength[:, None], 8, axis=1))
+    schedule = SteadySchedule(0.5, 1.4, 0.7, 1e-9)
+    record = run_steady(field, schedule, correlation_length=0.05, elastic_energy=0.01)
+    assert record.status in (Status.STEADY, Status.LOST_CONTACT)
+    assert 1.3 < record.penetration.max() <= 1.4
+
+
+def test_states_closer_than_a_correlation_length_count_as_one():
+    values = np.array([1.0, 2.0, 3.0, 2.0, 1.0, 2.0])
+    spread = np.std(values, ddof=1)
+    radius = np.linspace(1.0, 2.0, 6)
+    assert standard_error(values, radius, 0.1) == pytest.approx(spread / math.sqrt(6))
+    assert standard_error(values, radius, 0.5) == pytest.approx(spread / math.sqrt(3))
+    assert standard_error(values, radius[::-1], 0.5) == pytest.approx(spread / math.sqrt(3))
+    assert standard_error(values[:4], radius[:4], 0.1) == math.inf
+
+
+def test_the_standard_error_covers_the_scatter_between_realisations():
+    estimates, values = [], []
+    for realisation in range(12):
+        record = run_simulation(simulation(realisation=realisation)).record
+        adhesion = steady_adhesion(record, LENGTH)
+        estimates.append(adhesion.retraction_error)
+        values.append(adhesion.retraction)
+    assert 0.4 < np.mean(estimates) / np.std(values, ddof=1) < 2.5
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"travel": 0.0}, "steady travel is 0.0; it must be positive"),
+        ({"error": math.inf}, "steady error is inf; it must be positive"),
+        ({"start": 1.0}, "start 1.0 must be 0 or more and below the largest penetration 1.0"),
+        ({"start": -0.1}, "start -0.1 must be 0 or more"),
+        ({"max_penetration": math.nan}, "below the largest penetration nan"),
+    ],
+)
+def test_an_impossible_schedule_is_refused(change, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        replace(SCHEDULE, **change)
+
+
+def test_progress_is_told_state_by_state():
+    told = []
+    record = run_steady(
+        field_of(simulation()),
+        SCHEDULE,
+        correlation_length=LENGTH,
+        elastic_energy=0.04,
+        tolerance=1e-6,
+        progress=told.append,
+    )
+    assert len(told) == record.penetration.size
+    assert isinstance(told[0], CycleState)
