@@ -69,9 +69,9 @@ class Problem:
         storage = pieces + (", on tile" if self.on_tile else "")
         return f"{shape}, w_rms {self.rms:g}, N {self.n_angle}, step {self.step:g}{storage}"
 
-    def as_tile(self) -> Problem:
-        """The same problem with its field evaluated from the tile."""
-        return replace(self, on_tile=True)
+    def smallest(self) -> Problem:
+        """A problem of the same kind that takes no time, to compile by."""
+        return replace(self, spectrum=_flat(0.16), n_angle=256)
 
     def field(self, seed: int) -> PolarField | TileField:
         """Field of a realisation."""
@@ -117,9 +117,17 @@ PROBLEMS = (
     Problem("disorder", 0.45, SelfAffineSpectrum(0.02, 0.4, 0.3), 4096),
     Problem("disorder", 0.45, SelfAffineSpectrum(0.02, 0.32, 0.8), 4096),
     *(
-        Problem("scaling", rms, _flat(cutoff), round(81.92 / cutoff))
+        Problem(
+            "scaling",
+            rms,
+            _flat(cutoff),
+            round(81.92 / cutoff),
+            samples_per_cutoff=5,
+            interpolation="cubic",
+            on_tile=True,
+        )
         for rms in (0.1, 0.4)
-        for cutoff in (0.08, 0.04, 0.02, 0.01)
+        for cutoff in (0.08, 0.04, 0.02, 0.01, 0.005)
     ),
     Problem("smoke", 0.4, _flat(0.16), 256, step=0.5),
 )
