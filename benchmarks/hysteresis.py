@@ -31,6 +31,7 @@ from crackfront.pinning import Interpolation, TileField, first_radius, n_angle
 from crackfront.plots import save_figure
 from crackfront.plots.style import COLOURS, COLUMN, MARKERS, blank_figure, house_style
 from crackfront.provenance import provenance
+from crackfront.relax import Direction
 from crackfront.scene import contact_field, correlation_length
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.steady import SteadySchedule, forward_circle, run_steady
@@ -185,9 +186,11 @@ def branch_adhesion(
     """Mean apparent work of adhesion of one branch at given penetrations."""
     history = FrontHistory(field, np.full(n_angle(field), first_radius(field)), tolerance=tolerance)
     loads = penetrations if direction > 0 else penetrations[::-1]
-    history.begin(forward_circle(field, float(loads[0]), 1 if direction > 0 else -1))
+    sign: Direction = 1 if direction > 0 else -1
+    smooth = jkr.equilibrium_radius(float(loads[0]))
+    history.begin(forward_circle(field, float(loads[0]), sign, smooth))
     for penetration in loads:
-        history.follow(float(penetration), 1 if direction > 0 else -1)
+        history.follow(float(penetration), sign)
     return float(np.mean([state.apparent_work_of_adhesion for state in history.states]))
 
 

@@ -18,11 +18,15 @@ from crackfront import jkr
 from crackfront.cycle import CycleRecord, CycleState, FrontHistory, refuse_outgrown
 from crackfront.pinning import Field, first_radius, front_adhesion, last_radius, n_angle
 from crackfront.relax import Direction, Status
+from crackfront.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
 
-FEWEST_STATES = 5
+FEWEST_STATES = 3
 """Steady states from which a standard error is told."""
+
+_FEWEST_TO_STOP = 8
+"""Steady states before the approach may turn."""
 
 _N_CIRCLE = 64
 """Circles that are tried as a start."""
@@ -81,8 +85,8 @@ def run_steady(
     """Approach and retraction over the radii that an estimate of the hysteresis needs.
 
     Each branch begins at a circle on which every site moves forward. The approach goes on until
-    w_appr has the requested standard error or the largest penetration is reached; the retraction,
-    from there, until it has left the radii over which the approach was steady.
+    w_appr has the requested standard error or the largest penetration is reached; the retraction
+    from about its largest radius until it has left the radii over which the approach was steady.
 
     Parameters
     ----------
@@ -122,38 +126,53 @@ def run_steady(
     )
     step = schedule.travel * correlation_length * _penetration_slope(schedule.start)
     n_step = math.floor((schedule.max_penetration - schedule.start) / step)
-    turn, target = n_step, schedule.error * elastic_energy
-    history.begin(forward_circle(field, schedule.start, 1))
+    smooth = jkr.equilibrium_radius(schedule.start)
+    history.begin(forward_circle(field, schedule.start, 1, smooth))
     for k in range(n_step + 1):
         if history.follow(schedule.start + k * step, 1) is not Status.CONVERGED:
             return history.record()
         steady = [item for item in history.states if item.least_travel >= correlation_length]
         radius = np.array([item.mean_radius for item in steady])
         values = np.array([item.apparent_work_of_adhesion for item in steady])
-        if standard_error(values, radius, correlation_length) <= target:
-            turn = k
+        error = standard_error(values, radius, correlation_length) / elastic_energy
+        if values.size >= _FEWEST_TO_STOP and error <= schedule.error:
             break
     lowest = np.min(radius, initial=math.inf)
-    history.begin(forward_circle(field, schedule.start + turn * step, -1))
-    k = turn
-    while history.follow(schedule.start + k * step, -1) is Status.CONVERGED:
+    last = history.states[-1]
+    penetration = _retraction_start(field, last)
+    history.begin(forward_circle(field, penetration, -1, last.mean_radius))
+    while history.follow(penetration, -1) is Status.CONVERGED:
         if history.states[-1].mean_radius < lowest:
             return history.record(Status.STEADY)
-        k -= 1
+        penetration -= step
     return history.record()
 
 
-def forward_circle(field: Field, penetration: float, direction: Direction) -> Array:
-    """A circle near the smooth contact's on which every site moves forward.
+def _retraction_start(field: Field, last: CycleState) -> float:
+    """Penetration at which a retraction comes to the radius of the last state of the approach.
+
+    The mean of w_loc is taken to lie in the middle between the branches, so that the retraction
+    begins outside rather than inside where it is in the upper half.
+    """
+    circle = np.full(n_angle(field), last.mean_radius)
+    mean = float(np.mean(front_adhesion(circle, field))) / WORK_OF_ADHESION
+    expected = max(mean + 0.8 * (mean - last.apparent_work_of_adhesion), 0.0)
+    return min(float(jkr.equilibrium_penetration(last.mean_radius, expected)), last.penetration)
+
+
+def forward_circle(field: Field, penetration: float, direction: Direction, near: float) -> Array:
+    """The first circle behind a radius on which every site moves forward.
 
     Parameters
     ----------
     field : Field
         Work of adhesion along the rays.
     penetration : float
-        Rigid body penetration, not negative. (Units: reduced vertical length)
+        Rigid body penetration. (Units: reduced vertical length)
     direction : {1, -1}
-        +1 in approach, -1 in retraction.
+        +1 in approach, where behind is inside, -1 in retraction.
+    near : float
+        Radius from which to look. (Units: reduced lateral length)
 
     Returns
     -------
@@ -162,11 +181,10 @@ def forward_circle(field: Field, penetration: float, direction: Direction) -> Ar
         compression, so that no front can rest inside; in retraction the end of the field.
         (Units: reduced lateral length)
     """
-    smooth = jkr.equilibrium_radius(penetration)
     furthest = last_radius(field)
     if direction > 0:
-        furthest = max(math.sqrt(penetration), first_radius(field))
-    for radius in np.linspace(smooth, furthest, _N_CIRCLE):
+        furthest = max(math.sqrt(max(penetration, 0.0)), first_radius(field))
+    for radius in np.linspace(near, furthest, _N_CIRCLE):
         circle = np.full(n_angle(field), radius)
         drive = front_adhesion(circle, field) - jkr.energy_release_rate(circle, penetration)
         if np.all(direction * drive > 0):

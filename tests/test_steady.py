@@ -93,7 +93,7 @@ def test_it_passes_the_same_radii_in_both_directions_and_not_many_more():
 
 def test_the_approach_ends_when_the_requested_error_is_met():
     found = {}
-    for error in (1e-6, 1.0, 3.0):
+    for error in (1e-6, 0.45, 1.0):
         record = run_simulation(simulation(schedule=replace(SCHEDULE, error=error))).record
         steady = (record.direction > 0) & (record.least_travel >= LENGTH)
         values, radius = record.apparent_work_of_adhesion[steady], record.mean_radius[steady]
@@ -101,8 +101,9 @@ def test_the_approach_ends_when_the_requested_error_is_met():
         before = standard_error(values[:-1], radius[:-1], LENGTH)
         found[error] = values.size
         if error > 1e-3:
-            assert reached <= error * 0.04 < before
-    assert found[3.0] <= found[1.0] < found[1e-6]
+            assert reached <= error * 0.04
+            assert values.size == 8 or before > error * 0.04
+    assert 8 == found[1.0] < found[0.45] < found[1e-6]
 
 
 def test_the_hysteresis_agrees_with_that_of_the_full_cycle_at_a_part_of_the_work():
@@ -124,7 +125,8 @@ def test_every_site_moves_forward_on_the_circle_of_the_start():
     field = field_of(simulation(0.01))
     for penetration in (0.0, 0.3, 1.0):
         for direction, nearby in ((1, 0.3), (-1, 1.7)):
-            circle = forward_circle(field, penetration, direction)
+            smooth = jkr.equilibrium_radius(penetration)
+            circle = forward_circle(field, penetration, direction, smooth)
             assert np.ptp(circle) == 0
             release = jkr.energy_release_rate(circle, penetration)
             assert np.all(direction * (front_adhesion(circle, field) - release) > 0)
@@ -137,9 +139,9 @@ def test_where_the_surface_repels_the_start_is_the_edge_in_compression():
     adhesion = np.full((60, 8), WORK_OF_ADHESION)
     adhesion[:, 3] = -0.1
     field = polar_field(radii, adhesion)
-    assert np.allclose(forward_circle(field, 0.81, 1), 0.9)
-    assert np.all(forward_circle(field, 0.0, 1) == 0.05)
-    assert np.all(forward_circle(polar_field(radii, 40 * adhesion), 0.0, -1) == 3.0)
+    assert np.allclose(forward_circle(field, 0.81, 1, 1.7), 0.9)
+    assert np.all(forward_circle(field, 0.0, 1, 1.4) == 0.05)
+    assert np.all(forward_circle(polar_field(radii, 40 * adhesion), 0.0, -1, 1.4) == 3.0)
 
 
 def test_contact_that_is_lost_on_the_way_back_is_told():
@@ -160,7 +162,7 @@ def test_states_closer_than_a_correlation_length_count_as_one():
     assert standard_error(values, radius, 0.1) == pytest.approx(spread / math.sqrt(6))
     assert standard_error(values, radius, 0.5) == pytest.approx(spread / math.sqrt(3))
     assert standard_error(values, radius[::-1], 0.5) == pytest.approx(spread / math.sqrt(3))
-    assert standard_error(values[:4], radius[:4], 0.1) == math.inf
+    assert standard_error(values[:2], radius[:2], 0.1) == math.inf
 
 
 def test_the_standard_error_covers_the_scatter_between_realisations():
