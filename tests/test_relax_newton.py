@@ -1,5 +1,9 @@
 """The fast solver finds the states of the reference, on fields that give it no reason to."""
 
+import os
+import subprocess
+import sys
+
 import numba
 import numpy as np
 import pytest
@@ -185,3 +189,29 @@ def test_the_fast_solver_stops_at_an_edge_in_compression():
     assert np.allclose(found.radius, 1.0, rtol=0, atol=1e-12)
     assert np.array_equal(found.radius, expected.radius)
     assert found.status is expected.status
+
+
+def test_the_number_of_threads_has_no_say():
+    # Libraries of linear algebra share vectors of more than 10000 numbers among threads.
+    program = (
+        "import hashlib, numpy as np\n"
+        "from crackfront.pinning import polar_field\n"
+        "from crackfront.relax import relax\n"
+        "rng = np.random.default_rng(1)\n"
+        "field = polar_field(np.arange(1.0, 2.6, 0.1),"
+        " (1 + 0.02 * rng.standard_normal((16, 10400))) / np.pi)\n"
+        "front = relax(np.full(10400, 1.6), 1.0, 1, field, tolerance=1e-6).radius\n"
+        "print(hashlib.sha256(front.tobytes()).hexdigest())\n"
+    )
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env=os.environ | {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads},
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=200,
+        ).stdout
+        for threads in ("1", "2")
+    }
+    assert len(found) == 1

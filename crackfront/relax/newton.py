@@ -8,7 +8,7 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from crackfront.compiled import jit
+from crackfront.compiled import jit, kernel
 from crackfront.relax.forces import (
     BLOCKED,
     CONVERGED,
@@ -63,6 +63,24 @@ def _precondition(vector, shift):
     return scipy.fft.irfft(modes, vector.size)
 
 
+@kernel
+def _inner_product(one, other):
+    """Sum of products in a fixed order: BLAS would use threads and give their number a say."""
+    sums = (0.0, 0.0, 0.0, 0.0)
+    whole = one.size - one.size % 4
+    for i in range(0, whole, 4):
+        sums = (
+            sums[0] + one[i] * other[i],
+            sums[1] + one[i + 1] * other[i + 1],
+            sums[2] + one[i + 2] * other[i + 2],
+            sums[3] + one[i + 3] * other[i + 3],
+        )
+    total = (sums[0] + sums[1]) + (sums[2] + sums[3])
+    for i in range(whole, one.size):
+        total += one[i] * other[i]
+    return total
+
+
 @jit
 def _solve(newton, right, shift, tolerance, limit):
     """Conjugate gradients for (K + D) step = right on the free sites, to a tolerance in each.
@@ -84,7 +102,7 @@ def _solve(newton, right, shift, tolerance, limit):
         if largest <= tolerance:
             return pairs, True
         descent = _precondition(residual, shift)
-        new = np.dot(residual, descent)
+        new = _inner_product(residual, descent)
         for i in range(step.size):
             search[i] = descent[i] + new / old * search[i] if free[i] else 0.0
             along[i] = residual[i] - shift * descent[i] + new / old * along[i]
