@@ -1,8 +1,8 @@
 """The steady parts of both branches alone, without the cycle around them.
 
-A branch begins at a circle on which every site moves forward, not at first contact or at pull-off.
-By no passing, a front that starts at a circle is the same as one that comes from further behind as
-soon as that one has passed the circle everywhere: the start is forgotten exactly.
+A branch begins at a circle that moves forward, not at first contact or far outside. By no passing,
+a front that starts at a circle is the same as one that comes from further behind as soon as that
+one has passed the circle everywhere: the start is forgotten exactly.
 """
 
 from __future__ import annotations
@@ -30,6 +30,13 @@ _FEWEST_TO_STOP = 8
 
 _N_CIRCLE = 64
 """Circles that are tried as a start."""
+
+_MARGIN = 1.5
+"""How many times the rms of w_loc a circle must be from rest to be a start.
+
+At 1 all fronts were already those from far behind (docs/model.md). That every single site should
+move forward would ask for a start hundreds of cutoffs away, where sites repel.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +91,7 @@ def run_steady(
 ) -> CycleRecord:
     """Approach and retraction over the radii that an estimate of the hysteresis needs.
 
-    Each branch begins at a circle on which every site moves forward. The approach goes on until
+    Each branch begins at a circle that moves forward. The approach goes on until
     w_appr has the requested standard error or the largest penetration is reached; the retraction
     from about its largest radius until it has left the radii over which the approach was steady.
 
@@ -126,8 +133,8 @@ def run_steady(
     )
     step = schedule.travel * correlation_length * _penetration_slope(schedule.start)
     n_step = math.floor((schedule.max_penetration - schedule.start) / step)
-    smooth = jkr.equilibrium_radius(schedule.start)
-    history.begin(forward_circle(field, schedule.start, 1, smooth))
+    near = jkr.equilibrium_radius(schedule.start) - correlation_length
+    history.begin(forward_circle(field, schedule.start, 1, near))
     for k in range(n_step + 1):
         if history.follow(schedule.start + k * step, 1) is not Status.CONVERGED:
             return history.record()
@@ -140,7 +147,8 @@ def run_steady(
     lowest = np.min(radius, initial=math.inf)
     last = history.states[-1]
     penetration = _retraction_start(field, last)
-    history.begin(forward_circle(field, penetration, -1, last.mean_radius))
+    near = last.mean_radius + correlation_length
+    history.begin(forward_circle(field, penetration, -1, near))
     while history.follow(penetration, -1) is Status.CONVERGED:
         if history.states[-1].mean_radius < lowest:
             return history.record(Status.STEADY)
@@ -161,7 +169,7 @@ def _retraction_start(field: Field, last: CycleState) -> float:
 
 
 def forward_circle(field: Field, penetration: float, direction: Direction, near: float) -> Array:
-    """The first circle behind a radius on which every site moves forward.
+    """The first circle behind a radius that moves forward even against 1.5 times the rms of w_loc.
 
     Parameters
     ----------
@@ -184,10 +192,13 @@ def forward_circle(field: Field, penetration: float, direction: Direction, near:
     furthest = last_radius(field)
     if direction > 0:
         furthest = max(math.sqrt(max(penetration, 0.0)), first_radius(field))
+    if direction * (furthest - near) > 0:
+        return np.full(n_angle(field), furthest)
     for radius in np.linspace(near, furthest, _N_CIRCLE):
         circle = np.full(n_angle(field), radius)
-        drive = front_adhesion(circle, field) - jkr.energy_release_rate(circle, penetration)
-        if np.all(direction * drive > 0):
+        adhesion = front_adhesion(circle, field)
+        drive = direction * (np.mean(adhesion) - jkr.energy_release_rate(radius, penetration))
+        if drive > _MARGIN * np.std(adhesion):
             return circle
     return np.full(n_angle(field), furthest)
 
