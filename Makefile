@@ -86,8 +86,9 @@ nightly: env  ## Run all tests, the slow ones too
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT)
 
-benchmark: env  ## Time the solvers against the reference (about 15 minutes)
+benchmark: env  ## Solvers against the reference, and time against error (about an hour)
 	$(IN_ENV) .venv/bin/python -m benchmarks --output results/benchmark
+	$(IN_ENV) .venv/bin/python -m benchmarks.hysteresis --output results/benchmark
 
 lint: env  ## Style, format, types, import floors, format of the rules
 	.venv/bin/ruff check

@@ -15,7 +15,7 @@ from crackfront.pinning.fields import (
     polar_field,
     tile_field,
 )
-from crackfront.pinning.pieces import blend, hull_until, peek_piece, steepest_inside
+from crackfront.pinning.pieces import blend, hull_until, peek_piece, polynomial, steepest_inside
 from crackfront.pinning.rays import (
     front_adhesion,
     front_products,
@@ -54,6 +54,7 @@ __all__ = [
     "n_angle",
     "peek_piece",
     "polar_field",
+    "polynomial",
     "sample_count",
     "sample_product",
     "sample_radius",

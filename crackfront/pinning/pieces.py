@@ -56,14 +56,29 @@ def differences(piece):
 
 
 @kernel(inline="always")
-def steepest_inside(piece, t, reach, direction):
-    """Largest of d (p(t) - p(t + d s)) / s over 0 < s <= reach in the direction d of motion.
+def polynomial(field, piece, width):
+    """Coefficients of a piece in the distance from its inner end."""
+    inverse = 1.0 / width
+    if is_cubic(field):
+        first, second, third = differences(piece)
+        return (
+            piece[0],
+            3 * first * inverse,
+            3 * second * inverse * inverse,
+            third * inverse * inverse * inverse,
+        )
+    return piece[0], (piece[3] - piece[0]) * inverse, 0.0, 0.0
+
+
+@kernel(inline="always")
+def steepest_inside(coefficients, position, reach, direction):
+    """Largest of d (p(x) - p(x + d s)) / s over 0 < s <= reach in the direction d of motion.
 
     Exact: the slope of a chord is a quadratic in s.
     """
-    first, second, third = differences(piece)
-    linear = -3 * (first + t * (2 * second + t * third))
-    quadratic = -3 * direction * (second + t * third)
+    _, first, second, third = coefficients
+    linear = -(first + position * (2 * second + 3 * position * third))
+    quadratic = -direction * (second + 3 * position * third)
     steepest = max(linear, linear + reach * (quadratic - reach * third))
     if third > 0.0:
         highest = 0.5 * quadratic / third

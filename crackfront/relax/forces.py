@@ -16,6 +16,7 @@ from crackfront.pinning import (
     hull_until,
     is_cubic,
     peek_piece,
+    polynomial,
     sample_count,
     sample_radius,
     segment_below,
@@ -134,11 +135,8 @@ def hardening(field, memory, ray, radius, product, segment, reach, penetration, 
     distance = outer - radius if direction > 0 else radius - inner
     piece = peek_piece(field, memory, ray, segment)
     cubic = is_cubic(field)
-    if cubic:
-        t, within = (radius - inner) * inverse, min(reach, distance) * inverse
-        steepest = steepest_inside(piece, t, within, direction) * inverse
-    else:
-        steepest = (piece[0] - piece[3]) * inverse
+    coefficients = polynomial(field, piece, outer - inner)
+    steepest = steepest_inside(coefficients, radius - inner, min(reach, distance), direction)
     segment += direction
     while distance < reach and 0 <= segment <= last:
         width = sample_radius(field, segment + 1) - sample_radius(field, segment)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from crackfront.compiled import jit
+from crackfront.compiled import jit, kernel
 from crackfront.line import self_stiffness
 from crackfront.pinning import (
-    blend,
     fetch,
     peek_piece,
+    polynomial,
     sample_count,
     sample_radius,
     segment_below,
@@ -19,6 +19,16 @@ from crackfront.relax.forces import CONVERGED, INWARD, LIMIT, OUTWARD, RING, lin
 from crackfront.units import WORK_OF_ADHESION
 
 _self_stiffness = jit(self_stiffness)
+
+
+@kernel
+def _enter(field, memory, ray, segment, pieces):
+    """Fill in the polynomial of the segment that a site comes to; return its ends."""
+    inner, outer = sample_radius(field, segment), sample_radius(field, segment + 1)
+    fetch(field, memory, ray, segment, segment + 1)
+    piece = polynomial(field, peek_piece(field, memory, ray, segment), outer - inner)
+    pieces[ray, 0], pieces[ray, 1], pieces[ray, 2], pieces[ray, 3] = piece
+    return inner, outer
 
 
 @jit
@@ -34,11 +44,10 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
     lowest = np.sqrt(max(penetration, 0.0))
     segment = np.empty(count, np.int64)
     inner, outer = np.empty(count), np.empty(count)
+    pieces = np.empty((count, 4))
     for i in range(count):
-        low = segment_below(field, radius[i], direction)
-        segment[i] = low
-        inner[i], outer[i] = sample_radius(field, low), sample_radius(field, low + 1)
-        fetch(field, memory, i, low, low + 1)
+        segment[i] = segment_below(field, radius[i], direction)
+        inner[i], outer[i] = _enter(field, memory, i, segment[i], pieces)
     drive = np.empty(count)
     residual = np.inf
     for sweep in range(1, max_sweeps + 1):
@@ -46,8 +55,8 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
         residual = 0.0
         for i in range(count):
             a = radius[i]
-            piece = peek_piece(field, memory, i, segment[i])
-            product = blend(piece, (a - inner[i]) / (outer[i] - inner[i]))
+            s = a - inner[i]
+            product = pieces[i, 0] + s * (pieces[i, 1] + s * (pieces[i, 2] + s * pieces[i, 3]))
             force = product - ring_force(a, penetration) - line[i]
             resting = direction < 0 and a <= lowest
             drive[i] = 0.0 if resting else max(direction * force, 0.0)
@@ -58,11 +67,9 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
             if drive[i] == 0.0:
                 continue
             a = radius[i]
-            width = outer[i] - inner[i]
-            piece = peek_piece(field, memory, i, segment[i])
             rest = outer[i] - a if direction > 0 else a - inner[i]
-            t = (a - inner[i]) / width
-            steepest = steepest_inside(piece, t, rest / width, direction) / width
+            piece = (pieces[i, 0], pieces[i, 1], pieces[i, 2], pieces[i, 3])
+            steepest = steepest_inside(piece, a - inner[i], rest, direction)
             # a G is convex: over the segment ahead its slope is largest at the outer end.
             furthest = outer[i] if direction > 0 else a
             hardening = 4 * RING * furthest * max(furthest * furthest - penetration, 0.0)
@@ -81,6 +88,5 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
             if low > last:
                 return OUTWARD, sweep, residual
             segment[i] = low
-            inner[i], outer[i] = sample_radius(field, low), sample_radius(field, low + 1)
-            fetch(field, memory, i, low, low + 1)
+            inner[i], outer[i] = _enter(field, memory, i, low, pieces)
     return LIMIT, max_sweeps, residual
