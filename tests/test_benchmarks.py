@@ -24,7 +24,7 @@ def test_the_smoke_benchmark_reports_equal_fronts(tmp_path):
 
 
 def test_the_error_of_the_hysteresis_falls_with_finer_numerics():
-    case = Case("small", 0.2, SelfAffineSpectrum(0.2, 0.2, 1.0), 20, 0.1, authors_seconds=50.0)
+    case = Case("small", 0.4, SelfAffineSpectrum(0.2, 0.2, 1.0), 20, 0.1, authors_seconds=50.0)
     settings = [Setting(n, 4, "cubic", 4, 1e-4) for n in (1.4, 2.8)]
     rows, finest = hysteresis.study(case, {"sites of the front": settings})
     assert rows[1].rms < rows[0].rms / 2 < 0.5
@@ -34,7 +34,7 @@ def test_the_error_of_the_hysteresis_falls_with_finer_numerics():
     assert f"| {50 / rows[1].seconds:.0f} times |" in table
     stored = hysteresis.dataset({"small": rows})
     assert np.array_equal(stored["rms"], [row.rms for row in rows])
-    assert hysteresis.work_precision(case, rows).axes[0].get_legend() is not None
+    assert len(hysteresis.work_precision(case, rows).legends) == 1
 
 
 def test_pixels_do_not_change_the_surface_of_a_case():
