@@ -80,6 +80,7 @@ class Setting:
 
 FINEST = Setting(8, 12, "cubic", 8, 1e-8)
 BASE = Setting(5, 8, "cubic", 6, 1e-7)
+FINE = Setting(3.6, 6, "cubic", 4, 1e-6)
 CHOSEN = Setting(2.2, 5, "cubic", 4, 1e-5)
 
 
@@ -139,7 +140,7 @@ CASES = (
     Case("flat-0.1", 0.1, _flat(0.02), 64, 0.1, authors_seconds=160.0),
     Case("h03", 2 * math.sqrt(0.05), SelfAffineSpectrum(0.005, 0.1, 0.3), 200, 0.03),
     Case(
-        "h08", 2 * math.sqrt(0.05), SelfAffineSpectrum(0.000625, 0.01, 0.8), 256, 0.004, finest=BASE
+        "h08", 2 * math.sqrt(0.05), SelfAffineSpectrum(0.000625, 0.01, 0.8), 256, 0.004, finest=FINE
     ),
 )
 
