@@ -34,8 +34,8 @@ _N_CIRCLE = 64
 _MARGIN = 1.5
 """How many times the rms of w_loc a circle must be from rest to be a start.
 
-At 1 all fronts were already those from far behind (docs/model.md). That every single site should
-move forward would ask for a start hundreds of cutoffs away, where sites repel.
+docs/model.md says how often fronts then differ from those that come from far behind. That every
+single site moves forward is not asked: where some repel, no circle with an open edge fulfils it.
 """
 
 
@@ -91,9 +91,9 @@ def run_steady(
 ) -> CycleRecord:
     """Approach and retraction over the radii that an estimate of the hysteresis needs.
 
-    Each branch begins at a circle that moves forward. The approach goes on until
-    w_appr has the requested standard error or the largest penetration is reached; the retraction
-    from about its largest radius until it has left the radii over which the approach was steady.
+    Each branch begins at the circle of `forward_circle`. The approach goes on until w_appr has the
+    requested standard error or the largest penetration is reached; the retraction from about its
+    largest radius until it has left the radii over which the approach was steady.
 
     Parameters
     ----------

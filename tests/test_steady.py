@@ -146,14 +146,16 @@ def test_where_the_surface_repels_the_start_is_the_edge_in_compression():
 
 
 def test_contact_that_is_lost_on_the_way_back_is_told():
-    radii = 0.01 * np.arange(1, 301)
-    # Adhesion falls off inside: the retraction cannot reach the radii of the approach.
-    strength = np.where(radii < 1.75, 0.02, 1.0)
-    field = polar_field(radii, WORK_OF_ADHESION * np.repeat(strength[:, None], 8, axis=1))
-    schedule = SteadySchedule(0.5, 1.4, 0.7, 1e-9)
-    record = run_steady(field, schedule, correlation_length=0.05, elastic_energy=0.01)
-    assert record.status in (Status.STEADY, Status.LOST_CONTACT)
-    assert 1.3 < record.penetration.max() <= 1.4
+    # Pinning so strong that the retraction loses contact at a radius above that of first contact.
+    radii = 0.002 * np.arange(1, 1501)
+    phase = np.random.default_rng(1).uniform(0, 2 * np.pi, 8)
+    strength = 1 + np.sin(2 * np.pi * radii[:, None] / 0.02 + phase)
+    field = polar_field(radii, WORK_OF_ADHESION * strength)
+    schedule = SteadySchedule(0.0, 1.0, 2.0, 1e-9)
+    record = run_steady(field, schedule, correlation_length=0.05, elastic_energy=0.25)
+    assert record.status is Status.LOST_CONTACT
+    assert record.mean_radius[0] < record.mean_radius[-1]
+    assert -1.8 < record.end_penetration < record.penetration[-1] < -1
 
 
 def test_states_closer_than_a_correlation_length_count_as_one():

@@ -83,7 +83,7 @@ def tile_contact(
         Largest penetration. (Units: reduced vertical length)
     n_angle : int, optional
         Sites of the front; by default one or more a pixel on the smooth contact's largest
-        circle, a product of 2, 3 and 5.
+        circle, an even product of 2, 3 and 5.
     samples_per_pixel : float, optional
         Samples along a ray per pixel, by default 2, or 4 where they are joined by straight pieces.
     interpolation : {"cubic", "linear"}, optional
