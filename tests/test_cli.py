@@ -90,6 +90,35 @@ def test_a_cycle_on_rays_has_one_site_an_angle_and_records_what_is_asked_for(rou
     assert np.all(dataset["dissipated_energy"] > -1e-12)
 
 
+@pytest.fixture
+def ring_file(tmp_path):
+    """File of rings, without an angle."""
+    radii = 0.01 * np.arange(1, 220)
+    values = WORK_OF_ADHESION * (1 + 0.2 * np.sin(2 * np.pi * radii / 0.1))
+    xr.Dataset({"work_of_adhesion": ("radius", values)}, coords={"radius": radii}).to_netcdf(
+        tmp_path / "F.nc"
+    )
+    return tmp_path / "F.nc"
+
+
+def test_a_cycle_on_rings_is_a_scalar_one_without_angles(ring_file, tmp_path):
+    result = cycle(ring_file, tmp_path, "--record", "energy")
+    assert result.exit_code == 0, result.output
+    dataset = xr.load_dataset(tmp_path / "out.nc")
+    assert set(dataset.dims) == {"step"}
+    assert np.all(dataset["rms_radius"] == 0)
+    assert dataset["dissipated_energy"].max() > 0.01
+    up, down = (dataset.isel(step=dataset["penetration"] == 0.5)["mean_radius"].values[:2]).tolist()
+    assert down > up + 0.01
+
+
+def test_fronts_of_rings_are_refused_as_they_are_circles(ring_file, tmp_path):
+    result = cycle(ring_file, tmp_path, "--record", "fronts")
+    assert result.exit_code == 2
+    assert "whose radius every record holds as mean_radius; leave it out" in result.stderr
+    assert not (tmp_path / "out.nc").exists()
+
+
 def test_the_command_of_the_issue_works_as_it_stands(rough_rays, tmp_path):
     command = (
         "cycle --field F.nc --max-penetration 1 --step 0.05 --tolerance 1e-8 --solver reference "

@@ -88,7 +88,7 @@ def test_a_penetration_that_never_makes_contact_is_refused(largest):
 
 
 @every_solver
-@pytest.mark.parametrize("n_angle", [5, 8, 23, 24])
+@pytest.mark.parametrize("n_angle", [1, 5, 8, 23, 24])
 def test_every_state_of_a_smooth_sphere_is_jkr(solver, n_angle):
     record = run_cycle(
         smooth_field(n_angle), LoadSchedule(1.0, 0.1), tolerance=1e-14, solver=solver
@@ -131,11 +131,15 @@ def test_a_smooth_sphere_has_no_hysteresis_after_the_jump(solver):
 # --- axisymmetric disorder
 
 
-def ring_hysteresis(period, n_per_period, solver):
+def rings(radii, ring, n_angle):
+    """Field that depends on the radius alone, on one ray or on many."""
+    return polar_field(radii, WORK_OF_ADHESION * np.repeat(ring[:, None], n_angle, axis=1))
+
+
+def ring_hysteresis(period, n_per_period, solver, n_angle=1):
     spacing = period / n_per_period
     radii = spacing * np.arange(1, int(2.05 / spacing))
-    ring = WORK_OF_ADHESION * (1 + 0.2 * np.sin(2 * np.pi * radii / period))
-    field = polar_field(radii, np.repeat(ring[:, None], 16, axis=1))
+    field = rings(radii, 1 + 0.2 * np.sin(2 * np.pi * radii / period), n_angle)
     record = run_cycle(field, LoadSchedule(1.2, 0.0025), solver=solver)
     window = (record.penetration > 0.3 - 1e-9) & (record.penetration < 0.7 + 1e-9)
     means = [
@@ -146,12 +150,15 @@ def ring_hysteresis(period, n_per_period, solver):
 
 
 @every_solver
+@pytest.mark.parametrize("n_angle", [1, 16])
 @pytest.mark.parametrize(
     ("period", "n_per_period", "hysteresis", "digits"),
     [(0.005, 128, 0.3886, 1e-4), (0.1, 256, 0.238, 1.5e-3)],
 )
-def test_rings_have_the_tabulated_hysteresis(solver, period, n_per_period, hysteresis, digits):
-    found = ring_hysteresis(period, n_per_period, solver)
+def test_rings_have_the_tabulated_hysteresis(
+    solver, period, n_per_period, hysteresis, digits, n_angle
+):
+    found = ring_hysteresis(period, n_per_period, solver, n_angle)
     assert found == pytest.approx(hysteresis, abs=digits)
 
 
@@ -162,12 +169,14 @@ def test_wide_rings_have_no_instability_and_no_hysteresis(solver):
 
 
 @every_solver
-def test_rings_follow_the_running_extrema_of_the_equilibrium_penetration(solver):
+@pytest.mark.parametrize("n_angle", [1, 16])
+def test_rings_follow_the_running_extrema_of_the_equilibrium_penetration(solver, n_angle):
     spacing, period = 0.0005, 0.1
     radii = spacing * np.arange(1, 4200)
     ring = 1 + 0.2 * np.sin(2 * np.pi * radii / period)
-    field = polar_field(radii, np.repeat(WORK_OF_ADHESION * ring[:, None], 16, axis=1))
-    record = run_cycle(field, LoadSchedule(1.0, 0.05), tolerance=1e-12, solver=solver)
+    record = run_cycle(
+        rings(radii, ring, n_angle), LoadSchedule(1.0, 0.05), tolerance=1e-12, solver=solver
+    )
     fine = np.linspace(0.5, 2.09, 400_001)
     # The field as sampled: linear in radius times adhesion.
     adhesion = np.interp(fine, radii, radii * ring) / fine
@@ -182,6 +191,30 @@ def test_rings_follow_the_running_extrema_of_the_equilibrium_penetration(solver)
         curve = outward if record.direction[row] > 0 else inward
         place = min(np.searchsorted(curve, load), curve.size - 1)
         assert record.mean_radius[row] == pytest.approx(fine[place], abs=1e-5)
+
+
+@every_solver
+@pytest.mark.parametrize("n_angle", [4, 16])
+def test_one_ray_of_rings_has_the_states_and_energies_of_many(solver, n_angle):
+    radii = 0.002 * np.arange(1, 1100)
+    ring = 1 + 0.3 * np.sin(2 * np.pi * radii / 0.1)
+    one, many = (
+        run_cycle(
+            rings(radii, ring, count),
+            LoadSchedule(1.0, 0.1),
+            tolerance=1e-13,
+            solver=solver,
+            record_energy=True,
+        )
+        for count in (1, n_angle)
+    )
+    assert one.status is Status.LOST_CONTACT
+    assert one.end_penetration == many.end_penetration
+    for name in ("mean_radius", "force", "apparent_work_of_adhesion", "dissipated_energy"):
+        assert np.allclose(getattr(one, name), getattr(many, name), rtol=0, atol=1e-11), name
+    assert one.pull_off_energy == pytest.approx(many.pull_off_energy, abs=1e-11)
+    assert one.dissipated_energy.max() > 0.01
+    assert np.all(one.rms_radius == 0)
 
 
 # --- what the record says

@@ -231,6 +231,15 @@ def test_rays_without_angles_are_taken_as_equally_spaced(tmp_path):
     assert samples.angles == pytest.approx(2 * np.pi * np.arange(8) / 8)
 
 
+@pytest.mark.parametrize("angles", ["none", "a position", "one"])
+def test_rings_are_read_as_one_ray(tmp_path, angles):
+    one = rays().isel(angle=slice(1) if angles == "one" else 0)
+    samples = read_back(tmp_path, one.drop_vars("angle") if angles == "none" else one)
+    assert np.array_equal(samples.field.radii, rays().radius)
+    assert np.array_equal(samples.field.products, (rays().radius * rays()[:, :1]).values.T)
+    assert np.array_equal(samples.angles, [0.0])
+
+
 UNUSABLE = {
     "other name": (tile().rename("w"), "has no variable work_of_adhesion (it has: w); name"),
     "other dims": (tile().rename(y="z"), "float64 of (x, z); it must be numbers of (x, y) or of"),

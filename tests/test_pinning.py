@@ -106,15 +106,35 @@ def test_radii_that_do_not_increase_are_refused(radii):
         polar_field(np.array(radii), np.ones((3, 8)))
 
 
-@pytest.mark.parametrize("shape", [(4, 8), (8, 3), (3,), (3, 8, 1)])
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+@pytest.mark.parametrize("innermost", [0.0, 0.1])
+def test_rings_are_one_ray_of_the_same_samples_and_slopes(interpolation, innermost, rng):
+    radii = innermost + 0.1 * np.arange(20)
+    rings = WORK_OF_ADHESION * rng.uniform(0.5, 1.5, 20)
+    one = polar_field(radii, rings, interpolation)
+    many = polar_field(radii, np.repeat(rings[:, None], 8, axis=1), interpolation)
+    assert pinning.n_angle(one) == 1
+    assert np.array_equal(one.radii, many.radii)
+    for found, expected in ((one.products, many.products), (one.slopes, many.slopes)):
+        assert np.array_equal(found, expected[:1])
+        assert found.flags.c_contiguous
+
+
+def test_a_value_on_rings_that_is_not_finite_is_named_by_its_radius():
+    with pytest.raises(ValueError, match=r"is nan at radius index 2 \(1 such values\)"):
+        polar_field(np.array([0.1, 0.2, 0.3]), np.array([1.0, 1.0, np.nan]))
+
+
+@pytest.mark.parametrize("shape", [(4, 8), (8, 3), (4,), (3, 8, 1), ()])
 def test_a_field_of_another_shape_is_refused(shape):
     with pytest.raises(ValueError, match=r"has shape .* for 3 radii; it must be \(radius, angle\)"):
         polar_field(np.array([0.1, 0.2, 0.3]), np.ones(shape))
 
 
-@pytest.mark.parametrize(("n_sample", "n_angle"), [(1, 8), (4, 3)])
+@pytest.mark.parametrize(("n_sample", "n_angle"), [(1, 8), (4, 2), (4, 3), (1, 1)])
 def test_a_field_with_too_few_samples_or_angles_is_refused(n_sample, n_angle):
-    with pytest.raises(ValueError, match="at least 2 radii and 4 angles are needed"):
+    sentence = "at least 2 radii and 4 angles are needed, or 1 angle for rings"
+    with pytest.raises(ValueError, match=sentence):
         polar_field(0.1 * np.arange(1, n_sample + 1), np.ones((n_sample, n_angle)))
 
 

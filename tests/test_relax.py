@@ -104,7 +104,7 @@ def noisy_tile(seed, n_point=24, pixel=0.12, amplitude=0.3):
 
 
 @every_solver
-@pytest.mark.parametrize("n_angle", [4, 5, 7, 8, 13, 31, 32])
+@pytest.mark.parametrize("n_angle", [1, 4, 5, 7, 8, 13, 31, 32])
 def test_a_smooth_sphere_has_the_jkr_radius_for_any_number_of_sites(solver, n_angle):
     radii = 0.05 * np.arange(1, 51)
     field = polar_field(radii, np.full((50, n_angle), WORK_OF_ADHESION))
@@ -182,7 +182,7 @@ def first_stop(radii, products, start, penetration, direction):
 
 
 @every_solver
-@pytest.mark.parametrize("n_angle", [8, 33])
+@pytest.mark.parametrize("n_angle", [1, 8, 33])
 @pytest.mark.parametrize("direction", [1, -1])
 def test_rings_stop_the_front_at_the_first_root_of_the_scalar_equation(solver, direction, n_angle):
     radii = 0.02 * np.arange(1, 126)

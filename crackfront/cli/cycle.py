@@ -77,8 +77,9 @@ def cycle(
     """Run one approach and retraction on a field from a file.
 
     The field is a periodic tile work_of_adhesion(x, y), whose centre is the apex of the sphere,
-    or samples work_of_adhesion(radius, angle), whose angles are the sites of the front. All
-    quantities are in reduced units: R = 1, w_int = 1/pi, E' = 3/4.
+    or samples work_of_adhesion(radius, angle), whose angles are the sites of the front. On rings,
+    work_of_adhesion(radius), the front is a circle and the problem scalar. All quantities are in
+    reduced units: R = 1, w_int = 1/pi, E' = 3/4.
 
     The exit code is 0 where the cycle ended by losing contact and 1 where it ended early; the
     output is written in both cases. It is 2 where the input cannot be used.
@@ -86,6 +87,7 @@ def cycle(
     from crackfront.adhesion import AdhesionMap
     from crackfront.cycle import LoadSchedule, run_cycle
     from crackfront.dataset import read_field, write_cycle
+    from crackfront.pinning import n_angle
     from crackfront.provenance import provenance
     from crackfront.relax import Status
     from crackfront.scene import tile_contact
@@ -102,6 +104,11 @@ def cycle(
     else:
         raise ValueError(
             "--angles and --samples-per-pixel are for tiles; a polar field brings its own samples"
+        )
+    if "fronts" in record and n_angle(field) == 1:
+        raise ValueError(
+            "--record fronts: on rings the front is a circle, whose radius every record holds as "
+            "mean_radius; leave it out"
         )
     announce_compilation()
     outcome = run_cycle(

@@ -43,7 +43,7 @@ def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionM
     The variable `work_of_adhesion` is in reduced units, in which w_int is 1/pi. Its dimensions
     are x and y (equal and uniform spacing, coordinates needed; the sphere's apex is the tile's
     centre, half a side from the first point) or radius and angle (radius as a coordinate; angles
-    equally spaced in rad), in any order.
+    equally spaced in rad), in any order. On rings it is the radius alone.
 
     Parameters
     ----------
@@ -65,10 +65,11 @@ def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionM
         )
     values = dataset[NAME]
     dims = {str(name) for name in values.dims}
-    if dims not in ({"x", "y"}, {"radius", "angle"}) or not np.issubdtype(values.dtype, np.number):
+    known = dims in ({"x", "y"}, {"radius", "angle"}, {"radius"})
+    if not known or not np.issubdtype(values.dtype, np.number):
         raise UnreadableFileError(
             f"{path}: {NAME} is {values.dtype} of ({', '.join(map(str, values.dims))}); it must be "
-            "numbers of (x, y) or of (radius, angle)"
+            "numbers of (x, y) or of (radius, angle), or of (radius) for rings"
         )
     return _tile(path, values) if "x" in dims else _rays(path, values, interpolation)
 
@@ -108,9 +109,11 @@ def _rays(path: Path, values: xr.DataArray, interpolation: Interpolation) -> Pol
     """Field of samples on rays."""
     if "radius" not in values.coords:
         raise UnreadableFileError(f"{path}: {NAME} has no coordinate radius; give the radii")
+    if "angle" not in values.dims:
+        values = values.expand_dims("angle")
     count = values.sizes["angle"]
     angles = 2 * np.pi * np.arange(count) / count
-    if "angle" in values.coords:
+    if "angle" in values.coords and count > 1:
         angles = np.asarray(values["angle"], dtype=float)
         steps = np.diff(angles) * count / (2 * np.pi)
         if not np.all(np.abs(np.abs(steps) - 1) <= TOLERANCE) or np.ptp(np.sign(steps)) > 0:

@@ -95,8 +95,9 @@ def polar_field(
     radii : (n_sample,) array
         Increasing radii. A leading zero is dropped: the product vanishes there.
         (Units: reduced lateral length)
-    work_of_adhesion : (n_sample, n_angle) array
-        Local work of adhesion. (Units: reduced energy / area, w_int = 1/pi)
+    work_of_adhesion : (n_sample, n_angle) or (n_sample,) array
+        Local work of adhesion; on rings, where it depends on the radius alone, one ray is enough.
+        (Units: reduced energy / area, w_int = 1/pi)
     interpolation : {"linear", "cubic"}, optional
         How radius times work of adhesion goes on between the samples of a ray: straight, or as a
         cubic spline through all of them.
@@ -104,33 +105,34 @@ def polar_field(
     Returns
     -------
     PolarField
-        Field whose front has `n_angle` sites.
+        Field whose front has `n_angle` sites; a single one is a circle, without line elasticity.
 
     Raises
     ------
     ValueError
-        If shapes disagree, radii do not increase or are negative, fewer than two samples or
-        fewer than four angles are given, a value is not finite, or the interpolation is unknown.
+        If shapes disagree, radii do not increase or are negative, fewer than two samples, or two
+        or three angles are given, a value is not finite, or the interpolation is unknown.
     """
     _refuse_unknown(interpolation)
     radii = np.asarray(radii, dtype=float)
     values = np.asarray(work_of_adhesion, dtype=float)
-    if radii.ndim != 1 or values.ndim != 2 or values.shape[0] != radii.size:
+    if radii.ndim != 1 or values.ndim not in (1, 2) or values.shape[0] != radii.size:
         raise ValueError(
             f"work of adhesion has shape {values.shape} for {radii.size} radii; it must be "
-            "(radius, angle)"
+            "(radius, angle), or (radius) for rings"
         )
     if not np.all(np.isfinite(radii)) or np.any(np.diff(radii) <= 0) or np.any(radii < 0):
         raise ValueError("radii must be finite, not negative and strictly increasing; sort them")
-    _refuse_unusable(values, names=("radius", "angle"))
+    _refuse_unusable(values, names=("radius", "angle")[: values.ndim])
+    rays = np.atleast_2d(values.T)
     if radii[0] == 0:
-        radii, values = radii[1:], values[1:]
-    if radii.size < 2 or values.shape[1] < 4:
+        radii, rays = radii[1:], rays[:, 1:]
+    if radii.size < 2 or len(rays) in (0, 2, 3):
         raise ValueError(
-            f"field has {radii.size} positive radii and {values.shape[1]} angles; at least 2 "
-            "radii and 4 angles are needed"
+            f"field has {radii.size} positive radii and {len(rays)} angles; at least 2 radii and "
+            "4 angles are needed, or 1 angle for rings"
         )
-    products = np.ascontiguousarray((radii[:, None] * values).T)
+    products = np.ascontiguousarray(radii * rays)
     slopes = np.empty((0, 0))
     if interpolation == "cubic":
         slopes = np.ascontiguousarray(CubicSpline(radii, products, axis=1)(radii, 1))
@@ -223,7 +225,7 @@ def _refuse_unknown(interpolation: str) -> None:
         raise ValueError(f"interpolation is {interpolation!r}; choose one of {known}")
 
 
-def _refuse_unusable(values: Array, names: tuple[str, str]) -> None:
+def _refuse_unusable(values: Array, names: tuple[str, ...]) -> None:
     """Raise if a field holds NaN or infinity, or nothing but zeros."""
     bad = np.argwhere(~np.isfinite(values))
     if bad.size:
