@@ -48,12 +48,16 @@ def front_stress_intensity(heights: Array, pixel: float, modulus: float = CONTAC
     n_x, n_y = heights.shape
     along_x = 2 * np.pi * fftfreq(n_x, pixel)[:, None]
     along_y = 2 * np.pi * rfftfreq(n_y, pixel)[None, :]
-    kernel = np.sqrt(1j * along_x + np.abs(along_y))
+    # In place: memory is largest here, and every copy is one more tile.
+    kernel = 1j * along_x + np.abs(along_y)
+    np.sqrt(kernel, out=kernel)
     if n_x % 2 == 0:
         # The Nyquist mode stands for both signs of q_x: take their mean, which is real.
         kernel[n_x // 2] = kernel[n_x // 2].real
     kernel[0, 0] = 0.0
-    return np.asarray(irfft2(-modulus / np.sqrt(2) * kernel * rfft2(heights), s=(n_x, n_y)))
+    kernel *= -modulus / np.sqrt(2)
+    kernel *= rfft2(heights)
+    return np.asarray(irfft2(kernel, s=(n_x, n_y)))
 
 
 def half_derivative_mean_square(heights: Array, pixel: float) -> float:
@@ -72,8 +76,10 @@ def half_derivative_mean_square(heights: Array, pixel: float) -> float:
         Mean square. (Units: length)
     """
     n_x, n_y = heights.shape
-    wavevector = 2 * np.pi * np.hypot(fftfreq(n_x, pixel)[:, None], fftfreq(n_y, pixel)[None, :])
-    return float(np.sum(wavevector * np.abs(fft2(heights, norm="forward")) ** 2))
+    power = np.abs(fft2(heights, norm="forward"))
+    power **= 2
+    power *= 2 * np.pi * np.hypot(fftfreq(n_x, pixel)[:, None], fftfreq(n_y, pixel)[None, :])
+    return float(np.sum(power))
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,13 +143,11 @@ def rough_adhesion(heights: Array, pixel: float) -> AdhesionMap:
             "w_int, so lower the roughness"
         )
     coupling = np.sqrt(2 * WORK_OF_ADHESION / CONTACT_MODULUS)
-    fluctuation = -coupling * front_stress_intensity(heights, pixel)
-    return AdhesionMap(
-        work_of_adhesion=WORK_OF_ADHESION - energy + fluctuation,
-        pixel=pixel,
-        elastic_energy=relative,
-        rms=float(np.sqrt(np.mean(fluctuation**2)) / WORK_OF_ADHESION),
-    )
+    adhesion = front_stress_intensity(heights, pixel)
+    adhesion *= -coupling
+    rms = float(np.sqrt(np.mean(adhesion**2)) / WORK_OF_ADHESION)
+    adhesion += WORK_OF_ADHESION - energy
+    return AdhesionMap(adhesion, pixel, elastic_energy=relative, rms=rms)
 
 
 def chemical_adhesion(fluctuation: Array, pixel: float) -> AdhesionMap:

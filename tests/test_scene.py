@@ -1,18 +1,21 @@
 """One simulation of a sweep: its sizes, its seed, its key, its field and its result."""
 
+import tracemalloc
+import weakref
 from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 from crackfront import jkr
-from crackfront.cycle import LoadSchedule
+from crackfront.cycle import LoadSchedule, run_cycle
 from crackfront.pinning import last_radius
 from crackfront.relax import Status
 from crackfront.scene import (
     Numerics,
     Resolution,
     Simulation,
+    compile_solver,
     contact_field,
     correlation_length,
     resolution,
@@ -222,3 +225,35 @@ def test_weak_disorder_is_expected_to_take_longest():
     assert weak.expected_cost > SIMULATION.expected_cost
     finer = replace(SIMULATION, resolution=replace(SIMULATION.resolution, n_angle=128))
     assert finer.expected_cost > weak.expected_cost
+
+
+@pytest.mark.parametrize("kind", ["roughness", "chemical"])
+def test_a_tile_is_made_in_the_memory_of_four(kind):
+    n_point = 320
+    fine = replace(SIMULATION.resolution, n_point=n_point)
+    tracemalloc.start()
+    try:
+        simulation_adhesion(replace(SIMULATION, kind=kind, resolution=fine))
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 4.1 * 8 * n_point**2
+
+
+def test_a_run_holds_no_tile_beside_its_splines(monkeypatch):
+    tiles = []
+
+    def remembered(simulation):
+        adhesion = simulation_adhesion(simulation)
+        tiles.append(weakref.ref(adhesion.work_of_adhesion))
+        return adhesion
+
+    def looked_at(*arguments, **options):
+        tiles.append(tiles[0]())
+        return run_cycle(*arguments, **options)
+
+    compile_solver(SIMULATION.solver)
+    monkeypatch.setattr("crackfront.scene.run.simulation_adhesion", remembered)
+    monkeypatch.setattr("crackfront.scene.run.run_cycle", looked_at)
+    run_simulation(SIMULATION)
+    assert tiles[1] is None

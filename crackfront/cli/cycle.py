@@ -11,6 +11,9 @@ import click
 from crackfront.cli.report import FILE, announce_compilation
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from crackfront.cycle import CycleState
     from crackfront.pinning import Field, Interpolation
 
@@ -84,27 +87,16 @@ def cycle(
     The exit code is 0 where the cycle ended by losing contact and 1 where it ended early; the
     output is written in both cases. It is 2 where the input cannot be used.
     """
-    from crackfront.adhesion import AdhesionMap
     from crackfront.cycle import LoadSchedule, run_cycle
-    from crackfront.dataset import read_field, write_cycle
+    from crackfront.dataset import write_cycle
     from crackfront.pinning import n_angle
     from crackfront.provenance import provenance
     from crackfront.relax import Status
-    from crackfront.scene import tile_contact
 
     schedule = LoadSchedule(max_penetration, step)
-    given = read_field(field_file, interpolation or "linear")
-    field: Field
-    if isinstance(given, AdhesionMap):
-        pieces = interpolation or "cubic"
-        field = tile_contact(given, max_penetration, angles, samples_per_pixel, pieces)
-        directions = None
-    elif angles is None and samples_per_pixel is None:
-        field, directions = given.field, given.angles
-    else:
-        raise ValueError(
-            "--angles and --samples-per-pixel are for tiles; a polar field brings its own samples"
-        )
+    field, directions = _contact(
+        field_file, max_penetration, angles, samples_per_pixel, interpolation
+    )
     if "fronts" in record and n_angle(field) == 1:
         raise ValueError(
             "--record fronts: on rings the front is a circle, whose radius every record holds as "
@@ -128,6 +120,29 @@ def cycle(
             f"at penetration {outcome.end_penetration:.6g} {outcome.status.value}"
         )
     click.echo(f"contact was lost at penetration {outcome.end_penetration:.6g}")
+
+
+def _contact(
+    path: Path,
+    max_penetration: float,
+    angles: int | None,
+    samples_per_pixel: float | None,
+    interpolation: Interpolation | None,
+) -> tuple[Field, NDArray[np.float64] | None]:
+    """Field of a file, and the angles of its rays; a tile is kept as its splines alone."""
+    from crackfront.adhesion import AdhesionMap
+    from crackfront.dataset import read_field
+    from crackfront.scene import tile_contact
+
+    given = read_field(path, interpolation or "linear")
+    if isinstance(given, AdhesionMap):
+        pieces = interpolation or "cubic"
+        return tile_contact(given, max_penetration, angles, samples_per_pixel, pieces), None
+    if angles is None and samples_per_pixel is None:
+        return given.field, given.angles
+    raise ValueError(
+        "--angles and --samples-per-pixel are for tiles; a polar field brings its own samples"
+    )
 
 
 def _report(state: CycleState) -> None:

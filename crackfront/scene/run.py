@@ -73,6 +73,9 @@ def run_simulation(simulation: Simulation) -> SimulationResult:
         simulation.resolution.interpolation,
         band_limited=True,
     )
+    elastic_energy, rms = adhesion.elastic_energy, adhesion.rms
+    # The run holds the splines alone, not the tile as well.
+    del adhesion
     if isinstance(simulation.schedule, LoadSchedule):
         run = functools.partial(run_cycle, schedule=simulation.schedule)
     else:
@@ -93,8 +96,8 @@ def run_simulation(simulation: Simulation) -> SimulationResult:
     return SimulationResult(
         simulation=simulation,
         record=record,
-        elastic_energy=adhesion.elastic_energy,
-        work_of_adhesion_rms=adhesion.rms,
+        elastic_energy=elastic_energy,
+        work_of_adhesion_rms=rms,
         seconds=time.perf_counter() - wall,
         cpu_seconds=time.process_time() - cpu,
         peak_memory=_peak_memory(),
