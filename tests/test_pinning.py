@@ -1,3 +1,5 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -118,6 +120,17 @@ def test_rings_are_one_ray_of_the_same_samples_and_slopes(interpolation, innermo
     for found, expected in ((one.products, many.products), (one.slopes, many.slopes)):
         assert np.array_equal(found, expected[:1])
         assert found.flags.c_contiguous
+
+
+def test_a_cubic_field_on_rays_takes_hardly_more_memory_to_make_than_to_hold():
+    radii, adhesion = 0.001 * np.arange(1, 2001), np.ones((2000, 64))
+    tracemalloc.start()
+    try:
+        field = polar_field(radii, adhesion, "cubic")
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 1.3 * (field.products.nbytes + field.slopes.nbytes)
 
 
 def test_a_value_on_rings_that_is_not_finite_is_named_by_its_radius():

@@ -135,7 +135,10 @@ def polar_field(
     products = np.ascontiguousarray(radii * rays)
     slopes = np.empty((0, 0))
     if interpolation == "cubic":
-        slopes = np.ascontiguousarray(CubicSpline(radii, products, axis=1)(radii, 1))
+        # Ray by ray: the coefficients of all rays at once take seven times the memory.
+        slopes = np.empty_like(products)
+        for slope, product in zip(slopes, products, strict=True):
+            slope[:] = CubicSpline(radii, product)(radii, 1)
     return PolarField(radii.copy(), products, slopes)
 
 

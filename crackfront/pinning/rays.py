@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from crackfront.compiled import jit
 from crackfront.pinning.fields import Field, PolarField, TileField
-from crackfront.pinning.pieces import blend, evaluate_piece
+from crackfront.pinning.pieces import blend, evaluate_piece, ordinates
 from crackfront.pinning.samples import evaluate, sample_count, sample_radius
 
 Array = NDArray[np.float64]
@@ -59,15 +59,19 @@ def front_adhesion(radius: Array, field: Field) -> Array:
 @jit
 def _ray_adhesion(field, ray, inner, outer):
     """Integral of the product along a ray, by Simpson's rule, which is exact for its pieces."""
+    if inner >= outer:
+        return 0.0
     total, low, position = 0.0, segment_below(field, inner, 1), inner
+    start = evaluate(field, ray, low)
     while position < outer:
         left, right = sample_radius(field, low), sample_radius(field, low + 1)
-        piece = evaluate_piece(field, ray, low)
+        end = evaluate(field, ray, low + 1)
+        piece = ordinates(field, low, start, end)
         stop = min(right, outer)
         first, last = (position - left) / (right - left), (stop - left) / (right - left)
         values = blend(piece, first) + 4 * blend(piece, 0.5 * (first + last)) + blend(piece, last)
         total += values / 6 * (stop - position)
-        position, low = stop, low + 1
+        position, low, start = stop, low + 1, end
     return total
 
 
