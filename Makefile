@@ -86,9 +86,10 @@ nightly: env  ## Run all tests, the slow ones too
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT)
 
-benchmark: env  ## Solvers against the reference, and time against error (about an hour)
+benchmark: env  ## Solvers, time against error, what each request costs (about an hour)
 	$(IN_ENV) .venv/bin/python -m benchmarks --output results/benchmark
 	$(IN_ENV) .venv/bin/python -m benchmarks.hysteresis --output results/benchmark
+	$(IN_ENV) .venv/bin/python -m benchmarks.needs --output results/benchmark
 
 lint: env  ## Style, format, types, import floors, format of the rules
 	.venv/bin/ruff check
