@@ -32,7 +32,7 @@ READY    = .venv/.ready-$(MPI)
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test nightly benchmark lint lock clean help
+.PHONY: all env test nightly accuracy benchmark lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP)
@@ -86,10 +86,13 @@ nightly: env  ## Run all tests, the slow ones too
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT)
 
-benchmark: env  ## Solvers, time against error, what each request costs (about an hour)
+benchmark: env  ## Solvers against the reference, what each request costs (half an hour)
 	$(IN_ENV) .venv/bin/python -m benchmarks --output results/benchmark
-	$(IN_ENV) .venv/bin/python -m benchmarks.hysteresis --output results/benchmark
 	$(IN_ENV) .venv/bin/python -m benchmarks.needs --output results/benchmark
+
+accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half an hour)
+	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default accuracy
+	@echo "Results: results/accuracy/"
 
 lint: env  ## Style, format, types, import floors, format of the rules
 	.venv/bin/ruff check

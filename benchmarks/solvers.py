@@ -34,6 +34,8 @@ class Row:
         CPU time of the cycle, the least of the repeats. (Units: s)
     reference_pairs, newton_pairs : int
         Pairs of FFTs.
+    reference_updates, newton_updates : int
+        Updates of single sites.
     error : float
         Largest difference of the fronts over all states, relative to the short cutoff.
     memory : float
@@ -48,6 +50,8 @@ class Row:
     newton_seconds: float
     reference_pairs: int
     newton_pairs: int
+    reference_updates: int
+    newton_updates: int
     error: float
     memory: float
 
@@ -89,6 +93,8 @@ def measure(problem: Problem, seed: int, repeats: int) -> Row:
         newton_seconds=min(run["newton"][0] for run in runs),
         reference_pairs=int(reference.iterations.sum()),
         newton_pairs=int(newton.iterations.sum()),
+        reference_updates=int(reference.updates.sum()),
+        newton_updates=int(newton.updates.sum()),
         error=float(np.max(np.abs(newton.radius - reference.radius)))
         / problem.spectrum.short_cutoff,
         memory=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
@@ -98,13 +104,14 @@ def measure(problem: Problem, seed: int, repeats: int) -> Row:
 def table(rows: Iterable[Row]) -> str:
     """Markdown table of rows."""
     lines = [
-        "| problem | reference s | newton s | ratio | FFT pairs | newton ns/visit "
-        "| error / lambda_s | MB |",
-        "|---|---|---|---|---|---|---|---|",
+        "| problem | reference s | newton s | ratio | FFT pairs | updates/visit "
+        "| newton ns/visit | error / lambda_s | MB |",
+        "|---|---|---|---|---|---|---|---|---|",
     ]
     lines += [
         f"| {row.label} | {row.reference_seconds:.2f} | {row.newton_seconds:.2f} | {row.ratio:.1f} "
         f"| {row.reference_pairs} / {row.newton_pairs} "
+        f"| {row.reference_updates / row.n_visit:.1f} / {row.newton_updates / row.n_visit:.1f} "
         f"| {1e9 * row.newton_seconds / row.n_visit:.0f} | {row.error:.1e} | {row.memory:.0f} |"
         for row in rows
     ]
@@ -171,6 +178,8 @@ def dataset(rows: list[Row]) -> xr.Dataset:
         "newton_seconds": ("s", "CPU time of the fast solver"),
         "reference_pairs": ("1", "pairs of FFTs of the reference"),
         "newton_pairs": ("1", "pairs of FFTs of the fast solver"),
+        "reference_updates": ("1", "updates of single sites of the reference"),
+        "newton_updates": ("1", "updates of single sites of the fast solver"),
         "error": ("short cutoff", "largest difference of the fronts"),
         "memory": ("MB", "largest resident memory of the problem's process"),
     }

@@ -114,6 +114,8 @@ class CycleRecord:
         (Units: reduced lateral length)
     iterations : (n_step,) int array
         Sweeps of the solver.
+    updates : (n_step,) int array
+        Updates of single sites.
     residual : (n_step,) array
         Largest force along the motion that is left, relative to w_int per front length.
     dissipated_energy : (n_step,) array or None
@@ -140,6 +142,7 @@ class CycleRecord:
     apparent_work_of_adhesion: Array
     least_travel: Array
     iterations: NDArray[np.int64]
+    updates: NDArray[np.int64]
     residual: Array
     dissipated_energy: Array | None = None
     pull_off_energy: float | None = None
@@ -161,6 +164,7 @@ class CycleState:
     apparent_work_of_adhesion: float
     least_travel: float
     iterations: int
+    updates: int
     residual: float
 
 
@@ -381,6 +385,7 @@ def _measure(
         apparent_work_of_adhesion=float(np.mean(release) / np.mean(front) / WORK_OF_ADHESION),
         least_travel=float(np.min(np.abs(front - turn))),
         iterations=outcome.sweeps,
+        updates=outcome.updates,
         residual=outcome.residual,
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -120,7 +121,16 @@ class Store:
         ------
         tuple
             Simulation and how it ended, in the order in which they end.
+
+        Raises
+        ------
+        OSError
+            If nothing can be written in the folder, before anything is run.
         """
+        curves = self.folder / "curves"
+        curves.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=curves):
+            pass
         longest_first = sorted(simulations, key=lambda item: item.expected_cost, reverse=True)
         tasks = [Task(item, self.path(item), origin) for item in longest_first]
         for solver in {item.solver for item in simulations}:

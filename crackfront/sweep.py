@@ -7,6 +7,7 @@ import hashlib
 from dataclasses import dataclass
 
 from crackfront.cycle import LoadSchedule
+from crackfront.laws import chosen_numerics
 from crackfront.scene import FieldKind, Numerics, Simulation, correlation_length, resolution
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.steady import SteadySchedule
@@ -66,6 +67,9 @@ class Sweep:
         Realisations of the noise for every spectrum.
     numerics : Numerics
         Resolution and solver.
+    numerical_error : float or None
+        Standard error of k that the numerics may leave. Where it is given, it decides the
+        resolution and the tolerance for every spectrum and amplitude.
     schedule : LoadSchedule or SteadySchedule
         Penetrations to visit: full cycles, or the steady parts of their branches.
     record_fronts, record_energy : bool
@@ -81,6 +85,7 @@ class Sweep:
     elastic_energies: tuple[float, ...]
     n_realisation: int
     numerics: Numerics
+    numerical_error: float | None
     schedule: LoadSchedule | SteadySchedule
     record_fronts: bool
     record_energy: bool
@@ -106,9 +111,17 @@ class Sweep:
         """Wavelength of the mean wavevector of w_loc, in reduced lateral lengths."""
         return correlation_length(self.kind, item.spectrum)
 
+    def numerics_of(self, item: NamedSpectrum, energy: float) -> Numerics:
+        """Numerics of one spectrum and amplitude."""
+        if self.numerical_error is None:
+            return self.numerics
+        return chosen_numerics(
+            self.numerical_error, self.kind, item.spectrum, energy, self.numerics
+        )
+
     def simulation(self, item: NamedSpectrum, energy: float, realisation: int) -> Simulation:
         """One simulation of the sweep."""
-        numerics = self.numerics
+        numerics = self.numerics_of(item, energy)
         return Simulation(
             spectrum_name=item.name,
             kind=self.kind,

@@ -242,8 +242,11 @@ def test_simulations_without_a_value_are_counted(tmp_path):
     assert "has a value" in refused("fit", limited, "--output", tmp_path)
 
 
-def test_simulations_that_cannot_be_stored_are_told_and_give_exit_code_one(tmp_path):
-    (tmp_path / "curves").write_text("a file where the folder should be")
+def test_simulations_that_cannot_be_stored_are_told_and_give_exit_code_one(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr("crackfront.store.write_simulation", full)
     result = run("simulate", TEST, "--output", tmp_path)
     assert result.exit_code == 1
     assert "8 of 8 simulations could not be run or stored, the first is flat" in result.stderr
@@ -288,3 +291,11 @@ def test_help_imports_nothing_heavy():
         "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_an_output_that_cannot_be_written_is_refused_with_its_path(tmp_path):
+    obstacle = tmp_path / "file"
+    obstacle.write_text("no folder")
+    sentence = refused("simulate", TEST, "--output", obstacle / "results")
+    assert str(obstacle) in sentence
+    assert "cannot be used: Not a directory; check the path and its permissions" in sentence

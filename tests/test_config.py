@@ -117,6 +117,53 @@ def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
     assert metres.scales == scales
 
 
+def asking(error):
+    """The good text with an error in the place of all that it decides."""
+    start, end = GOOD.index("  angles_per_cutoff"), GOOD.index("  tile:")
+    text = GOOD[:start] + f"  error: {error}\n" + GOOD[end:]
+    return text.replace("  tolerance: 1e-6\n", "")
+
+
+def test_an_error_chooses_the_numerics_of_every_spectrum_and_amplitude(tmp_path):
+    sweep = load_configuration(written(tmp_path, asking(0.03)))
+    assert sweep.numerical_error == 0.03
+    flat = sweep.named("flat")
+    weak, strong = (sweep.numerics_of(flat, energy) for energy in sweep.elastic_energies)
+    assert strong.angles_per_cutoff > weak.angles_per_cutoff
+    assert (weak.tile_cutoffs, weak.max_sweeps, weak.solver) == (20, 100000, "reference")
+    finer = load_configuration(written(tmp_path, asking(0.01))).numerics_of(flat, 0.1)
+    assert finer.angles_per_cutoff > strong.angles_per_cutoff
+    simulation = sweep.simulation(flat, 0.1, 0)
+    assert simulation.tolerance == strong.tolerance
+    assert simulation.resolution.spacing == pytest.approx(0.1 / strong.samples_per_cutoff)
+
+
+def test_given_numerics_serve_every_amplitude(tmp_path):
+    sweep = load_configuration(written(tmp_path, GOOD))
+    assert sweep.numerical_error is None
+    assert sweep.numerics_of(sweep.named("rough"), 0.1) is sweep.numerics
+
+
+def test_an_error_beside_what_it_decides_is_refused(tmp_path):
+    text = asking(0.03).replace("  error:", "  tolerance: 1e-6\n  angles: 64\n  error:")
+    assert "numerics: error already decides angles, tolerance; remove one" in refusal(
+        tmp_path, text
+    )
+
+
+def test_knobs_that_are_missing_without_an_error_are_named(tmp_path):
+    text = asking(0.03).replace("  error: 0.03\n", "  angles: 64\n  interpolation: cubic\n")
+    assert (
+        "numerics: samples_per_cutoff, pixels_per_cutoff, tolerance missing; add what is missing "
+        "or ask for an error" in refusal(tmp_path, text)
+    )
+
+
+@pytest.mark.parametrize("error", ["0.0", "1.0", "-0.1", ".nan", "small"])
+def test_an_error_that_no_numerics_have_is_refused(tmp_path, error):
+    assert "numerics.error is" in refusal(tmp_path, asking(error))
+
+
 def test_steady_loads_are_read_in_both_units(tmp_path):
     text = GOOD.replace("step: 0.1", "steady: {start: 0.25, travel: 2.0, error: 0.1}")
     assert load_configuration(written(tmp_path, text)).schedule == SteadySchedule(

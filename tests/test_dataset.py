@@ -1,6 +1,7 @@
 """Files: what is written is read back, what is broken is refused, nothing is written by half."""
 
 import json
+import math
 import re
 from dataclasses import fields, replace
 from pathlib import Path
@@ -27,6 +28,7 @@ from crackfront.dataset import (
 )
 from crackfront.dataset.schema import COORDINATES, CURVES, HYSTERESIS
 from crackfront.fits import STEADY_DEFINITION, fit_sweep
+from crackfront.laws import numerical_error
 from crackfront.provenance import Provenance, provenance
 from crackfront.relax import Status
 from crackfront.scene import SimulationResult, run_simulation
@@ -336,6 +338,23 @@ def test_the_hysteresis_is_the_difference_of_the_branches(hysteresis):
     )
     complete = dataset["status"] == "lost_contact"
     assert np.all(dataset["hysteresis"].values[complete.values] > 0)
+
+
+def test_every_value_states_its_statistical_and_its_numerical_error(hysteresis, results):
+    dataset = xr.load_dataset(hysteresis[0])
+    known = np.isfinite(dataset["w_appr"].values)
+    for branch in ("w_appr", "w_retr"):
+        for name in (f"{branch}_error", f"{branch}_numerical_error"):
+            assert np.array_equal(np.isfinite(dataset[name].values), known)
+            assert np.all(dataset[name].values[known] > 0)
+    cell = dataset.sel(spectrum="flat", amplitude=0.1, realisation=0)
+    simulation = results["flat", 0.1, 0].simulation
+    # Nearer states count as one: the error lies between those of one and of all states.
+    cutoffs = math.pi * float(cell["lowest_radius"] + cell["highest_radius"]) / 0.1
+    few, many = (
+        numerical_error(simulation, count * cutoffs) for count in (1, int(cell["n_approach"]))
+    )
+    assert many[0] <= cell["w_appr_numerical_error"] <= few[0]
 
 
 def test_a_failed_simulation_has_a_status_and_a_sentence_but_no_values(hysteresis):

@@ -9,6 +9,7 @@ from crackfront import fits, jkr
 from crackfront.cycle import CycleRecord, LoadSchedule, run_cycle
 from crackfront.fits import Estimate, SweepFit, SweepTable, fit_sweep, steady_adhesion
 from crackfront.fits.estimate import combination, mean_estimate, resample_counts, student_estimate
+from crackfront.fits.table import CELL_COLUMNS
 from crackfront.pinning import polar_field
 from crackfront.relax import Status
 from crackfront.units import WORK_OF_ADHESION
@@ -38,6 +39,7 @@ def smooth_record(w_appr, w_retr, n_state=9):
         apparent_work_of_adhesion=adhesion,
         least_travel=np.abs(radius - np.where(direction > 0, 0.0, 1.8)),
         iterations=zero.astype(int),
+        updates=zero.astype(int),
         residual=zero,
     )
 
@@ -69,6 +71,8 @@ def synthetic_table(
         w_retr=w_retr,
         w_appr_from_force=w_appr + 0.001,
         w_retr_from_force=w_retr - 0.002,
+        w_appr_numerical_error=0.01 * energy,
+        w_retr_numerical_error=0.02 * energy,
     )
 
 
@@ -212,10 +216,24 @@ def test_realisations_are_resampled_with_all_their_amplitudes(rng):
     assert np.all(fit.spectra.factor.standard_error > 2 * single.standard_error / np.sqrt(5))
 
 
+def test_the_notes_tell_the_largest_numerical_error_of_k(rng):
+    table = synthetic_table(rng, constant)
+    larger = table.w_retr_numerical_error.copy()
+    larger[1, 2] *= 3
+    fit = fit_all(replace(table, w_retr_numerical_error=larger))
+    energy = table.e_el_requested[2]
+    assert any(
+        note.startswith(
+            f"Numerical errors: up to 0.035 of k ({table.spectrum[1]} at e_el = {energy:.4g} w_int)"
+        )
+        for note in fits.fit_notes(fit)
+    )
+
+
 def test_point_estimates_do_not_depend_on_the_order_of_realisations_or_the_seed(rng):
     table = synthetic_table(rng, constant)
-    columns = ("e_el", "w_rms", "w_appr", "w_retr", "w_appr_from_force", "w_retr_from_force")
-    shuffled = replace(table, **{name: getattr(table, name)[..., [2, 0, 3, 1]] for name in columns})
+    order = [2, 0, 3, 1]
+    shuffled = replace(table, **{name: getattr(table, name)[..., order] for name in CELL_COLUMNS})
     first, second = fit_all(table), fit_all(shuffled, seed=5)
     for name in LAW:
         for one, other in ((first.spectra, second.spectra), (first.pooled, second.pooled)):

@@ -43,6 +43,8 @@ def table(rng):
         w_retr=w_retr,
         w_appr_from_force=w_appr,
         w_retr_from_force=w_retr,
+        w_appr_numerical_error=np.zeros_like(w_retr),
+        w_retr_numerical_error=np.zeros_like(w_retr),
     )
 
 

@@ -151,6 +151,8 @@ def test_a_whole_cycle_on_roughness_equals_that_of_the_reference(
     assert newton.end_penetration == reference.end_penetration
     assert np.max(np.abs(newton.radius - reference.radius)) < 1e-6 * cutoff
     assert newton.iterations.sum() < reference.iterations.sum()
+    assert np.array_equal(reference.updates, 300 * reference.iterations)
+    assert newton.updates.sum() < reference.updates.sum() / 2
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ from typing import Any
 import click
 
 from crackfront import __version__
+from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.cycle import cycle
 from crackfront.cli.sweep import aggregate, figures, fit, plan, simulate
 
@@ -26,8 +27,17 @@ class _Commands(click.Group):
             return super().invoke(ctx)
         except BrokenPipeError:
             raise
-        except (ValueError, OSError) as error:
+        except OSError as error:
+            raise _RefusalError(_file_sentence(error)) from error
+        except ValueError as error:
             raise _RefusalError(str(error)) from error
+
+
+def _file_sentence(error: OSError) -> str:
+    """What is wrong with a file or folder."""
+    if error.filename is None or error.strerror is None:
+        return str(error)
+    return f"{error.filename} cannot be used: {error.strerror}; check the path and its permissions"
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -36,5 +46,5 @@ def main() -> None:
     """Adhesion hysteresis of rough spheres by crack-front pinning."""
 
 
-for command in (cycle, plan, simulate, aggregate, fit, figures):
+for command in (cycle, plan, simulate, aggregate, fit, figures, accuracy, accuracy_report):
     main.add_command(command)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,17 +28,20 @@ _output = click.option(
 @_output
 def plan(configuration: Path, output: Path | None) -> None:
     """Print the shards of a sweep, their sizes and what is stored of them."""
-    from crackfront.scene import resolution
-
     sweep, store = _sweep_and_store(configuration, output)
-    click.echo("spectrum          lambda_s  lambda_r     H  angles  samples  points  stored")
+    click.echo(
+        "spectrum          lambda_s  lambda_r     H         angles        samples         points"
+        "  stored"
+    )
     for item in sweep.spectra:
         shape, shard = item.spectrum, sweep.shard(item)
-        sizes = resolution(shape, sweep.numerics, sweep.schedule.max_penetration)
+        sizes = [simulation.resolution for simulation in shard]
         stored = sum(store.path(simulation).exists() for simulation in shard)
         click.echo(
             f"{item.name:16}  {shape.short_cutoff:8.4g}  {shape.roll_off:8.4g}  {shape.hurst:4.2f}"
-            f"  {sizes.n_angle:6}  {1 / sizes.spacing:7.4g}  {sizes.n_point:6}"
+            f"  {_span([size.n_angle for size in sizes]):>13}"
+            f"  {_span([1 / size.spacing for size in sizes]):>13}"
+            f"  {_span([size.n_point for size in sizes]):>13}"
             f"  {stored:3}/{len(shard)}"
         )
     energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
@@ -174,6 +178,12 @@ def _sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, S
 
     sweep = load_configuration(configuration)
     return sweep, Store(Path("results") / configuration.stem if output is None else output)
+
+
+def _span(values: Sequence[float]) -> str:
+    """Range of values over the amplitudes, or the one that all have."""
+    low, high = f"{min(values):.0f}", f"{max(values):.0f}"
+    return low if low == high else f"{low}-{high}"
 
 
 def _n_simulation(sweep: Sweep) -> int:

@@ -8,7 +8,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from crackfront.config.reading import ConfigurationError, content_of, sentences
-from crackfront.config.sections import Configuration, LoadSection
+from crackfront.config.sections import Configuration, LoadSection, NumericsSection
 from crackfront.cycle import LoadSchedule
 from crackfront.scene import Numerics, resolution
 from crackfront.spectrum import SelfAffineSpectrum
@@ -47,15 +47,16 @@ def load_configuration(path: Path) -> Sweep:
 
 def _refuse_round_off(path: Path, sweep: Sweep) -> None:
     """Raise if a front has so many sites that round-off exceeds the tolerance."""
-    numerics = sweep.numerics
     for item in sweep.spectra:
-        sizes = resolution(item.spectrum, numerics, sweep.schedule.max_penetration)
-        round_off = sys.float_info.epsilon * sizes.n_angle
-        if numerics.tolerance < round_off:
-            raise ConfigurationError(
-                f"{path}: numerics: tolerance is {numerics.tolerance}, below the round-off of the "
-                f"{sizes.n_angle} sites of {item.name} ({round_off:.1e}); raise it"
-            )
+        for energy in sweep.elastic_energies:
+            numerics = sweep.numerics_of(item, energy)
+            sizes = resolution(item.spectrum, numerics, sweep.schedule.max_penetration)
+            round_off = sys.float_info.epsilon * sizes.n_angle
+            if numerics.tolerance < round_off:
+                raise ConfigurationError(
+                    f"{path}: numerics: tolerance is {numerics.tolerance}, below the round-off of "
+                    f"the {sizes.n_angle} sites of {item.name} ({round_off:.1e}); raise it"
+                )
 
 
 def _sweep(configuration: Configuration) -> Sweep:
@@ -80,22 +81,28 @@ def _sweep(configuration: Configuration) -> Sweep:
         ),
         elastic_energies=configuration.amplitudes.elastic_energies,
         n_realisation=configuration.realisations,
-        numerics=Numerics(
-            angles=numerics.angles,
-            angles_per_cutoff=numerics.angles_per_cutoff or 1.0,
-            samples_per_cutoff=numerics.samples_per_cutoff,
-            interpolation=numerics.interpolation,
-            pixels_per_cutoff=numerics.pixels_per_cutoff,
-            tile_roll_offs=numerics.tile.roll_offs,
-            tile_cutoffs=numerics.tile.cutoffs,
-            tolerance=numerics.tolerance,
-            max_sweeps=numerics.max_sweeps,
-            solver=numerics.solver,
-        ),
+        numerics=_numerics(numerics),
+        numerical_error=numerics.error,
         schedule=_schedule(load, vertical),
         record_fronts="fronts" in configuration.record,
         record_energy="energy" in configuration.record,
         fit=FitRange(fit.lowest_elastic_energy, fit.highest_elastic_energy, fit.bootstrap),
+    )
+
+
+def _numerics(section: NumericsSection) -> Numerics:
+    """Numerics; what an error decides is that of a coarse resolution here, and replaced."""
+    return Numerics(
+        angles=section.angles,
+        angles_per_cutoff=section.angles_per_cutoff or 1.0,
+        samples_per_cutoff=section.samples_per_cutoff or 4.0,
+        interpolation=section.interpolation or "cubic",
+        pixels_per_cutoff=section.pixels_per_cutoff or 4.0,
+        tile_roll_offs=section.tile.roll_offs,
+        tile_cutoffs=section.tile.cutoffs,
+        tolerance=section.tolerance or 1e-3,
+        max_sweeps=section.max_sweeps,
+        solver=section.solver,
     )
 
 

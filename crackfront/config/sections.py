@@ -81,26 +81,26 @@ class TileSection(Section):
 
 
 class NumericsSection(Section):
-    """Resolution and solver, as in :class:`crackfront.scene.Numerics`."""
+    """An error or a resolution, and the solver, as in :class:`crackfront.scene.Numerics`."""
 
+    error: Annotated[float, Field(gt=0, lt=1)] | None = None
     angles: Annotated[int, Field(ge=4)] | None = None
     angles_per_cutoff: Positive | None = None
-    samples_per_cutoff: Positive
-    interpolation: Interpolation
-    pixels_per_cutoff: Positive
+    samples_per_cutoff: Positive | None = None
+    interpolation: Interpolation | None = None
+    pixels_per_cutoff: Positive | None = None
     tile: TileSection
-    tolerance: Annotated[float, Field(gt=0, lt=1)]
+    tolerance: Annotated[float, Field(gt=0, lt=1)] | None = None
     max_sweeps: Count
     solver: str
 
     @model_validator(mode="after")
     def _usable(self) -> NumericsSection:
-        if (self.angles is None) == (self.angles_per_cutoff is None):
-            raise _wrong(
-                "numerics need exactly one of angles and angles_per_cutoff; "
-                + ("remove one" if self.angles else "give one")
-            )
-        if self.pixels_per_cutoff < 2:
+        if self.error is None:
+            self._refuse_incomplete()
+        else:
+            self._refuse_overruled()
+        if self.pixels_per_cutoff is not None and self.pixels_per_cutoff < 2:
             raise _wrong(
                 f"pixels_per_cutoff is {self.pixels_per_cutoff:g}, so that short_cutoff is below "
                 "two pixels; it must be 2 or more"
@@ -110,6 +110,38 @@ class NumericsSection(Section):
                 f"solver {self.solver!r} is unknown; choose one of {', '.join(sorted(SOLVERS))}"
             )
         return self
+
+    def _refuse_incomplete(self) -> None:
+        """Raise if a knob is missing, or the number of sites is given twice."""
+        missing = [
+            name
+            for name in ("samples_per_cutoff", "interpolation", "pixels_per_cutoff", "tolerance")
+            if getattr(self, name) is None
+        ]
+        if missing:
+            raise _wrong(f"{', '.join(missing)} missing; add what is missing or ask for an error")
+        if (self.angles is None) == (self.angles_per_cutoff is None):
+            raise _wrong(
+                "numerics need exactly one of angles and angles_per_cutoff; "
+                + ("remove one" if self.angles else "give one, or ask for an error")
+            )
+
+    def _refuse_overruled(self) -> None:
+        """Raise if a knob is given that the error decides."""
+        given = [
+            name
+            for name in (
+                "angles",
+                "angles_per_cutoff",
+                "samples_per_cutoff",
+                "interpolation",
+                "pixels_per_cutoff",
+                "tolerance",
+            )
+            if getattr(self, name) is not None
+        ]
+        if given:
+            raise _wrong(f"error already decides {', '.join(given)}; remove one or the other")
 
 
 class SteadySection(Section):

@@ -1,5 +1,14 @@
 """The only owner of xarray and netCDF: the schema, reading, writing and aggregation."""
 
+from crackfront.dataset.accuracy import (
+    laws_text,
+    read_coverage,
+    read_errors,
+    read_samples,
+    write_coverage,
+    write_errors,
+    write_samples,
+)
 from crackfront.dataset.cycles import read_cycle, read_simulation, write_cycle, write_simulation
 from crackfront.dataset.fields import PolarSamples, read_field
 from crackfront.dataset.files import UnreadableFileError, write_text
@@ -10,13 +19,20 @@ __all__ = [
     "COMPLETE",
     "PolarSamples",
     "UnreadableFileError",
+    "laws_text",
+    "read_coverage",
     "read_cycle",
+    "read_errors",
     "read_field",
+    "read_samples",
     "read_simulation",
     "read_table",
+    "write_coverage",
     "write_cycle",
+    "write_errors",
     "write_fit",
     "write_hysteresis",
+    "write_samples",
     "write_simulation",
     "write_text",
 ]

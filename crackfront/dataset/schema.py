@@ -42,6 +42,7 @@ CURVES = (
     Variable("apparent_work_of_adhesion", _step, ADHESION, "mean of a G over mean of a"),
     Variable("least_travel", _step, LATERAL, "smallest way of a site since its branch began"),
     Variable("iterations", _step, "1", "sweeps of the solver"),
+    Variable("updates", _step, "1", "updates of single sites by the solver"),
     Variable("residual", _step, ADHESION, "largest force along the motion, per front length"),
 )
 """Variables of every cycle; each is a field of :class:`crackfront.cycle.CycleRecord`."""
@@ -64,17 +65,19 @@ COSTS = (
 )
 """Variables that a simulation of a sweep has beside its curves."""
 
-_spectrum, _cell = (SPECTRUM,), (SPECTRUM, AMPLITUDE, REALISATION)
+_spectrum, _shape = (SPECTRUM,), (SPECTRUM, AMPLITUDE)
+_cell = (SPECTRUM, AMPLITUDE, REALISATION)
 COORDINATES = (
     Variable(SPECTRUM, _spectrum, "1", "name of the spectrum"),
     Variable("short_cutoff", _spectrum, LATERAL, "shortest wavelength lambda_s"),
     Variable("roll_off", _spectrum, LATERAL, "roll-off wavelength lambda_r"),
     Variable("hurst", _spectrum, "1", "Hurst exponent, without effect on a flat spectrum"),
     Variable("correlation_length", _spectrum, LATERAL, "wavelength of the mean wavevector of w"),
-    Variable("n_angle", _spectrum, "1", "sites of the front"),
-    Variable("sample_spacing", _spectrum, LATERAL, "distance of samples along a ray"),
+    Variable("n_angle", _shape, "1", "sites of the front"),
+    Variable("sample_spacing", _shape, LATERAL, "distance of samples along a ray"),
     Variable("tile_side", _spectrum, LATERAL, "side of the periodic tile"),
-    Variable("n_point", _spectrum, "1", "points along a side of the tile"),
+    Variable("n_point", _shape, "1", "points along a side of the tile"),
+    Variable("tolerance", _shape, ADHESION, "largest force along the motion that may be left"),
     Variable(AMPLITUDE, (AMPLITUDE,), ADHESION, "requested e_el (chemical field: w_rms^2/4)"),
     Variable("w_rms_requested", (AMPLITUDE,), ADHESION, "requested rms, 2 sqrt(e_el w_int)"),
     Variable(REALISATION, (REALISATION,), "1", "number of the realisation"),
@@ -85,6 +88,8 @@ HYSTERESIS = (
     Variable("w_retr", _cell, ADHESION, "apparent work of adhesion in steady retraction"),
     Variable("w_appr_error", _cell, ADHESION, "standard error of w_appr over its states"),
     Variable("w_retr_error", _cell, ADHESION, "standard error of w_retr over its states"),
+    Variable("w_appr_numerical_error", _cell, ADHESION, "expected numerical error of w_appr"),
+    Variable("w_retr_numerical_error", _cell, ADHESION, "expected numerical error of w_retr"),
     Variable("hysteresis", _cell, ADHESION, "w_retr - w_appr"),
     Variable("midpoint", _cell, ADHESION, "(w_retr + w_appr) / 2"),
     Variable("w_appr_from_force", _cell, ADHESION, "w of the JKR curve fitted to the approach"),

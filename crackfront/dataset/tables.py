@@ -14,8 +14,9 @@ from crackfront.cycle import CycleRecord
 from crackfront.dataset.files import UnreadableFileError, labelled, read_dataset, write_dataset
 from crackfront.dataset.schema import AMPLITUDE, COORDINATES, HYSTERESIS
 from crackfront.fits import STEADY_DEFINITION, SteadyAdhesion, SweepTable, steady_adhesion
+from crackfront.laws import numerical_error
 from crackfront.provenance import Provenance
-from crackfront.scene import SimulationResult, resolution
+from crackfront.scene import Simulation, SimulationResult
 from crackfront.sweep import NamedSpectrum, Sweep
 
 COMPLETE = ("lost_contact", "steady")
@@ -34,6 +35,8 @@ class _Cell:
     w_retr: float
     w_appr_error: float
     w_retr_error: float
+    w_appr_numerical_error: float
+    w_retr_numerical_error: float
     hysteresis: float
     midpoint: float
     w_appr_from_force: float
@@ -133,12 +136,17 @@ def _cell(result: SimulationResult, correlation_length: float) -> _Cell:
     status, sentence = _status(record, steady)
     known = status in COMPLETE
     cycle = status == COMPLETE[0]
+    numerical = np.nan, np.nan
+    if known:
+        numerical = _numerical_errors(simulation, steady, correlation_length)
     return _Cell(
         result=result,
         w_appr=steady.approach if known else np.nan,
         w_retr=steady.retraction if known else np.nan,
         w_appr_error=steady.approach_error if known else np.nan,
         w_retr_error=steady.retraction_error if known else np.nan,
+        w_appr_numerical_error=numerical[0],
+        w_retr_numerical_error=numerical[1],
         hysteresis=steady.hysteresis if known else np.nan,
         midpoint=steady.midpoint if known else np.nan,
         w_appr_from_force=steady.approach_from_force if known else np.nan,
@@ -166,6 +174,21 @@ def _cell(result: SimulationResult, correlation_length: float) -> _Cell:
     )
 
 
+def _numerical_errors(
+    simulation: Simulation, steady: SteadyAdhesion, correlation_length: float
+) -> tuple[float, float]:
+    """Expected numerical errors of w_appr and w_retr; close states count as one."""
+    radii = steady.lowest_radius, steady.highest_radius
+    cutoffs = 2 * np.pi * np.mean(radii) / simulation.spectrum.short_cutoff
+    apart = 1 + (radii[1] - radii[0]) / correlation_length
+    counts = steady.n_approach, steady.n_retraction
+    approach, retraction = (
+        numerical_error(simulation, float(cutoffs * min(count, apart)))[branch]
+        for branch, count in enumerate(counts)
+    )
+    return approach, retraction
+
+
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
     """How a simulation ended, in a word and in a sentence."""
     status = record.status.name.lower()
@@ -177,20 +200,23 @@ def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
 def _coordinates(sweep: Sweep) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
     """Labelled coordinates of a sweep."""
     spectra = [item.spectrum for item in sweep.spectra]
-    tiles = [
-        resolution(spectrum, sweep.numerics, sweep.schedule.max_penetration) for spectrum in spectra
-    ]
     energies = np.array(sweep.elastic_energies)
+    firsts = [
+        [sweep.simulation(item, energy, 0) for energy in sweep.elastic_energies]
+        for item in sweep.spectra
+    ]
+    tiles = [[one.resolution for one in row] for row in firsts]
     columns = (
         np.array([item.name for item in sweep.spectra]),
         np.array([spectrum.short_cutoff for spectrum in spectra]),
         np.array([spectrum.roll_off for spectrum in spectra]),
         np.array([spectrum.hurst for spectrum in spectra]),
         np.array([sweep.correlation_length(item) for item in sweep.spectra]),
-        np.array([tile.n_angle for tile in tiles]),
-        np.array([tile.spacing for tile in tiles]),
-        np.array([tile.tile_side for tile in tiles]),
-        np.array([tile.n_point for tile in tiles]),
+        np.array([[tile.n_angle for tile in row] for row in tiles]),
+        np.array([[tile.spacing for tile in row] for row in tiles]),
+        np.array([row[0].tile_side for row in tiles]),
+        np.array([[tile.n_point for tile in row] for row in tiles]),
+        np.array([[one.tolerance for one in row] for row in firsts]),
         energies,
         2 * np.sqrt(energies),
         np.arange(sweep.n_realisation),

@@ -32,6 +32,7 @@ def fit_notes(fit: SweepFit) -> tuple[str, ...]:
         *_onset_sentences(fit),
         *_gap_sentences(fit),
         *_exponent_sentences(fit),
+        *_numerical_sentences(fit),
     )
 
 
@@ -139,3 +140,17 @@ def _exponent_sentences(fit: SweepFit) -> Iterator[str]:
                 f"{name}: the mean hysteresis at e_el = {gaps} w_int is not positive and is left "
                 "out of the exponent (not of k); raise the lower end of the range."
             )
+
+
+def _numerical_sentences(fit: SweepFit) -> Iterator[str]:
+    """What the discretisation may do to k."""
+    error = np.where(fit.table.finite, fit.table.numerical_error, np.nan)[:, fit.in_range]
+    if np.any(np.isfinite(error)):
+        spectrum, amplitude, _ = np.unravel_index(np.nanargmax(error), error.shape)
+        energy = fit.table.e_el_requested[fit.in_range][amplitude]
+        yield (
+            f"Numerical errors: up to {np.nanmax(error):.2g} of k "
+            f"({fit.table.spectrum[spectrum]} at e_el = {energy:.4g} w_int), by the measured laws; "
+            "they are mostly a bias, which realisations do not average out, and no interval here "
+            "holds them."
+        )

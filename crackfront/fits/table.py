@@ -9,6 +9,18 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+CELL_COLUMNS = (
+    "e_el",
+    "w_rms",
+    "w_appr",
+    "w_retr",
+    "w_appr_from_force",
+    "w_retr_from_force",
+    "w_appr_numerical_error",
+    "w_retr_numerical_error",
+)
+"""Columns of a table that have a value for every simulation."""
+
 
 @dataclass(frozen=True, slots=True)
 class SweepTable:
@@ -32,6 +44,8 @@ class SweepTable:
         (Units: w_int)
     w_appr_from_force, w_retr_from_force : (n_spectrum, n_amplitude, n_realisation) array
         The same from a JKR fit of force against mean radius. (Units: w_int)
+    w_appr_numerical_error, w_retr_numerical_error : (n_spectrum, n_amplitude, n_realisation) array
+        Numerical standard errors that the laws state. (Units: w_int)
 
     Raises
     ------
@@ -51,6 +65,8 @@ class SweepTable:
     w_retr: Array
     w_appr_from_force: Array
     w_retr_from_force: Array
+    w_appr_numerical_error: Array
+    w_retr_numerical_error: Array
 
     def __post_init__(self) -> None:
         n_spectrum, n_amplitude = self.spectrum.size, self.e_el_requested.size
@@ -59,7 +75,7 @@ class SweepTable:
             if shape != (n_spectrum,):
                 raise ValueError(f"{name} has shape {shape}; there are {n_spectrum} spectra")
         whole = (n_spectrum, n_amplitude, self.e_el.shape[-1])
-        for name in ("e_el", "w_rms", "w_appr", "w_retr", "w_appr_from_force", "w_retr_from_force"):
+        for name in CELL_COLUMNS:
             shape = getattr(self, name).shape
             if shape != whole:
                 raise ValueError(
@@ -72,6 +88,11 @@ class SweepTable:
                     f"measured {name} is {lowest}, where hysteresis has no scale; leave "
                     "simulations without disorder out of the table"
                 )
+
+    @property
+    def numerical_error(self) -> Array:
+        """Numerical error of k, both branches in opposite directions, as biases are."""
+        return (self.w_appr_numerical_error + self.w_retr_numerical_error) / (2 * self.e_el)
 
     @property
     def finite(self) -> NDArray[np.bool_]:

@@ -4,6 +4,7 @@ The makers return a figure, the `draw_*` functions draw on axes that exist. Ever
 reduced units (R = 1, w_int = 1/pi, E' = 3/4).
 """
 
+from crackfront.plots.accuracy import laws_figure, work_precision_figure
 from crackfront.plots.loop import draw_loop, loop_figure
 from crackfront.plots.style import house_style, save_figure
 from crackfront.plots.sweep import (
@@ -24,6 +25,8 @@ __all__ = [
     "factor_figure",
     "house_style",
     "hysteresis_figure",
+    "laws_figure",
     "loop_figure",
     "save_figure",
+    "work_precision_figure",
 ]

@@ -59,7 +59,10 @@ _CODES = {
 }
 
 SOLVERS = {"reference": rosso_krauth, "newton": monotone_newton}
-"""Solvers by name; each changes a front in place and returns (code, sweeps, residual)."""
+"""Solvers by name; each changes a front in place.
+
+They return a code, the sweeps, the updates of single sites and the residual.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +77,8 @@ class Relaxation:
         What ended it.
     sweeps : int
         Sweeps over the front, counted in pairs of FFTs.
+    updates : int
+        Updates of single sites.
     residual : float
         Largest force along the motion that is left, relative to w_int per front length.
     """
@@ -81,6 +86,7 @@ class Relaxation:
     radius: Array
     status: Status
     sweeps: int
+    updates: int
     residual: float
 
 
@@ -147,10 +153,10 @@ def relax(
     if direction > 0:
         np.maximum(front, lowest, out=front)
     if direction > 0 and np.max(front) >= last_radius(field):
-        return Relaxation(front, Status.LEFT_FIELD_OUTWARD, 0, np.inf)
+        return Relaxation(front, Status.LEFT_FIELD_OUTWARD, 0, 0, np.inf)
     if memory is None:
         memory = make_memory(field)
-    code, sweeps, residual = SOLVERS[solver](
+    code, sweeps, updates, residual = SOLVERS[solver](
         front, float(penetration), int(direction), field, memory, float(tolerance), int(max_sweeps)
     )
     if code == forces.TURNED:
@@ -161,7 +167,7 @@ def relax(
     status = _CODES[code]
     if status is Status.LEFT_FIELD_INWARD and not _can_rest_inside(field, penetration):
         status = Status.LOST_CONTACT
-    return Relaxation(front, status, int(sweeps), float(residual))
+    return Relaxation(front, status, int(sweeps), int(updates), float(residual))
 
 
 def front_force(radius: Array, penetration: float, field: Field) -> Array:

@@ -52,20 +52,21 @@ _ROUND_OFF = 1e-9
 def monotone_newton(radius, penetration, direction, field, memory, tolerance, max_sweeps):
     """First metastable front in the direction of motion; the front is changed in place.
 
-    Returns a code, the number of FFT pairs and the largest drive left.
+    Returns a code, the number of FFT pairs, that of updates of a site, and the largest drive left.
     """
     if radius.size <= 2 * HALF_BAND:
         return rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_sweeps)
-    code, pairs, residual = _run(
+    code, pairs, updates, residual = _run(
         radius, penetration, direction, field, memory, tolerance, max_sweeps
     )
     if code == BLOCKED:
         # The edge of the contact is near compression: the reference knows how to stop there.
-        code, sweeps, residual = rosso_krauth(
+        code, sweeps, more, residual = rosso_krauth(
             radius, penetration, direction, field, memory, tolerance, max_sweeps - pairs
         )
         pairs += sweeps
-    return code, pairs, residual
+        updates += more
+    return code, pairs, updates, residual
 
 
 @jit
@@ -82,18 +83,18 @@ def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
     collective = _line_outweighs_field(field, memory, front, row, penetration, direction)
     # A backward force within the tolerance counts as equilibrium.
     slack = tolerance * WORK_OF_ADHESION * np.min(radius)
-    residual, first_least, pairs = np.inf, 0.0, 0
+    residual, first_least, pairs, updates = np.inf, 0.0, 0, 0
     while code == CONVERGED:
         residual, least = drive_sites(front, penetration, direction, drive)
         if pairs == 0:
             first_least = least
         pairs += 1
         if residual <= tolerance:
-            return CONVERGED, pairs, residual
+            return CONVERGED, pairs, updates, residual
         if least < first_least - _ROUND_OFF:
-            return TURNED, pairs, residual
+            return TURNED, pairs, updates, residual
         if pairs >= max_sweeps:
-            return LIMIT, pairs, residual
+            return LIMIT, pairs, updates, residual
         calm = residual <= _CALM
         n_active = 0 if calm else _mark(front, drive, _LEVEL * residual, active)
         if calm or (collective and n_active > 0.3 * count):
@@ -111,12 +112,14 @@ def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
                 accuracy,
             )
             pairs += used
+            updates += count
         else:
-            code = _relax_active(
+            code, used = _relax_active(
                 window, field, memory, front, drive, active, penetration, direction,
                 _LEVEL * residual, furthest, slack,
             )  # fmt: skip
-    return code, pairs, residual
+            updates += used
+    return code, pairs, updates, residual
 
 
 @jit
@@ -158,8 +161,8 @@ def _mark(front, drive, level, active):
 def _relax_active(
     window, field, memory, front, drive, active, b, direction, level, furthest, slack
 ):
-    """Relax every run of active sites, in pieces that fit a window."""
-    count = drive.size
+    """Relax every run of active sites, in pieces that fit a window; return code and updates."""
+    count, updates = drive.size, 0
     start = np.argmin(active) if not np.all(active) else np.argmin(drive)
     j = 0
     while j < count:
@@ -167,11 +170,12 @@ def _relax_active(
         while j + length < count and length < LONGEST and active[(start + j + length) % count]:
             length += 1
         if length > 0:
-            code = relax_window(
+            code, steps = relax_window(
                 window, field, memory, front, drive, (start + j) % count, length, b, direction,
                 level, furthest, slack, _ROUNDS,
             )  # fmt: skip
+            updates += steps * length
             if code != CONVERGED:
-                return code
+                return code, updates
         j += max(length, 1)
-    return CONVERGED
+    return CONVERGED, updates

@@ -62,7 +62,7 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
             drive[i] = 0.0 if resting else max(direction * force, 0.0)
             residual = max(residual, drive[i] / (a * WORK_OF_ADHESION))
         if residual <= tolerance:
-            return CONVERGED, sweep, residual
+            return CONVERGED, sweep, sweep * count, residual
         for i in range(count):
             if drive[i] == 0.0:
                 continue
@@ -84,9 +84,9 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
                 continue
             low = segment[i] + direction
             if low < 0:
-                return INWARD, sweep, residual
+                return INWARD, sweep, sweep * count, residual
             if low > last:
-                return OUTWARD, sweep, residual
+                return OUTWARD, sweep, sweep * count, residual
             segment[i] = low
             inner[i], outer[i] = _enter(field, memory, i, low, pieces)
-    return LIMIT, max_sweeps, residual
+    return LIMIT, max_sweeps, max_sweeps * count, residual

@@ -175,14 +175,15 @@ def relax_window(
     """Move `count` sites from `first` on until their drive falls below a level.
 
     At most `rounds` steps of at most `furthest` are taken; `drive` is that of the whole front.
-    Sites driven backward by more than `slack` are held.
+    Sites driven backward by more than `slack` are held. Returns a code and the number of steps.
     """
     radius, local, reach, step = front.radius, window.drive, window.reach, window.step
     own = window.coupling[LONGEST]
     for j in range(count):
         local[j] = drive[(first + j) % radius.size]
         reach[j] = 4 * max(local[j], 0.0) / own
-    for _ in range(rounds):
+    steps = 0
+    while steps < rounds:
         largest, calm = 0.0, True
         i = first
         for j in range(count):
@@ -195,9 +196,10 @@ def relax_window(
         _choose_step(
             window, field, memory, front, first, count, b, direction, largest, furthest, slack
         )
+        steps += 1
         code = _move(window, field, memory, front, first, count, b, direction)
         if code != CONVERGED:
-            return code
+            return code, steps
         for j in range(count):
             reach[j] = 3 * step[j]
-    return CONVERGED
+    return CONVERGED, steps

@@ -1,6 +1,11 @@
 """One simulation of a sweep: from its parameters to its surface, its field and its cycle."""
 
-from crackfront.scene.contact import contact_field, simulation_adhesion, tile_contact
+from crackfront.scene.contact import (
+    contact_field,
+    simulation_adhesion,
+    simulation_field,
+    tile_contact,
+)
 from crackfront.scene.parameters import (
     FieldKind,
     Numerics,
@@ -23,5 +28,6 @@ __all__ = [
     "resolution",
     "run_simulation",
     "simulation_adhesion",
+    "simulation_field",
     "tile_contact",
 ]

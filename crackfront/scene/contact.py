@@ -33,6 +33,19 @@ def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
     return chemical_adhesion(fluctuation, pixel)
 
 
+def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None) -> TileField:
+    """Field of a simulation, on its tile if that has been made already."""
+    sizes = simulation.resolution
+    return contact_field(
+        simulation_adhesion(simulation) if adhesion is None else adhesion,
+        sizes.n_angle,
+        sizes.spacing,
+        simulation.schedule.max_penetration,
+        sizes.interpolation,
+        band_limited=True,
+    )
+
+
 def contact_field(
     adhesion: AdhesionMap,
     n_angle: int,

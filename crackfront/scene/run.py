@@ -12,7 +12,7 @@ import numpy as np
 
 from crackfront.adhesion import chemical_adhesion
 from crackfront.cycle import CycleRecord, LoadSchedule, run_cycle
-from crackfront.scene.contact import contact_field, simulation_adhesion
+from crackfront.scene.contact import contact_field, simulation_adhesion, simulation_field
 from crackfront.scene.parameters import Simulation, correlation_length
 from crackfront.steady import run_steady
 
@@ -65,14 +65,7 @@ def run_simulation(simulation: Simulation) -> SimulationResult:
     compile_solver(simulation.solver)
     wall, cpu = time.perf_counter(), time.process_time()
     adhesion = simulation_adhesion(simulation)
-    field = contact_field(
-        adhesion,
-        simulation.resolution.n_angle,
-        simulation.resolution.spacing,
-        simulation.schedule.max_penetration,
-        simulation.resolution.interpolation,
-        band_limited=True,
-    )
+    field = simulation_field(simulation, adhesion)
     elastic_energy, rms = adhesion.elastic_energy, adhesion.rms
     # The run holds the splines alone, not the tile as well.
     del adhesion

@@ -1,0 +1,96 @@
+"""Numerical errors: measure them scene by scene, and report all of them."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+
+import click
+
+from crackfront.cli.report import FILE, announce_compilation
+
+_output = click.option(
+    "--output",
+    type=FILE,
+    default=Path("results/accuracy"),
+    show_default=True,
+    help="Folder of the results.",
+)
+
+_SHOWN = ("chemical-0.0025", "chemical-0.04", "flat-0.16", "h03-0.04")
+"""Scenes of the figure of time against error."""
+
+_ASKED = (0.1, 0.03, 0.01)
+"""Errors of k whose coverage is measured."""
+
+
+@click.command()
+@click.argument("scene")
+@_output
+@click.option(
+    "--study",
+    type=click.Choice(["numerics", "averages", "coverage"]),
+    default="numerics",
+    show_default=True,
+    help="Errors of all numerics; of schedules and tiles; or true errors beside the stated ones.",
+)
+@click.option(
+    "--realisations", type=click.IntRange(min=2), default=8, show_default=True, help="Surfaces."
+)
+def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
+    """Measure the errors of one scene."""
+    from crackfront import accuracy, dataset
+    from crackfront.provenance import provenance
+    from crackfront.scene import compile_solver
+
+    if scene not in accuracy.SCENES:
+        near = difflib.get_close_matches(scene, accuracy.SCENES, n=1)
+        names = ", ".join(accuracy.SCENES)
+        hint = f"did you mean {near[0]}?" if near else f"choose one of {names}"
+        raise click.BadParameter(f"there is no scene {scene!r}; {hint}")
+    announce_compilation()
+    compile_solver("newton")
+    chosen, path = accuracy.SCENES[scene], output / f"{study}-{scene}.nc"
+    if study == "numerics":
+        errors = accuracy.scene_errors(chosen, range(realisations), click.echo)
+        dataset.write_errors(path, errors, provenance())
+    elif study == "averages":
+        samples = accuracy.sampling_errors(chosen, range(realisations), click.echo)
+        dataset.write_samples(path, chosen, samples, provenance())
+    else:
+        found = accuracy.held_out_coverage(chosen, _ASKED, realisations, click.echo)
+        dataset.write_coverage(path, chosen, found, provenance())
+    click.echo(f"errors: {path}")
+
+
+@click.command("accuracy-report")
+@_output
+def accuracy_report(output: Path) -> None:
+    """Fit the laws, write the tables, and draw the figures of all measured scenes."""
+    from crackfront import accuracy, dataset, plots
+
+    def stored(study: str) -> dict[str, Path]:
+        paths = {name: output / f"{study}-{name}.nc" for name in accuracy.SCENES}
+        return {name: path for name, path in paths.items() if path.exists()}
+
+    studies = {name: dataset.read_errors(path) for name, path in stored("numerics").items()}
+    if not studies:
+        raise ValueError(f"{output} holds no measured errors; run crackfront accuracy first")
+    samples = [dataset.read_samples(path) for path in stored("averages").values()]
+    coverages = [dataset.read_coverage(path) for path in stored("coverage").values()]
+    laws = list(accuracy.fit_laws(study for study in studies.values() if study.scene.single_knobs))
+    dataset.write_text(output / "laws.csv", dataset.laws_text(laws))
+    text = accuracy.accuracy_report(list(studies.values()), samples, coverages)
+    dataset.write_text(output / "accuracy.md", text)
+    shown = [studies[name] for name in _SHOWN if name in studies]
+    flat = [study for study in studies.values() if study.scene.shape == "flat"]
+    drawn = {}
+    if shown:
+        drawn["work-precision"] = plots.work_precision_figure(shown)
+    if flat:
+        drawn["laws"] = plots.laws_figure(flat, laws)
+    for name, figure in drawn.items():
+        for path in plots.save_figure(figure, output / name):
+            click.echo(f"figure: {path}")
+    click.echo(f"laws: {output / 'laws.csv'}")
+    click.echo(f"tables: {output / 'accuracy.md'}")

@@ -1,0 +1,329 @@
+"""The study of numerical errors: orders of convergence, laws, coverage, averages, report."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scipy import stats
+
+from crackfront.accuracy import (
+    SCENES,
+    Errors,
+    SceneErrors,
+    fit_laws,
+    front_difference,
+    held_out_coverage,
+    hysteresis_errors,
+    measured_branches,
+    numerical_interval,
+    pareto_front,
+    sampling_errors,
+    scene_errors,
+    statistical_interval,
+    with_knob,
+)
+from crackfront.cli import main
+from crackfront.cycle import LoadSchedule, run_cycle
+from crackfront.dataset import (
+    laws_text,
+    read_coverage,
+    read_errors,
+    read_samples,
+    write_coverage,
+    write_errors,
+    write_samples,
+)
+from crackfront.laws import LAW_SIZE, chosen_numerics
+from crackfront.provenance import provenance
+from crackfront.scene import simulation_field
+from crackfront.spectrum import SelfAffineSpectrum
+
+MODERATE, SMALL = SCENES["chemical-0.04"], SCENES["small-0.04"]
+
+# So weak that no front is pinned: errors are smooth, and their orders those of the theory.
+FINEST = replace(
+    MODERATE.reference,
+    angles_per_cutoff=4,
+    samples_per_cutoff=48,
+    pixels_per_cutoff=24,
+    tolerance=1e-10,
+)
+WEAK = replace(
+    MODERATE,
+    spectrum=SelfAffineSpectrum(0.08, 0.08, 1.0),
+    elastic_energy=4e-4,
+    tile_cutoffs=32,
+    reference=FINEST,
+)
+
+
+@pytest.fixture(scope="module")
+def converged():
+    return [measured_branches(WEAK, FINEST, number) for number in range(3)]
+
+
+def error_of_the_front(numerics, converged):
+    """Rms error of the radius on the surfaces of the weak scene."""
+    found = [measured_branches(WEAK, numerics, number) for number in range(3)]
+    pairs = zip(found, converged, strict=True)
+    return math.sqrt(
+        np.mean([np.mean(front_difference(a.radius, b.radius) ** 2) for a, b in pairs])
+    )
+
+
+@pytest.mark.parametrize(
+    ("knob", "coarse", "fine", "order"),
+    [
+        ("cubic", 6, 16, 4),
+        ("linear", 16, 64, 2),
+        ("pixels", 4, 12, 4),
+        ("tolerance", 1e-2, 1e-6, -1),
+    ],
+)
+def test_the_front_converges_with_the_order_of_the_knob(converged, knob, coarse, fine, order):
+    errors = [
+        error_of_the_front(with_knob(FINEST, knob, value), converged) for value in (coarse, fine)
+    ]
+    observed = -math.log(errors[1] / errors[0]) / math.log(fine / coarse)
+    assert abs(observed - order) < 0.3
+
+
+def test_more_sites_converge_faster_than_any_power(converged):
+    errors = [
+        error_of_the_front(with_knob(FINEST, "sites", value), converged) for value in (1.4, 2, 2.8)
+    ]
+    orders = np.diff(np.log(errors)) / np.log(np.sqrt(2))
+    assert np.all(orders < -5)
+
+
+def test_the_mean_over_realisations_converges_with_the_root_of_their_number():
+    schedule = LoadSchedule(1.0, 0.2)
+    numerics = chosen_numerics(0.1, "roughness", SMALL.spectrum, 0.04, SMALL.reference)
+    values = []
+    for number in range(64):
+        field = simulation_field(replace(SMALL.simulation(numerics, number), schedule=schedule))
+        record = run_cycle(field, schedule, tolerance=numerics.tolerance)
+        values.append(record.apparent_work_of_adhesion[record.direction < 0][:4].mean())
+    single = np.std(values, ddof=1)
+    of_four = np.std(np.mean(np.reshape(values, (16, 4)), axis=1), ddof=1)
+    assert abs(math.log(of_four / single) / math.log(4) + 0.5) < 0.3
+
+
+def test_a_branch_has_the_states_of_a_full_cycle_at_the_same_loads():
+    numerics = chosen_numerics(0.03, "roughness", SMALL.spectrum, 0.04, SMALL.reference)
+    numerics = replace(numerics, tolerance=1e-9)
+    branches = measured_branches(SMALL, numerics, 1)
+    simulation = SMALL.simulation(numerics, 1)
+    field = simulation_field(simulation)
+    cycle = run_cycle(field, LoadSchedule(1.0, 0.1), tolerance=1e-9, record_fronts=True)
+    approach = cycle.direction > 0
+    assert np.allclose(SMALL.penetrations, cycle.penetration[approach][-8:])
+    assert np.allclose(branches.radius[0], cycle.radius[approach][-8:], rtol=0, atol=1e-7)
+    # The branch begins outside the turn of the cycle, which has left the turn behind at 0.4.
+    assert np.allclose(cycle.penetration[~approach][5:7], SMALL.penetrations[1::-1])
+    retraction = cycle.radius[~approach][5:7]
+    assert np.allclose(branches.radius[1, 1::-1], retraction, rtol=0, atol=1e-7)
+
+
+def test_fronts_are_compared_as_trigonometric_ones():
+    angle = [2 * np.pi * np.arange(n) / n for n in (16, 40)]
+    coarse, fine = (2 + 0.1 * np.cos(3 * t) + 0.05 * np.sin(5 * t) for t in angle)
+    assert np.max(np.abs(front_difference(coarse, fine))) < 1e-14
+    assert front_difference(coarse + 0.25, fine) == pytest.approx(0.25)
+
+
+def test_a_setting_of_one_knob_leaves_the_others_as_in_the_reference():
+    names = {
+        "sites": {"angles_per_cutoff"},
+        "cubic": {"samples_per_cutoff"},
+        "linear": {"samples_per_cutoff", "interpolation"},
+        "pixels": {"pixels_per_cutoff"},
+        "tolerance": {"tolerance"},
+    }
+    for knob, value, numerics in MODERATE.settings:
+        if knob in names:
+            changed = {
+                name
+                for name in MODERATE.reference.__dataclass_fields__
+                if getattr(numerics, name) != getattr(MODERATE.reference, name)
+            }
+            assert changed
+            assert changed <= names[knob]
+            assert value in {getattr(numerics, name) for name in names[knob]}
+
+
+@pytest.fixture(scope="module")
+def small_study():
+    return scene_errors(SMALL, range(3))
+
+
+def test_errors_fall_with_the_error_that_is_asked_for_and_time_grows(small_study):
+    assert SMALL.elastic_energy == 0.04
+    asked = [errors for errors in small_study.errors if errors.knob == "asked"]
+    rms = [np.sqrt(np.mean(errors.state**2)) for errors in asked]
+    seconds = [errors.seconds.mean() for errors in asked]
+    assert rms[0] > 3 * rms[2]
+    assert seconds[0] < seconds[-1]
+    for errors in asked:
+        assert np.all(np.abs(errors.adhesion) <= errors.state * (1 + 1e-12))
+        assert np.all(errors.front_rms <= errors.front_max)
+    finer = small_study.errors[0]
+    assert finer.knob == "finer"
+    assert np.max(np.abs(finer.adhesion)) < 0.01 * np.max(np.abs(asked[0].adhesion))
+
+
+def test_errors_are_relative_to_the_mean_hysteresis(small_study):
+    errors = replace(small_study.errors[0], adhesion=np.array([[0.0, 0.01]] * 3))
+    mean = np.mean(small_study.adhesion[:, 1] - small_study.adhesion[:, 0])
+    assert hysteresis_errors(small_study, errors) == pytest.approx(0.01 / mean)
+
+
+def test_a_study_is_read_as_it_was_written(small_study, tmp_path):
+    path = tmp_path / "numerics.nc"
+    write_errors(path, small_study, provenance())
+    again = read_errors(path)
+    assert again.scene == SMALL
+    assert np.array_equal(again.adhesion, small_study.adhesion)
+    for one, other in zip(again.errors, small_study.errors, strict=True):
+        assert (one.knob, one.value, one.numerics) == (other.knob, other.value, other.numerics)
+        assert np.array_equal(one.front_max, other.front_max)
+    with pytest.raises(ValueError, match="does not exist; check the name"):
+        read_errors(tmp_path / "none.nc")
+
+
+def test_no_setting_of_the_pareto_front_is_beaten():
+    rng = np.random.default_rng(3)
+    seconds, error = rng.uniform(size=(2, 40))
+    best = pareto_front(seconds, error)
+    for index in range(40):
+        beaten = np.any((seconds < seconds[index]) & (error < error[index]))
+        assert (index in best) == (not beaten)
+    assert np.all(np.diff(seconds[best]) > 0)
+    assert list(pareto_front(np.array([1.0, 1.0, 2.0]), np.array([2.0, 1.0, 1.0]))) == [1]
+
+
+def synthetic_study(bias, scatter):
+    """A study whose errors of k have a given bias and scatter, by knob and value."""
+    rng = np.random.default_rng(5)
+    errors = []
+    for knob, value, numerics in MODERATE.settings:
+        if knob in ("finer", "asked"):
+            continue
+        noise = scatter(knob, value) * rng.standard_normal((400, 2))
+        adhesion = MODERATE.elastic_energy * (noise + np.array([-1, 1]) * bias(knob, value))
+        one = np.ones(400)
+        errors.append(Errors(knob, value, numerics, one, adhesion, adhesion**2, one, one, one))
+    reference = np.tile([0.9, 1.0], (400, 1))
+    return SceneErrors(MODERATE, reference, np.ones(400), tuple(errors))
+
+
+def test_the_fit_finds_the_law_behind_the_errors():
+    def bias(knob, value):
+        return math.exp(1 - 2 * value) if knob == "sites" else 0.0
+
+    def scatter(knob, value):
+        return 0.3 * value**-3 if knob == "cubic" else 1e-3
+
+    laws = {(law.knob, law.direction): law for law in fit_laws([synthetic_study(bias, scatter)])}
+    assert laws["sites", -1].bias == pytest.approx((1, -2), abs=0.1)
+    assert laws["cubic", 1].scatter == pytest.approx((math.log(0.3), -3), abs=0.2)
+    assert laws["cubic", 1].error(4, LAW_SIZE) == pytest.approx(0.3 / 64, rel=0.1)
+    assert laws["cubic", 1].error(4, 4 * LAW_SIZE) == pytest.approx(0.15 / 64, rel=0.1)
+
+
+def test_laws_are_written_in_full(tmp_path):
+    laws = list(fit_laws([synthetic_study(lambda *_: 0.01, lambda *_: 0.01)]))
+    lines = laws_text(laws).splitlines()
+    assert len(lines) == 1 + len(laws) == 11
+    assert lines[0].startswith("shape,elastic_energy,knob,direction,bias_0")
+    assert lines[1].startswith("chemical,0.04,sites,1,")
+
+
+@pytest.fixture(scope="module")
+def coverage():
+    return held_out_coverage(SCENES["flat-0.04"], (0.1,), 12)
+
+
+def test_the_stated_numerical_error_covers_nine_in_ten_and_is_not_three_times_too_large(coverage):
+    (item,) = coverage
+    interval = numerical_interval(item)
+    assert np.mean(np.abs(item.numerical) <= interval) >= 0.9
+    assert np.median(interval / np.median(np.abs(item.numerical), axis=0)) <= 3
+
+
+def test_the_stated_statistical_error_covers_nine_in_ten(coverage):
+    (item,) = coverage
+    interval = statistical_interval(item)
+    assert np.mean(np.abs(item.statistical) <= interval) >= 0.9
+    assert np.median(interval) / np.median(np.abs(item.statistical)) <= 4
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1200)
+def test_stated_errors_cover_nine_in_ten_over_shapes_and_amplitudes():
+    inside = {"numerical": [], "statistical": []}
+    for name in ("chemical-0.16", "flat-0.01", "h08-0.16", "h03-0.04"):
+        for item in held_out_coverage(SCENES[name], (0.1, 0.03), 16):
+            inside["numerical"].append(np.abs(item.numerical) <= numerical_interval(item))
+            known = np.isfinite(item.statistical_stated)
+            covered = np.abs(item.statistical) <= statistical_interval(item)
+            inside["statistical"].append(covered[known])
+    for covered in inside.values():
+        assert np.mean(np.concatenate([item.ravel() for item in covered])) >= 0.9
+
+
+def test_coverage_is_read_as_it_was_written(coverage, tmp_path):
+    path = tmp_path / "coverage.nc"
+    write_coverage(path, SCENES["flat-0.04"], coverage, provenance())
+    scene, again = read_coverage(path)
+    assert scene == SCENES["flat-0.04"]
+    assert np.array_equal(again[0].statistical, coverage[0].statistical)
+    assert again[0].asked == 0.1
+
+
+def test_student_intervals_are_wider_than_normal_ones_where_states_are_few(coverage):
+    few = replace(coverage[0], n_state=np.full((12, 2), 3.0))
+    many = replace(coverage[0], n_state=np.full((12, 2), 1e9))
+    ratio = statistical_interval(few) / statistical_interval(many)
+    assert ratio == pytest.approx(stats.t.ppf(0.96, 2) / stats.norm.ppf(0.96))
+
+
+@pytest.mark.slow
+def test_schedules_change_the_mean_within_its_error(tmp_path):
+    samples = sampling_errors(SMALL, range(6))
+    path = tmp_path / "averages.nc"
+    write_samples(path, SMALL, samples, provenance())
+    scene, again = read_samples(path)
+    assert scene == SMALL
+    assert [item.knob for item in again] == [item.knob for item in samples]
+    first = samples[0]
+    for item in samples:
+        if item.knob == "travel":
+            difference = item.hysteresis - first.hysteresis
+            error = np.hypot(np.std(difference, ddof=1), np.mean(item.standard_error))
+            assert abs(np.nanmean(difference)) < 3 * error
+
+
+def test_the_commands_measure_a_scene_and_report_it(tmp_path):
+    run = CliRunner().invoke
+    output = ["--output", str(tmp_path)]
+    empty = run(main, ["accuracy-report", *output])
+    assert empty.exit_code == 2
+    assert "holds no measured errors; run crackfront accuracy first" in empty.output
+    measured = run(main, ["accuracy", "small-0.04", "--realisations", "2", *output])
+    assert measured.exit_code == 0, measured.output
+    assert "asked 0.03: rms error of k" in measured.output
+    reported = run(main, ["accuracy-report", *output])
+    assert reported.exit_code == 0, reported.output
+    text = (tmp_path / "accuracy.md").read_text()
+    assert "## Time to an error of the hysteresis" in text
+    assert "| small-0.04 | 0.01 |" in text
+    assert "±" in text
+
+
+def test_an_unknown_scene_is_refused_with_the_nearest_one():
+    refused = CliRunner().invoke(main, ["accuracy", "flat-0.4"])
+    assert refused.exit_code == 2
+    assert "there is no scene 'flat-0.4'; did you mean flat-0.04?" in refused.output

@@ -1,0 +1,51 @@
+# `make accuracy`: the numerical errors of every scene, their laws, tables and figures.
+ACCURACY = "results/accuracy"
+SCENES = [
+    *(
+        f"{shape}-{energy}"
+        for shape in ("chemical", "flat", "h08", "h03")
+        for energy in ("0.0025", "0.01", "0.04", "0.16")
+    ),
+    "small-0.04",
+    "large-0.04",
+]
+COVERED = [scene for scene in SCENES if scene.endswith(("-0.01", "-0.16"))]
+
+
+wildcard_constraints:
+    study="numerics|averages|coverage",
+    scene="[a-z0-9.-]+",
+
+
+rule accuracy:
+    input:
+        f"{ACCURACY}/accuracy.md",
+
+
+rule accuracy_study:
+    output:
+        f"{ACCURACY}/{{study}}-{{scene}}.nc",
+    params:
+        sources=package_fingerprint(),
+    shell:
+        "crackfront accuracy {wildcards.scene} --study {wildcards.study} --output {ACCURACY:q}"
+
+
+rule accuracy_report:
+    input:
+        expand("{results}/numerics-{scene}.nc", results=ACCURACY, scene=SCENES),
+        expand("{results}/coverage-{scene}.nc", results=ACCURACY, scene=COVERED),
+        f"{ACCURACY}/averages-flat-0.04.nc",
+    output:
+        f"{ACCURACY}/accuracy.md",
+        f"{ACCURACY}/laws.csv",
+        expand(
+            "{results}/{figure}.{suffix}",
+            results=ACCURACY,
+            figure=["work-precision", "laws"],
+            suffix=["pdf", "png"],
+        ),
+    params:
+        sources=package_fingerprint(),
+    shell:
+        "crackfront accuracy-report --output {ACCURACY:q}"
