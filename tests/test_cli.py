@@ -185,6 +185,20 @@ def test_bad_options_of_a_cycle_are_refused(rough_rays, tmp_path, options, sente
     assert not (tmp_path / "out.nc").exists()
 
 
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_a_tile_with_a_value_that_is_not_finite_is_refused_with_its_place(
+    smooth_tile, tmp_path, value
+):
+    tile = xr.load_dataset(smooth_tile)
+    tile.work_of_adhesion[3, 5] = value
+    tile.to_netcdf(tmp_path / "bad.nc")
+    sentence = refused(
+        "cycle", "--field", tmp_path / "bad.nc", "--max-penetration", 1, "--step", 0.5,
+        "--output", tmp_path / "out.nc",
+    )  # fmt: skip
+    assert f"work of adhesion is {value} at x index 3, y index 5 (1 such values)" in sentence
+
+
 def test_the_resolution_of_a_tile_can_be_chosen(smooth_tile, tmp_path):
     options = ("--angles", 12, "--samples-per-pixel", 2, "--record", "fronts")
     assert cycle(smooth_tile, tmp_path, *options).exit_code == 0

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from crackfront import jkr
+from crackfront.adhesion import AdhesionMap
 from crackfront.cycle import LoadSchedule, run_cycle
 from crackfront.pinning import last_radius
 from crackfront.relax import Status
@@ -188,6 +189,20 @@ def test_a_smooth_contact_of_the_strongest_adhesion_stays_inside_the_field(stren
     field = contact_field(adhesion, 8, 0.1, 0.7)
     strongest = np.max(adhesion.work_of_adhesion) / WORK_OF_ADHESION
     assert last_radius(field) > jkr.equilibrium_radius(0.7, max(strongest, 1.0))
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("count", [1, 64])
+def test_a_tile_that_is_not_finite_is_refused_with_its_place_before_its_contact_is_sized(
+    value, count
+):
+    values = np.full((8, 8), WORK_OF_ADHESION)
+    values.flat[-count:] = value
+    row, column = np.unravel_index(64 - count, (8, 8))
+    with pytest.raises(
+        ValueError, match=rf"is {value} at x index {row}, y index {column} \({count} such values\)"
+    ):
+        tile_contact(AdhesionMap(values, 0.1, 0.0, 0.0), 0.5)
 
 
 def test_a_given_tile_is_resolved_by_its_pixels():

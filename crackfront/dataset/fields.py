@@ -83,7 +83,9 @@ def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
             "be equal"
         )
     samples = np.ascontiguousarray(values.transpose("x", "y"), dtype=float)
-    rms = float(np.std(samples) / WORK_OF_ADHESION)
+    # The refusal of values that are not finite, with their place, is that of the field.
+    with np.errstate(invalid="ignore"):
+        rms = float(np.std(samples) / WORK_OF_ADHESION)
     return AdhesionMap(samples, pixels[0], elastic_energy=rms**2 / 4, rms=rms)
 
 

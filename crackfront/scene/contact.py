@@ -73,9 +73,10 @@ def contact_field(
     interpolation, band_limited
         As in :func:`crackfront.pinning.tile_field`.
     """
-    # nanmax: the refusal of values that are not finite, with their place, is tile_field's.
-    strongest = max(1.0, float(np.nanmax(adhesion.work_of_adhesion)) / WORK_OF_ADHESION)
-    largest = 1.1 * jkr.equilibrium_radius(max_penetration, strongest)
+    values = adhesion.work_of_adhesion
+    # The refusal of values that are not finite, with their place, is tile_field's.
+    strongest = float(np.max(values, where=np.isfinite(values), initial=WORK_OF_ADHESION))
+    largest = 1.1 * jkr.equilibrium_radius(max_penetration, strongest / WORK_OF_ADHESION)
     return tile_field(adhesion, n_angle, spacing, largest, interpolation, band_limited=band_limited)
 
 
