@@ -119,8 +119,8 @@ class CycleRecord:
     residual : (n_step,) array
         Largest force along the motion that is left, relative to w_int per front length.
     dissipated_energy : (n_step,) array or None
-        Energy lost in the jumps of each load step, where it was asked for.
-        (Units: pi w_int R times a reduced vertical length)
+        Energy lost in the jumps of each load step, where it was asked for; the first includes that
+        of making contact. (Units: pi w_int R times a reduced vertical length)
     pull_off_energy : float or None
         Energy lost when the contact vanishes after the last state; with it the dissipated energies
         sum up to the loop integral of F db. None where energies were not asked for or contact was
@@ -226,14 +226,21 @@ class FrontHistory:
             self._turn = before
         self.states.append(_measure(outcome, penetration, direction, self._turn))
         if self._dissipated is not None:
-            lost = dissipated_energy(before, self._front, penetration, self._field)
-            self._dissipated.append(lost if self._begun else math.nan)
+            self._dissipated.append(self._energy_lost(before, penetration))
         self._begun = True
         if self._fronts is not None:
             self._fronts.append(self._front)
         if self._progress is not None:
             self._progress(self.states[-1])
         return outcome.status
+
+    def _energy_lost(self, before: Array, penetration: float) -> float:
+        """Energy that the last step dissipated; the first one of a cycle makes the contact."""
+        if not self._begun:
+            return math.nan
+        if len(self.states) == 1:
+            return -_contact_energy(self._front, penetration, self._field)
+        return dissipated_energy(before, self._front, penetration, self._field)
 
     def record(self, status: Status | None = None) -> CycleRecord:
         """All states so far.
@@ -336,7 +343,9 @@ def dissipated_energy(before: Array, after: Array, penetration: float, field: Fi
     Returns
     -------
     float
-        Fall of the total energy, not negative for a quasi-static move.
+        Fall of the total energy. A quasi-static move loses energy, except in approach where the
+        sphere closes an edge in compression over places that repel (w_loc < 0): there it may be
+        negative, by no more than the integral of -w_loc over those places.
         (Units: pi w_int R times a reduced vertical length)
     """
     fall = _elastic_energy(before, penetration) - _elastic_energy(after, penetration)

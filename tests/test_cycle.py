@@ -597,3 +597,49 @@ def test_dissipated_energies_with_that_of_pull_off_sum_up_to_the_loop_integral()
         gaps.append(abs(record.dissipated_energy.sum() + record.pull_off_energy - work) / work)
     assert gaps[1] < 0.01
     assert gaps[1] == pytest.approx(gaps[0] / 2, rel=0.2)
+
+
+@every_solver
+@pytest.mark.parametrize("amplitude", [0.0, 0.3, 1.0])
+@pytest.mark.parametrize("step", [0.05, 0.4])
+def test_a_cycle_dissipates_the_work_of_its_load_steps_to_round_off(solver, amplitude, step):
+    record = run_cycle(
+        noisy_field(3, 32, amplitude, largest=3.2),
+        LoadSchedule(0.6, step),
+        record_energy=True,
+        tolerance=1e-6,
+        solver=solver,
+    )
+    # While the load changes the front is held, so that the force is linear in penetration.
+    change = np.diff(np.append(record.penetration, record.end_penetration))
+    work = np.sum((record.force + CONTACT_MODULUS * record.mean_radius * change) * change)
+    lost = record.dissipated_energy.sum() + record.pull_off_energy
+    assert lost == pytest.approx(work, rel=1e-13)
+
+
+def repulsion_within(before, penetration, field):
+    """Integral of -w_loc where it repels, between a front and the edge of open contact."""
+    after = np.maximum(before, np.sqrt(max(penetration, 0.0)))
+    share = (np.arange(4000) + 0.5) / 4000
+    front = before + share[:, None] * (after - before)
+    repels = [np.maximum(-pinning.front_adhesion(a, field), 0.0) for a in front]
+    return 2 * np.pi * np.mean(np.mean(front * repels, axis=0) * (after - before))
+
+
+@every_solver
+def test_energy_is_gained_only_where_an_edge_in_compression_is_closed_over_repelling_places(solver):
+    gained, paid = 0.0, 0.0
+    for seed in range(4):
+        field = noisy_field(seed, 32, amplitude=2.0, largest=3.2)
+        record = run_cycle(
+            field, LoadSchedule(0.6, 0.05), solver=solver, record_fronts=True, record_energy=True
+        )
+        assert np.all(record.dissipated_energy[branch(record, -1)] > -1e-11)
+        for row in range(1, np.count_nonzero(branch(record, 1))):
+            lost = record.dissipated_energy[row]
+            bound = repulsion_within(record.radius[row - 1], record.penetration[row], field)
+            assert lost > -bound * (1 + 1e-3) - 1e-11
+            gained, paid = min(gained, lost), max(paid, bound)
+    # It does happen, and the bound is of the same size.
+    assert -0.02 < gained < -1e-3
+    assert paid < 20 * -gained
