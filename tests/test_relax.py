@@ -732,3 +732,28 @@ def test_an_unknown_solver_is_refused_with_the_known_ones():
 def test_the_modulus_of_the_ring_is_that_of_the_reduced_units():
     # The independent check above writes 3 / 8 pi; this ties it to the package's own constant.
     assert CONTACT_MODULUS / (2 * np.pi) == pytest.approx(3 / (8 * np.pi), rel=1e-15)
+
+
+@every_solver
+@pytest.mark.parametrize("direction", [1, -1])
+def test_a_field_that_is_too_steep_for_the_tolerance_stops_the_front_with_a_sentence(
+    solver, direction
+):
+    found = []
+    for width, share in itertools.product([1e-7, 1e-8, 1e-9], [0.2, 0.5, 0.7]):
+        # Over one digit of the radius the force changes by more than the tolerance.
+        radii = np.array([0.05, 1.5, 1.5 + width, 2.8])
+        steps = np.repeat([[1.0], [1.0], [0.3], [0.3]], 24, axis=1)
+        field = polar_field(radii, WORK_OF_ADHESION * steps)
+        load = float(jkr.equilibrium_penetration(1.5, 1 - 0.7 * share))
+        start = np.full(24, 0.1 if direction > 0 else 2.5)
+        outcome = relax(start, load, direction, field, tolerance=TIGHT, solver=solver)
+        assert outcome.sweeps < 20_000
+        # It stands where it belongs, and the residual says how well.
+        assert np.all((outcome.radius >= 1.5) & (outcome.radius <= 1.5 + width))
+        assert outcome.residual < 1e-15 / width
+        # A radius may happen to have just the digits that balance the force.
+        assert outcome.status in (Status.ROUND_OFF, Status.CONVERGED)
+        found.append(outcome.status)
+    assert found.count(Status.ROUND_OFF) >= 3
+    assert "raise the tolerance" in Status.ROUND_OFF.value

@@ -49,6 +49,10 @@ class Status(enum.Enum):
         "the solver reached its limit of sweeps before the tolerance; raise max_sweeps or the "
         "tolerance"
     )
+    ROUND_OFF = (
+        "the front stands still above the tolerance, because the field rises too steeply for the "
+        "digits of a radius; raise the tolerance"
+    )
 
 
 _CODES = {
@@ -56,6 +60,7 @@ _CODES = {
     forces.INWARD: Status.LEFT_FIELD_INWARD,
     forces.OUTWARD: Status.LEFT_FIELD_OUTWARD,
     forces.LIMIT: Status.STEP_LIMIT,
+    forces.STILL: Status.ROUND_OFF,
 }
 
 SOLVERS = {"reference": rosso_krauth, "newton": monotone_newton}

@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 RING = CONTACT_MODULUS / (2 * np.pi)
 """Factor of (a^2 - b)^2 in a G_JKR."""
 
-CONVERGED, INWARD, OUTWARD, LIMIT, BLOCKED, TURNED = range(6)
+CONVERGED, INWARD, OUTWARD, LIMIT, BLOCKED, TURNED, STILL = range(7)
 """Codes with which a compiled solver ends."""
 
 

@@ -16,11 +16,12 @@ from __future__ import annotations
 import numpy as np
 
 from crackfront.compiled import jit
-from crackfront.pinning import sample_radius, samples_ahead
+from crackfront.pinning import front_products, sample_radius, samples_ahead
 from crackfront.relax.forces import (
     BLOCKED,
     CONVERGED,
     LIMIT,
+    STILL,
     TURNED,
     drive_sites,
     hardening,
@@ -60,7 +61,8 @@ def monotone_newton(radius, penetration, direction, field, memory, tolerance, ma
         radius, penetration, direction, field, memory, tolerance, max_sweeps
     )
     if code == BLOCKED:
-        # The edge of the contact is near compression: the reference knows how to stop there.
+        # The edge of the contact is near compression, or the field too steep for the digits of a
+        # radius: the reference knows how to stop there.
         code, sweeps, more, residual = rosso_krauth(
             radius, penetration, direction, field, memory, tolerance, max_sweeps - pairs
         )
@@ -84,6 +86,7 @@ def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
     # A backward force within the tolerance counts as equilibrium.
     slack = tolerance * WORK_OF_ADHESION * np.min(radius)
     residual, first_least, pairs, updates = np.inf, 0.0, 0, 0
+    before = np.zeros(count)
     while code == CONVERGED:
         residual, least = drive_sites(front, penetration, direction, drive)
         if pairs == 0:
@@ -92,9 +95,13 @@ def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
         if residual <= tolerance:
             return CONVERGED, pairs, updates, residual
         if least < first_least - _ROUND_OFF:
-            return TURNED, pairs, updates, residual
+            excused = _is_round_off(front.radius, field, drive, first_least - _ROUND_OFF)
+            return BLOCKED if excused else TURNED, pairs, updates, residual
         if pairs >= max_sweeps:
             return LIMIT, pairs, updates, residual
+        if np.array_equal(front.radius, before):
+            return STILL, pairs, updates, residual
+        before[:] = front.radius
         calm = residual <= _CALM
         n_active = 0 if calm else _mark(front, drive, _LEVEL * residual, active)
         if calm or (collective and n_active > 0.3 * count):
@@ -120,6 +127,18 @@ def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
             )  # fmt: skip
             updates += used
     return code, pairs, updates, residual
+
+
+@jit
+def _is_round_off(radius, field, drive, least):
+    """Whether the last digits of the radii explain every relative drive below a value."""
+    outer = front_products(np.nextafter(radius, np.inf), field)
+    inner = front_products(np.nextafter(radius, 0.0), field)
+    for i in range(radius.size):
+        backward = drive[i] < least * radius[i] * WORK_OF_ADHESION
+        if backward and -drive[i] > 4 * abs(outer[i] - inner[i]):
+            return False
+    return True
 
 
 @jit

@@ -15,7 +15,16 @@ from crackfront.pinning import (
     segment_below,
     steepest_inside,
 )
-from crackfront.relax.forces import CONVERGED, INWARD, LIMIT, OUTWARD, RING, line_force, ring_force
+from crackfront.relax.forces import (
+    CONVERGED,
+    INWARD,
+    LIMIT,
+    OUTWARD,
+    RING,
+    STILL,
+    line_force,
+    ring_force,
+)
 from crackfront.units import WORK_OF_ADHESION
 
 _self_stiffness = jit(self_stiffness)
@@ -63,6 +72,7 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
             residual = max(residual, drive[i] / (a * WORK_OF_ADHESION))
         if residual <= tolerance:
             return CONVERGED, sweep, sweep * count, residual
+        still = True
         for i in range(count):
             if drive[i] == 0.0:
                 continue
@@ -77,8 +87,10 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
             target = outer[i] if direction > 0 else max(inner[i], lowest)
             moved = a + direction * drive[i] / stiffness if stiffness > 0.0 else direction * np.inf
             if direction * (moved - target) < 0.0:
+                still = still and moved == a
                 radius[i] = moved
                 continue
+            still = False
             radius[i] = target
             if direction < 0 and target > inner[i]:
                 continue
@@ -89,4 +101,6 @@ def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_s
                 return OUTWARD, sweep, sweep * count, residual
             segment[i] = low
             inner[i], outer[i] = _enter(field, memory, i, low, pieces)
+        if still:
+            return STILL, sweep, sweep * count, residual
     return LIMIT, max_sweeps, max_sweeps * count, residual
