@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from benchmarks import needs
+from benchmarks import energy_balance, needs
 from benchmarks.machine import peak_memory, restart_peak
 
 
@@ -73,3 +73,14 @@ def test_the_peak_of_memory_starts_anew_and_sees_an_array_that_is_gone():
     np.ones(5_000_000)
     assert 35 < peak_memory() - before < 60
     assert restart_peak() - before < 10
+
+
+def test_the_table_of_energies_shows_round_off_for_the_work_and_the_first_order_for_the_rest():
+    steps = (0.1, 0.05, 0.025)
+    found = [energy_balance.energies(energy_balance.cycle(0.4, 0, step)) for step in steps]
+    lost, work, trapezoid = np.transpose(found)
+    assert np.allclose(lost, work, rtol=1e-13)
+    assert np.all(np.diff(lost) < 0)
+    gap = lost - trapezoid
+    assert np.allclose(gap[:-1] / gap[1:], 2, atol=0.15)
+    assert gap[1] > 0.05 * work[1]
