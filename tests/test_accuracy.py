@@ -35,7 +35,7 @@ from crackfront.dataset import (
     write_errors,
     write_samples,
 )
-from crackfront.laws import LAW_SIZE, chosen_numerics
+from crackfront.laws import LAW_SIZE, chosen_numerics, read_laws
 from crackfront.provenance import provenance
 from crackfront.scene import simulation_field
 from crackfront.spectrum import SelfAffineSpectrum
@@ -239,6 +239,21 @@ def test_laws_are_written_in_full(tmp_path):
     assert len(lines) == 1 + len(laws) == 11
     assert lines[0].startswith("shape,elastic_energy,knob,direction,bias_0")
     assert lines[1].startswith("chemical,0.04,sites,1,")
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_the_laws_of_the_package_are_those_that_the_study_gives():
+    stored = {
+        (law.knob, law.direction): law
+        for law in read_laws()
+        if (law.shape, law.elastic_energy) == ("h08", 0.0025)
+    }
+    study = scene_errors(SCENES["h08-0.0025"], range(8))
+    for law in fit_laws([study]):
+        before = stored[law.knob, law.direction]
+        assert law.bias == pytest.approx(before.bias, abs=0.02)
+        assert law.scatter == pytest.approx(before.scatter, abs=0.02)
 
 
 @pytest.fixture(scope="module")
