@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront import jkr
+from crackfront.fits import SteadyAdhesion
 from crackfront.scene import FieldKind, Numerics, Simulation
 from crackfront.spectrum import SelfAffineSpectrum
 
@@ -96,7 +97,9 @@ def spectral_shape(kind: FieldKind, spectrum: SelfAffineSpectrum) -> str:
     return "h08" if spectrum.hurst > 0.55 else "h03"
 
 
-def numerical_error(simulation: Simulation, size: float = LAW_SIZE) -> tuple[float, float]:
+def numerical_error(
+    simulation: Simulation, size: float = LAW_SIZE, largest_radius: float | None = None
+) -> tuple[float, float]:
     """Standard errors that the numerics of a simulation are expected to leave.
 
     Parameters
@@ -105,6 +108,9 @@ def numerical_error(simulation: Simulation, size: float = LAW_SIZE) -> tuple[flo
         A simulation.
     size : float, optional
         Number of states times circumference of the front over the short cutoff.
+    largest_radius : float, optional
+        Largest mean radius of the states; by default that of a smooth sphere at the largest
+        penetration. (Units: reduced lateral length)
 
     Returns
     -------
@@ -112,7 +118,9 @@ def numerical_error(simulation: Simulation, size: float = LAW_SIZE) -> tuple[flo
         Standard errors of w_appr and of w_retr. (Units: w_int)
     """
     sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
-    circle = 2 * math.pi * jkr.equilibrium_radius(simulation.schedule.max_penetration)
+    if largest_radius is None:
+        largest_radius = jkr.equilibrium_radius(simulation.schedule.max_penetration)
+    circle = 2 * math.pi * largest_radius
     values: dict[Knob, float] = {
         "sites": sizes.n_angle * cutoff / circle,
         sizes.interpolation: cutoff / sizes.spacing,
@@ -133,6 +141,33 @@ def numerical_error(simulation: Simulation, size: float = LAW_SIZE) -> tuple[flo
         )
         for direction in (1, -1)
     )
+    return approach, retraction
+
+
+def stated_error(
+    simulation: Simulation, steady: SteadyAdhesion, correlation_length: float
+) -> tuple[float, float]:
+    """Numerical standard errors of the w_appr and w_retr that a simulation has found.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        A simulation.
+    steady : SteadyAdhesion
+        What it has found; states closer than a correlation length count as one.
+    correlation_length : float
+        That of w_loc. (Units: reduced lateral length)
+
+    Returns
+    -------
+    tuple of float
+        Standard errors of w_appr and of w_retr. (Units: w_int)
+    """
+    low, high = steady.lowest_radius, steady.highest_radius
+    cutoffs = math.pi * (low + high) / simulation.spectrum.short_cutoff
+    apart = 1 + (high - low) / correlation_length
+    approach, _ = numerical_error(simulation, cutoffs * min(steady.n_approach, apart), high)
+    _, retraction = numerical_error(simulation, cutoffs * min(steady.n_retraction, apart), high)
     return approach, retraction
 
 

@@ -21,7 +21,7 @@ from crackfront.accuracy import (
     pareto_front,
     sampling_errors,
     scene_errors,
-    statistical_interval,
+    total_interval,
     with_knob,
 )
 from crackfront.cli import main
@@ -142,7 +142,7 @@ def test_a_setting_of_one_knob_leaves_the_others_as_in_the_reference():
         "pixels": {"pixels_per_cutoff"},
         "tolerance": {"tolerance"},
     }
-    for knob, value, numerics in MODERATE.settings:
+    for knob, value, numerics in MODERATE.single_settings:
         if knob in names:
             changed = {
                 name
@@ -156,7 +156,8 @@ def test_a_setting_of_one_knob_leaves_the_others_as_in_the_reference():
 
 @pytest.fixture(scope="module")
 def small_study():
-    return scene_errors(SMALL, range(3))
+    finer = [setting for setting in SMALL.single_settings if setting[0] == "finer"]
+    return scene_errors(SMALL, finer + SMALL.asked_settings, range(3))
 
 
 def test_errors_fall_with_the_error_that_is_asked_for_and_time_grows(small_study):
@@ -208,8 +209,8 @@ def synthetic_study(bias, scatter):
     """A study whose errors of k have a given bias and scatter, by knob and value."""
     rng = np.random.default_rng(5)
     errors = []
-    for knob, value, numerics in MODERATE.settings:
-        if knob in ("finer", "asked"):
+    for knob, value, numerics in MODERATE.single_settings:
+        if knob == "finer":
             continue
         noise = scatter(knob, value) * rng.standard_normal((400, 2))
         adhesion = MODERATE.elastic_energy * (noise + np.array([-1, 1]) * bias(knob, value))
@@ -249,7 +250,8 @@ def test_the_laws_of_the_package_are_those_that_the_study_gives():
         for law in read_laws()
         if (law.shape, law.elastic_energy) == ("h08", 0.0025)
     }
-    study = scene_errors(SCENES["h08-0.0025"], range(8))
+    scene = SCENES["h08-0.0025"]
+    study = scene_errors(scene, scene.single_settings, range(8))
     for law in fit_laws([study]):
         before = stored[law.knob, law.direction]
         assert law.bias == pytest.approx(before.bias, abs=0.02)
@@ -258,35 +260,48 @@ def test_the_laws_of_the_package_are_those_that_the_study_gives():
 
 @pytest.fixture(scope="module")
 def coverage():
-    return held_out_coverage(SCENES["flat-0.04"], (0.1,), 12)
+    return held_out_coverage(SCENES["flat-0.04"], (0.1, 0.03), 8)
 
 
-def test_the_stated_numerical_error_covers_nine_in_ten_and_is_not_three_times_too_large(coverage):
-    (item,) = coverage
-    interval = numerical_interval(item)
-    assert np.mean(np.abs(item.numerical) <= interval) >= 0.9
-    assert np.median(interval / np.median(np.abs(item.numerical), axis=0)) <= 3
+def covered_and_width(true, interval):
+    """Share of errors that are covered, and the median of interval over error."""
+    known = np.isfinite(interval) & np.isfinite(true)
+    relative = np.abs(true[known]) / interval[known]
+    return np.mean(relative <= 1), 1 / np.median(relative)
 
 
-def test_the_stated_statistical_error_covers_nine_in_ten(coverage):
-    (item,) = coverage
-    interval = statistical_interval(item)
-    assert np.mean(np.abs(item.statistical) <= interval) >= 0.9
-    assert np.median(interval) / np.median(np.abs(item.statistical)) <= 4
+def check_stated_errors(items, widest):
+    """Total and numerical errors are covered, and the stated ones are not far too large."""
+    share, width = covered_and_width(
+        np.concatenate([item.total for item in items]),
+        np.concatenate([total_interval(item) for item in items]),
+    )
+    assert share >= 0.9
+    assert width <= widest
+    share, _ = covered_and_width(
+        np.concatenate([item.numerical for item in items]),
+        np.concatenate([numerical_interval(item) for item in items]),
+    )
+    assert share >= 0.9
+    # Rare avalanches make the numerical errors: their rms is compared, not their median.
+    rms = [np.sqrt(np.mean(item.numerical**2)) for item in items]
+    stated = [np.mean(item.numerical_stated) for item in items]
+    assert np.median(np.divide(stated, rms)) <= 3
+
+
+def test_the_stated_errors_cover_nine_in_ten_and_are_not_far_too_large(coverage):
+    # Sixteen errors alone leave their median uncertain by a quarter.
+    check_stated_errors(coverage, widest=4)
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(1200)
-def test_stated_errors_cover_nine_in_ten_over_shapes_and_amplitudes():
-    inside = {"numerical": [], "statistical": []}
-    for name in ("chemical-0.16", "flat-0.01", "h08-0.16", "h03-0.04"):
-        for item in held_out_coverage(SCENES[name], (0.1, 0.03), 16):
-            inside["numerical"].append(np.abs(item.numerical) <= numerical_interval(item))
-            known = np.isfinite(item.statistical_stated)
-            covered = np.abs(item.statistical) <= statistical_interval(item)
-            inside["statistical"].append(covered[known])
-    for covered in inside.values():
-        assert np.mean(np.concatenate([item.ravel() for item in covered])) >= 0.9
+def test_the_stated_errors_cover_nine_in_ten_over_shapes_and_amplitudes():
+    names = ("chemical-0.16", "flat-0.01", "h08-0.16", "h03-0.04")
+    check_stated_errors(
+        [item for name in names for item in held_out_coverage(SCENES[name], (0.1, 0.03), 8)],
+        widest=3,
+    )
 
 
 def test_coverage_is_read_as_it_was_written(coverage, tmp_path):
@@ -294,15 +309,19 @@ def test_coverage_is_read_as_it_was_written(coverage, tmp_path):
     write_coverage(path, SCENES["flat-0.04"], coverage, provenance())
     scene, again = read_coverage(path)
     assert scene == SCENES["flat-0.04"]
-    assert np.array_equal(again[0].statistical, coverage[0].statistical)
+    assert np.array_equal(again[0].total, coverage[0].total)
     assert again[0].asked == 0.1
 
 
 def test_student_intervals_are_wider_than_normal_ones_where_states_are_few(coverage):
-    few = replace(coverage[0], n_state=np.full((12, 2), 3.0))
-    many = replace(coverage[0], n_state=np.full((12, 2), 1e9))
-    ratio = statistical_interval(few) / statistical_interval(many)
-    assert ratio == pytest.approx(stats.t.ppf(0.96, 2) / stats.norm.ppf(0.96))
+    item = coverage[0]
+    exact = replace(item, run_numerical=np.zeros_like(item.total))
+    few, many = (
+        total_interval(replace(exact, n_state=np.full(item.total.shape, count)))
+        for count in (3.0, 1e9)
+    )
+    assert few / many == pytest.approx(stats.t.ppf(0.95, 2) / stats.norm.ppf(0.95))
+    assert np.all(total_interval(item) > item.run_numerical)
 
 
 @pytest.mark.slow
@@ -327,7 +346,9 @@ def test_the_commands_measure_a_scene_and_report_it(tmp_path):
     empty = run(main, ["accuracy-report", *output])
     assert empty.exit_code == 2
     assert "holds no measured errors; run crackfront accuracy first" in empty.output
-    measured = run(main, ["accuracy", "small-0.04", "--realisations", "2", *output])
+    measured = run(
+        main, ["accuracy", "small-0.04", "--study", "asked", "--realisations", "2", *output]
+    )
     assert measured.exit_code == 0, measured.output
     assert "asked 0.03: rms error of k" in measured.output
     reported = run(main, ["accuracy-report", *output])

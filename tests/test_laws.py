@@ -55,7 +55,7 @@ def test_no_knob_that_is_made_finer_states_a_larger_error(scene, knob, steps):
         assert after <= before * (1 + 1e-12)
 
 
-@given(scene=scenes, error=st.sampled_from([0.1, 0.03, 0.01, 0.003]))
+@given(scene=scenes, error=st.sampled_from([0.1, 0.03, 0.01]))
 def test_the_chosen_numerics_state_no_more_than_the_error_that_was_asked_for(scene, error):
     assert max(stated(scene, chosen(scene, error))) <= 1.05 * error
 

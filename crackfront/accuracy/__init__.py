@@ -4,7 +4,7 @@ from crackfront.accuracy.coverage import (
     Coverage,
     held_out_coverage,
     numerical_interval,
-    statistical_interval,
+    total_interval,
 )
 from crackfront.accuracy.fitting import fit_laws
 from crackfront.accuracy.report import accuracy_report, hysteresis_errors, pareto_front
@@ -15,6 +15,7 @@ from crackfront.accuracy.study import (
     Errors,
     SceneErrors,
     front_difference,
+    joined,
     measured_branches,
     scene_errors,
 )
@@ -33,11 +34,12 @@ __all__ = [
     "front_difference",
     "held_out_coverage",
     "hysteresis_errors",
+    "joined",
     "measured_branches",
     "numerical_interval",
     "pareto_front",
     "sampling_errors",
     "scene_errors",
-    "statistical_interval",
+    "total_interval",
     "with_knob",
 ]

@@ -15,13 +15,22 @@ Array = NDArray[np.float64]
 _LEAST = 3e-4
 """Errors of k below this count as this: nobody asks for less, and they would bend the laws."""
 
+_SLOWEST: dict[Knob, float] = {
+    "sites": -0.6,
+    "cubic": -2.0,
+    "linear": -1.0,
+    "pixels": -2.0,
+    "tolerance": 0.5,
+}
+"""Slopes that a law of scatter has at least: half the order of the knob.
+
+An avalanche that one discretisation triggers and another does not is of a size of its own; only its
+chance falls with the error of the field, and the rms with the root of that. Among a few surfaces a
+single such event can hide the slope.
+"""
+
 _NO_BIAS = (-99.0, 0.0)
 """Coefficients of a bias that is not seen."""
-
-
-_QUANTILE, _NORMAL_QUANTILE = 0.9, 1.645
-"""A scatter is that of the normal distribution of which so many errors are smaller: avalanches
-make rare large errors, of which eight surfaces hold one or none."""
 
 
 def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[Law]:
@@ -45,31 +54,30 @@ def _laws(study: SceneErrors, knob: Knob, tried: list[Errors]) -> Iterator[Law]:
     """Laws of one knob, of both branches."""
     x = np.array([abscissa(knob, errors.value) for errors in tried])
     values = np.array([errors.adhesion for errors in tried]) / study.scene.elastic_energy
-    n_setting, n_realisation, _ = values.shape
+    n_realisation = values.shape[1]
     bias = np.abs(values.mean(axis=1))
     uncertainty = values.std(axis=1, ddof=1) / np.sqrt(n_realisation)
-    deviation = np.abs(values - values.mean(axis=1, keepdims=True)).reshape(n_setting, -1)
-    deviation *= np.sqrt(n_realisation / (n_realisation - 1))
-    scatter = np.quantile(deviation, _QUANTILE, axis=1) / _NORMAL_QUANTILE
-    finer = -1 if knob == "tolerance" else 1
+    scatter = np.sqrt(np.mean(values.var(axis=1, ddof=1), axis=1))
+    line = _falling_line(x, scatter, _SLOWEST[knob])
     for branch, direction in enumerate((1, -1)):
         certain = bias[:, branch] > 2 * uncertainty[:, branch]
+        seen = np.count_nonzero(certain) > 1
         yield Law(
             shape=study.scene.shape,
             elastic_energy=study.scene.elastic_energy,
             knob=knob,
             direction=direction,
-            bias=_falling_line(x[certain], bias[certain, branch], finer),
-            scatter=_falling_line(x, scatter, finer),
+            bias=_falling_line(x[certain], bias[certain, branch], _SLOWEST[knob])
+            if seen
+            else _NO_BIAS,
+            scatter=line,
         )
 
 
-def _falling_line(x: Array, values: Array, finer: int) -> tuple[float, float]:
-    """Line through logarithms that falls towards finer numerics; none through less than two."""
-    if x.size < 2:
-        return _NO_BIAS
+def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
+    """Line through logarithms, at least as steep as a given slope."""
     y = np.log(np.maximum(values, _LEAST))
     slope, start = np.polyfit(x, y, 1)
-    if finer * slope > 0:
-        return float(np.mean(y)), 0.0
+    if slope / slowest < 1:
+        return float(np.mean(y - slowest * x)), slowest
     return float(start), float(slope)

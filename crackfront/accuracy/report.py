@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.accuracy.coverage import Coverage, numerical_interval, statistical_interval
+from crackfront.accuracy.coverage import Coverage, numerical_interval, total_interval
 from crackfront.accuracy.sampling import Sample
 from crackfront.accuracy.scenes import Scene
 from crackfront.accuracy.study import Errors, SceneErrors
@@ -155,41 +155,43 @@ def _coverage_rows(coverages: Sequence[tuple[Scene, tuple[Coverage, ...]]]) -> I
     header = [
         "scene",
         "asked for",
-        "numerical, covered",
-        "interval / median error",
-        "statistical, covered",
-        "interval / median error",
+        "numerical: rms",
+        "median",
+        "interval",
+        "covered",
+        "total: median",
+        "interval",
+        "covered",
     ]
     rows = []
-    shares: list[tuple[NDArray[np.bool_], NDArray[np.bool_]]] = []
+    pooled: tuple[list[Array], list[Array]] = [], []
     for scene, found in coverages:
         for item in found:
-            wide = numerical_interval(item)
-            interval, known = statistical_interval(item), np.isfinite(item.statistical_stated)
-            covered = np.abs(item.numerical) <= wide
-            inside = np.abs(item.statistical[known]) <= interval[known]
-            shares.append((covered.ravel(), inside))
-            rows.append(
-                [
-                    scene.name,
-                    f"{item.asked:g}",
-                    f"{100 * np.mean(covered):.0f}%",
-                    f"{np.median(wide / np.median(np.abs(item.numerical), axis=0)):.1f}",
-                    f"{100 * np.mean(inside):.0f}%" if inside.size else "-",
-                    _width(interval[known], item.statistical[known]),
-                ]
+            parts = (
+                (item.numerical, numerical_interval(item)),
+                (item.total, total_interval(item)),
             )
-    numerical, statistical = (np.concatenate(column) for column in zip(*shares, strict=True))
-    together = [f"{100 * np.mean(column):.1f}%" for column in (numerical, statistical)]
-    rows.append(["**all**", "", together[0], "", together[1], ""])
+            entries = [f"{_rms(item.numerical) / scene.elastic_energy:.2g}"]
+            for (true, interval), every in zip(parts, pooled, strict=True):
+                known = np.isfinite(interval) & np.isfinite(true)
+                error = np.abs(true[known])
+                every.append(error / interval[known])
+                entries += [
+                    f"{np.median(error) / scene.elastic_energy:.2g}",
+                    f"{np.median(interval[known]) / scene.elastic_energy:.2g}",
+                    f"{100 * np.mean(every[-1] <= 1):.0f}%",
+                ]
+            rows.append([scene.name, f"{item.asked:g}", *entries])
+    ends = []
+    for every in pooled:
+        relative = np.concatenate(every)
+        ends += [
+            "",
+            f"{1 / np.median(relative):.1f} times the median",
+            f"{100 * np.mean(relative <= 1):.1f}%",
+        ]
+    rows.append(["**all**", "", "", *ends])
     return _markdown(header, rows)
-
-
-def _width(interval: Array, error: Array) -> str:
-    """Median interval over median error, where there is one."""
-    if interval.size == 0:
-        return "-"
-    return f"{np.median(interval) / np.median(np.abs(error)):.1f}"
 
 
 def _setting_rows(study: SceneErrors) -> Iterator[str]:

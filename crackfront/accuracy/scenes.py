@@ -68,10 +68,10 @@ class Scene:
         (Units: reduced vertical length)
     reference : Numerics
         What errors are measured against.
-    finer : Numerics or None
-        What shows that the reference has converged.
+    finer : Numerics
+        What shows that the reference has converged, where single knobs are varied.
     single_knobs : bool
-        Whether every knob is varied by itself, or only numerics are tried that the laws choose.
+        Whether laws are fitted to the errors of single knobs.
     authors_seconds : float or None
         CPU time of the authors' code for its full cycle, where it is known. (Units: s)
     """
@@ -83,7 +83,7 @@ class Scene:
     tile_cutoffs: float
     step: float = 0.1
     reference: Numerics = _REFERENCE
-    finer: Numerics | None = _FINER
+    finer: Numerics = _FINER
     single_knobs: bool = True
     authors_seconds: float | None = None
 
@@ -98,28 +98,24 @@ class Scene:
         return 1.0 - self.step * np.arange(7, -1, -1.0)
 
     @property
-    def settings(self) -> list[tuple[str, float, Numerics]]:
-        """Numerics to try: what is varied, its value, and all of them."""
-        found: list[tuple[str, float, Numerics]] = []
-        if self.finer is not None:
-            found.append(("finer", 0.0, self.finer))
-        if self.single_knobs:
-            found += [
-                (knob, value, with_knob(self.reference, knob, value))
-                for knob in KNOBS
-                for value in _VALUES[knob]
-            ]
+    def single_settings(self) -> list[tuple[str, float, Numerics]]:
+        """Numerics that differ from the reference in one knob: which, its value, all of them."""
+        found: list[tuple[str, float, Numerics]] = [("finer", 0.0, self.finer)]
         found += [
-            (
-                "asked",
-                error,
-                chosen_numerics(
-                    error, self.kind, self.spectrum, self.elastic_energy, self.reference
-                ),
-            )
-            for error in ASKED
+            (knob, value, with_knob(self.reference, knob, value))
+            for knob in KNOBS
+            for value in _VALUES[knob]
         ]
         return found
+
+    @property
+    def asked_settings(self) -> list[tuple[str, float, Numerics]]:
+        """Numerics that the laws choose: `asked`, the error of k, all of them."""
+        kind, spectrum, energy = self.kind, self.spectrum, self.elastic_energy
+        return [
+            ("asked", error, chosen_numerics(error, kind, spectrum, energy, self.reference))
+            for error in ASKED
+        ]
 
     def simulation(self, numerics: Numerics, realisation: int) -> Simulation:
         """One realisation; its surface is the same for all numerics."""
@@ -186,13 +182,13 @@ SCENES: dict[str, Scene] = {
         ),
         Scene(
             "large-0.04", "roughness", SelfAffineSpectrum(0.005, 0.1, 0.3), 0.04, 200,
-            step=0.03, reference=_LARGE_REFERENCE, finer=None, single_knobs=False,
+            step=0.03, reference=_LARGE_REFERENCE, single_knobs=False,
         ),
         Scene(
             "paper-0.05", "roughness", SelfAffineSpectrum(0.000625, 0.01, 0.8), 0.05, 256,
             step=0.004,
             reference=replace(_LARGE_REFERENCE, angles_per_cutoff=3.6, pixels_per_cutoff=4),
-            finer=None, single_knobs=False,
+            single_knobs=False,
         ),
     )
 }  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,14 +101,20 @@ class SceneErrors:
 
 
 def scene_errors(
-    scene: Scene, realisations: range, progress: Callable[[str], None] | None = None
+    scene: Scene,
+    settings: list[tuple[str, float, Numerics]],
+    realisations: range,
+    progress: Callable[[str], None] | None = None,
 ) -> SceneErrors:
-    """Errors of all settings of a scene.
+    """Errors of settings of the numerics on a scene.
 
     Parameters
     ----------
     scene : Scene
         What to simulate.
+    settings : list of tuple
+        What is varied, its value, and the numerics; :attr:`Scene.single_settings` or
+        :attr:`Scene.asked_settings`.
     realisations : range
         Numbers of the surfaces.
     progress : callable, optional
@@ -121,12 +127,24 @@ def scene_errors(
     seconds = np.array([item.seconds for item in exact])
     tell(f"reference: hysteresis {mean:.5g} w_int, {seconds.mean():.2f} s")
     errors = []
-    for knob, value, numerics in scene.settings:
+    for knob, value, numerics in settings:
         found = [measured_branches(scene, numerics, number) for number in realisations]
         errors.append(_errors(scene, knob, value, numerics, found, exact))
         rms = np.sqrt(np.mean(errors[-1].adhesion ** 2)) / scene.elastic_energy
         tell(f"{knob} {value:g}: rms error of k {rms:.2g}, {errors[-1].seconds.mean():.2f} s")
     return SceneErrors(scene, adhesion, seconds, tuple(errors))
+
+
+def joined(*studies: SceneErrors) -> SceneErrors:
+    """Studies of one scene, on the same surfaces, as one.
+
+    Parameters
+    ----------
+    *studies : SceneErrors
+        One or more.
+    """
+    errors = tuple(errors for study in studies for errors in study.errors)
+    return replace(studies[0], errors=errors)
 
 
 def _errors(

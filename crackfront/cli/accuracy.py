@@ -29,10 +29,11 @@ _ASKED = (0.1, 0.03, 0.01)
 @_output
 @click.option(
     "--study",
-    type=click.Choice(["numerics", "averages", "coverage"]),
-    default="numerics",
+    type=click.Choice(["knobs", "asked", "averages", "coverage"]),
+    default="knobs",
     show_default=True,
-    help="Errors of all numerics; of schedules and tiles; or true errors beside the stated ones.",
+    help="Errors of single knobs; of numerics that the laws choose; of schedules and tiles; true "
+    "errors beside the stated ones.",
 )
 @click.option(
     "--realisations", type=click.IntRange(min=2), default=8, show_default=True, help="Surfaces."
@@ -51,8 +52,9 @@ def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
     announce_compilation()
     compile_solver("newton")
     chosen, path = accuracy.SCENES[scene], output / f"{study}-{scene}.nc"
-    if study == "numerics":
-        errors = accuracy.scene_errors(chosen, range(realisations), click.echo)
+    if study in ("knobs", "asked"):
+        settings = chosen.single_settings if study == "knobs" else chosen.asked_settings
+        errors = accuracy.scene_errors(chosen, settings, range(realisations), click.echo)
         dataset.write_errors(path, errors, provenance())
     elif study == "averages":
         samples = accuracy.sampling_errors(chosen, range(realisations), click.echo)
@@ -73,17 +75,25 @@ def accuracy_report(output: Path) -> None:
         paths = {name: output / f"{study}-{name}.nc" for name in accuracy.SCENES}
         return {name: path for name, path in paths.items() if path.exists()}
 
-    studies = {name: dataset.read_errors(path) for name, path in stored("numerics").items()}
-    if not studies:
+    knobs, asked = (
+        {name: dataset.read_errors(path) for name, path in stored(study).items()}
+        for study in ("knobs", "asked")
+    )
+    names = [name for name in accuracy.SCENES if name in knobs | asked]
+    if not names:
         raise ValueError(f"{output} holds no measured errors; run crackfront accuracy first")
+    studies = {
+        name: accuracy.joined(*(part[name] for part in (knobs, asked) if name in part))
+        for name in names
+    }
     samples = [dataset.read_samples(path) for path in stored("averages").values()]
     coverages = [dataset.read_coverage(path) for path in stored("coverage").values()]
-    laws = list(accuracy.fit_laws(study for study in studies.values() if study.scene.single_knobs))
+    laws = list(accuracy.fit_laws(study for study in knobs.values() if study.scene.single_knobs))
     dataset.write_text(output / "laws.csv", dataset.laws_text(laws))
     text = accuracy.accuracy_report(list(studies.values()), samples, coverages)
     dataset.write_text(output / "accuracy.md", text)
     shown = [studies[name] for name in _SHOWN if name in studies]
-    flat = [study for study in studies.values() if study.scene.shape == "flat"]
+    flat = [study for study in knobs.values() if study.scene.shape == "flat"]
     drawn = {}
     if shown:
         drawn["work-precision"] = plots.work_precision_figure(shown)

@@ -48,9 +48,10 @@ _COVERAGE = (
     Variable("asked", _setting, "e_el", "standard error that was asked for"),
     Variable("numerical", _branch, ADHESION, "numerical error of w_appr and w_retr"),
     Variable("numerical_stated", (SETTING, BRANCH), ADHESION, "stated numerical standard error"),
-    Variable("statistical", _branch, ADHESION, "difference from the mean of the other surfaces"),
-    Variable("statistical_stated", _branch, ADHESION, "stated statistical standard error"),
-    Variable("n_state", _branch, "1", "steady states"),
+    Variable("total", _branch, ADHESION, "error of a steady run against the mean of the others"),
+    Variable("run_numerical", _branch, ADHESION, "numerical standard error that the run states"),
+    Variable("run_statistical", _branch, ADHESION, "statistical one"),
+    Variable("n_state", _branch, "1", "its steady states"),
 )
 _REFERENCE = (
     Variable("reference_adhesion", (REALISATION, BRANCH), ADHESION, "w_appr and w_retr"),

@@ -14,9 +14,9 @@ from crackfront.cycle import CycleRecord
 from crackfront.dataset.files import UnreadableFileError, labelled, read_dataset, write_dataset
 from crackfront.dataset.schema import AMPLITUDE, COORDINATES, HYSTERESIS
 from crackfront.fits import STEADY_DEFINITION, SteadyAdhesion, SweepTable, steady_adhesion
-from crackfront.laws import numerical_error
+from crackfront.laws import stated_error
 from crackfront.provenance import Provenance
-from crackfront.scene import Simulation, SimulationResult
+from crackfront.scene import SimulationResult
 from crackfront.sweep import NamedSpectrum, Sweep
 
 COMPLETE = ("lost_contact", "steady")
@@ -138,7 +138,7 @@ def _cell(result: SimulationResult, correlation_length: float) -> _Cell:
     cycle = status == COMPLETE[0]
     numerical = np.nan, np.nan
     if known:
-        numerical = _numerical_errors(simulation, steady, correlation_length)
+        numerical = stated_error(simulation, steady, correlation_length)
     return _Cell(
         result=result,
         w_appr=steady.approach if known else np.nan,
@@ -172,21 +172,6 @@ def _cell(result: SimulationResult, correlation_length: float) -> _Cell:
         seed=simulation.seed,
         curve=f"{simulation.stem}.nc",
     )
-
-
-def _numerical_errors(
-    simulation: Simulation, steady: SteadyAdhesion, correlation_length: float
-) -> tuple[float, float]:
-    """Expected numerical errors of w_appr and w_retr; close states count as one."""
-    radii = steady.lowest_radius, steady.highest_radius
-    cutoffs = 2 * np.pi * np.mean(radii) / simulation.spectrum.short_cutoff
-    apart = 1 + (radii[1] - radii[0]) / correlation_length
-    counts = steady.n_approach, steady.n_retraction
-    approach, retraction = (
-        numerical_error(simulation, float(cutoffs * min(count, apart)))[branch]
-        for branch, count in enumerate(counts)
-    )
-    return approach, retraction
 
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 _NAMES: dict[str, str] = {
     "sites": "sites of the front",
     "cubic": "samples, cubic pieces",
-    "linear": "samples, straight pieces",
+    "linear": "samples, linear pieces",
     "pixels": "pixels of the tile",
     "tolerance": "tolerance of the force",
     "asked": "chosen for an error",
@@ -35,8 +35,8 @@ _NAMES: dict[str, str] = {
 
 _AXES: dict[str, str] = {
     "sites": "sites per short cutoff",
-    "cubic": "samples per short cutoff, cubic",
-    "linear": "samples per short cutoff, straight",
+    "cubic": "cubic samples per short cutoff",
+    "linear": "linear samples per short cutoff",
     "pixels": "pixels per short cutoff",
     "tolerance": r"tolerance / $w_\mathrm{int}$",
 }

@@ -1,19 +1,15 @@
 # `make accuracy`: the numerical errors of every scene, their laws, tables and figures.
 ACCURACY = "results/accuracy"
-SCENES = [
-    *(
-        f"{shape}-{energy}"
-        for shape in ("chemical", "flat", "h08", "h03")
-        for energy in ("0.0025", "0.01", "0.04", "0.16")
-    ),
-    "small-0.04",
-    "large-0.04",
+MEASURED = [
+    f"{shape}-{energy}"
+    for shape in ("chemical", "flat", "h08", "h03")
+    for energy in ("0.0025", "0.01", "0.04", "0.16")
 ]
-COVERED = [scene for scene in SCENES if scene.endswith(("-0.01", "-0.16"))]
+COVERED = [scene for scene in MEASURED if scene.endswith(("-0.01", "-0.16"))]
 
 
 wildcard_constraints:
-    study="numerics|averages|coverage",
+    study="knobs|asked|averages|coverage",
     scene="[a-z0-9.-]+",
 
 
@@ -33,7 +29,12 @@ rule accuracy_study:
 
 rule accuracy_report:
     input:
-        expand("{results}/numerics-{scene}.nc", results=ACCURACY, scene=SCENES),
+        expand("{results}/knobs-{scene}.nc", results=ACCURACY, scene=MEASURED),
+        expand(
+            "{results}/asked-{scene}.nc",
+            results=ACCURACY,
+            scene=[*MEASURED, "small-0.04", "large-0.04"],
+        ),
         expand("{results}/coverage-{scene}.nc", results=ACCURACY, scene=COVERED),
         f"{ACCURACY}/averages-flat-0.04.nc",
     output:
