@@ -18,7 +18,7 @@ from crackfront.steady import SteadySchedule
 
 Array = NDArray[np.float64]
 
-LEVEL = 0.9
+LEVEL = 0.92
 """Share of the errors that an interval of the stated standard errors is meant to cover."""
 
 _HELD_OUT = 1000

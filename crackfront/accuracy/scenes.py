@@ -187,7 +187,10 @@ SCENES: dict[str, Scene] = {
         Scene(
             "paper-0.05", "roughness", SelfAffineSpectrum(0.000625, 0.01, 0.8), 0.05, 256,
             step=0.004,
-            reference=replace(_LARGE_REFERENCE, angles_per_cutoff=3.6, pixels_per_cutoff=4),
+            reference=replace(
+                _REFERENCE, angles_per_cutoff=2.7, samples_per_cutoff=5, pixels_per_cutoff=4,
+                tolerance=1e-5,
+            ),
             single_knobs=False,
         ),
     )
