@@ -14,7 +14,7 @@ from crackfront.spectrum import SelfAffineSpectrum
 
 Array = NDArray[np.float64]
 
-ASKED = (0.1, 0.03, 0.01, 0.003)
+ASKED = (0.1, 0.03, 0.02, 0.01, 0.003)
 """Errors of k for which the laws choose numerics that are then tried."""
 
 _SEED = 20241121
