@@ -244,6 +244,9 @@ def _sample_rows(samples: tuple[Sample, ...]) -> Iterator[str]:
     ]
     rows = []
     for sample in samples:
+        if not np.all(np.isfinite(sample.hysteresis)):
+            rows.append([f"{sample.knob} {sample.value:g}", "too few states", *[""] * 5])
+            continue
         values = sample.hysteresis
         error = np.std(values, ddof=1)
         difference = values - samples[0].hysteresis
