@@ -321,18 +321,20 @@ def test_student_intervals_are_wider_than_normal_ones_where_states_are_few(cover
 
 @pytest.mark.slow
 def test_schedules_change_the_mean_within_its_error(tmp_path):
-    samples = sampling_errors(SMALL, range(6))
+    samples = sampling_errors(SCENES["flat-0.04"], range(3))
     path = tmp_path / "averages.nc"
-    write_samples(path, SMALL, samples, provenance())
+    write_samples(path, SCENES["flat-0.04"], samples, provenance())
     scene, again = read_samples(path)
-    assert scene == SMALL
+    assert scene == SCENES["flat-0.04"]
     assert [item.knob for item in again] == [item.knob for item in samples]
-    first = samples[0]
-    for item in samples:
-        if item.knob == "travel":
-            difference = item.hysteresis - first.hysteresis
-            error = np.hypot(np.std(difference, ddof=1), np.mean(item.standard_error))
-            assert abs(np.nanmean(difference)) < 3 * error
+    schedules = [item for item in again if item.knob != "tile"]
+    known = [item for item in schedules if np.all(np.isfinite(item.hysteresis))]
+    assert len(known) >= len(schedules) - 1
+    for item in known:
+        difference = np.mean(item.hysteresis - again[0].hysteresis)
+        assert abs(difference) < 2 * np.mean(item.standard_error)
+    seconds = [item.seconds.mean() for item in known if item.knob == "step"]
+    assert seconds[0] > 2 * seconds[-1]
 
 
 def test_the_commands_measure_a_scene_and_report_it(tmp_path):
