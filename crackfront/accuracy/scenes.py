@@ -99,7 +99,10 @@ class Scene:
 
     @property
     def single_settings(self) -> list[tuple[str, float, Numerics]]:
-        """Numerics that differ from the reference in one knob: which, its value, all of them."""
+        """The finer numerics, and those that differ from the reference in one knob.
+
+        Each is the name of what is varied, its value, and all numerics.
+        """
         found: list[tuple[str, float, Numerics]] = [("finer", 0.0, self.finer)]
         found += [
             (knob, value, with_knob(self.reference, knob, value))
