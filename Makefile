@@ -90,7 +90,7 @@ benchmark: env  ## Solvers against the reference, what each request costs (half 
 	$(IN_ENV) .venv/bin/python -m benchmarks --output results/benchmark
 	$(IN_ENV) .venv/bin/python -m benchmarks.needs --output results/benchmark
 
-accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half an hour)
+accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (30 to 40 minutes)
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default accuracy
 	@echo "Results: results/accuracy/"
 
