@@ -138,6 +138,12 @@ def test_an_error_chooses_the_numerics_of_every_spectrum_and_amplitude(tmp_path)
     assert simulation.resolution.spacing == pytest.approx(0.1 / strong.samples_per_cutoff)
 
 
+def test_an_error_below_that_of_the_finest_numerics_is_refused(tmp_path):
+    sentence = refusal(tmp_path, asking(1e-5))
+    assert "numerics: error is 1e-05, but the finest numerics leave" in sentence
+    assert "for flat at e_el 0.02; ask for that, or give the knobs" in sentence
+
+
 def test_given_numerics_serve_every_amplitude(tmp_path):
     sweep = load_configuration(written(tmp_path, GOOD))
     assert sweep.numerical_error is None

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from crackfront.config.reading import ConfigurationError, content_of, sentences
 from crackfront.config.sections import Configuration, LoadSection, NumericsSection
 from crackfront.cycle import LoadSchedule
+from crackfront.laws import numerical_error
 from crackfront.scene import Numerics, resolution
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.steady import SteadySchedule
@@ -42,7 +43,24 @@ def load_configuration(path: Path) -> Sweep:
         ) from error
     sweep = _sweep(configuration)
     _refuse_round_off(path, sweep)
+    _refuse_unreachable(path, sweep)
     return sweep
+
+
+def _refuse_unreachable(path: Path, sweep: Sweep) -> None:
+    """Raise if the finest numerics that may be chosen leave more than the asked error."""
+    asked = sweep.numerical_error
+    if asked is None:
+        return
+    for item in sweep.spectra:
+        for energy in sweep.elastic_energies:
+            stated = max(numerical_error(sweep.simulation(item, energy, 0))) / energy
+            if stated > 1.2 * asked:
+                raise ConfigurationError(
+                    f"{path}: numerics: error is {asked:g}, but the finest numerics leave "
+                    f"{stated:.2g} for {item.name} at e_el {energy:g}; ask for that, or give the "
+                    "knobs"
+                )
 
 
 def _refuse_round_off(path: Path, sweep: Sweep) -> None:
