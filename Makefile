@@ -4,6 +4,7 @@
 #
 # Variables
 #   SWEEP=config/default.yaml   the configuration that `make` runs; results in results/<its name>/
+#   SCALE=quick | paper         coarser lengths, or the paper's, for `make figures`
 #   PYTHON=python3              the interpreter that .venv is made from (3.11 or newer)
 #   MPI=wheel | system          wheel (default): MPICH from the package index, no system MPI needed.
 #                               system: for a cluster. mpi4py is built from its source release against
@@ -12,6 +13,7 @@
 #                               is then the system's. The choice is remembered until .venv is removed.
 
 SWEEP  ?= config/default.yaml
+SCALE  ?= quick
 PYTHON ?= python3
 MPI    ?= $(if $(wildcard .venv/.packages-system),system,wheel)
 
@@ -32,7 +34,7 @@ READY    = .venv/.ready-$(MPI)
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test nightly accuracy benchmark lint lock clean help
+.PHONY: all env test nightly accuracy benchmark figures lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP)
@@ -93,6 +95,10 @@ benchmark: env  ## Solvers against the reference, what each request costs (half 
 accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (30 to 40 minutes)
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default accuracy
 	@echo "Results: results/accuracy/"
+
+figures: env  ## All figures of the paper; SCALE=quick (15 minutes) or SCALE=paper
+	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config scale=$(SCALE) -- paper_figures
+	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
 
 lint: env  ## Style, format, types, import floors, format of the rules
 	.venv/bin/ruff check

@@ -8,14 +8,20 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from crackfront.config import ConfigurationError, load_configuration
+from crackfront.config import SCALES, ConfigurationError, load_configuration
+from crackfront.figures import FIGURES, figure_fingerprint
 from crackfront.provenance import package_fingerprint
 from crackfront.sweep import shard_fingerprint
 
-unknown = set(config) - {"sweep", "ranks"}
+unknown = set(config) - {"sweep", "ranks", "scale"}
 if unknown:
     raise WorkflowError(
-        f"--config knows no {', '.join(sorted(unknown))}; its keys are sweep (a file) and ranks"
+        f"--config knows no {', '.join(sorted(unknown))}; its keys are sweep (a file), ranks, scale"
+    )
+
+if config.get("scale", "quick") not in SCALES:
+    raise WorkflowError(
+        f"scale is {config['scale']!r}; choose one of {', '.join(SCALES)}"
     )
 
 CONFIGURATION = config.get("sweep", "config/default.yaml")
@@ -50,3 +56,4 @@ include: "workflow/rules/aggregate.smk"
 include: "workflow/rules/fit.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/accuracy.smk"
+include: "workflow/rules/paper.smk"

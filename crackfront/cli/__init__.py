@@ -9,6 +9,7 @@ import click
 from crackfront import __version__
 from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.cycle import cycle
+from crackfront.cli.figure import check_figures, draw_figure, figure
 from crackfront.cli.sweep import aggregate, figures, fit, plan, simulate
 
 
@@ -46,5 +47,17 @@ def main() -> None:
     """Adhesion hysteresis of rough spheres by crack-front pinning."""
 
 
-for command in (cycle, plan, simulate, aggregate, fit, figures, accuracy, accuracy_report):
+for command in (
+    cycle,
+    plan,
+    simulate,
+    aggregate,
+    fit,
+    figures,
+    figure,
+    draw_figure,
+    check_figures,
+    accuracy,
+    accuracy_report,
+):
     main.add_command(command)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from crackfront.config.figures import SCALES, load_figure
 from crackfront.config.reading import ConfigurationError, content_of, sentences
 from crackfront.config.sections import Configuration, LoadSection, NumericsSection
 from crackfront.cycle import LoadSchedule
@@ -17,7 +18,7 @@ from crackfront.steady import SteadySchedule
 from crackfront.sweep import FitRange, NamedSpectrum, Sweep
 from crackfront.units import Scales
 
-__all__ = ["ConfigurationError", "load_configuration"]
+__all__ = ["SCALES", "ConfigurationError", "load_configuration", "load_figure"]
 
 
 def load_configuration(path: Path) -> Sweep:
@@ -39,7 +40,7 @@ def load_configuration(path: Path) -> Sweep:
         configuration = Configuration.model_validate(content)
     except ValidationError as error:
         raise ConfigurationError(
-            "\n".join(f"{path}: {sentence}" for sentence in sentences(error.errors()))
+            "\n".join(f"{path}: {line}" for line in sentences(error.errors(), Configuration))
         ) from error
     sweep = _sweep(configuration)
     _refuse_round_off(path, sweep)

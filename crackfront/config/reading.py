@@ -6,13 +6,13 @@ import difflib
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import yaml
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
-from crackfront.config.sections import SECTIONS, Configuration
+from crackfront.validation import Section
 
 
 class ConfigurationError(ValueError):
@@ -71,13 +71,15 @@ def _frozen(value: Any) -> Any:
     return value
 
 
-def sentences(errors: list[ErrorDetails]) -> Iterator[str]:
+def sentences(errors: list[ErrorDetails], schema: type[Section]) -> Iterator[str]:
     """What errors of pydantic mean, one sentence each.
 
     Parameters
     ----------
     errors : list of ErrorDetails
         Errors of one validation.
+    schema : type
+        What was validated.
     """
     for error in errors:
         # A list whose entries are refused is also called too short.
@@ -85,10 +87,10 @@ def sentences(errors: list[ErrorDetails]) -> Iterator[str]:
         if error["type"] != "too_short" or error["loc"] not in [
             place[: len(error["loc"])] for place in inner
         ]:
-            yield _sentence(error)
+            yield _sentence(error, schema)
 
 
-def _sentence(error: ErrorDetails) -> str:
+def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
     """What one error of pydantic means."""
     place = "".join(
         f"[{part}]" if isinstance(part, int) else f".{part}" for part in error["loc"]
@@ -96,7 +98,7 @@ def _sentence(error: ErrorDetails) -> str:
     if error["type"] == "section":
         return f"{place}: {error['msg']}" if place else error["msg"]
     if error["type"] == "extra_forbidden":
-        return f"unknown key {place}; {_known_keys(error['loc'])}"
+        return f"unknown key {place}; {_known_keys(error['loc'], schema)}"
     if error["type"] == "missing":
         return f"key {place} is missing; add it"
     must = re.sub(r"^(Input|String|Tuple|Value) should", "it must", error["msg"])
@@ -127,12 +129,21 @@ def _field(location: tuple[int | str, ...]) -> str:
     return next((part for part in reversed(location) if isinstance(part, str)), "")
 
 
-def _known_keys(location: tuple[int | str, ...]) -> str:
+def _known_keys(location: tuple[int | str, ...], schema: type[BaseModel]) -> str:
     """The nearest key that would be right at an unknown one."""
-    section: type[BaseModel] = Configuration
+    section = schema
     for part in location[:-1]:
         if isinstance(part, str):
-            section = SECTIONS[part]
+            section = _section_of(section.model_fields[part].annotation)
     known = list(section.model_fields)
     near = difflib.get_close_matches(str(location[-1]), known, n=1)
     return f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known)}"
+
+
+def _section_of(annotation: Any) -> type[BaseModel]:
+    """The section in the type of a field, as in `tuple[Section, ...]` or `Section | None`."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return next(
+        _section_of(part) for part in get_args(annotation) if part not in (Ellipsis, type(None))
+    )

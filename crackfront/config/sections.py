@@ -4,23 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, model_validator
 
 from crackfront.pinning import Interpolation
 from crackfront.relax import SOLVERS
 from crackfront.scene import FieldKind
+from crackfront.validation import Count, Energy, Positive, Section, refusal
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Count = Annotated[int, Field(ge=1)]
-Energy = Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False)]
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
-
-
-class Section(BaseModel):
-    """A mapping of the file; unknown keys and conversions are refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
 class ScalesSection(Section):
@@ -42,7 +33,7 @@ class SpectrumSection(Section):
     @model_validator(mode="after")
     def _ordered(self) -> SpectrumSection:
         if self.roll_off is not None and self.roll_off < self.short_cutoff:
-            raise _wrong(
+            raise refusal(
                 f"roll_off {self.roll_off:g} is shorter than short_cutoff {self.short_cutoff:g}; "
                 "lower the cutoff or raise the roll-off (equal values give a flat spectrum)"
             )
@@ -58,7 +49,7 @@ class AmplitudesSection(Section):
     @model_validator(mode="after")
     def _one_measure(self) -> AmplitudesSection:
         if (self.elastic_energy is None) == (self.work_of_adhesion_rms is None):
-            raise _wrong(
+            raise refusal(
                 "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms; "
                 + ("remove one" if self.elastic_energy else "give one")
             )
@@ -101,12 +92,12 @@ class NumericsSection(Section):
         else:
             self._refuse_overruled()
         if self.pixels_per_cutoff is not None and self.pixels_per_cutoff < 2:
-            raise _wrong(
+            raise refusal(
                 f"pixels_per_cutoff is {self.pixels_per_cutoff:g}, so that short_cutoff is below "
                 "two pixels; it must be 2 or more"
             )
         if self.solver not in SOLVERS:
-            raise _wrong(
+            raise refusal(
                 f"solver {self.solver!r} is unknown; choose one of {', '.join(sorted(SOLVERS))}"
             )
         return self
@@ -119,9 +110,9 @@ class NumericsSection(Section):
             if getattr(self, name) is None
         ]
         if missing:
-            raise _wrong(f"{', '.join(missing)} missing; add what is missing or ask for an error")
+            raise refusal(f"{', '.join(missing)} missing; add what is missing or ask for an error")
         if (self.angles is None) == (self.angles_per_cutoff is None):
-            raise _wrong(
+            raise refusal(
                 "numerics need exactly one of angles and angles_per_cutoff; "
                 + ("remove one" if self.angles else "give one, or ask for an error")
             )
@@ -141,7 +132,7 @@ class NumericsSection(Section):
             if getattr(self, name) is not None
         ]
         if given:
-            raise _wrong(f"error already decides {', '.join(given)}; remove one or the other")
+            raise refusal(f"error already decides {', '.join(given)}; remove one or the other")
 
 
 class SteadySection(Section):
@@ -162,17 +153,17 @@ class LoadSection(Section):
     @model_validator(mode="after")
     def _makes_contact(self) -> LoadSection:
         if self.max_penetration < 0:
-            raise _wrong(
+            raise refusal(
                 f"max_penetration is {self.max_penetration:g}, which never makes contact; the "
                 "sphere touches at 0, so it must be 0 or more"
             )
         if (self.steady is None) == (self.step is None):
-            raise _wrong(
+            raise refusal(
                 "load needs exactly one of step (full cycles) and steady (parts of them); "
                 + ("give one" if self.step is None else "remove one")
             )
         if self.steady is not None and self.steady.start >= self.max_penetration:
-            raise _wrong(
+            raise refusal(
                 f"steady.start {self.steady.start:g} is not below max_penetration "
                 f"{self.max_penetration:g}; lower it or penetrate deeper"
             )
@@ -189,7 +180,7 @@ class FitSection(Section):
     @model_validator(mode="after")
     def _ordered(self) -> FitSection:
         if self.lowest_elastic_energy > self.highest_elastic_energy:
-            raise _wrong(
+            raise refusal(
                 f"lowest_elastic_energy {self.lowest_elastic_energy:g} is above "
                 f"highest_elastic_energy {self.highest_elastic_energy:g}; swap them"
             )
@@ -214,7 +205,7 @@ class Configuration(Section):
     def _consistent(self) -> Configuration:
         _refuse_repeated("spectrum name", [spectrum.name for spectrum in self.spectra])
         if self.field == "chemical" and self.amplitudes.elastic_energy is not None:
-            raise _wrong(
+            raise refusal(
                 "amplitudes.elastic_energy has no meaning for a chemical field; give "
                 "amplitudes.work_of_adhesion_rms"
             )
@@ -222,32 +213,15 @@ class Configuration(Section):
         if not any(
             fit.lowest_elastic_energy <= energy <= fit.highest_elastic_energy for energy in energies
         ):
-            raise _wrong(
+            raise refusal(
                 f"no amplitude lies in the range of the fit, e_el from "
                 f"{fit.lowest_elastic_energy:g} to {fit.highest_elastic_energy:g}; widen the range"
             )
         return self
 
 
-def _wrong(sentence: str) -> PydanticCustomError:
-    """Error of a section as a whole."""
-    return PydanticCustomError("section", "{sentence}", {"sentence": sentence})
-
-
 def _refuse_repeated(what: str, values: Any) -> None:
     """Raise if a value stands twice."""
     for position, value in enumerate(values):
         if value in values[:position]:
-            raise _wrong(f"{what} {value!r} stands twice; remove or change one")
-
-
-SECTIONS: dict[str, type[Section]] = {
-    "scales": ScalesSection,
-    "spectra": SpectrumSection,
-    "amplitudes": AmplitudesSection,
-    "numerics": NumericsSection,
-    "tile": TileSection,
-    "load": LoadSection,
-    "steady": SteadySection,
-    "fit": FitSection,
-}
+            raise refusal(f"{what} {value!r} stands twice; remove or change one")

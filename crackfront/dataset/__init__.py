@@ -13,6 +13,7 @@ from crackfront.dataset.cycles import read_cycle, read_simulation, write_cycle, 
 from crackfront.dataset.fields import PolarSamples, read_field
 from crackfront.dataset.files import UnreadableFileError, write_text
 from crackfront.dataset.fit import write_fit
+from crackfront.dataset.records import read_record, write_record
 from crackfront.dataset.tables import COMPLETE, read_table, write_hysteresis
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "read_cycle",
     "read_errors",
     "read_field",
+    "read_record",
     "read_samples",
     "read_simulation",
     "read_table",
@@ -32,6 +34,7 @@ __all__ = [
     "write_errors",
     "write_fit",
     "write_hysteresis",
+    "write_record",
     "write_samples",
     "write_simulation",
     "write_text",

@@ -13,9 +13,10 @@ import xarray as xr
 
 from crackfront.accuracy import SCENES, Coverage, Errors, Sample, Scene, SceneErrors
 from crackfront.dataset.files import UnreadableFileError, labelled, read_dataset, write_dataset
-from crackfront.dataset.schema import ADHESION, FORCE, REALISATION, Variable
+from crackfront.dataset.schema import REALISATION
 from crackfront.laws import Law
 from crackfront.provenance import Provenance
+from crackfront.records import ADHESION, FORCE, Variable
 from crackfront.scene import Numerics
 
 SETTING, BRANCH = "setting", "branch"

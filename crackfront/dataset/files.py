@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from crackfront.dataset.schema import Variable
 from crackfront.provenance import Provenance, utc_now
+from crackfront.records import Variable
 
 
 class UnreadableFileError(ValueError):

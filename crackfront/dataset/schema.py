@@ -2,32 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from crackfront.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, Variable
 
 STEP, ANGLE = "step", "angle"
 SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
-
-LATERAL = "reduced lateral length, (3 pi w_int R^2 / 4E')^(1/3)"
-VERTICAL = "reduced vertical length, (9 pi^2 w_int^2 R / 16E'^2)^(1/3)"
-FORCE = "pi w_int R"
-ADHESION = "w_int"
-ENERGY = f"{FORCE} times {VERTICAL}"
-
-
-@dataclass(frozen=True, slots=True)
-class Variable:
-    """What a file says about one variable."""
-
-    name: str
-    dims: tuple[str, ...]
-    units: str
-    long_name: str
-
-    @property
-    def attributes(self) -> dict[str, str]:
-        """Attributes of the variable in a file."""
-        return {"units": self.units, "long_name": self.long_name}
-
 
 _step, _front = (STEP,), (STEP, ANGLE)
 CURVES = (

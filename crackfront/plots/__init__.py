@@ -4,8 +4,14 @@ The makers return a figure, the `draw_*` functions draw on axes that exist. Ever
 reduced units (R = 1, w_int = 1/pi, E' = 3/4).
 """
 
+from collections.abc import Callable
+from typing import Any
+
+from matplotlib.figure import Figure
+
 from crackfront.plots.accuracy import laws_figure, work_precision_figure
 from crackfront.plots.loop import draw_loop, loop_figure
+from crackfront.plots.smooth import smooth_loop_figure
 from crackfront.plots.style import house_style, save_figure
 from crackfront.plots.sweep import (
     draw_factor_by_disorder,
@@ -17,6 +23,7 @@ from crackfront.plots.sweep import (
 )
 
 __all__ = [
+    "FIGURE_MAKERS",
     "draw_factor_by_disorder",
     "draw_factor_by_length",
     "draw_hysteresis",
@@ -30,3 +37,8 @@ __all__ = [
     "save_figure",
     "work_precision_figure",
 ]
+
+FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
+    "main-1d": smooth_loop_figure,
+}
+"""What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""

@@ -16,6 +16,29 @@ from crackfront.plots.style import BLACK, COLOURS, MARKERS
 
 Array = NDArray[np.float64]
 
+RADIUS_LABEL = r"contact radius / $(3\pi w_\mathrm{int}R^2/4E')^{1/3}$"
+PENETRATION_LABEL = r"penetration / $(9\pi^2 w_\mathrm{int}^2 R/16E'^2)^{1/3}$"
+FORCE_LABEL = r"normal force / $\pi w_\mathrm{int} R$"
+ADHESION_LABEL = r"work of adhesion / $w_\mathrm{int}$"
+
+
+def draw_arrow(axes: Axes, abscissa: Array, ordinate: Array, colour: str) -> None:
+    """Arrow head on a curve, from the first to the last of a few of its points."""
+    axes.annotate(
+        "",
+        xy=(abscissa[-1], ordinate[-1]),
+        xytext=(abscissa[0], ordinate[0]),
+        arrowprops={
+            "arrowstyle": "-|>",
+            "color": colour,
+            "linewidth": 1.0,
+            "mutation_scale": 8,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
+        zorder=4,
+    )
+
 
 def draw_estimates(
     axes: Axes,

@@ -1,0 +1,91 @@
+"""Figures of the paper: compute their data, draw them, and compare them with the paper."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from crackfront.cli.report import FILE, announce_compilation
+
+_FOLDER = Path("results/figures")
+
+
+@click.command()
+@click.argument("configuration", type=FILE)
+@click.option(
+    "--scale",
+    type=click.Choice(["quick", "paper"]),
+    default="quick",
+    show_default=True,
+    help="Coarser lengths, minutes on two cores; or those of the paper.",
+)
+@click.option(
+    "--output", type=FILE, default=_FOLDER, show_default=True, help="Folder of all figures."
+)
+def figure(configuration: Path, scale: str, output: Path) -> None:
+    """Compute the data of one figure, named as its file in config/figures."""
+    from crackfront.config import load_figure
+    from crackfront.dataset import write_record
+    from crackfront.figures import FIGURES
+    from crackfront.provenance import provenance
+
+    parameters = load_figure(configuration, scale)
+    scene = FIGURES[configuration.stem]
+    announce_compilation()
+    record = scene.compute(parameters, click.echo)
+    path = output / scale / f"{configuration.stem}.nc"
+    origin = provenance(configuration.read_text(encoding="utf-8"))
+    write_record(path, record, origin, title=scene.title, scale=scale)
+    click.echo(f"data: {path}")
+
+
+@click.command("draw-figure")
+@click.argument("data", type=FILE)
+def draw_figure(data: Path) -> None:
+    """Draw a figure from its data, beside them."""
+    from crackfront import plots
+
+    record = _record(data)
+    drawn = plots.FIGURE_MAKERS[data.stem](record)
+    for path in plots.save_figure(drawn, data.with_suffix("")):
+        click.echo(f"figure: {path}")
+
+
+@click.command("check-figures")
+@click.option(
+    "--output", type=FILE, default=_FOLDER, show_default=True, help="Folder of all figures."
+)
+def check_figures(output: Path) -> None:
+    """Compare the data of all figures with what the paper states, in checks.md."""
+    from crackfront.config import SCALES
+    from crackfront.dataset import write_text
+    from crackfront.figures import FIGURES, checks_table
+
+    lines, failed, count = ["# Checks of the figures"], 0, 0
+    for scale in SCALES:
+        for name, scene in FIGURES.items():
+            path = output / scale / f"{name}.nc"
+            if not path.exists():
+                continue
+            checks = scene.checks(_record(path))
+            count += len(checks)
+            failed += sum(not check.passed for check in checks)
+            lines += ["", f"## {scene.title} ({scale})", "", *checks_table(checks)]
+    if count == 0:
+        raise ValueError(f"{output} holds no data of figures; run crackfront figure first")
+    lines += ["", f"{count - failed} of {count} checks pass.", ""]
+    write_text(output / "checks.md", "\n".join(lines))
+    click.echo(f"checks: {output / 'checks.md'}, {failed} of {count} fail")
+
+
+def _record(path: Path) -> object:
+    """Data of a figure."""
+    from crackfront.dataset import read_record
+    from crackfront.figures import FIGURES
+
+    if path.stem not in FIGURES:
+        raise ValueError(
+            f"{path} is no data of a figure; their files are named {', '.join(FIGURES)}"
+        )
+    return read_record(path, FIGURES[path.stem].record)

@@ -1,0 +1,47 @@
+"""The computed figures of the paper, each from its parameters to its data and checks."""
+
+import functools
+import hashlib
+from pathlib import Path
+
+from crackfront.figures.checks import Check, checks_table, close_to
+from crackfront.figures.scene import FigureScene, Progress
+from crackfront.figures.smooth import (
+    SmoothLoop,
+    SmoothLoopParameters,
+    smooth_loop,
+    smooth_loop_checks,
+)
+from crackfront.scene.parameters import scene_fingerprint
+
+__all__ = [
+    "FIGURES",
+    "Check",
+    "FigureScene",
+    "Progress",
+    "SmoothLoop",
+    "checks_table",
+    "close_to",
+    "figure_fingerprint",
+]
+
+FIGURES = {
+    "main-1d": FigureScene(
+        title="Main Fig. 1d: a smooth sphere with two works of adhesion",
+        parameters=SmoothLoopParameters,
+        record=SmoothLoop,
+        compute=smooth_loop,
+        checks=smooth_loop_checks,
+    ),
+}
+"""Figures by the name of their configuration in config/figures."""
+
+
+@functools.cache
+def figure_fingerprint() -> str:
+    """Twelve hexadecimal digits that change with every source that a figure's data come from."""
+    digest = hashlib.sha256(scene_fingerprint().encode())
+    folder = Path(__file__).parent
+    for path in sorted([*folder.glob("*.py"), *folder.parent.glob("laws.*")]):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]

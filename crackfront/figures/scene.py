@@ -1,0 +1,38 @@
+"""What a figure of the paper is made of: parameters, a computation, a record, checks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from crackfront.figures.checks import Check
+from crackfront.validation import Section
+
+Progress = Callable[[str], None]
+"""Called with a line when a part of a computation is done."""
+
+
+@dataclass(frozen=True, slots=True)
+class FigureScene:
+    """One figure: what it needs and nothing else.
+
+    Attributes
+    ----------
+    title : str
+        Which figure of the paper, and what it shows.
+    parameters : type
+        Section that its configuration fills; refuses values that cannot be computed.
+    record : type
+        Dataclass of its data.
+    compute : callable
+        From the parameters, and a function for progress, to the record.
+    checks : callable
+        From the record to the claims about it.
+    """
+
+    title: str
+    parameters: type[Section]
+    record: type[Any]
+    compute: Callable[[Any, Progress], Any]
+    checks: Callable[[Any], tuple[Check, ...]]

@@ -1,0 +1,63 @@
+"""What the fields of a record say of themselves in a file: names, units and dimensions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+LATERAL = "reduced lateral length, (3 pi w_int R^2 / 4E')^(1/3)"
+VERTICAL = "reduced vertical length, (9 pi^2 w_int^2 R / 16E'^2)^(1/3)"
+FORCE = "pi w_int R"
+ADHESION = "w_int"
+ENERGY = f"{FORCE} times {VERTICAL}"
+
+_KEY = "variable"
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """What a file says about one variable."""
+
+    name: str
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """Attributes of the variable in a file."""
+        return {"units": self.units, "long_name": self.long_name}
+
+
+def variable(long_name: str, units: str, *dims: str) -> Any:
+    """A field of a dataclass that stands in files as a variable of these dimensions.
+
+    Parameters
+    ----------
+    long_name : str
+        What it is.
+    units : str
+        Its units.
+    *dims : str
+        Names of its dimensions; without them it is a number, a truth value or a text.
+    """
+    return field(metadata={_KEY: (dims, units, long_name)})
+
+
+def variables(kind: type[Any]) -> tuple[Variable, ...]:
+    """What the fields of a dataclass are in a file.
+
+    Parameters
+    ----------
+    kind : type
+        Dataclass whose fields were all made by :func:`variable`.
+
+    Examples
+    --------
+    >>> @dataclass
+    ... class Curve:
+    ...     force: float = variable("normal force", "N")
+    >>> variables(Curve)
+    (Variable(name='force', dims=(), units='N', long_name='normal force'),)
+    """
+    return tuple(Variable(item.name, *item.metadata[_KEY]) for item in fields(kind))

@@ -1,0 +1,140 @@
+"""Figures of the paper: their configurations, data, checks, drawings and commands."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from matplotlib.figure import Figure
+
+from crackfront.cli import main
+from crackfront.config import SCALES, ConfigurationError, load_figure
+from crackfront.dataset import UnreadableFileError, read_record, write_record
+from crackfront.figures import FIGURES, Check, SmoothLoop, checks_table, close_to
+from crackfront.plots import FIGURE_MAKERS
+from crackfront.provenance import provenance
+from crackfront.records import variable
+
+CONFIGURATIONS = Path(__file__).parents[1] / "config" / "figures"
+
+
+def ignore(line):
+    """No progress."""
+
+
+@pytest.fixture
+def smooth():
+    parameters = load_figure(CONFIGURATIONS / "main-1d.yaml", "quick")
+    return FIGURES["main-1d"].compute(parameters, ignore)
+
+
+def test_every_figure_has_a_configuration_and_a_drawing():
+    assert {path.stem for path in CONFIGURATIONS.glob("*.yaml")} == set(FIGURES)
+    assert set(FIGURE_MAKERS) == set(FIGURES)
+
+
+@pytest.mark.parametrize("scale", SCALES)
+@pytest.mark.parametrize("name", FIGURES)
+def test_every_configuration_is_valid_at_every_scale(name, scale):
+    parameters = load_figure(CONFIGURATIONS / f"{name}.yaml", scale)
+    assert isinstance(parameters, FIGURES[name].parameters)
+
+
+def edited(tmp_path, text):
+    path = tmp_path / "main-1d.yaml"
+    path.write_text(text)
+    return path
+
+
+GOOD = "{approach: 0.6, retraction: 1.4, max_penetration: 1.0, step: 0.1}"
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (f"parameters: {GOOD}\nquick: {{}}", "key paper is missing; the keys here are"),
+        (f"parameters: {GOOD}\nquick: {{}}\npaper: {{}}\nfine: {{}}", "unknown key fine"),
+        (f"parameters: {GOOD}\nquick: {{step: 1.0}}\npaper: {{}}", "stands in parameters and in"),
+        (f"parameters: {GOOD}\nquick: 3\npaper: {{}}", "quick must be a mapping"),
+        ("parameters: {}\nquick: {}\npaper: {}", "key approach is missing"),
+        (f"parameters: {GOOD}\nquick: {{stepp: 1.0}}\npaper: {{}}", "did you mean step"),
+        (f"parameters: {GOOD.replace('0.6', '1.6')}\nquick: {{}}\npaper: {{}}", "not be above"),
+        (f"parameters: {GOOD.replace('0.1', '-0.1')}\nquick: {{}}\npaper: {{}}", "step is -0.1"),
+    ],
+)
+def test_a_wrong_configuration_is_refused_with_a_sentence(tmp_path, text, sentence):
+    with pytest.raises(ConfigurationError, match=sentence):
+        load_figure(edited(tmp_path, text), "quick")
+
+
+def test_a_figure_that_does_not_exist_is_refused():
+    with pytest.raises(ConfigurationError, match="there is no figure 'main-9'; the names"):
+        load_figure(Path("main-9.yaml"), "quick")
+
+
+def test_data_come_back_from_their_file_as_they_were(smooth, tmp_path):
+    path = tmp_path / "main-1d.nc"
+    write_record(path, smooth, provenance(), title="smooth")
+    again = read_record(path, SmoothLoop)
+    assert again.approach == smooth.approach
+    np.testing.assert_array_equal(again.force, smooth.force)
+
+
+@dataclass(frozen=True)
+class Longer(SmoothLoop):
+    stiffness: float = variable("stiffness", "1")
+
+
+def test_a_file_that_lacks_data_is_refused(smooth, tmp_path):
+    path = tmp_path / "main-1d.nc"
+    write_record(path, smooth, provenance(), title="smooth")
+    with pytest.raises(UnreadableFileError, match="holds no Longer: stiffness is missing"):
+        read_record(path, Longer)
+
+
+def test_a_smooth_loop_follows_the_closed_forms(smooth):
+    assert all(check.passed for check in FIGURES["main-1d"].checks(smooth))
+
+
+def test_a_wrong_smooth_loop_fails_its_checks(smooth):
+    wrong = replace(smooth, radius=smooth.radius * 1.01, force=smooth.force * 1.01)
+    assert [check.passed for check in FIGURES["main-1d"].checks(wrong)] == [
+        False,
+        False,
+        False,
+        True,
+    ]
+
+
+def test_a_check_that_fails_says_so():
+    assert "**FAIL**" in "\n".join(checks_table([close_to("a", 1.0, 2.0, 0.5)]))
+    assert "pass" in "\n".join(checks_table([Check("a", "1", "1", passed=True)]))
+
+
+def test_commands_compute_draw_and_check_a_figure(tmp_path):
+    def run(*arguments):
+        return CliRunner().invoke(main, [str(item) for item in arguments])
+
+    output = tmp_path / "figures"
+    computed = run("figure", CONFIGURATIONS / "main-1d.yaml", "--output", output)
+    assert computed.exit_code == 0, computed.output
+    data = output / "quick" / "main-1d.nc"
+    assert run("draw-figure", data).exit_code == 0
+    assert data.with_suffix(".pdf").stat().st_size > 1000
+    assert run("check-figures", "--output", output).exit_code == 0
+    assert "4 of 4 checks pass" in (output / "checks.md").read_text()
+
+
+def test_commands_refuse_what_is_no_figure(tmp_path):
+    result = CliRunner().invoke(main, ["draw-figure", str(tmp_path / "other.nc")])
+    assert result.exit_code == 2
+    assert "is no data of a figure" in result.output
+    result = CliRunner().invoke(main, ["check-figures", "--output", str(tmp_path)])
+    assert "holds no data of figures" in result.output
+
+
+def test_a_figure_of_the_smooth_loop_has_labelled_axes(smooth):
+    drawn = FIGURE_MAKERS["main-1d"](smooth)
+    assert isinstance(drawn, Figure)
+    assert "force" in drawn.axes[0].get_ylabel()

@@ -1,0 +1,54 @@
+# `make figures`: every computed figure of the paper, with its data and its checks. One job computes
+# the data of a figure, another draws them, so that a change of the drawing computes nothing again.
+SCALE = config.get("scale", "quick")
+PAPER = f"results/figures/{SCALE}"
+
+
+wildcard_constraints:
+    figure="(main|si|beyond)-[a-z0-9-]+",
+
+
+rule paper_figures:
+    input:
+        expand(
+            "{results}/{figure}.{suffix}",
+            results=PAPER,
+            figure=FIGURES,
+            suffix=["pdf", "png"],
+        ),
+        "results/figures/checks.md",
+
+
+rule figure_data:
+    input:
+        "config/figures/{figure}.yaml",
+    output:
+        f"{PAPER}/{{figure}}.nc",
+    params:
+        sources=figure_fingerprint(),
+    shell:
+        "crackfront figure {input:q} --scale {SCALE} --output results/figures"
+
+
+rule figure_drawing:
+    input:
+        f"{PAPER}/{{figure}}.nc",
+    output:
+        f"{PAPER}/{{figure}}.pdf",
+        f"{PAPER}/{{figure}}.png",
+    params:
+        sources=package_fingerprint(),
+    shell:
+        "crackfront draw-figure {input:q}"
+
+
+rule figure_checks:
+    input:
+        expand("{results}/{figure}.nc", results=PAPER, figure=FIGURES),
+    output:
+        "results/figures/checks.md",
+    params:
+        sources=package_fingerprint(),
+        scale=SCALE,
+    shell:
+        "crackfront check-figures --output results/figures"
