@@ -28,6 +28,9 @@ FEWEST_STATES = 3
 _FEWEST_TO_STOP = 8
 """Steady states before the approach may turn."""
 
+_DEPTH = 3.0
+"""Rms deviations of a front from its mean after which it forgets; docs/model.md has the measure."""
+
 _N_CIRCLE = 64
 """Circles that are tried as a start."""
 
@@ -139,9 +142,11 @@ def run_steady(
         if history.follow(schedule.start + k * step, 1) is not Status.CONVERGED:
             return history.record()
         steady = [item for item in history.states if item.least_travel >= correlation_length]
-        radius = np.array([item.mean_radius for item in steady])
-        values = np.array([item.apparent_work_of_adhesion for item in steady])
-        error = standard_error(values, radius, correlation_length) / elastic_energy
+        radius, values, roughness = (
+            np.array([getattr(item, name) for item in steady])
+            for name in ("mean_radius", "apparent_work_of_adhesion", "rms_radius")
+        )
+        error = standard_error(values, radius, roughness, correlation_length) / elastic_energy
         if values.size >= _FEWEST_TO_STOP and error <= schedule.error:
             break
     lowest = np.min(radius, initial=math.inf)
@@ -203,10 +208,14 @@ def forward_circle(field: Field, penetration: float, direction: Direction, near:
     return np.full(n_angle(field), furthest)
 
 
-def standard_error(values: Array, radius: Array, correlation_length: float) -> float:
+def standard_error(
+    values: Array, radius: Array, roughness: Array, correlation_length: float
+) -> float:
     """Standard error of the mean apparent work of adhesion over steady states of one branch.
 
-    States that are closer to each other than one correlation length count as one.
+    States count as one that are closer to each other than the correlation length of w_loc, or
+    than three times the rms deviation of the front from its mean where that is larger: a rough
+    front has to pass its own depth before it has left what pinned it (docs/model.md).
 
     Parameters
     ----------
@@ -214,6 +223,8 @@ def standard_error(values: Array, radius: Array, correlation_length: float) -> f
         Apparent work of adhesion. (Units: w_int)
     radius : (n_state,) array
         Mean radius. (Units: reduced lateral length)
+    roughness : (n_state,) array
+        Rms deviation of the front from its mean radius. (Units: reduced lateral length)
     correlation_length : float
         That of w_loc. (Units: reduced lateral length)
 
@@ -224,7 +235,8 @@ def standard_error(values: Array, radius: Array, correlation_length: float) -> f
     """
     if values.size < FEWEST_STATES:
         return math.inf
-    independent = min(values.size, 1 + np.ptp(radius) / correlation_length)
+    distance = max(correlation_length, _DEPTH * float(np.mean(roughness)))
+    independent = min(values.size, 1 + np.ptp(radius) / distance)
     return float(np.std(values, ddof=1) / math.sqrt(independent))
 
 

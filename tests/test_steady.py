@@ -97,8 +97,9 @@ def test_the_approach_ends_when_the_requested_error_is_met():
         record = run_simulation(simulation(schedule=replace(SCHEDULE, error=error))).record
         steady = (record.direction > 0) & (record.least_travel >= LENGTH)
         values, radius = record.apparent_work_of_adhesion[steady], record.mean_radius[steady]
-        reached = standard_error(values, radius, LENGTH)
-        before = standard_error(values[:-1], radius[:-1], LENGTH)
+        roughness = record.rms_radius[steady]
+        reached = standard_error(values, radius, roughness, LENGTH)
+        before = standard_error(values[:-1], radius[:-1], roughness[:-1], LENGTH)
         found[error] = values.size
         if error > 1e-3:
             assert reached <= error * 0.04
@@ -161,11 +162,19 @@ def test_contact_that_is_lost_on_the_way_back_is_told():
 def test_states_closer_than_a_correlation_length_count_as_one():
     values = np.array([1.0, 2.0, 3.0, 2.0, 1.0, 2.0])
     spread = np.std(values, ddof=1)
-    radius = np.linspace(1.0, 2.0, 6)
-    assert standard_error(values, radius, 0.1) == pytest.approx(spread / math.sqrt(6))
-    assert standard_error(values, radius, 0.5) == pytest.approx(spread / math.sqrt(3))
-    assert standard_error(values, radius[::-1], 0.5) == pytest.approx(spread / math.sqrt(3))
-    assert standard_error(values[:2], radius[:2], 0.1) == math.inf
+    radius, smooth = np.linspace(1.0, 2.0, 6), np.full(6, 0.01)
+    assert standard_error(values, radius, smooth, 0.1) == pytest.approx(spread / math.sqrt(6))
+    assert standard_error(values, radius, smooth, 0.5) == pytest.approx(spread / math.sqrt(3))
+    assert standard_error(values, radius[::-1], smooth, 0.5) == pytest.approx(spread / math.sqrt(3))
+    assert standard_error(values[:2], radius[:2], smooth[:2], 0.1) == math.inf
+
+
+def test_a_rough_front_has_to_pass_three_times_its_depth():
+    values = np.array([1.0, 2.0, 3.0, 2.0, 1.0, 2.0])
+    spread = np.std(values, ddof=1)
+    radius, rough = np.linspace(1.0, 2.0, 6), np.linspace(0.1, 0.3, 6)
+    found = standard_error(values, radius, rough, 0.1)
+    assert found == pytest.approx(spread / math.sqrt(1 + 1 / 0.6))
 
 
 def test_the_standard_error_covers_the_scatter_between_realisations():

@@ -27,7 +27,8 @@ STEADY_DEFINITION = (
     "estimate is the work of adhesion of the JKR curve F = a^3 - sqrt(6 w a^3) (reduced units) "
     "that fits force against mean radius best, by least squares of the force over the same states. "
     "The standard errors are those of the means over the states of one realisation; states closer "
-    "than a correlation length count as one."
+    "than a correlation length, or three times the rms deviation of the front from its mean radius "
+    "where that is larger, count as one."
 )
 """What `w_appr` and `w_retr` mean; stored in every file that holds them."""
 
@@ -119,7 +120,9 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
         )
     values = record.apparent_work_of_adhesion
     errors = [
-        standard_error(values[branch], radius[branch], correlation_length)
+        standard_error(
+            values[branch], radius[branch], record.rms_radius[branch], correlation_length
+        )
         for branch in (approach, retraction)
     ]
     w_appr, w_retr = float(np.mean(values[approach])), float(np.mean(values[retraction]))

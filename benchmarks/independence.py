@@ -1,0 +1,93 @@
+"""How far a steady front has to go before its apparent work of adhesion is another one.
+
+python -m benchmarks.independence
+
+The autocorrelation of w along a branch, in mean radius, pooled over surfaces and summed up to where
+it first falls below a twentieth, gives the distance of independent states; beside it stand the
+correlation length of w_loc and the rms deviation of the fronts from their mean radius, of which
+:func:`crackfront.steady.standard_error` makes it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.accuracy import SCENES, Scene
+from crackfront.cycle import CycleRecord
+from crackfront.laws import chosen_numerics
+from crackfront.relax import Direction
+from crackfront.scene import correlation_length, run_simulation
+from crackfront.steady import SteadySchedule
+
+Array = NDArray[np.float64]
+
+N_REALISATION = 10
+_FIRST = 2000
+"""Number of the first surface: no law was fitted to it, no coverage measured."""
+
+_SCHEDULE = SteadySchedule(start=0.3, max_penetration=2.0, travel=0.5, error=1e-4)
+_FORGOTTEN = 0.05
+
+NAMES = [name for name in SCENES if name.startswith(("chemical", "flat", "h08", "h03"))]
+
+
+def records(scene: Scene) -> list[CycleRecord]:
+    """Steady branches on all surfaces, states half a correlation length apart."""
+    numerics = chosen_numerics(
+        0.03, scene.kind, scene.spectrum, scene.elastic_energy, scene.reference
+    )
+    simulations = (
+        replace(scene.simulation(numerics, number), schedule=_SCHEDULE)
+        for number in range(_FIRST, _FIRST + N_REALISATION)
+    )
+    return [run_simulation(simulation).record for simulation in simulations]
+
+
+def independent_distance(
+    found: list[CycleRecord], direction: Direction, length: float
+) -> tuple[float, float]:
+    """Integral of the autocorrelation over positive and negative lags, and the fronts' rms."""
+    radii, values, roughness = [], [], []
+    for record in found:
+        steady = (record.direction == direction) & (record.least_travel >= length)
+        order = np.argsort(record.mean_radius[steady])
+        radii.append(record.mean_radius[steady][order])
+        values.append(record.apparent_work_of_adhesion[steady][order])
+        roughness.append(np.mean(record.rms_radius[steady]))
+    spacing = length / 2
+    grid = np.arange(max(r[0] for r in radii), min(r[-1] for r in radii), spacing)
+    rows = np.array([np.interp(grid, *pair) for pair in zip(radii, values, strict=True)])
+    # About each surface's own mean: tiles differ in theirs, which k leaves out.
+    rows -= rows.mean(axis=1, keepdims=True)
+    lags = range(grid.size // 2)
+    correlation = [np.mean(rows[:, : grid.size - lag] * rows[:, lag:]) for lag in lags]
+    relative = np.array(correlation) / correlation[0]
+    end = int(np.argmax(relative < _FORGOTTEN)) or relative.size
+    return spacing * float(1 + 2 * relative[1:end].sum()), float(np.mean(roughness))
+
+
+def main() -> None:
+    """Print the table of all scenes."""
+    click.echo(
+        "| scene | branch | independent / correlation length | rms of the front / correlation "
+        "length | independent / rms |\n|---|---|---|---|---|"
+    )
+    branches: tuple[tuple[Direction, str], ...] = ((1, "approach"), (-1, "retraction"))
+    for name in NAMES:
+        scene = SCENES[name]
+        length = correlation_length(scene.kind, scene.spectrum)
+        found = records(scene)
+        for direction, branch in branches:
+            distance, roughness = independent_distance(found, direction, length)
+            click.echo(
+                f"| {name} | {branch} | {distance / length:.2f} | {roughness / length:.2f} | "
+                f"{distance / roughness:.1f} |"
+            )
+
+
+if __name__ == "__main__":
+    main()
