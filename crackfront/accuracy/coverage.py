@@ -46,6 +46,8 @@ class Coverage:
         Standard errors that the steady run states. (Units: w_int)
     n_state : (n_realisation, 2) array
         Its steady states.
+    truth_error : (n_realisation, 2) array
+        Standard error of the mean of the reference's runs on the other surfaces. (Units: w_int)
     """
 
     asked: float
@@ -55,6 +57,7 @@ class Coverage:
     run_numerical: Array
     run_statistical: Array
     n_state: Array
+    truth_error: Array
 
 
 def held_out_coverage(
@@ -75,12 +78,21 @@ def held_out_coverage(
         Number of surfaces.
     progress : callable, optional
         Called with a line for every error.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than three surfaces: the others' scatter is part of the interval.
     """
+    if n_realisation < 3:
+        raise ValueError(f"coverage needs 3 surfaces or more, not {n_realisation}; ask for more")
     tell = progress or (lambda line: None)
     numbers = range(_HELD_OUT, _HELD_OUT + n_realisation)
     exact = [measured_branches(scene, scene.reference, number) for number in numbers]
     truth = np.array([_steady(scene.simulation(scene.reference, number))[0] for number in numbers])
-    of_others = (truth.sum(axis=0) - truth) / (n_realisation - 1)
+    others = [np.delete(truth, row, axis=0) for row in range(n_realisation)]
+    of_others = np.array([rows.mean(axis=0) for rows in others])
+    scatter = np.array([rows.std(axis=0, ddof=1) for rows in others])
     found = []
     for error in asked:
         numerics = chosen_numerics(
@@ -99,6 +111,7 @@ def held_out_coverage(
             run_numerical=runs[:, 1],
             run_statistical=runs[:, 2],
             n_state=runs[:, 3],
+            truth_error=scatter / np.sqrt(n_realisation - 1),
         )
         found.append(item)
         shares = [
@@ -135,6 +148,8 @@ def numerical_interval(item: Coverage) -> Array:
 def total_interval(item: Coverage) -> Array:
     """Half width of the interval of the total error; Student's t for the statistical part.
 
+    What the mean of the other surfaces is off by is part of the difference, and of the interval.
+
     Parameters
     ----------
     item : Coverage
@@ -147,7 +162,8 @@ def total_interval(item: Coverage) -> Array:
     """
     share = (1 + LEVEL) / 2
     statistical = stats.t.ppf(share, np.maximum(item.n_state - 1, 1)) * item.run_statistical
-    return np.hypot(statistical, stats.norm.ppf(share) * item.run_numerical)
+    known = np.hypot(item.run_numerical, item.truth_error)
+    return np.hypot(statistical, stats.norm.ppf(share) * known)
 
 
 def _mean(branches: Branches) -> Array:

@@ -53,6 +53,7 @@ _COVERAGE = (
     Variable("run_numerical", _branch, ADHESION, "numerical standard error that the run states"),
     Variable("run_statistical", _branch, ADHESION, "statistical one"),
     Variable("n_state", _branch, "1", "its steady states"),
+    Variable("truth_error", _branch, ADHESION, "standard error of the mean of the others"),
 )
 _REFERENCE = (
     Variable("reference_adhesion", (REALISATION, BRANCH), ADHESION, "w_appr and w_retr"),
