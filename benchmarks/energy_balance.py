@@ -15,7 +15,7 @@ import click
 import numpy as np
 
 from crackfront.adhesion import chemical_adhesion
-from crackfront.cycle import CycleRecord, LoadSchedule, run_cycle
+from crackfront.cycle import DEFAULT_STEP, CycleRecord, LoadSchedule, run_cycle
 from crackfront.scene import contact_field
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.synthesis import gaussian_field
@@ -25,7 +25,7 @@ CUTOFF = 0.08
 N_POINT = 128
 N_ANGLE = 340
 N_SURFACE = 4
-STEPS = 0.1 / 2.0 ** np.arange(6)
+STEPS = DEFAULT_STEP * 2.0 ** np.arange(5, -2, -1)
 HEADER = (
     "| w_rms/w_int | step | dissipated | its error % | trapezoidal rule % | extrapolated % | "
     "dissipated - work of the steps |\n|---|---|---|---|---|---|---|"

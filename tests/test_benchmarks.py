@@ -10,6 +10,7 @@ import xarray as xr
 
 from benchmarks import energy_balance, needs
 from benchmarks.machine import peak_memory, restart_peak
+from crackfront.cycle import DEFAULT_STEP
 
 
 def test_the_smoke_benchmark_reports_equal_fronts(tmp_path):
@@ -84,3 +85,12 @@ def test_the_table_of_energies_shows_round_off_for_the_work_and_the_first_order_
     gap = lost - trapezoid
     assert np.allclose(gap[:-1] / gap[1:], 2, atol=0.15)
     assert gap[1] > 0.05 * work[1]
+
+
+@pytest.mark.parametrize("rms", [0.1, 0.4, 0.84])
+def test_the_default_step_leaves_one_percent_of_the_energy_of_the_quasi_static_loop(rms):
+    fine, default = (
+        energy_balance.energies(energy_balance.cycle(rms, 0, step))[0]
+        for step in (DEFAULT_STEP / 2, DEFAULT_STEP)
+    )
+    assert 0 < default / (2 * fine - default) - 1 < 0.01

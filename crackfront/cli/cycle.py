@@ -21,7 +21,11 @@ if TYPE_CHECKING:
 @click.command()
 @click.option("--field", "field_file", type=FILE, required=True, help="netCDF file of the field.")
 @click.option("--max-penetration", type=float, required=True, help="Largest penetration.")
-@click.option("--step", type=float, required=True, help="Difference of penetrations.")
+@click.option(
+    "--step",
+    type=float,
+    help="Difference of penetrations.  [default: 0.004, dissipated energies to 1%]",
+)
 @click.option(
     "--tolerance",
     type=click.FloatRange(min=0, min_open=True),
@@ -67,7 +71,7 @@ if TYPE_CHECKING:
 def cycle(
     field_file: Path,
     max_penetration: float,
-    step: float,
+    step: float | None,
     tolerance: float,
     solver: str,
     max_sweeps: int,
@@ -87,13 +91,13 @@ def cycle(
     The exit code is 0 where the cycle ended by losing contact and 1 where it ended early; the
     output is written in both cases. It is 2 where the input cannot be used.
     """
-    from crackfront.cycle import LoadSchedule, run_cycle
+    from crackfront.cycle import DEFAULT_STEP, LoadSchedule, run_cycle
     from crackfront.dataset import write_cycle
     from crackfront.pinning import n_angle
     from crackfront.provenance import provenance
     from crackfront.relax import Status
 
-    schedule = LoadSchedule(max_penetration, step)
+    schedule = LoadSchedule(max_penetration, DEFAULT_STEP if step is None else step)
     field, directions = _contact(
         field_file, max_penetration, angles, samples_per_pixel, interpolation
     )
