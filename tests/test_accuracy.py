@@ -310,7 +310,8 @@ def test_coverage_is_read_as_it_was_written(coverage, tmp_path):
 
 def test_student_intervals_are_wider_than_normal_ones_where_states_are_few(coverage):
     item = coverage[0]
-    exact = replace(item, run_numerical=np.zeros_like(item.total))
+    none = np.zeros_like(item.total)
+    exact = replace(item, run_numerical=none, truth_error=none)
     few, many = (
         total_interval(replace(exact, n_state=np.full(item.total.shape, count)))
         for count in (3.0, 1e9)
@@ -354,6 +355,26 @@ def test_the_commands_measure_a_scene_and_report_it(tmp_path):
     assert "## Time to an error of the hysteresis" in text
     assert "| small-0.04 | 0.01 |" in text
     assert "±" in text
+
+
+def test_a_page_gets_the_measured_tables_and_keeps_its_words(tmp_path):
+    run = CliRunner().invoke
+    output = ["--output", str(tmp_path)]
+    arguments = ["small-0.04", "--study", "asked", "--realisations", "2"]
+    assert run(main, ["accuracy", *arguments, *output]).exit_code == 0
+    page = tmp_path / "page.md"
+    page.write_text("Before\n<!-- table: Settings, small-0.04 -->\nold\n<!-- end -->\nAfter\n")
+    reported = run(main, ["accuracy-report", *output, "--page", str(page)])
+    assert reported.exit_code == 0, reported.output
+    text = page.read_text()
+    assert text.startswith("Before\n")
+    assert text.endswith("<!-- end -->\nAfter\n")
+    assert "old" not in text
+    assert "asked 0.03" in text
+    page.write_text("<!-- table: Settings, flat-0.04 --><!-- end -->")
+    refused = run(main, ["accuracy-report", *output, "--page", str(page)])
+    assert refused.exit_code == 2
+    assert "the table 'Settings, flat-0.04', which was not measured" in refused.output
 
 
 def test_an_unknown_scene_is_refused_with_the_nearest_one():

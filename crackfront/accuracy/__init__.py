@@ -7,7 +7,13 @@ from crackfront.accuracy.coverage import (
     total_interval,
 )
 from crackfront.accuracy.fitting import fit_laws
-from crackfront.accuracy.report import accuracy_report, hysteresis_errors, pareto_front
+from crackfront.accuracy.report import (
+    accuracy_report,
+    accuracy_tables,
+    filled_page,
+    hysteresis_errors,
+    pareto_front,
+)
 from crackfront.accuracy.sampling import Sample, sampling_errors
 from crackfront.accuracy.scenes import ASKED, SCENES, Scene, with_knob
 from crackfront.accuracy.study import (
@@ -30,6 +36,8 @@ __all__ = [
     "Scene",
     "SceneErrors",
     "accuracy_report",
+    "accuracy_tables",
+    "filled_page",
     "fit_laws",
     "front_difference",
     "held_out_coverage",

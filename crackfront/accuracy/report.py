@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,8 @@ from crackfront.accuracy.scenes import Scene
 from crackfront.accuracy.study import Errors, SceneErrors
 
 Array = NDArray[np.float64]
+
+_TABLE = re.compile(r"<!-- table: (?P<name>.*?) -->.*?<!-- end -->", re.DOTALL)
 
 TARGETS = (0.1, 0.03, 0.01, 0.003)
 """Relative errors of the hysteresis whose cheapest settings the report names."""
@@ -56,12 +59,12 @@ def pareto_front(seconds: Array, error: Array) -> NDArray[np.intp]:
     return order[first]
 
 
-def accuracy_report(
+def accuracy_tables(
     studies: Sequence[SceneErrors],
     samples: Iterable[tuple[Scene, tuple[Sample, ...]]],
     coverages: Sequence[tuple[Scene, tuple[Coverage, ...]]],
-) -> str:
-    """Markdown tables of all scenes.
+) -> dict[str, str]:
+    """Markdown tables of all scenes, by their names.
 
     Parameters
     ----------
@@ -74,19 +77,63 @@ def accuracy_report(
 
     Returns
     -------
-    str
-        The cheapest settings for an error, coverage, all settings, errors of averaging.
+    dict of str
+        Their names are the headings of the report.
     """
-    parts = ["# Measured errors", "", "## Time to an error of the hysteresis", ""]
-    parts += [*_target_rows(studies), "", "## Errors that were asked for", ""]
-    parts += _asked_rows(studies)
+    tables = {
+        "Time to an error of the hysteresis": _target_rows(studies),
+        "Errors that were asked for": _asked_rows(studies),
+    }
     if coverages:
-        parts += ["", "## Stated and true errors", "", *_coverage_rows(coverages)]
-    for study in studies:
-        parts += ["", f"## {study.scene.name}", "", *_setting_rows(study)]
-    for scene, found in samples:
-        parts += ["", f"## Averages, {scene.name}", "", *_sample_rows(found)]
-    return "\n".join([*parts, ""])
+        tables["Stated and true errors"] = _coverage_rows(coverages)
+    tables |= {f"Averages, {scene.name}": _sample_rows(found) for scene, found in samples}
+    tables |= {f"Settings, {study.scene.name}": _setting_rows(study) for study in studies}
+    return {name: "\n".join(rows) for name, rows in tables.items()}
+
+
+def accuracy_report(tables: Mapping[str, str]) -> str:
+    """A page of all tables.
+
+    Parameters
+    ----------
+    tables : mapping of str
+        Tables by their names.
+    """
+    parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
+    return "\n".join(["# Measured errors\n", *parts])
+
+
+def filled_page(page: str, tables: Mapping[str, str]) -> str:
+    r"""A page with its tables written anew.
+
+    Parameters
+    ----------
+    page : str
+        Markdown; each table stands between `<!-- table: NAME -->` and `<!-- end -->`.
+    tables : mapping of str
+        Tables by their names.
+
+    Raises
+    ------
+    ValueError
+        If a table of the page was not measured.
+
+    Examples
+    --------
+    >>> filled_page("<!-- table: a --><!-- end -->", {"a": "| 1 |"}).split("\n\n")
+    ['<!-- table: a -->', '| 1 |', '<!-- end -->']
+    """
+
+    def filled(found: re.Match[str]) -> str:
+        name = found["name"]
+        if name not in tables:
+            raise ValueError(
+                f"the page asks for the table {name!r}, which was not measured; there are "
+                f"{', '.join(tables)}"
+            )
+        return f"<!-- table: {name} -->\n\n{tables[name]}\n\n<!-- end -->"
+
+    return _TABLE.sub(filled, page)
 
 
 def _rms(values: Array) -> float:

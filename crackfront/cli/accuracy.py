@@ -67,7 +67,8 @@ def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
 
 @click.command("accuracy-report")
 @_output
-def accuracy_report(output: Path) -> None:
+@click.option("--page", type=FILE, help="Page whose tables are written anew, as docs/accuracy.md.")
+def accuracy_report(output: Path, page: Path | None) -> None:
     """Fit the laws, write the tables, and draw the figures of all measured scenes."""
     from crackfront import accuracy, dataset, plots
 
@@ -90,8 +91,11 @@ def accuracy_report(output: Path) -> None:
     coverages = [dataset.read_coverage(path) for path in stored("coverage").values()]
     laws = list(accuracy.fit_laws(study for study in knobs.values() if study.scene.single_knobs))
     dataset.write_text(output / "laws.csv", dataset.laws_text(laws))
-    text = accuracy.accuracy_report(list(studies.values()), samples, coverages)
-    dataset.write_text(output / "accuracy.md", text)
+    tables = accuracy.accuracy_tables(list(studies.values()), samples, coverages)
+    dataset.write_text(output / "accuracy.md", accuracy.accuracy_report(tables))
+    if page is not None:
+        text = page.read_text(encoding="utf-8")
+        dataset.write_text(page, accuracy.filled_page(text, tables))
     shown = [studies[name] for name in _SHOWN if name in studies]
     flat = [study for study in knobs.values() if study.scene.shape == "flat"]
     drawn = {}
