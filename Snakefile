@@ -8,7 +8,12 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from crackfront.config import SCALES, ConfigurationError, load_configuration
+from crackfront.config import (
+    SCALES,
+    ConfigurationError,
+    load_configuration,
+    load_figure,
+)
 from crackfront.figures import FIGURES, figure_fingerprint
 from crackfront.provenance import package_fingerprint
 from crackfront.sweep import shard_fingerprint
@@ -19,12 +24,16 @@ if unknown:
         f"--config knows no {', '.join(sorted(unknown))}; its keys are sweep (a file), ranks, scale"
     )
 
-if config.get("scale", "quick") not in SCALES:
-    raise WorkflowError(
-        f"scale is {config['scale']!r}; choose one of {', '.join(SCALES)}"
-    )
+SCALE = config.get("scale", "quick")
+if SCALE not in SCALES:
+    raise WorkflowError(f"scale is {SCALE!r}; choose one of {', '.join(SCALES)}")
 
-CONFIGURATION = config.get("sweep", "config/default.yaml")
+# The sweep of each scale's SI Fig. S-5.
+SWEEPS = {
+    scale: load_figure(Path("config/figures/si-5.yaml"), scale).sweep
+    for scale in SCALES
+}
+CONFIGURATION = config.get("sweep", SWEEPS[SCALE])
 RESULTS = f"results/{Path(CONFIGURATION).stem}"
 try:
     SWEEP = load_configuration(Path(CONFIGURATION))

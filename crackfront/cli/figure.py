@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from crackfront.cli.report import FILE, announce_compilation
+from crackfront.cli.sweep import fit_of_sweep
 
 _FOLDER = Path("results/figures")
 
@@ -27,13 +28,16 @@ def figure(configuration: Path, scale: str, output: Path) -> None:
     """Compute the data of one figure, named as its file in config/figures."""
     from crackfront.config import load_figure
     from crackfront.dataset import write_record
-    from crackfront.figures import FIGURES
+    from crackfront.figures import FIGURES, ParametricStudyParameters
     from crackfront.provenance import provenance
 
     parameters = load_figure(configuration, scale)
     scene = FIGURES[configuration.stem]
-    announce_compilation()
-    record = scene.compute(parameters, click.echo)
+    if isinstance(parameters, ParametricStudyParameters):
+        record = scene.compute(parameters, click.echo, fit_of_sweep(Path(parameters.sweep)))
+    else:
+        announce_compilation()
+        record = scene.compute(parameters, click.echo)
     path = output / scale / f"{configuration.stem}.nc"
     origin = provenance(configuration.read_text(encoding="utf-8"))
     write_record(path, record, origin, title=scene.title, scale=scale)

@@ -180,6 +180,11 @@ def _sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, S
     return sweep, Store(Path("results") / configuration.stem if output is None else output)
 
 
+def fit_of_sweep(configuration: Path) -> SweepFit:
+    """Fit of the results of a sweep, in `results/` under the name of its configuration."""
+    return _fitted(*_sweep_and_store(configuration, None))
+
+
 def _span(values: Sequence[float]) -> str:
     """Range of values over the amplitudes, or the one that all have."""
     low, high = f"{min(values):.0f}", f"{max(values):.0f}"

@@ -5,6 +5,13 @@ import hashlib
 from pathlib import Path
 
 from crackfront.figures.checks import Check, checks_table, close_to
+from crackfront.figures.parametric import (
+    ParametricStudy,
+    ParametricStudyParameters,
+    parametric_study,
+    parametric_study_checks,
+    study_fit,
+)
 from crackfront.figures.scene import FigureScene, Progress
 from crackfront.figures.smooth import (
     SmoothLoop,
@@ -18,11 +25,14 @@ __all__ = [
     "FIGURES",
     "Check",
     "FigureScene",
+    "ParametricStudy",
+    "ParametricStudyParameters",
     "Progress",
     "SmoothLoop",
     "checks_table",
     "close_to",
     "figure_fingerprint",
+    "study_fit",
 ]
 
 FIGURES = {
@@ -32,6 +42,13 @@ FIGURES = {
         record=SmoothLoop,
         compute=smooth_loop,
         checks=smooth_loop_checks,
+    ),
+    "si-5": FigureScene(
+        title="SI Fig. S-5: hysteresis against disorder, and k against disorder and size",
+        parameters=ParametricStudyParameters,
+        record=ParametricStudy,
+        compute=parametric_study,
+        checks=parametric_study_checks,
     ),
 }
 """Figures by the name of their configuration in config/figures."""

@@ -26,7 +26,8 @@ class FigureScene:
     record : type
         Dataclass of its data.
     compute : callable
-        From the parameters, and a function for progress, to the record.
+        From the parameters, and a function for progress, to the record; where the parameters
+        name a sweep, with the fit of its results as a third argument.
     checks : callable
         From the record to the claims about it.
     """
@@ -34,5 +35,5 @@ class FigureScene:
     title: str
     parameters: type[Section]
     record: type[Any]
-    compute: Callable[[Any, Progress], Any]
+    compute: Callable[..., Any]
     checks: Callable[[Any], tuple[Check, ...]]

@@ -79,14 +79,27 @@ def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
         draw_factor_by_disorder(left, table, fit)
         draw_factor_by_length(right, table, fit)
-        factor = fit.cells.factor.value
-        highest = max(PERTURBATION_FACTOR, float(np.nanmax(factor)))
-        left.set_ylim(min(0.0, float(np.nanmin(factor))) - 0.05 * highest, 1.1 * highest)
+        set_factor_limits(left, fit)
         handles, labels = legend_entries(left)
         figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 4))
         for axes, letter in ((left, "a"), (right, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
         return figure
+
+
+def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
+    """Limits of an ordinate that shows all k of a sweep and those of the theories.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where k is drawn.
+    fit : SweepFit
+        Its fit.
+    """
+    factor = fit.cells.factor.value
+    highest = max(PERTURBATION_FACTOR, float(np.nanmax(factor)))
+    axes.set_ylim(min(0.0, float(np.nanmin(factor))) - 0.05 * highest, 1.1 * highest)
 
 
 def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:

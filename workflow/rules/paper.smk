@@ -1,6 +1,5 @@
 # `make figures`: every computed figure of the paper, with its data and its checks. One job computes
 # the data of a figure, another draws them, so that a change of the drawing computes nothing again.
-SCALE = config.get("scale", "quick")
 PAPER = f"results/figures/{SCALE}"
 
 
@@ -28,6 +27,21 @@ rule figure_data:
         sources=figure_fingerprint(),
     shell:
         "crackfront figure {input:q} --scale {SCALE} --output results/figures"
+
+
+rule figure_of_sweep:
+    input:
+        "config/figures/si-5.yaml",
+        f"results/{Path(SWEEPS[SCALE]).stem}/hysteresis.nc",
+    output:
+        f"{PAPER}/si-5.nc",
+    params:
+        sources=figure_fingerprint(),
+    shell:
+        "crackfront figure {input[0]:q} --scale {SCALE} --output results/figures"
+
+
+ruleorder: figure_of_sweep > figure_data
 
 
 rule figure_drawing:
