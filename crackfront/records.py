@@ -50,7 +50,7 @@ def variables(kind: type[Any]) -> tuple[Variable, ...]:
     Parameters
     ----------
     kind : type
-        Dataclass whose fields were all made by :func:`variable`.
+        Dataclass; fields that were not made by :func:`variable` are left out.
 
     Examples
     --------
@@ -60,4 +60,6 @@ def variables(kind: type[Any]) -> tuple[Variable, ...]:
     >>> variables(Curve)
     (Variable(name='force', dims=(), units='N', long_name='normal force'),)
     """
-    return tuple(Variable(item.name, *item.metadata[_KEY]) for item in fields(kind))
+    return tuple(
+        Variable(item.name, *item.metadata[_KEY]) for item in fields(kind) if _KEY in item.metadata
+    )

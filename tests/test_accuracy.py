@@ -215,7 +215,7 @@ def synthetic_study(bias, scatter):
         noise = scatter(knob, value) * rng.standard_normal((400, 2))
         adhesion = MODERATE.elastic_energy * (noise + np.array([-1, 1]) * bias(knob, value))
         one = np.ones(400)
-        errors.append(Errors(knob, value, numerics, one, adhesion, adhesion**2, one, one, one))
+        errors.append(Errors(numerics, knob, value, one, adhesion, adhesion**2, one, one, one))
     reference = np.tile([0.9, 1.0], (400, 1))
     return SceneErrors(MODERATE, reference, np.ones(400), tuple(errors))
 

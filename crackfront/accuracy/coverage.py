@@ -13,6 +13,7 @@ from crackfront.accuracy.scenes import Scene
 from crackfront.accuracy.study import Branches, measured_branches
 from crackfront.fits import steady_adhesion
 from crackfront.laws import chosen_numerics, numerical_error, stated_error
+from crackfront.records import ADHESION, variable
 from crackfront.scene import Simulation, correlation_length, run_simulation
 from crackfront.steady import SteadySchedule
 
@@ -20,6 +21,8 @@ Array = NDArray[np.float64]
 
 LEVEL = 0.92
 """Share of the errors that an interval of the stated standard errors is meant to cover."""
+
+_RUN = ("realisation", "branch")
 
 _HELD_OUT = 1000
 """Number of the first surface."""
@@ -50,14 +53,14 @@ class Coverage:
         Standard error of the mean of the reference's runs on the other surfaces. (Units: w_int)
     """
 
-    asked: float
-    numerical: Array
-    numerical_stated: Array
-    total: Array
-    run_numerical: Array
-    run_statistical: Array
-    n_state: Array
-    truth_error: Array
+    asked: float = variable("standard error that was asked for", "e_el")
+    numerical: Array = variable("numerical error of w_appr and w_retr", ADHESION, *_RUN)
+    numerical_stated: Array = variable("stated numerical standard error", ADHESION, _RUN[1])
+    total: Array = variable("error of a steady run", ADHESION, *_RUN)
+    run_numerical: Array = variable("numerical standard error it states", ADHESION, *_RUN)
+    run_statistical: Array = variable("statistical standard error it states", ADHESION, *_RUN)
+    n_state: Array = variable("its steady states", "1", *_RUN)
+    truth_error: Array = variable("standard error of the truth", ADHESION, *_RUN)
 
 
 def held_out_coverage(

@@ -12,10 +12,13 @@ from crackfront.accuracy.scenes import Scene
 from crackfront.cycle import LoadSchedule
 from crackfront.fits import steady_adhesion
 from crackfront.laws import chosen_numerics
+from crackfront.records import ADHESION, variable
 from crackfront.scene import Simulation, correlation_length, run_simulation
 from crackfront.steady import SteadySchedule
 
 Array = NDArray[np.float64]
+
+_RUN = "realisation"
 
 _NUMERICAL_ERROR = 0.03
 """Error of k that the numerics leave here; it is the same surface by surface."""
@@ -50,11 +53,11 @@ class Sample:
         Processor time. (Units: s)
     """
 
-    knob: str
-    value: float
-    hysteresis: Array
-    standard_error: Array
-    seconds: Array
+    knob: str = variable("what is varied: travel, step or tile", "1")
+    value: float = variable("correlation lengths, reduced vertical length, cutoffs", "1")
+    hysteresis: Array = variable("w_retr - w_appr", ADHESION, _RUN)
+    standard_error: Array = variable("that which a run states", ADHESION, _RUN)
+    seconds: Array = variable("processor time", "s", _RUN)
 
 
 def sampling_errors(

@@ -14,11 +14,14 @@ from crackfront import jkr
 from crackfront.accuracy.scenes import Scene
 from crackfront.cycle import CycleRecord, FrontHistory
 from crackfront.pinning import TileField, first_radius, n_angle
+from crackfront.records import ADHESION, FORCE, variable
 from crackfront.relax import Direction, Status
 from crackfront.scene import Numerics, simulation_field
 from crackfront.steady import forward_circle
 
 Array = NDArray[np.float64]
+
+_RUN, _BRANCH = "realisation", "branch"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +52,12 @@ class Errors:
 
     Attributes
     ----------
+    numerics : Numerics
+        All of them.
     knob : str
         What is varied: a knob of :data:`crackfront.laws.KNOBS`, `finer` or `asked`.
     value : float
         Its value; of `asked` the error of k.
-    numerics : Numerics
-        All of them.
     seconds : (n_realisation,) array
         Processor time of both branches. (Units: s)
     adhesion : (n_realisation, 2) array
@@ -67,15 +70,15 @@ class Errors:
         Rms and largest error of the radius over all sites and states. (Units: short cutoff)
     """
 
-    knob: str
-    value: float
     numerics: Numerics
-    seconds: Array
-    adhesion: Array
-    state: Array
-    force: Array
-    front_rms: Array
-    front_max: Array
+    knob: str = variable("what is varied", "1")
+    value: float = variable("its value; of asked the error of k", "1")
+    seconds: Array = variable("processor time of both branches, synthesis included", "s", _RUN)
+    adhesion: Array = variable("error of w_appr and w_retr", ADHESION, _RUN, _BRANCH)
+    state: Array = variable("rms error of one state's w", ADHESION, _RUN, _BRANCH)
+    force: Array = variable("rms error of the normal force", FORCE, _RUN)
+    front_rms: Array = variable("rms error of the radius", "short cutoff", _RUN)
+    front_max: Array = variable("largest error of the radius", "short cutoff", _RUN)
 
 
 @dataclass(frozen=True, slots=True)

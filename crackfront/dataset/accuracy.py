@@ -13,10 +13,11 @@ import xarray as xr
 
 from crackfront.accuracy import SCENES, Coverage, Errors, Sample, Scene, SceneErrors
 from crackfront.dataset.files import UnreadableFileError, labelled, read_dataset, write_dataset
+from crackfront.dataset.records import stacked, unstacked
 from crackfront.dataset.schema import REALISATION
 from crackfront.laws import Law
 from crackfront.provenance import Provenance
-from crackfront.records import ADHESION, FORCE, Variable
+from crackfront.records import ADHESION, Variable
 from crackfront.scene import Numerics
 
 SETTING, BRANCH = "setting", "branch"
@@ -28,32 +29,6 @@ _NUMERICS = (
     Variable("interpolation", _setting, "1", "pieces between samples"),
     Variable("pixels_per_cutoff", _setting, _PER_CUTOFF, "points of the tile"),
     Variable("tolerance", _setting, ADHESION, "force that may be left, per front length"),
-)
-_run, _branch = (SETTING, REALISATION), (SETTING, REALISATION, BRANCH)
-_ERRORS = (
-    Variable("seconds", _run, "s", "processor time of both branches, synthesis included"),
-    Variable("adhesion", _branch, ADHESION, "error of w_appr and w_retr"),
-    Variable("state", _branch, ADHESION, "rms error of one state's apparent work of adhesion"),
-    Variable("force", _run, FORCE, "rms error of the normal force"),
-    Variable("front_rms", _run, "short cutoff", "rms error of the radius over sites and states"),
-    Variable("front_max", _run, "short cutoff", "largest error of the radius"),
-)
-_SAMPLES = (
-    Variable("knob", _setting, "1", "what is varied: travel, step or tile"),
-    Variable("value", _setting, "1", "correlation lengths, reduced vertical length, cutoffs"),
-    Variable("hysteresis", _run, ADHESION, "w_retr - w_appr"),
-    Variable("standard_error", _run, ADHESION, "that which a run states for its hysteresis"),
-    Variable("seconds", _run, "s", "processor time"),
-)
-_COVERAGE = (
-    Variable("asked", _setting, "e_el", "standard error that was asked for"),
-    Variable("numerical", _branch, ADHESION, "numerical error of w_appr and w_retr"),
-    Variable("numerical_stated", (SETTING, BRANCH), ADHESION, "stated numerical standard error"),
-    Variable("total", _branch, ADHESION, "error of a steady run against the mean of the others"),
-    Variable("run_numerical", _branch, ADHESION, "numerical standard error that the run states"),
-    Variable("run_statistical", _branch, ADHESION, "statistical one"),
-    Variable("n_state", _branch, "1", "its steady states"),
-    Variable("truth_error", _branch, ADHESION, "standard error of the mean of the others"),
 )
 _REFERENCE = (
     Variable("reference_adhesion", (REALISATION, BRANCH), ADHESION, "w_appr and w_retr"),
@@ -73,26 +48,18 @@ def write_errors(path: Path, study: SceneErrors, origin: Provenance) -> None:
     origin : Provenance
         Where it comes from.
     """
-    errors = study.errors
-    values = {
-        item.name: labelled(item, np.array([getattr(one.numerics, item.name) for one in errors]))
-        for item in _NUMERICS
-    }
+    scene = study.scene
+    branches = Variable(BRANCH, (BRANCH,), "1", "approach or retraction")
+    values = stacked(study.errors, SETTING)
     values |= {
-        item.name: labelled(item, np.array([getattr(one, item.name) for one in errors]))
-        for item in _ERRORS
+        item.name: labelled(
+            item, np.array([getattr(one.numerics, item.name) for one in study.errors])
+        )
+        for item in _NUMERICS
     }
     references = zip(_REFERENCE, (study.adhesion, study.seconds), strict=True)
     values |= {item.name: labelled(item, value) for item, value in references}
-    knobs = Variable("knob", _setting, "1", "what is varied")
-    amounts = Variable("value", _setting, "1", "its value; of asked the error of k")
-    branches = Variable(BRANCH, (BRANCH,), "1", "approach or retraction")
-    coordinates = {
-        "knob": labelled(knobs, np.array([one.knob for one in errors])),
-        "value": labelled(amounts, np.array([one.value for one in errors])),
-        BRANCH: labelled(branches, np.array(["approach", "retraction"])),
-    }
-    scene = study.scene
+    coordinates = {BRANCH: labelled(branches, np.array(["approach", "retraction"]))}
     attributes = {
         "title": f"numerical errors, {scene.name}",
         "scene": scene.name,
@@ -123,13 +90,11 @@ def read_errors(path: Path) -> SceneErrors:
         for item in fields(Numerics)
         if item.name not in own
     }
+    rows = unstacked(path, dataset, Errors, SETTING)
     errors = []
-    for index in range(dataset.sizes[SETTING]):
-        row = dataset.isel({SETTING: index})
-        numerics = Numerics(**kept, **{name: row[name].values.item() for name in own})
-        columns = {item.name: np.asarray(row[item.name]) for item in _ERRORS}
-        knob, value = str(row["knob"].values), float(row["value"])
-        errors.append(Errors(knob=knob, value=value, numerics=numerics, **columns))
+    for index, row in enumerate(rows):
+        found = {name: dataset[name].values[index].item() for name in own}
+        errors.append(Errors(numerics=Numerics(**kept, **found), **row))
     adhesion, seconds = (np.asarray(dataset[item.name]) for item in _REFERENCE)
     return SceneErrors(scene, adhesion, seconds, tuple(errors))
 
@@ -150,12 +115,7 @@ def write_samples(
     origin : Provenance
         Where it comes from.
     """
-    values = {
-        item.name: labelled(item, np.array([getattr(one, item.name) for one in samples]))
-        for item in _SAMPLES
-    }
-    attributes = {"title": f"errors of averaging, {scene.name}", "scene": scene.name}
-    write_dataset(path, xr.Dataset(values, attrs=attributes), origin)
+    _write(path, f"errors of averaging, {scene.name}", scene, samples, origin)
 
 
 def read_samples(path: Path) -> tuple[Scene, tuple[Sample, ...]]:
@@ -172,12 +132,8 @@ def read_samples(path: Path) -> tuple[Scene, tuple[Sample, ...]]:
         If the file is missing, truncated, or of a scene that is not known.
     """
     dataset = read_dataset(path)
-    samples = []
-    for index in range(dataset.sizes[SETTING]):
-        row = dataset.isel({SETTING: index})
-        columns = [np.asarray(row[item.name]) for item in _SAMPLES[2:]]
-        samples.append(Sample(str(row["knob"].values), float(row["value"]), *columns))
-    return _scene(path, dataset), tuple(samples)
+    rows = unstacked(path, dataset, Sample, SETTING)
+    return _scene(path, dataset), tuple(Sample(**row) for row in rows)
 
 
 def write_coverage(
@@ -196,12 +152,7 @@ def write_coverage(
     origin : Provenance
         Where it comes from.
     """
-    values = {
-        item.name: labelled(item, np.array([getattr(one, item.name) for one in coverages]))
-        for item in _COVERAGE
-    }
-    attributes = {"title": f"true and stated errors, {scene.name}", "scene": scene.name}
-    write_dataset(path, xr.Dataset(values, attrs=attributes), origin)
+    _write(path, f"true and stated errors, {scene.name}", scene, coverages, origin)
 
 
 def read_coverage(path: Path) -> tuple[Scene, tuple[Coverage, ...]]:
@@ -218,12 +169,20 @@ def read_coverage(path: Path) -> tuple[Scene, tuple[Coverage, ...]]:
         If the file is missing, truncated, or of a scene that is not known.
     """
     dataset = read_dataset(path)
-    coverages = []
-    for index in range(dataset.sizes[SETTING]):
-        row = dataset.isel({SETTING: index})
-        columns = [np.asarray(row[item.name]) for item in _COVERAGE[1:]]
-        coverages.append(Coverage(float(row["asked"]), *columns))
-    return _scene(path, dataset), tuple(coverages)
+    rows = unstacked(path, dataset, Coverage, SETTING)
+    return _scene(path, dataset), tuple(Coverage(**row) for row in rows)
+
+
+def _write(
+    path: Path,
+    title: str,
+    scene: Scene,
+    rows: tuple[Sample, ...] | tuple[Coverage, ...],
+    origin: Provenance,
+) -> None:
+    """Write records of a scene, one a setting."""
+    attributes = {"title": title, "scene": scene.name}
+    write_dataset(path, xr.Dataset(stacked(rows, SETTING), attrs=attributes), origin)
 
 
 def _scene(path: Path, dataset: xr.Dataset) -> Scene:

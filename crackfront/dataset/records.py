@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from crackfront.dataset.files import UnreadableFileError, labelled, read_dataset, write_dataset
 from crackfront.provenance import Provenance
-from crackfront.records import variables
+from crackfront.records import Variable, variables
 
 Record = TypeVar("Record")
 
@@ -35,6 +38,52 @@ def write_record(path: Path, record: Any, origin: Provenance, **attributes: str)
     write_dataset(path, xr.Dataset(values, attrs=attributes), origin)
 
 
+def stacked(rows: Sequence[Any], along: str) -> dict[str, tuple[Any, ...]]:
+    """Variables of records of one kind, along a dimension that counts them.
+
+    Parameters
+    ----------
+    rows : sequence of dataclass
+        One record or more.
+    along : str
+        Name of the dimension.
+    """
+    return {
+        item.name: labelled(
+            replace(item, dims=(along, *item.dims)),
+            np.array([getattr(row, item.name) for row in rows]),
+        )
+        for item in variables(type(rows[0]))
+    }
+
+
+def unstacked(path: Path, dataset: xr.Dataset, kind: type[Any], along: str) -> list[dict[str, Any]]:
+    """Fields of the records that :func:`stacked` made variables of.
+
+    Parameters
+    ----------
+    path : Path
+        Where the dataset comes from.
+    dataset : xarray.Dataset
+        The variables.
+    kind : type
+        Dataclass of the records.
+    along : str
+        Name of the dimension that counts them.
+
+    Raises
+    ------
+    UnreadableFileError
+        If a variable is missing or has other dimensions.
+    """
+    known = [replace(item, dims=(along, *item.dims)) for item in variables(kind)]
+    columns = _columns(path, dataset, kind, known)
+    return [
+        {name: values[row].item() if values.ndim == 1 else values[row] for name, values in columns}
+        for row in range(dataset.sizes[along])
+    ]
+
+
 def read_record(path: Path, kind: type[Record]) -> Record:
     """Record that :func:`write_record` wrote.
 
@@ -50,8 +99,14 @@ def read_record(path: Path, kind: type[Record]) -> Record:
     UnreadableFileError
         If the file is missing, truncated, or holds no such record.
     """
-    dataset = read_dataset(path)
-    known = variables(kind)
+    columns = _columns(path, read_dataset(path), kind, variables(kind))
+    return kind(**{name: values if values.ndim else values.item() for name, values in columns})
+
+
+def _columns(
+    path: Path, dataset: xr.Dataset, kind: type[Any], known: Sequence[Variable]
+) -> list[tuple[str, NDArray[Any]]]:
+    """Values of all variables of a record."""
     wrong = [
         item.name
         for item in known
@@ -62,10 +117,4 @@ def read_record(path: Path, kind: type[Record]) -> Record:
             f"{path} holds no {kind.__name__}: {', '.join(wrong)} is missing or of other "
             "dimensions; compute it again"
         )
-    return kind(
-        **{
-            item.name: values if item.dims else values.item()
-            for item in known
-            for values in (np.asarray(dataset[item.name]),)
-        }
-    )
+    return [(item.name, np.asarray(dataset[item.name])) for item in known]
