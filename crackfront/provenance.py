@@ -31,7 +31,7 @@ class Provenance:
     solver_fingerprint : str
         Changes with every source that determines a result.
     command : str
-        Command line of the process.
+        Command line of the process, the program without its folder.
     platform : str
         Operating system, machine and Python.
     configuration : str
@@ -58,10 +58,17 @@ def provenance(configuration: str = "") -> Provenance:
         crackfront_version=__version__,
         git_commit=git_commit(),
         solver_fingerprint=solver_fingerprint(),
-        command=shlex.join(sys.argv),
+        command=_command(),
         platform=f"{platform.platform()}, Python {platform.python_version()}",
         configuration=configuration,
     )
+
+
+def _command() -> str:
+    """Command line without the folder of the program, which is that of one machine."""
+    program = Path(sys.argv[0])
+    name = program.parent.name if program.name == "__main__.py" else program.name
+    return shlex.join([name, *sys.argv[1:]])
 
 
 def utc_now() -> str:

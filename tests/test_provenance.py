@@ -1,6 +1,5 @@
 """The origin that every file states."""
 
-import shlex
 import subprocess
 import sys
 
@@ -19,11 +18,18 @@ def _forget_the_commit():
     git_commit.cache_clear()
 
 
-def test_the_origin_names_version_sources_command_and_configuration():
+@pytest.mark.parametrize(
+    "program", ["/home/someone/.venv/bin/crackfront", "/home/someone/crackfront/__main__.py"]
+)
+def test_the_command_does_not_name_the_folders_of_a_machine(monkeypatch, program):
+    monkeypatch.setattr(sys, "argv", [program, "fit", "a b.yaml"])
+    assert provenance().command == "crackfront fit 'a b.yaml'"
+
+
+def test_the_origin_names_version_sources_and_configuration():
     origin = provenance("seed: 1\n")
     assert origin.crackfront_version == __version__
     assert origin.solver_fingerprint == solver_fingerprint()
-    assert origin.command == shlex.join(sys.argv)
     assert origin.configuration == "seed: 1\n"
 
 
