@@ -124,6 +124,10 @@ def test_commands_compute_draw_and_check_a_figure(tmp_path):
     assert data.with_suffix(".pdf").stat().st_size > 1000
     assert run("check-figures", "--output", output).exit_code == 0
     assert "4 of 4 checks pass" in (output / "checks.md").read_text()
+    page = tmp_path / "docs" / "gallery.md"
+    assert run("gallery", "--output", output, "--page", page).exit_code == 0
+    assert "![Main Fig. 1d" in page.read_text()
+    assert (page.parent / "figures" / "main-1d.png").stat().st_size > 1000
 
 
 def test_commands_refuse_what_is_no_figure(tmp_path):
@@ -131,6 +135,8 @@ def test_commands_refuse_what_is_no_figure(tmp_path):
     assert result.exit_code == 2
     assert "is no data of a figure" in result.output
     result = CliRunner().invoke(main, ["check-figures", "--output", str(tmp_path)])
+    assert "holds no data of figures" in result.output
+    result = CliRunner().invoke(main, ["gallery", "--output", str(tmp_path)])
     assert "holds no data of figures" in result.output
 
 

@@ -9,7 +9,7 @@ import click
 from crackfront import __version__
 from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.cycle import cycle
-from crackfront.cli.figure import check_figures, draw_figure, figure
+from crackfront.cli.figure import check_figures, draw_figure, figure, gallery
 from crackfront.cli.sweep import aggregate, figures, fit, plan, simulate
 
 
@@ -57,6 +57,7 @@ for command in (
     figure,
     draw_figure,
     check_figures,
+    gallery,
     accuracy,
     accuracy_report,
 ):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import time
 from pathlib import Path
 
 import click
@@ -10,6 +12,13 @@ from crackfront.cli.report import FILE, announce_compilation
 from crackfront.cli.sweep import fit_of_sweep
 
 _FOLDER = Path("results/figures")
+
+_GALLERY = (
+    "# Gallery",
+    "",
+    "Every computed figure of the paper, beside what the paper states or what must be true. `make",
+    "figures` computes all of them, `crackfront gallery` writes this page.",
+)
 
 
 @click.command()
@@ -31,6 +40,7 @@ def figure(configuration: Path, scale: str, output: Path) -> None:
     from crackfront.figures import FIGURES, ParametricStudyParameters
     from crackfront.provenance import provenance
 
+    started = time.perf_counter(), time.process_time()
     parameters = load_figure(configuration, scale)
     scene = FIGURES[configuration.stem]
     if isinstance(parameters, ParametricStudyParameters):
@@ -40,7 +50,16 @@ def figure(configuration: Path, scale: str, output: Path) -> None:
         record = scene.compute(parameters, click.echo)
     path = output / scale / f"{configuration.stem}.nc"
     origin = provenance(configuration.read_text(encoding="utf-8"))
-    write_record(path, record, origin, title=scene.title, scale=scale)
+    spent = time.perf_counter() - started[0], time.process_time() - started[1]
+    write_record(
+        path,
+        record,
+        origin,
+        title=scene.title,
+        scale=scale,
+        seconds=spent[0],
+        cpu_seconds=spent[1],
+    )
     click.echo(f"data: {path}")
 
 
@@ -81,6 +100,49 @@ def check_figures(output: Path) -> None:
     lines += ["", f"{count - failed} of {count} checks pass.", ""]
     write_text(output / "checks.md", "\n".join(lines))
     click.echo(f"checks: {output / 'checks.md'}, {failed} of {count} fail")
+
+
+@click.command()
+@click.option(
+    "--output", type=FILE, default=_FOLDER, show_default=True, help="Folder of all figures."
+)
+@click.option(
+    "--page", type=FILE, default=Path("docs/gallery.md"), show_default=True, help="Page to write."
+)
+def gallery(output: Path, page: Path) -> None:
+    """Write the page of all figures beside their checks; of each the paper's scale if it is there.
+
+    The pictures are copied to `figures/` beside the page.
+    """
+    from crackfront.dataset import read_attributes, write_text
+    from crackfront.figures import FIGURES, checks_table
+
+    parts = []
+    for name, scene in FIGURES.items():
+        paths = [output / scale / f"{name}.nc" for scale in ("paper", "quick")]
+        data = next((path for path in paths if path.exists()), None)
+        if data is None:
+            continue
+        picture = data.with_suffix(".gif" if data.with_suffix(".gif").exists() else ".png")
+        copied = page.parent / "figures" / picture.name
+        copied.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(picture, copied)
+        told = read_attributes(data)
+        parts += [
+            f"## {scene.title}",
+            "",
+            f"![{scene.title}](figures/{picture.name})",
+            "",
+            f"Scale {told['scale']}, {float(told['cpu_seconds']):.0f} s of one core, commit "
+            f"{str(told['git_commit'])[:12]}: `{told['command']}`",
+            "",
+            *checks_table(scene.checks(_record(data))),
+            "",
+        ]
+    if not parts:
+        raise ValueError(f"{output} holds no data of figures; run crackfront figure first")
+    write_text(page, "\n".join([*_GALLERY, "", *parts]))
+    click.echo(f"gallery: {page}")
 
 
 def _record(path: Path) -> object:

@@ -11,7 +11,7 @@ from crackfront.dataset.accuracy import (
 )
 from crackfront.dataset.cycles import read_cycle, read_simulation, write_cycle, write_simulation
 from crackfront.dataset.fields import PolarSamples, read_field
-from crackfront.dataset.files import UnreadableFileError, write_text
+from crackfront.dataset.files import UnreadableFileError, read_attributes, write_text
 from crackfront.dataset.fit import write_fit
 from crackfront.dataset.records import read_record, write_record
 from crackfront.dataset.tables import COMPLETE, read_table, write_hysteresis
@@ -21,6 +21,7 @@ __all__ = [
     "PolarSamples",
     "UnreadableFileError",
     "laws_text",
+    "read_attributes",
     "read_coverage",
     "read_cycle",
     "read_errors",

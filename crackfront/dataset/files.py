@@ -93,6 +93,17 @@ def read_dataset(path: Path) -> xr.Dataset:
         ) from error
 
 
+def read_attributes(path: Path) -> dict[str, Any]:
+    """What a file says of itself.
+
+    Raises
+    ------
+    UnreadableFileError
+        If there is no such file or it is no complete netCDF file.
+    """
+    return {str(name): value for name, value in read_dataset(path).attrs.items()}
+
+
 def _umask() -> int:
     """Permissions that new files of this process do not get."""
     mask = os.umask(0)

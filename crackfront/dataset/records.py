@@ -18,7 +18,7 @@ from crackfront.records import Variable, variables
 Record = TypeVar("Record")
 
 
-def write_record(path: Path, record: Any, origin: Provenance, **attributes: str) -> None:
+def write_record(path: Path, record: Any, origin: Provenance, **attributes: str | float) -> None:
     """Write a record, one variable a field.
 
     Parameters
@@ -29,7 +29,7 @@ def write_record(path: Path, record: Any, origin: Provenance, **attributes: str)
         A record whose fields were made by :func:`crackfront.records.variable`.
     origin : Provenance
         Where it comes from.
-    **attributes : str
+    **attributes : str or float
         What else the file says of itself.
     """
     values = {
