@@ -144,3 +144,11 @@ def test_a_figure_of_the_smooth_loop_has_labelled_axes(smooth):
     drawn = FIGURE_MAKERS["main-1d"](smooth)
     assert isinstance(drawn, Figure)
     assert "force" in drawn.axes[0].get_ylabel()
+
+
+def test_a_figure_of_the_smooth_loop_names_its_jumps_and_the_pull_off_force(smooth):
+    axes = FIGURE_MAKERS["main-1d"](smooth).axes[0]
+    texts = " ".join(text.get_text() for text in axes.texts).replace("\n", " ")
+    for name in ("jump into contact", "jump out of contact", "pull-off force"):
+        assert name in texts
+    assert axes.get_ylim()[0] < 1.1 * smooth.force.min()
