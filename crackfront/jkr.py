@@ -97,6 +97,34 @@ def elastic_energy(radius: ArrayLike, penetration: ArrayLike) -> Array:
     return np.asarray(CONTACT_MODULUS * (b**2 * a - 2 * a**3 * b / 3 + a**5 / 5))
 
 
+def surface_displacement(distance: ArrayLike, radius: float, penetration: float) -> Array:
+    r"""Displacement of the half-space, of the Hertzian contact and the flat punch of JKR.
+
+    Within the contact it follows the sphere, u = b - r^2 / 2, beyond it
+
+    .. math:: u = \frac{1}{\pi} [(2 b - r^2) \arcsin(a / r) + a \sqrt{r^2 - a^2}] .
+
+    Parameters
+    ----------
+    distance : array_like
+        Distance r from the apex. (Units: reduced lateral length)
+    radius : float
+        Contact radius a. (Units: reduced lateral length)
+    penetration : float
+        Rigid body penetration b. (Units: reduced vertical length)
+
+    Returns
+    -------
+    array
+        u, positive into the half-space. (Units: reduced vertical length)
+    """
+    r = np.maximum(np.asarray(distance, dtype=float), radius)
+    outside = (2 * penetration - r**2) * np.arcsin(radius / r)
+    outside = (outside + radius * np.sqrt(r**2 - radius**2)) / np.pi
+    conforming = penetration - np.asarray(distance, dtype=float) ** 2 / 2
+    return np.where(np.asarray(distance) <= radius, conforming, outside)
+
+
 def equilibrium_penetration(radius: ArrayLike, work_of_adhesion: ArrayLike = 1.0) -> Array:
     """Penetration at which a smooth contact of this radius is in equilibrium.
 

@@ -157,3 +157,32 @@ def test_a_weaker_sphere_is_lost_at_a_penetration_that_the_stronger_one_survives
     assert jkr.equilibrium_radius(-0.9) > 0
     with pytest.raises(ValueError, match=r"work of adhesion of 0\.5 w_int"):
         jkr.equilibrium_radius(-0.9, 0.5)
+
+
+@given(radius=radii, penetration=penetrations)
+def test_the_surface_is_continuous_at_the_edge_and_follows_the_sphere_within(radius, penetration):
+    inside, edge, outside = jkr.surface_displacement(
+        radius * np.array([1 - 1e-12, 1.0, 1 + 1e-12]), radius, penetration
+    )
+    assert edge == penetration - radius**2 / 2
+    assert inside == pytest.approx(edge, abs=1e-9)
+    assert outside == pytest.approx(edge, abs=1e-4)
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_the_neck_opens_as_the_stress_intensity_says(state):
+    radius, penetration, _ = STATES[state]
+    ahead = 1e-6
+    surface = jkr.surface_displacement(radius + ahead, radius, penetration)
+    opening = surface - (penetration - (radius + ahead) ** 2 / 2)
+    # SI Eqs. (8), (9): u = sqrt(8 / pi) K / E' sqrt(xi).
+    intensity = np.sqrt(8 / np.pi) * jkr.stress_intensity(radius, penetration) / CONTACT_MODULUS
+    assert opening == pytest.approx(intensity * np.sqrt(ahead), rel=1e-4)
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_far_from_the_contact_the_surface_feels_a_point_force(state):
+    radius, penetration, force = STATES[state]
+    far = 1e3
+    surface = jkr.surface_displacement(far, radius, penetration)
+    assert surface * np.pi * CONTACT_MODULUS * far == pytest.approx(force, abs=1e-4)
