@@ -12,6 +12,13 @@ from crackfront.figures.parametric import (
     parametric_study_checks,
     study_fit,
 )
+from crackfront.figures.rings import (
+    RingLoops,
+    RingsParameters,
+    ring_adhesion,
+    ring_loops,
+)
+from crackfront.figures.rings_checks import rings_checks
 from crackfront.figures.scene import FigureScene, Progress
 from crackfront.figures.smooth import (
     SmoothLoop,
@@ -28,10 +35,12 @@ __all__ = [
     "ParametricStudy",
     "ParametricStudyParameters",
     "Progress",
+    "RingLoops",
     "SmoothLoop",
     "checks_table",
     "close_to",
     "figure_fingerprint",
+    "ring_adhesion",
     "study_fit",
 ]
 
@@ -49,6 +58,13 @@ FIGURES = {
         record=ParametricStudy,
         compute=parametric_study,
         checks=parametric_study_checks,
+    ),
+    "main-2": FigureScene(
+        title="Main Fig. 2: rings of high and low work of adhesion",
+        parameters=RingsParameters,
+        record=RingLoops,
+        compute=ring_loops,
+        checks=rings_checks,
     ),
 }
 """Figures by the name of their configuration in config/figures."""

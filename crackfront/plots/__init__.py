@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from crackfront.plots.accuracy import laws_figure, work_precision_figure
 from crackfront.plots.loop import draw_loop, loop_figure
 from crackfront.plots.parametric import parametric_study_figure
+from crackfront.plots.rings import rings_figure
 from crackfront.plots.smooth import smooth_loop_figure
 from crackfront.plots.style import house_style, save_figure
 from crackfront.plots.sweep import (
@@ -42,5 +43,6 @@ __all__ = [
 FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
     "main-1d": smooth_loop_figure,
     "si-5": parametric_study_figure,
+    "main-2": rings_figure,
 }
 """What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""

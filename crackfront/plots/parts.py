@@ -20,6 +20,8 @@ RADIUS_LABEL = r"contact radius / $(3\pi w_\mathrm{int}R^2/4E')^{1/3}$"
 PENETRATION_LABEL = r"penetration / $(9\pi^2 w_\mathrm{int}^2 R/16E'^2)^{1/3}$"
 FORCE_LABEL = r"normal force / $\pi w_\mathrm{int} R$"
 ADHESION_LABEL = r"work of adhesion / $w_\mathrm{int}$"
+LENGTH_LABEL = r"{} / $(3\pi w_\mathrm{{int}}R^2/4E')^{{1/3}}$"
+HEIGHT_LABEL = r"{} / $(9\pi^2 w_\mathrm{{int}}^2 R/16E'^2)^{{1/3}}$"
 
 
 def draw_arrow(axes: Axes, abscissa: Array, ordinate: Array, colour: str) -> None:
@@ -160,3 +162,17 @@ def spectrum_row(estimate: Estimate, index: int) -> Estimate:
 def arrays(estimate: Estimate) -> tuple[Array, Array, Array, Array]:
     """Arrays of an estimate."""
     return estimate.value, estimate.standard_error, estimate.low, estimate.high
+
+
+def label_panel(axes: Axes, name: str) -> None:
+    """Bold letter of a panel, above its upper left corner."""
+    axes.annotate(
+        name,
+        xy=(0, 1),
+        xytext=(-4, 4),
+        xycoords="axes fraction",
+        textcoords="offset points",
+        fontsize=9,
+        fontweight="bold",
+        ha="right",
+    )
