@@ -5,6 +5,7 @@ import hashlib
 from pathlib import Path
 
 from crackfront.figures.checks import Check, checks_table, close_to
+from crackfront.figures.mapping import Mapping, MappingParameters, mapping, mapping_checks
 from crackfront.figures.parametric import (
     ParametricStudy,
     ParametricStudyParameters,
@@ -32,6 +33,7 @@ __all__ = [
     "FIGURES",
     "Check",
     "FigureScene",
+    "Mapping",
     "ParametricStudy",
     "ParametricStudyParameters",
     "Progress",
@@ -65,6 +67,13 @@ FIGURES = {
         record=RingLoops,
         compute=ring_loops,
         checks=rings_checks,
+    ),
+    "main-4": FigureScene(
+        title="Main Fig. 4: roughness, and the work of adhesion that it is equivalent to",
+        parameters=MappingParameters,
+        record=Mapping,
+        compute=mapping,
+        checks=mapping_checks,
     ),
 }
 """Figures by the name of their configuration in config/figures."""

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from crackfront.plots.accuracy import laws_figure, work_precision_figure
 from crackfront.plots.loop import draw_loop, loop_figure
+from crackfront.plots.mapping import mapping_figure
 from crackfront.plots.parametric import parametric_study_figure
 from crackfront.plots.rings import rings_figure
 from crackfront.plots.smooth import smooth_loop_figure
@@ -44,5 +45,6 @@ FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
     "main-1d": smooth_loop_figure,
     "si-5": parametric_study_figure,
     "main-2": rings_figure,
+    "main-4": mapping_figure,
 }
 """What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""
