@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+from scipy.special import beta, betainc
 
 from crackfront.units import CONTACT_MODULUS
 
@@ -104,6 +106,76 @@ class SelfAffineSpectrum:
         tail = growth if exponent == 0 else math.expm1(exponent * growth) / exponent
         moment = knee ** (2 + 2 * order) * (1 / (2 + 2 * order) + tail)
         return self.plateau * moment / (2 * math.pi)
+
+    def profile_density(self, wavevector: ArrayLike) -> Array:
+        r"""Spectral density of a profile along a line (1D PSD), the projection of C.
+
+        .. math:: C_{1D}(q) = \frac{1}{2\pi} \int dk\, C(\sqrt{q^2 + k^2})
+
+        Parameters
+        ----------
+        wavevector : array_like
+            Magnitude q > 0. (Units: 1 / length)
+
+        Returns
+        -------
+        array
+            C_1D(q); the mean square height is its integral over q > 0, divided by pi.
+            (Units: those of `plateau` / length)
+
+        Examples
+        --------
+        >>> spectrum = SelfAffineSpectrum(short_cutoff=1e-6, roll_off=1.0, hurst=1.0)
+        >>> q = 1e3
+        >>> round(float(spectrum.profile_density(q) / (q / np.pi * spectrum.density(q))), 4)
+        0.7854
+        """
+        q = np.asarray(wavevector, dtype=float)
+        knee, cutoff = 2 * math.pi / self.roll_off, 2 * math.pi / self.short_cutoff
+        on_plateau = np.sqrt(np.maximum(knee**2 - q**2, 0.0))
+        # With k = q tan(phi) the tail is an incomplete beta function, here of its complement.
+        power = self.hurst + 0.5
+        beyond_knee, beyond_cutoff = (
+            betainc(power, 0.5, np.minimum((q / limit) ** 2, 1.0)) for limit in (knee, cutoff)
+        )
+        tail = knee * (knee / q) ** (2 * power) * beta(power, 0.5) / 2
+        return self.plateau / np.pi * (on_plateau + tail * (beyond_knee - beyond_cutoff))
+
+    def longer_than(self, wavelength: float) -> SelfAffineSpectrum:
+        """Part of the spectrum with wavelengths above one that is not below the short cutoff."""
+        return replace(self, short_cutoff=wavelength, roll_off=max(self.roll_off, wavelength))
+
+    def dominant_wavelengths(self, order: float, share: float = 0.8) -> tuple[float, float]:
+        """Range of wavelengths that carries a share of the mean square of a derivative.
+
+        Half of the rest lies at shorter wavelengths, the other half at longer ones.
+
+        Parameters
+        ----------
+        order : float
+            Order alpha, as in :meth:`mean_square`.
+        share : float, optional
+            Part of the mean square within the range.
+
+        Returns
+        -------
+        tuple of float
+            Shortest and longest wavelength. (Units: length)
+        """
+        total, rest = self.mean_square(order), (1 - share) / 2
+
+        def wavelength_above_which(part: float) -> float:
+            # On the plateau the share of longer waves falls at least as fast as this.
+            longest = self.roll_off * part ** (-1 / (2 + 2 * order))
+            root = brentq(
+                lambda log: self.longer_than(math.exp(log)).mean_square(order) / total - part,
+                math.log(self.short_cutoff) + 1e-14,
+                math.log(longest) + 1e-9,
+                xtol=1e-13,
+            )
+            return math.exp(root)
+
+        return wavelength_above_which(1 - rest), wavelength_above_which(rest)
 
     @property
     def elastic_energy(self) -> float:

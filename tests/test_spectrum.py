@@ -1,4 +1,5 @@
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -166,3 +167,53 @@ def test_lengths_and_plateau_must_be_positive_and_finite(name, value):
     shape = {"short_cutoff": 0.1, "roll_off": 0.1, "plateau": 1.0, name: value}
     with pytest.raises(ValueError, match=f"{name} is {value}; it must be positive and finite"):
         SelfAffineSpectrum(hurst=0.8, **shape)
+
+
+@pytest.mark.parametrize("shape", [*PAPER, (0.01, 0.1, 0.5), (0.01, 0.1, 1.0)])
+def test_the_density_of_a_profile_is_the_projection_of_the_two_dimensional_one(shape):
+    spectrum = SelfAffineSpectrum(*shape)
+    knee, cutoff = 2 * math.pi / spectrum.roll_off, 2 * math.pi / spectrum.short_cutoff
+    for q in (0.01 * knee, 0.9 * knee, 1.1 * knee, 0.5 * cutoff, 0.99 * cutoff):
+        inner, outer = (math.sqrt(max(limit**2 - q**2, 0.0)) for limit in (knee, cutoff))
+        projected = sum(
+            quad(lambda k, q=q: float(spectrum.density(math.hypot(q, k))), *ends, epsrel=1e-11)[0]
+            for ends in ((0.0, inner), (inner, outer * (1 - 1e-13)))
+        )
+        assert spectrum.profile_density(q) == pytest.approx(projected / math.pi, rel=1e-8)
+    assert spectrum.profile_density(1.01 * cutoff) == 0
+
+
+@pytest.mark.parametrize(("order", "factor"), [(0, math.pi / 2), (0.5, 1.0), (1, math.pi / 4)])
+def test_a_profile_taken_for_isotropic_is_right_for_the_half_derivative_alone(order, factor):
+    # The paper's C(q) = (pi / q) C_1D(q): mean of abs(cos)^(2 alpha) times pi / 2.
+    spectrum = SelfAffineSpectrum(0.01, 0.1, 0.8)
+    q = np.geomspace(1e-4 * 2 * np.pi / 0.1, 2 * np.pi / 0.01, 200_001)
+    density = np.pi / q * spectrum.profile_density(q)
+    taken = np.trapezoid(q ** (2 + 2 * order) * density, np.log(q)) / (2 * np.pi)
+    assert taken / spectrum.mean_square(order) == pytest.approx(factor, rel=2e-4)
+
+
+@pytest.mark.parametrize("order", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("shape", PAPER)
+def test_the_dominant_wavelengths_leave_a_tenth_on_either_side(shape, order):
+    spectrum = SelfAffineSpectrum(*shape)
+    shortest, longest = spectrum.dominant_wavelengths(order)
+    ends = [0.0, 2 * np.pi / longest, 2 * np.pi / shortest, 2 * np.pi / spectrum.short_cutoff]
+    knee = 2 * np.pi / spectrum.roll_off
+    shares = [
+        quad(
+            lambda q: q ** (1 + 2 * order) * float(spectrum.density(q)) / (2 * np.pi),
+            low,
+            high * (1 - 1e-13),
+            points=[knee] if low < knee < high else None,
+        )[0]
+        / spectrum.mean_square(order)
+        for low, high in pairwise(ends)
+    ]
+    assert shares == pytest.approx([0.1, 0.8, 0.1], abs=1e-6)
+
+
+def test_the_part_of_long_wavelengths_is_flat_when_it_ends_above_the_roll_off():
+    spectrum = SelfAffineSpectrum(0.01, 0.1, 0.8, plateau=2.0)
+    assert spectrum.longer_than(0.2) == SelfAffineSpectrum(0.2, 0.2, 0.8, plateau=2.0)
+    assert spectrum.longer_than(0.05) == SelfAffineSpectrum(0.05, 0.1, 0.8, plateau=2.0)
