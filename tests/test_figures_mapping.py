@@ -62,17 +62,6 @@ def test_the_rms_that_the_main_text_prints_fails_parseval(record):
     assert "Parseval" in claims[0]
 
 
-def test_the_energies_of_tiles_scatter_as_expected(record):
-    parameters = MappingParameters(**GIVEN)
-    energies = [
-        mapping(parameters.model_copy(update={"seed": seed}), lambda line: None).energy
-        for seed in range(40)
-    ]
-    error = record.energy_error / math.sqrt(len(energies))
-    assert np.mean(energies) == pytest.approx(record.mode_energy, abs=4 * error)
-    assert np.std(energies) == pytest.approx(record.energy_error, rel=0.4)
-
-
 def test_data_of_a_mapping_come_back_from_their_file(record, tmp_path):
     write_record(tmp_path / "main-4.nc", record, provenance(), title="mapping")
     again = read_record(tmp_path / "main-4.nc", Mapping)

@@ -18,7 +18,7 @@ from crackfront.figures.checks import Check, close_to
 from crackfront.figures.scene import Progress
 from crackfront.records import ADHESION, LATERAL, VERTICAL, variable
 from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
+from crackfront.synthesis import gaussian_field, tile_mean_square
 from crackfront.units import WORK_OF_ADHESION
 from crackfront.validation import Count, Energy, Positive, Section, refusal
 
@@ -131,7 +131,9 @@ def mapping(parameters: MappingParameters, progress: Progress) -> Mapping:
     progress(f"tile of {parameters.n_point} points a side: w_rms = {tile.rms:.4f} w_int")
     shown = slice(0, min(round(parameters.patch / pixel) + 1, parameters.n_point))
     patch = heights[shown, shown]
-    expected, deviation = _tile_energy(spectrum, parameters.side)
+    # From a mean square half-derivative to an energy of full conformity.
+    stiffness = spectrum.elastic_energy / spectrum.mean_square(0.5)
+    expected, deviation = tile_mean_square(spectrum, parameters.side, 0.5)
     wavelength, modes, correlation = _band_correlations(heights, tile, spectrum)
     return Mapping(
         position=np.asarray(pixel * np.arange(len(patch)), dtype=float),
@@ -140,8 +142,8 @@ def mapping(parameters: MappingParameters, progress: Progress) -> Mapping:
         peak=_highest(patch),
         valley=_highest(-patch),
         asked_energy=parameters.elastic_energy,
-        mode_energy=expected,
-        energy_error=deviation,
+        mode_energy=stiffness * expected,
+        energy_error=stiffness * deviation,
         energy=tile.elastic_energy,
         rms=tile.rms,
         mean=float(adhesion.mean()),
@@ -210,20 +212,6 @@ def mapping_checks(record: Mapping) -> tuple[Check, ...]:
             bool(record.adhesion[tuple(record.valley)] < record.adhesion[tuple(record.peak)]),
         ),
     )
-
-
-def _tile_energy(spectrum: SelfAffineSpectrum, side: float) -> tuple[float, float]:
-    """Mean and standard deviation of the energy of full conformity of the modes of a tile."""
-    highest = math.ceil(side / spectrum.short_cutoff)
-    step = 2 * np.pi / side
-    numbers = step * np.arange(-highest, highest + 1)
-    wavevector = np.hypot(numbers[:, None], numbers)
-    share = spectrum.density(wavevector) * wavevector
-    # Exponential powers, each of two modes that are conjugates.
-    scatter = math.sqrt(2 * np.sum(share**2)) / np.sum(share)
-    integral = step**2 / (4 * np.pi**2) * np.sum(share)
-    energy = spectrum.elastic_energy * integral / spectrum.mean_square(0.5)
-    return float(energy), float(energy * scatter)
 
 
 def _band_correlations(
