@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -10,6 +11,9 @@ from pydantic_core import PydanticCustomError
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Count = Annotated[int, Field(ge=1)]
 Energy = Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False)]
+
+InputFile = Annotated[Path, Field(strict=False)]
+"""A file that a configuration names, from the folder in which the command runs."""
 
 
 class Section(BaseModel):
