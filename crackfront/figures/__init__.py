@@ -5,6 +5,12 @@ import hashlib
 from pathlib import Path
 
 from crackfront.figures.checks import Check, checks_table, close_to
+from crackfront.figures.film_scales import (
+    FilmScales,
+    FilmScalesParameters,
+    film_scales,
+    film_scales_checks,
+)
 from crackfront.figures.mapping import Mapping, MappingParameters, mapping, mapping_checks
 from crackfront.figures.parametric import (
     ParametricStudy,
@@ -27,18 +33,26 @@ from crackfront.figures.smooth import (
     smooth_loop,
     smooth_loop_checks,
 )
+from crackfront.figures.synthetic_film import (
+    SyntheticFilm,
+    SyntheticFilmParameters,
+    synthetic_film,
+    synthetic_film_checks,
+)
 from crackfront.scene.parameters import scene_fingerprint
 
 __all__ = [
     "FIGURES",
     "Check",
     "FigureScene",
+    "FilmScales",
     "Mapping",
     "ParametricStudy",
     "ParametricStudyParameters",
     "Progress",
     "RingLoops",
     "SmoothLoop",
+    "SyntheticFilm",
     "checks_table",
     "close_to",
     "figure_fingerprint",
@@ -74,6 +88,20 @@ FIGURES = {
         record=Mapping,
         compute=mapping,
         checks=mapping_checks,
+    ),
+    "main-5a": FigureScene(
+        title="Main Fig. 5a: spectrum of nanodiamond, and the scales that dominate its measures",
+        parameters=FilmScalesParameters,
+        record=FilmScales,
+        compute=film_scales,
+        checks=film_scales_checks,
+    ),
+    "si-6": FigureScene(
+        title="SI Fig. S-6: profile densities of nanodiamond and of synthetic surfaces",
+        parameters=SyntheticFilmParameters,
+        record=SyntheticFilm,
+        compute=synthetic_film,
+        checks=synthetic_film_checks,
     ),
 }
 """Figures by the name of their configuration in config/figures."""

@@ -10,6 +10,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from crackfront.plots.accuracy import laws_figure, work_precision_figure
+from crackfront.plots.densities import film_scales_figure, synthetic_film_figure
 from crackfront.plots.loop import draw_loop, loop_figure
 from crackfront.plots.mapping import mapping_figure
 from crackfront.plots.parametric import parametric_study_figure
@@ -46,5 +47,7 @@ FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
     "si-5": parametric_study_figure,
     "main-2": rings_figure,
     "main-4": mapping_figure,
+    "main-5a": film_scales_figure,
+    "si-6": synthetic_film_figure,
 }
 """What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""
