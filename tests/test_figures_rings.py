@@ -9,13 +9,13 @@ from pydantic import ValidationError
 from crackfront.dataset import read_record, write_record
 from crackfront.figures import FIGURES
 from crackfront.figures.rings import (
-    INNERMOST,
     RingLoops,
     RingsParameters,
     ring_loops,
     ring_penetration,
 )
 from crackfront.figures.rings_checks import first_stops
+from crackfront.figures.smooth import INNERMOST
 from crackfront.plots import FIGURE_MAKERS
 from crackfront.provenance import provenance
 

@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 from crackfront import jkr
 from crackfront.cycle import LoadSchedule
 from crackfront.figures.scene import Progress
+from crackfront.figures.smooth import INNERMOST, TOLERANCE
 from crackfront.pinning import PolarField, polar_field
 from crackfront.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.relax import Direction, Status, relax
@@ -25,14 +26,8 @@ Array = NDArray[np.float64]
 
 _STATE, _LOOP, _CASE = "state", "loop", "case"
 
-INNERMOST = 1e-3
-"""Radius at which contact is made."""
-
 _PATH = 257
 """Points between two states at which a fold of the equilibria is looked for."""
-
-TOLERANCE = 1e-13
-"""Force that may be left, relative to w_int: a front of one site is solved to round-off."""
 
 Amplitude = Annotated[float, Field(gt=0, lt=1)]
 

@@ -11,7 +11,8 @@ from scipy.optimize import brentq
 
 from crackfront import jkr
 from crackfront.figures.checks import Check, close_to
-from crackfront.figures.rings import INNERMOST, RingLoops, ring_adhesion, ring_penetration
+from crackfront.figures.rings import RingLoops, ring_adhesion, ring_penetration
+from crackfront.figures.smooth import INNERMOST
 
 Array = NDArray[np.float64]
 

@@ -23,8 +23,11 @@ Array = NDArray[np.float64]
 
 _STATE = "state"
 
-_INNERMOST = 1e-3
+INNERMOST = 1e-3
 """Radius at which contact is made."""
+
+TOLERANCE = 1e-13
+"""Force that may be left on a circle, relative to w_int: next to pull-off it is soft."""
 
 
 class SmoothLoopParameters(Section):
@@ -76,7 +79,7 @@ def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothL
         Called with a line for every branch.
     """
     schedule = LoadSchedule(parameters.max_penetration, parameters.step)
-    front = np.array([_INNERMOST])
+    front = np.array([INNERMOST])
     states: list[tuple[int, float, float]] = []
     branches: tuple[tuple[Direction, float, Iterable[float]], ...] = (
         (1, parameters.approach, schedule.approach()),
@@ -85,7 +88,7 @@ def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothL
     for direction, adhesion, penetrations in branches:
         field = _constant(adhesion, parameters)
         for penetration in penetrations:
-            outcome = relax(front, penetration, direction, field)
+            outcome = relax(front, penetration, direction, field, tolerance=TOLERANCE)
             if outcome.status is not Status.CONVERGED:
                 break
             front = outcome.radius
@@ -119,13 +122,13 @@ def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
             "radii in approach: the stable JKR radius, largest difference",
             _largest(loop.radius[~retracting] - smooth),
             0.0,
-            1e-7,
+            1e-9,
         ),
         close_to(
             "radii in retraction: the JKR radius, or that at the turn while the edge is pinned",
             _largest(loop.radius[retracting] - np.minimum(receding, largest)),
             0.0,
-            1e-7,
+            1e-9,
         ),
         close_to(
             "lowest force: -3/2 w_retr, where the force is controlled",
@@ -153,4 +156,4 @@ def _constant(adhesion: float, parameters: SmoothLoopParameters) -> PolarField:
     """Field of a smooth sphere, large enough for the whole loop."""
     largest = jkr.equilibrium_radius(parameters.max_penetration, parameters.retraction)
     ring = np.full(2, adhesion * WORK_OF_ADHESION)
-    return polar_field(np.array([_INNERMOST, 1.1 * largest]), ring)
+    return polar_field(np.array([INNERMOST, 1.1 * largest]), ring)
