@@ -11,6 +11,12 @@ from crackfront.figures.film_scales import (
     film_scales,
     film_scales_checks,
 )
+from crackfront.figures.instabilities import (
+    InstabilityParameters,
+    InstabilityRecord,
+    instability_checks,
+    instability_record,
+)
 from crackfront.figures.mapping import Mapping, MappingParameters, mapping, mapping_checks
 from crackfront.figures.parametric import (
     ParametricStudy,
@@ -46,6 +52,7 @@ __all__ = [
     "Check",
     "FigureScene",
     "FilmScales",
+    "InstabilityRecord",
     "Mapping",
     "ParametricStudy",
     "ParametricStudyParameters",
@@ -103,6 +110,13 @@ FIGURES = {
         compute=synthetic_film,
         checks=synthetic_film_checks,
     ),
+    "main-3ab": FigureScene(
+        title="Main Fig. 3a, b: a retraction in single elastic instabilities",
+        parameters=InstabilityParameters,
+        record=InstabilityRecord,
+        compute=instability_record,
+        checks=instability_checks,
+    ),
 }
 """Figures by the name of their configuration in config/figures."""
 
@@ -112,6 +126,8 @@ def figure_fingerprint() -> str:
     """Twelve hexadecimal digits that change with every source that a figure's data come from."""
     digest = hashlib.sha256(scene_fingerprint().encode())
     folder = Path(__file__).parent
-    for path in sorted([*folder.glob("*.py"), *folder.parent.glob("laws.*")]):
+    for path in sorted(
+        [*folder.glob("*.py"), *folder.parent.glob("laws.*"), folder.parent / "instabilities.py"]
+    ):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]

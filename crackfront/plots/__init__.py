@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from crackfront.plots.accuracy import laws_figure, work_precision_figure
 from crackfront.plots.densities import film_scales_figure, synthetic_film_figure
+from crackfront.plots.instabilities import instability_figure
 from crackfront.plots.loop import draw_loop, loop_figure
 from crackfront.plots.mapping import mapping_figure
 from crackfront.plots.parametric import parametric_study_figure
@@ -49,5 +50,6 @@ FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
     "main-4": mapping_figure,
     "main-5a": film_scales_figure,
     "si-6": synthetic_film_figure,
+    "main-3ab": instability_figure,
 }
 """What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""

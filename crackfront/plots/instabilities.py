@@ -1,0 +1,187 @@
+"""Main Fig. 3a, b: instabilities of a retraction as patches, and the cycle with its jumps."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from scipy.signal import resample
+
+from crackfront import jkr
+from crackfront.figures import InstabilityRecord
+from crackfront.figures.instabilities import STRONG, WEAK, radii_at_zero
+from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
+from crackfront.plots.style import BLUE, PAGE, PURPLE, VERMILION, blank_figure, house_style
+
+Array = NDArray[np.float64]
+
+_COLOURS = "viridis"
+
+_FINER = 4
+"""Points of a drawn front per site; the front is smooth between its sites."""
+
+_GAP = 0.05
+"""Distance of the two quarters from the middle between them."""
+
+
+def instability_figure(record: InstabilityRecord) -> Figure:
+    """Patches of both retractions, and force against radius of the cycle.
+
+    Parameters
+    ----------
+    record : InstabilityRecord
+        Data of the figure.
+    """
+    with house_style():
+        figure = blank_figure(PAGE, 0.41 * PAGE)
+        left, right = figure.subplots(1, 2, width_ratios=(1.6, 1))
+        norm = LogNorm(np.quantile(record.energy, 0.02), record.energy.max())
+        for index in (STRONG, WEAK):
+            _draw_quarter(left, record, index, norm)
+            _draw_larkin_length(left, record, index)
+        _finish_quarters(left, record)
+        bar = figure.colorbar(
+            ScalarMappable(norm, _COLOURS),
+            cax=left.inset_axes((0.42, 0.155, 0.5, 0.028)),
+            orientation="horizontal",
+            extend="min",
+        )
+        bar.set_label(
+            r"dissipated energy / $(9\pi^5 w_\mathrm{int}^5R^4/16E'^2)^{1/3}$",
+            fontsize=7,
+            labelpad=1,
+        )
+        _draw_cycle(right, record)
+        left.set_title("a", loc="left", fontweight="bold")
+        right.set_title("b", loc="left", fontweight="bold")
+        return figure
+
+
+def _draw_quarter(axes: Axes, record: InstabilityRecord, index: int, norm: LogNorm) -> None:
+    """Patches of one disorder on its quarter of the contact, outlined by the pinned fronts."""
+    chosen = record.disorder_index == index
+    fronts = [_quarter(values[chosen], index) for values in (record.before, record.after)]
+    angle = np.pi / 2 * np.linspace(0, 1, fronts[0].shape[1]) + (
+        np.pi / 2 if index == STRONG else 0
+    )
+    compass = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    middle = np.array([_GAP if index == WEAK else -_GAP, 0.0])
+    patches, energies = [], []
+    for before, after, energy in zip(*fronts, record.energy[chosen], strict=True):
+        moved = np.abs(after - before) > record.travel
+        edges = np.flatnonzero(np.diff(moved.astype(int), prepend=0, append=0))
+        for first, last in edges.reshape(-1, 2):
+            # One point more at each end, where the two fronts meet.
+            part = slice(max(first - 1, 0), last + 1)
+            there, back = before[part, None] * compass[part], after[part, None] * compass[part]
+            patches.append(np.concatenate([there, back[::-1]]) + middle)
+            energies.append(energy)
+    axes.add_collection(
+        PolyCollection(
+            patches, array=energies, norm=norm, cmap=_COLOURS, edgecolors="black", linewidths=0.2
+        )
+    )
+
+
+def _quarter(fronts: Array, index: int) -> Array:
+    """Finely drawn part of fronts that lies in the quarter of a disorder."""
+    count = fronts.shape[1] * _FINER
+    first = count // 4 if index == STRONG else 0
+    return np.asarray(resample(fronts, count, axis=1)[:, first : first + count // 4 + 1])
+
+
+def _draw_larkin_length(axes: Axes, record: InstabilityRecord, index: int) -> None:
+    """Bar of the Larkin length outside the perimeter."""
+    length, side = float(record.larkin_length[index]), 1 if index == WEAK else -1
+    radius = 1.06 * record.before.max()
+    middle = np.pi / 2 - side * 0.3 * np.pi
+    angle = middle + np.linspace(-0.5, 0.5, 20) * length / radius
+    axes.plot(
+        side * _GAP + radius * np.cos(angle),
+        radius * np.sin(angle),
+        color=VERMILION,
+        linewidth=2.5,
+        solid_capstyle="butt",
+    )
+    axes.annotate(
+        r"$\ell$",
+        (side * _GAP + radius * np.cos(middle), radius * np.sin(middle)),
+        xytext=(6 * side, 4),
+        textcoords="offset points",
+        ha="center",
+        color=VERMILION,
+    )
+
+
+def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
+    """Limits, names and a scale."""
+    reach = 1.04 * record.before.max() + _GAP
+    axes.set_xlim(-reach, reach)
+    axes.set_ylim(-0.6, 1.28 * reach)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    for index, name, side in ((STRONG, "strong", -1), (WEAK, "weak", 1)):
+        axes.annotate(
+            f"{name} disorder\n"
+            rf"$w_\mathrm{{rms}} = {record.rms[index]:.2f}\,w_\mathrm{{int}}$" + "\n"
+            rf"Larkin length $\ell = {record.larkin_length[index]:.3f}$",
+            (side * reach, 1.28 * reach),
+            ha="left" if side < 0 else "right",
+            va="top",
+        )
+    axes.plot(
+        [-reach, 0.5 - reach], [-0.12, -0.12], color="black", linewidth=1.2, solid_capstyle="butt"
+    )
+    axes.annotate(
+        r"$0.5\,(3\pi w_\mathrm{int}R^2/4E')^{1/3}$", (-reach, -0.17), va="top", fontsize=6
+    )
+
+
+def _draw_cycle(axes: Axes, record: InstabilityRecord) -> None:
+    """Force against radius of the stronger disorder."""
+    for direction, colour, name in ((1, BLUE, "approach"), (-1, VERMILION, "retraction")):
+        branch = record.state_direction == direction
+        radius, force = record.state_radius[branch], record.state_force[branch]
+        axes.plot(radius, force, color=colour, linewidth=0.8, label=name)
+        ends = [(0.0, 0.0), (radius[0], force[0])]
+        if direction < 0:
+            ends = [(radius[-1], force[-1]), (0.0, 0.0)]
+        _draw_jump(axes, *ends)
+    axes.plot([], [], color=PURPLE, linewidth=0.9, label="jumps in and out")
+    radius = np.linspace(0.0, 1.6, 200)
+    axes.plot(
+        radius, jkr.force(radius, 0.0), color="black", linewidth=0.7, label="$b = 0$", zorder=1
+    )
+    for letter, place, aside in zip("AB", radii_at_zero(record), ((-9, -7), (4, 1)), strict=True):
+        force = float(jkr.force(place, 0.0))
+        axes.plot(place, force, "o", color="black", markersize=2.8, zorder=5)
+        axes.annotate(
+            letter, (place, force), xytext=aside, textcoords="offset points", fontweight="bold"
+        )
+    axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=0)
+    axes.set_xlim(0.0, 1.08 * record.state_radius.max())
+    axes.set_ylim(1.25 * record.state_force.min(), 0.1)
+    axes.legend(loc="lower left")
+    axes.set_xlabel(RADIUS_LABEL, fontsize=7)
+    axes.set_ylabel(FORCE_LABEL, fontsize=7)
+
+
+def _draw_jump(axes: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
+    """Arrow of an instability of the whole contact."""
+    axes.annotate(
+        "",
+        xy=end,
+        xytext=start,
+        arrowprops={
+            "arrowstyle": "-|>",
+            "color": PURPLE,
+            "linewidth": 0.9,
+            "mutation_scale": 7,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
+    )
