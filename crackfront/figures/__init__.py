@@ -32,6 +32,12 @@ from crackfront.figures.rings import (
     ring_loops,
 )
 from crackfront.figures.rings_checks import rings_checks
+from crackfront.figures.roughness import (
+    RoughnessParameters,
+    RoughnessRecord,
+    roughness_checks,
+    roughness_record,
+)
 from crackfront.figures.scene import FigureScene, Progress
 from crackfront.figures.smooth import (
     SmoothLoop,
@@ -58,6 +64,7 @@ __all__ = [
     "ParametricStudyParameters",
     "Progress",
     "RingLoops",
+    "RoughnessRecord",
     "SmoothLoop",
     "SyntheticFilm",
     "checks_table",
@@ -116,6 +123,13 @@ FIGURES = {
         record=InstabilityRecord,
         compute=instability_record,
         checks=instability_checks,
+    ),
+    "beyond-roughness": FigureScene(
+        title="Beyond the paper: roughness of the front",
+        parameters=RoughnessParameters,
+        record=RoughnessRecord,
+        compute=roughness_record,
+        checks=roughness_checks,
     ),
 }
 """Figures by the name of their configuration in config/figures."""

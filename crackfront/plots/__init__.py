@@ -16,6 +16,7 @@ from crackfront.plots.loop import draw_loop, loop_figure
 from crackfront.plots.mapping import mapping_figure
 from crackfront.plots.parametric import parametric_study_figure
 from crackfront.plots.rings import rings_figure
+from crackfront.plots.roughness import roughness_figure
 from crackfront.plots.smooth import smooth_loop_figure
 from crackfront.plots.style import house_style, save_figure
 from crackfront.plots.sweep import (
@@ -51,5 +52,6 @@ FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
     "main-5a": film_scales_figure,
     "si-6": synthetic_film_figure,
     "main-3ab": instability_figure,
+    "beyond-roughness": roughness_figure,
 }
 """What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""

@@ -1,0 +1,115 @@
+"""Roughness of fronts: the fit recovers what was put in, and a small contact is measured."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from pydantic import ValidationError
+
+from crackfront.config import load_figure
+from crackfront.figures import FIGURES, RoughnessRecord
+from crackfront.figures.roughness import STRONG, WEAK, fitted_roughness, stiffness_wavevector
+from crackfront.plots import FIGURE_MAKERS
+
+CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "beyond-roughness.yaml"
+SCENE = FIGURES["beyond-roughness"]
+
+
+def parameters(**changes):
+    return load_figure(CONFIGURATION, "quick").model_copy(update=changes)
+
+
+def synthetic(exponents, rng, n_surface=8):
+    """Spectra that are powers of the stiffness, with the scatter of 20 fronts."""
+    mode = np.arange(1, 400)
+    empty = RoughnessRecord(
+        short_cutoff=0.02,
+        elastic_energy=np.array([0.05, 0.001]),
+        rms=np.array([0.45, 0.06]),
+        larkin_length=np.array([0.01, 0.6]),
+        radius=np.array([1.6, 1.6]),
+        ring_stiffness=np.array([4.0, 4.0]),
+        longest=np.array([0.8, 0.8]),
+        shortest=np.array([0.08, 0.08]),
+        mode=mode,
+        power=np.ones((2, n_surface, mode.size)),
+        lag=np.geomspace(0.01, 3, 20),
+        difference=np.ones((2, 20)),
+    )
+    scatter = rng.gamma(20, 1 / 20, empty.power.shape)
+    laws = [
+        stiffness_wavevector(empty, index) ** -(1 + 2 * exponent)
+        for index, exponent in enumerate(exponents)
+    ]
+    return replace(empty, power=np.array(laws)[:, None] * scatter)
+
+
+@pytest.fixture(scope="module")
+def record():
+    small = parameters(
+        short_cutoff=0.06,
+        max_penetration=0.6,
+        first_penetration=0.4,
+        last_penetration=0.1,
+        n_surface=2,
+        n_front=4,
+    )
+    return SCENE.compute(small, lambda line: None)
+
+
+def test_the_fit_recovers_exponents_within_its_intervals(rng):
+    data = synthetic((0.388, 0.5), rng)
+    for index, exponent in ((STRONG, 0.388), (WEAK, 0.5)):
+        fit = fitted_roughness(data, index)
+        assert abs(fit.exponent - exponent) < 2 * fit.reach < 0.06
+    assert all(check.passed for check in SCENE.checks(data))
+
+
+def test_other_exponents_fail_the_checks(rng):
+    assert [check.passed for check in SCENE.checks(synthetic((0.5, 0.388), rng))] == [False] * 3
+    assert [check.passed for check in SCENE.checks(synthetic((0.388, 0.388), rng))] == [
+        True,
+        False,
+        False,
+    ]
+
+
+def test_without_the_stiffness_of_the_circle_the_exponent_is_lower(rng):
+    data = synthetic((0.388, 0.5), rng)
+    bare = fitted_roughness(replace(data, ring_stiffness=np.zeros(2)), WEAK)
+    assert bare.exponent < fitted_roughness(data, WEAK).exponent - 0.03
+
+
+def test_differences_follow_from_the_spectrum(record):
+    for index in (STRONG, WEAK):
+        variance = np.sum(2 * record.power[index].mean(axis=0)) / (2 * np.pi * record.radius[index])
+        plateau = record.difference[index, -1] ** 2
+        assert 0.3 * 2 * variance < plateau < 3 * 2 * variance
+        assert np.all(record.difference[index, :10] < record.difference[index, 20])
+
+
+def test_weak_disorder_roughens_less(record):
+    assert np.all(record.difference[WEAK] < 0.5 * record.difference[STRONG])
+    assert record.larkin_length[WEAK] > 50 * record.larkin_length[STRONG]
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"first_penetration": 2.0}, "penetrations must fall from max_penetration"),
+        ({"weak_from": 90.0}, "weak_from is 90; it must be below weak_to, 50"),
+        ({"n_surface": 1}, "an interval needs 2 surfaces"),
+    ],
+)
+def test_parameters_that_cannot_be_fitted_are_refused(changes, sentence):
+    with pytest.raises(ValidationError, match=sentence):
+        SCENE.parameters.model_validate(parameters().model_dump() | changes)
+
+
+def test_its_drawing_has_three_labelled_panels(record):
+    wide = replace(record, longest=np.full(2, 1.0), shortest=np.full(2, 0.2))
+    drawn = FIGURE_MAKERS["beyond-roughness"](wide)
+    assert isinstance(drawn, Figure)
+    assert all(axes.get_xlabel() and axes.get_ylabel() for axes in drawn.axes)
