@@ -2,6 +2,7 @@
 
 from crackfront.fits.estimate import Estimate
 from crackfront.fits.notes import fit_notes, trend_sentence
+from crackfront.fits.power_law import PowerLaw, truncated_power_law
 from crackfront.fits.report import PAPER_FACTOR, PERTURBATION_FACTOR, fit_table
 from crackfront.fits.result import Column, FieldKind, SweepFit, fit_columns
 from crackfront.fits.steady import STEADY_DEFINITION, SteadyAdhesion, steady_adhesion
@@ -16,6 +17,7 @@ __all__ = [
     "Column",
     "Estimate",
     "FieldKind",
+    "PowerLaw",
     "SteadyAdhesion",
     "SweepFit",
     "SweepTable",
@@ -25,4 +27,5 @@ __all__ = [
     "fit_table",
     "steady_adhesion",
     "trend_sentence",
+    "truncated_power_law",
 ]
