@@ -216,6 +216,11 @@ class FrontHistory:
         self._dissipated: list[float] | None = [] if record_energy else None
         self._progress = progress
 
+    @property
+    def front(self) -> Array:
+        """The front of the last state (Units: reduced lateral length)."""
+        return self._front
+
     def begin(self, front: Array) -> None:
         """Begin a branch at a front, no matter how it was reached; its first step has no energy."""
         self._front = self._turn = front
@@ -328,7 +333,7 @@ def run_cycle(
         record_energy=record_energy,
         progress=progress,
     )
-    for penetration, direction in _loads(schedule):
+    for penetration, direction in loads(schedule):
         if history.follow(penetration, direction) is not Status.CONVERGED:
             break
     return history.record()
@@ -374,8 +379,8 @@ def _elastic_energy(front: Array, penetration: float) -> float:
     return float(np.mean(jkr.elastic_energy(open_edge, penetration))) + line_energy(front)
 
 
-def _loads(schedule: LoadSchedule) -> Iterator[tuple[float, Direction]]:
-    """Penetrations with the direction in which each is reached."""
+def loads(schedule: LoadSchedule) -> Iterator[tuple[float, Direction]]:
+    """Penetrations of a whole cycle, without end, with the direction in which each is reached."""
     for penetration in schedule.approach():
         yield penetration, 1
     for penetration in schedule.retraction():

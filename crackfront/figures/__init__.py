@@ -25,6 +25,12 @@ from crackfront.figures.parametric import (
     parametric_study_checks,
     study_fit,
 )
+from crackfront.figures.pinned_loop import (
+    PinnedLoop,
+    PinnedLoopParameters,
+    pinned_loop,
+    pinned_loop_checks,
+)
 from crackfront.figures.rings import (
     RingLoops,
     RingsParameters,
@@ -62,6 +68,7 @@ __all__ = [
     "Mapping",
     "ParametricStudy",
     "ParametricStudyParameters",
+    "PinnedLoop",
     "Progress",
     "RingLoops",
     "RoughnessRecord",
@@ -130,6 +137,13 @@ FIGURES = {
         record=RoughnessRecord,
         compute=roughness_record,
         checks=roughness_checks,
+    ),
+    "main-3cd": FigureScene(
+        title="Main Fig. 3c, d: the smooth loop of a finely rough sphere, and its fronts at b = 0",
+        parameters=PinnedLoopParameters,
+        record=PinnedLoop,
+        compute=pinned_loop,
+        checks=pinned_loop_checks,
     ),
 }
 """Figures by the name of their configuration in config/figures."""

@@ -15,6 +15,7 @@ from crackfront.plots.instabilities import instability_figure
 from crackfront.plots.loop import draw_loop, loop_figure
 from crackfront.plots.mapping import mapping_figure
 from crackfront.plots.parametric import parametric_study_figure
+from crackfront.plots.pinned_loop import pinned_loop_figure
 from crackfront.plots.rings import rings_figure
 from crackfront.plots.roughness import roughness_figure
 from crackfront.plots.smooth import smooth_loop_figure
@@ -53,5 +54,6 @@ FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
     "si-6": synthetic_film_figure,
     "main-3ab": instability_figure,
     "beyond-roughness": roughness_figure,
+    "main-3cd": pinned_loop_figure,
 }
 """What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crackfront import jkr
-from crackfront.cycle import CycleRecord
-from crackfront.fits import PAPER_FACTOR, FieldKind, SteadyAdhesion
+from crackfront.fits import PAPER_FACTOR, FieldKind
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
 
 Array = NDArray[np.float64]
@@ -21,9 +22,45 @@ MOST_MARKERS = 60
 """Markers on a branch, roughly; of more states only every second, third ... is marked."""
 
 
+class LoopStates(Protocol):
+    """What is drawn of the states of a cycle."""
+
+    @property
+    def direction(self) -> NDArray[np.int64]:
+        """+1 in approach, -1 in retraction."""
+
+    @property
+    def mean_radius(self) -> Array:
+        """Mean radii of the fronts."""
+
+    @property
+    def force(self) -> Array:
+        """Normal forces."""
+
+
+class LoopAdhesion(Protocol):
+    """What is drawn of the apparent works of adhesion."""
+
+    @property
+    def approach(self) -> float:
+        """That of the approach."""
+
+    @property
+    def retraction(self) -> float:
+        """That of the retraction."""
+
+    @property
+    def lowest_radius(self) -> float:
+        """Smallest mean radius of the window of the averages."""
+
+    @property
+    def highest_radius(self) -> float:
+        """Largest mean radius of the window."""
+
+
 def loop_figure(
-    record: CycleRecord,
-    steady: SteadyAdhesion,
+    record: LoopStates,
+    steady: LoopAdhesion,
     *,
     elastic_energy: float | None = None,
     kind: FieldKind = "roughness",
@@ -33,9 +70,9 @@ def loop_figure(
 
     Parameters
     ----------
-    record : CycleRecord
-        The cycle.
-    steady : SteadyAdhesion
+    record : LoopStates
+        The cycle, for instance a :class:`crackfront.cycle.CycleRecord`.
+    steady : LoopAdhesion
         Its apparent works of adhesion; without values no curves are drawn.
     elastic_energy : float, optional
         Measured e_el, for the curves that the paper predicts. (Units: w_int)
@@ -59,8 +96,8 @@ def loop_figure(
 
 def draw_loop(
     axes: Axes,
-    record: CycleRecord,
-    steady: SteadyAdhesion,
+    record: LoopStates,
+    steady: LoopAdhesion,
     *,
     elastic_energy: float | None = None,
     kind: FieldKind = "roughness",
@@ -71,9 +108,9 @@ def draw_loop(
     ----------
     axes : Axes
         Where to draw.
-    record : CycleRecord
-        The cycle.
-    steady : SteadyAdhesion
+    record : LoopStates
+        The cycle, for instance a :class:`crackfront.cycle.CycleRecord`.
+    steady : LoopAdhesion
         Its apparent works of adhesion.
     elastic_energy : float, optional
         Measured e_el, for the curves that the paper predicts. (Units: w_int)
@@ -133,7 +170,7 @@ def draw_loop(
     axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
 
 
-def _set_limits(axes: Axes, record: CycleRecord) -> None:
+def _set_limits(axes: Axes, record: LoopStates) -> None:
     """Limits around the states, with room for the legend at the upper left."""
     for values, setter, below, above in (
         (record.mean_radius, axes.set_xlim, 0.12, 0.08),

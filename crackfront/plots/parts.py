@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
@@ -16,12 +17,16 @@ from crackfront.plots.style import BLACK, COLOURS, MARKERS
 
 Array = NDArray[np.float64]
 
-RADIUS_LABEL = r"contact radius / $(3\pi w_\mathrm{int}R^2/4E')^{1/3}$"
+LATERAL_UNIT = r"$(3\pi w_\mathrm{int}R^2/4E')^{1/3}$"
+RADIUS_LABEL = rf"contact radius / {LATERAL_UNIT}"
 PENETRATION_LABEL = r"penetration / $(9\pi^2 w_\mathrm{int}^2 R/16E'^2)^{1/3}$"
 FORCE_LABEL = r"normal force / $\pi w_\mathrm{int} R$"
 ADHESION_LABEL = r"work of adhesion / $w_\mathrm{int}$"
 LENGTH_LABEL = r"{} / $(3\pi w_\mathrm{{int}}R^2/4E')^{{1/3}}$"
 HEIGHT_LABEL = r"{} / $(9\pi^2 w_\mathrm{{int}}^2 R/16E'^2)^{{1/3}}$"
+
+FIELD_COLOURS = LinearSegmentedColormap.from_list("field", ["white", "0.45"])
+"""From weak to strong adhesion, light enough for black, blue and vermilion lines."""
 
 
 def draw_arrow(axes: Axes, abscissa: Array, ordinate: Array, colour: str) -> None:
