@@ -11,6 +11,7 @@ from snakemake.exceptions import WorkflowError
 from crackfront.config import (
     SCALES,
     ConfigurationError,
+    figure_files,
     load_configuration,
     load_figure,
 )

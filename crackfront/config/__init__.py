@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from crackfront.config.figures import SCALES, load_figure
+from crackfront.config.figures import SCALES, figure_files, load_figure
 from crackfront.config.reading import ConfigurationError, content_of, sentences
 from crackfront.config.sections import Configuration, LoadSection, NumericsSection
 from crackfront.cycle import LoadSchedule
@@ -18,7 +18,7 @@ from crackfront.steady import SteadySchedule
 from crackfront.sweep import FitRange, NamedSpectrum, Sweep
 from crackfront.units import Scales
 
-__all__ = ["SCALES", "ConfigurationError", "load_configuration", "load_figure"]
+__all__ = ["SCALES", "ConfigurationError", "figure_files", "load_configuration", "load_figure"]
 
 
 def load_configuration(path: Path) -> Sweep:

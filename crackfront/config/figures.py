@@ -62,3 +62,15 @@ def load_figure(path: Path, scale: str) -> Section:
         raise ConfigurationError(
             "\n".join(f"{path}: {line}" for line in sentences(error.errors(), scene.parameters))
         ) from error
+
+
+def figure_files(path: Path, scale: str) -> list[str]:
+    """Files that a figure reads beside its configuration.
+
+    Parameters
+    ----------
+    path, scale
+        As in :func:`load_figure`.
+    """
+    parameters = load_figure(path, scale)
+    return [str(value) for _, value in parameters if isinstance(value, Path)]

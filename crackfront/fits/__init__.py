@@ -1,6 +1,7 @@
 """From the records of runs to w_appr, w_retr, k and their uncertainties, on plain arrays."""
 
 from crackfront.fits.estimate import Estimate
+from crackfront.fits.force import FEWEST_POINTS, adhesion_from_forces
 from crackfront.fits.notes import fit_notes, trend_sentence
 from crackfront.fits.power_law import PowerLaw, truncated_power_law
 from crackfront.fits.report import PAPER_FACTOR, PERTURBATION_FACTOR, fit_table
@@ -10,6 +11,7 @@ from crackfront.fits.sweep import FIT_DEFINITION, fit_sweep
 from crackfront.fits.table import SweepTable
 
 __all__ = [
+    "FEWEST_POINTS",
     "FIT_DEFINITION",
     "PAPER_FACTOR",
     "PERTURBATION_FACTOR",
@@ -21,6 +23,7 @@ __all__ = [
     "SteadyAdhesion",
     "SweepFit",
     "SweepTable",
+    "adhesion_from_forces",
     "fit_columns",
     "fit_notes",
     "fit_sweep",

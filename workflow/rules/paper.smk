@@ -18,15 +18,21 @@ rule paper_figures:
         "results/figures/checks.md",
 
 
+def measured_files(wildcards):
+    """Files that the configuration of a figure names."""
+    return figure_files(Path(f"config/figures/{wildcards.figure}.yaml"), SCALE)
+
+
 rule figure_data:
     input:
-        "config/figures/{figure}.yaml",
+        configuration="config/figures/{figure}.yaml",
+        measured=measured_files,
     output:
         f"{PAPER}/{{figure}}.nc",
     params:
         sources=figure_fingerprint(),
     shell:
-        "crackfront figure {input:q} --scale {SCALE} --output results/figures"
+        "crackfront figure {input.configuration:q} --scale {SCALE} --output results/figures"
 
 
 rule figure_of_sweep:
