@@ -6,6 +6,8 @@ broadcast over arrays. Source: supplement, Sec. I A.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
@@ -204,6 +206,40 @@ def equilibrium_radius(penetration: float, work_of_adhesion: float = 1.0) -> flo
             rtol=8 * np.finfo(float).eps,
         )
     )
+
+
+def radius_at_force(force: float, work_of_adhesion: float = 1.0) -> float:
+    """Radius of the stable smooth contact at a force, where the force is controlled.
+
+    Parameters
+    ----------
+    force : float
+        Normal force. (Units: pi w_int R)
+    work_of_adhesion : float, optional
+        Apparent work of adhesion, relative to w_int.
+
+    Returns
+    -------
+    float
+        The larger root of F = a^3 - sqrt(6 w a^3). (Units: reduced lateral length)
+
+    Raises
+    ------
+    ValueError
+        If the force is below pull-off, where no contact is stable.
+
+    Examples
+    --------
+    >>> round(radius_at_force(0.0) ** 3, 12)
+    6.0
+    """
+    if force < pull_off_force(work_of_adhesion):
+        raise ValueError(
+            f"force {force} is below pull-off ({pull_off_force(work_of_adhesion):.6g}) for a work "
+            f"of adhesion of {work_of_adhesion} w_int; no contact is stable there"
+        )
+    root = (math.sqrt(6 * work_of_adhesion) + math.sqrt(6 * work_of_adhesion + 4 * force)) / 2
+    return float(root ** (2 / 3))
 
 
 def pull_off_radius(work_of_adhesion: float = 1.0) -> float:

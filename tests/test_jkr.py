@@ -186,3 +186,15 @@ def test_far_from_the_contact_the_surface_feels_a_point_force(state):
     far = 1e3
     surface = jkr.surface_displacement(far, radius, penetration)
     assert surface * np.pi * CONTACT_MODULUS * far == pytest.approx(force, abs=1e-4)
+
+
+@pytest.mark.parametrize("adhesion", [0.3, 1.0])
+def test_the_radius_at_a_force_is_the_stable_one(adhesion):
+    pull_off = jkr.pull_off_force(adhesion)
+    assert jkr.radius_at_force(pull_off, adhesion) ** 3 == pytest.approx(1.5 * adhesion)
+    for force in (pull_off / 2, 0.0, 4.0):
+        radius = jkr.radius_at_force(force, adhesion)
+        assert jkr.equilibrium_force(radius, adhesion) == pytest.approx(force, abs=1e-12)
+        assert radius**3 > 1.5 * adhesion
+    with pytest.raises(ValueError, match="below pull-off"):
+        jkr.radius_at_force(1.001 * pull_off, adhesion)

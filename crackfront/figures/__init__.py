@@ -18,6 +18,9 @@ from crackfront.figures.instabilities import (
     instability_record,
 )
 from crackfront.figures.mapping import Mapping, MappingParameters, mapping, mapping_checks
+from crackfront.figures.nanodiamond import NanodiamondContact, nanodiamond_contact
+from crackfront.figures.nanodiamond_checks import nanodiamond_checks
+from crackfront.figures.nanodiamond_parameters import NanodiamondParameters
 from crackfront.figures.parametric import (
     ParametricStudy,
     ParametricStudyParameters,
@@ -66,6 +69,7 @@ __all__ = [
     "FilmScales",
     "InstabilityRecord",
     "Mapping",
+    "NanodiamondContact",
     "ParametricStudy",
     "ParametricStudyParameters",
     "PinnedLoop",
@@ -144,6 +148,13 @@ FIGURES = {
         record=PinnedLoop,
         compute=pinned_loop,
         checks=pinned_loop_checks,
+    ),
+    "main-5bc": FigureScene(
+        title="Main Fig. 5b, c: a rubber sphere on nanodiamond",
+        parameters=NanodiamondParameters,
+        record=NanodiamondContact,
+        compute=nanodiamond_contact,
+        checks=nanodiamond_checks,
     ),
 }
 """Figures by the name of their configuration in config/figures."""

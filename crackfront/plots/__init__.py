@@ -14,6 +14,7 @@ from crackfront.plots.densities import film_scales_figure, synthetic_film_figure
 from crackfront.plots.instabilities import instability_figure
 from crackfront.plots.loop import draw_loop, loop_figure
 from crackfront.plots.mapping import mapping_figure
+from crackfront.plots.nanodiamond import nanodiamond_figure
 from crackfront.plots.parametric import parametric_study_figure
 from crackfront.plots.pinned_loop import pinned_loop_figure
 from crackfront.plots.rings import rings_figure
@@ -55,5 +56,6 @@ FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
     "main-3ab": instability_figure,
     "beyond-roughness": roughness_figure,
     "main-3cd": pinned_loop_figure,
+    "main-5bc": nanodiamond_figure,
 }
 """What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""
