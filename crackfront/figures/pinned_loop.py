@@ -27,6 +27,7 @@ from crackfront.pinning import front_adhesion
 from crackfront.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.relax import Status
 from crackfront.scene import Simulation, simulation_adhesion, simulation_field
+from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.units import WORK_OF_ADHESION
 from crackfront.validation import Energy, Positive
 
@@ -196,9 +197,11 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
     factor_error = math.hypot(loop.approach_error, loop.retraction_error) / (2 * energy)
     spread = 3 * math.hypot(loop.approach_error, loop.retraction_error) / 2
     tolerance = ONE_DIGIT * energy
+    spectrum = SelfAffineSpectrum(loop.short_cutoff, loop.roll_off, loop.hurst)
     numbers = (
-        f"k of this loop is {factor:.2f} ± {factor_error:.2f}; the tolerance is what one digit of "
-        f"k leaves, {ONE_DIGIT:g} e_el, and e_el on the tile is {energy:.4f} w_int"
+        f"k of this loop is {factor:.2f} ± {factor_error:.2f}; k grows with the size, here "
+        f"{loop.highest_radius / spectrum.correlation_length:.0f} correlation lengths; tolerance: "
+        f"what one digit of k leaves, {ONE_DIGIT:g} e_el, with {energy:.4f} w_int on the tile"
     )
     return (
         Check(
