@@ -66,13 +66,16 @@ def figure(configuration: Path, scale: str, output: Path) -> None:
 @click.command("draw-figure")
 @click.argument("data", type=FILE)
 def draw_figure(data: Path) -> None:
-    """Draw a figure from its data, beside them."""
+    """Draw a figure from its data, beside them, and its animation where it has one."""
     from crackfront import plots
 
     record = _record(data)
     drawn = plots.FIGURE_MAKERS[data.stem](record)
     for path in plots.save_figure(drawn, data.with_suffix("")):
         click.echo(f"figure: {path}")
+    if data.stem in plots.ANIMATION_MAKERS:
+        animation = plots.ANIMATION_MAKERS[data.stem](record)
+        click.echo(f"animation: {plots.save_animation(animation, data.with_suffix(''))}")
 
 
 @click.command("check-figures")

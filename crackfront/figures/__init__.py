@@ -18,6 +18,7 @@ from crackfront.figures.instabilities import (
     instability_record,
 )
 from crackfront.figures.mapping import Mapping, MappingParameters, mapping, mapping_checks
+from crackfront.figures.motion import Motion, MotionParameters, motion, motion_checks
 from crackfront.figures.nanodiamond import NanodiamondContact, nanodiamond_contact
 from crackfront.figures.nanodiamond_checks import nanodiamond_checks
 from crackfront.figures.nanodiamond_parameters import NanodiamondParameters
@@ -69,6 +70,7 @@ __all__ = [
     "FilmScales",
     "InstabilityRecord",
     "Mapping",
+    "Motion",
     "NanodiamondContact",
     "ParametricStudy",
     "ParametricStudyParameters",
@@ -155,6 +157,14 @@ FIGURES = {
         record=NanodiamondContact,
         compute=nanodiamond_contact,
         checks=nanodiamond_checks,
+    ),
+    "beyond-animation": FigureScene(
+        title="Animation: the fronts of a cycle over the field, beside its loop",
+        parameters=MotionParameters,
+        record=Motion,
+        compute=motion,
+        checks=motion_checks,
+        animated=True,
     ),
 }
 """Figures by the name of their configuration in config/figures."""

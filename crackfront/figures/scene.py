@@ -30,6 +30,8 @@ class FigureScene:
         name a sweep, with the fit of its results as a third argument.
     checks : callable
         From the record to the claims about it.
+    animated : bool
+        Whether it is drawn as an animation as well; the figure is then its last frame.
     """
 
     title: str
@@ -37,3 +39,4 @@ class FigureScene:
     record: type[Any]
     compute: Callable[..., Any]
     checks: Callable[[Any], tuple[Check, ...]]
+    animated: bool = False

@@ -10,10 +10,12 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from crackfront.plots.accuracy import laws_figure, work_precision_figure
+from crackfront.plots.animation import Animation, save_animation
 from crackfront.plots.densities import film_scales_figure, synthetic_film_figure
 from crackfront.plots.instabilities import instability_figure
 from crackfront.plots.loop import draw_loop, loop_figure
 from crackfront.plots.mapping import mapping_figure
+from crackfront.plots.motion import motion_animation, motion_figure
 from crackfront.plots.nanodiamond import nanodiamond_figure
 from crackfront.plots.parametric import parametric_study_figure
 from crackfront.plots.pinned_loop import pinned_loop_figure
@@ -31,6 +33,7 @@ from crackfront.plots.sweep import (
 )
 
 __all__ = [
+    "ANIMATION_MAKERS",
     "FIGURE_MAKERS",
     "draw_factor_by_disorder",
     "draw_factor_by_length",
@@ -42,6 +45,7 @@ __all__ = [
     "hysteresis_figure",
     "laws_figure",
     "loop_figure",
+    "save_animation",
     "save_figure",
     "work_precision_figure",
 ]
@@ -57,5 +61,11 @@ FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
     "beyond-roughness": roughness_figure,
     "main-3cd": pinned_loop_figure,
     "main-5bc": nanodiamond_figure,
+    "beyond-animation": motion_figure,
 }
 """What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""
+
+ANIMATION_MAKERS: dict[str, Callable[[Any], Animation]] = {
+    "beyond-animation": motion_animation,
+}
+"""What draws those that are animated."""

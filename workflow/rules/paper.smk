@@ -3,8 +3,14 @@
 PAPER = f"results/figures/{SCALE}"
 
 
+ANIMATED = [name for name, scene in FIGURES.items() if scene.animated]
+
+
 wildcard_constraints:
     figure="(main|si|beyond)-[a-z0-9-]+",
+
+
+ruleorder: figure_animation > figure_drawing
 
 
 rule paper_figures:
@@ -15,6 +21,7 @@ rule paper_figures:
             figure=FIGURES,
             suffix=["pdf", "png"],
         ),
+        expand("{results}/{figure}.gif", results=PAPER, figure=ANIMATED),
         "results/figures/checks.md",
 
 
@@ -56,6 +63,21 @@ rule figure_drawing:
     output:
         f"{PAPER}/{{figure}}.pdf",
         f"{PAPER}/{{figure}}.png",
+    params:
+        sources=package_fingerprint(),
+    shell:
+        "crackfront draw-figure {input:q}"
+
+
+rule figure_animation:
+    input:
+        f"{PAPER}/{{figure}}.nc",
+    output:
+        f"{PAPER}/{{figure}}.pdf",
+        f"{PAPER}/{{figure}}.png",
+        f"{PAPER}/{{figure}}.gif",
+    wildcard_constraints:
+        figure="|".join(ANIMATED),
     params:
         sources=package_fingerprint(),
     shell:

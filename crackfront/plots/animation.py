@@ -1,0 +1,84 @@
+"""Animations: what moves on a figure, and how they are written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image
+
+from crackfront.plots.style import house_style
+
+_FRAMES_PER_SECOND = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Animation:
+    """A figure of which a few parts move.
+
+    Attributes
+    ----------
+    figure : Figure
+        The figure, which looks like its still.
+    moving : tuple of Artist
+        Parts that move; all others look the same in every frame.
+    n_frame : int
+        Number of frames.
+    show : callable
+        Puts all parts where they are in a frame, by its number.
+    """
+
+    figure: Figure
+    moving: tuple[Artist, ...]
+    n_frame: int
+    show: Callable[[int], None]
+
+
+def save_animation(animation: Animation, stem: Path) -> Path:
+    """Write an animation as GIF that runs for ever; equal animations give equal bytes.
+
+    Parameters
+    ----------
+    animation : Animation
+        An animation.
+    stem : Path
+        Path without suffix; its folder is made where it is missing.
+
+    Returns
+    -------
+    Path
+        The GIF (100 dpi, 12 frames a second).
+    """
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    path = stem.with_name(stem.name + ".gif")
+    with house_style():
+        frames = _frames(animation)
+    # One palette for all, so that only what moves differs from frame to frame.
+    palette = frames[-1].quantize()
+    first, *others = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    milliseconds = 1000 / _FRAMES_PER_SECOND
+    first.save(path, save_all=True, append_images=others, duration=milliseconds, loop=0)
+    return path
+
+
+def _frames(animation: Animation) -> list[Image.Image]:
+    """All frames; the parts at rest, which take most of the time, are drawn once."""
+    canvas: Any = FigureCanvasAgg(animation.figure)
+    for artist in animation.moving:
+        artist.set_animated(True)
+    canvas.draw()
+    at_rest = canvas.copy_from_bbox(animation.figure.bbox)
+    frames = []
+    for number in range(animation.n_frame):
+        animation.show(number)
+        canvas.restore_region(at_rest)
+        for artist in animation.moving:
+            animation.figure.draw_artist(artist)
+        frames.append(Image.fromarray(np.array(canvas.buffer_rgba())[..., :3]))
+    return frames
