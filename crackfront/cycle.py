@@ -174,8 +174,34 @@ class CycleState:
     residual: float
 
 
+@dataclass(frozen=True, slots=True)
+class Checkpoint:
+    """What a history needs to go on from its last state.
+
+    Attributes
+    ----------
+    record : CycleRecord
+        All states so far.
+    front : (n_angle,) array
+        Front of the last state. (Units: reduced lateral length)
+    turn : (n_angle,) array
+        Front at which its branch began. (Units: reduced lateral length)
+    """
+
+    record: CycleRecord
+    front: Array
+    turn: Array
+
+
+Keep = Callable[[Callable[[], Checkpoint]], None]
+"""What is called at every new state, with a function that makes its checkpoint."""
+
+
 class FrontHistory:
     """A front that follows a load from one metastable state to the next, and their record.
+
+    One that resumes from a checkpoint must be asked for the same loads from the first on: it
+    recalls the states that it knows and computes those that follow.
 
     Parameters
     ----------
@@ -183,7 +209,7 @@ class FrontHistory:
         Work of adhesion along the rays.
     front : (n_angle,) array
         Where it begins, in contact that is just made. (Units: reduced lateral length)
-    tolerance, max_sweeps, solver, record_fronts, record_energy, progress
+    tolerance, max_sweeps, solver, record_fronts, record_energy, progress, resume, keep
         As in :func:`run_cycle`.
     """
 
@@ -198,6 +224,8 @@ class FrontHistory:
         record_fronts: bool = False,
         record_energy: bool = False,
         progress: Callable[[CycleState], None] | None = None,
+        resume: Checkpoint | None = None,
+        keep: Keep | None = None,
     ) -> None:
         self.states: list[CycleState] = []
         self._field = field
@@ -214,7 +242,13 @@ class FrontHistory:
         )
         self._fronts: list[Array] | None = [] if record_fronts else None
         self._dissipated: list[float] | None = [] if record_energy else None
-        self._progress = progress
+        self._progress, self._keep = progress, keep
+        self._resumed = resume
+        self._known = [] if resume is None else _states(resume.record)
+        if resume is not None and resume.record.radius is not None:
+            self._fronts = list(resume.record.radius)
+        if resume is not None and resume.record.dissipated_energy is not None:
+            self._dissipated = resume.record.dissipated_energy.tolist()
 
     @property
     def front(self) -> Array:
@@ -228,6 +262,8 @@ class FrontHistory:
 
     def follow(self, penetration: float, direction: Direction) -> Status:
         """Go to the next state, and record it if there is one."""
+        if len(self.states) < len(self._known):
+            return self._recall(penetration, direction)
         outcome = self._solve(self._front, penetration, direction)
         self._status, self._penetration = outcome.status, penetration
         if outcome.status is not Status.CONVERGED:
@@ -243,7 +279,28 @@ class FrontHistory:
             self._fronts.append(self._front)
         if self._progress is not None:
             self._progress(self.states[-1])
+        if self._keep is not None:
+            self._keep(self.checkpoint)
         return outcome.status
+
+    def _recall(self, penetration: float, direction: Direction) -> Status:
+        """Go to a state that the checkpoint knows; the last one brings the front."""
+        state = self._known[len(self.states)]
+        if (state.penetration, state.direction) != (penetration, direction):
+            raise ValueError(
+                f"the checkpoint goes to penetration {state.penetration} where {penetration} is "
+                "asked for; it is that of another load"
+            )
+        self.states.append(state)
+        self._status, self._penetration = Status.CONVERGED, penetration
+        if self._resumed is not None and len(self.states) == len(self._known):
+            self._front, self._turn = self._resumed.front, self._resumed.turn
+            self._begun = True
+        return Status.CONVERGED
+
+    def checkpoint(self) -> Checkpoint:
+        """What it takes to go on from the last state."""
+        return Checkpoint(self.record(), self._front, self._turn)
 
     def _energy_lost(self, before: Array, penetration: float) -> float:
         """Energy that the last step dissipated; the first one of a cycle makes the contact."""
@@ -288,6 +345,8 @@ def run_cycle(
     record_fronts: bool = False,
     record_energy: bool = False,
     progress: Callable[[CycleState], None] | None = None,
+    resume: Checkpoint | None = None,
+    keep: Keep | None = None,
 ) -> CycleRecord:
     """Quasi-static approach from first contact to the largest penetration, and back to pull-off.
 
@@ -309,6 +368,10 @@ def run_cycle(
         Compute the energy that each load step dissipates.
     progress : callable, optional
         Called with every state as it is found.
+    resume : Checkpoint, optional
+        State of an earlier run of the same cycle to go on from, to the same result bit for bit.
+    keep : callable, optional
+        Called at every new state with a function that makes its checkpoint.
 
     Returns
     -------
@@ -332,6 +395,8 @@ def run_cycle(
         record_fronts=record_fronts,
         record_energy=record_energy,
         progress=progress,
+        resume=resume,
+        keep=keep,
     )
     for penetration, direction in loads(schedule):
         if history.follow(penetration, direction) is not Status.CONVERGED:
@@ -377,6 +442,13 @@ def _elastic_energy(front: Array, penetration: float) -> float:
     # No energy is released or stored where an edge in compression advances.
     open_edge = np.maximum(front, math.sqrt(max(penetration, 0.0)))
     return float(np.mean(jkr.elastic_energy(open_edge, penetration))) + line_energy(front)
+
+
+def _states(record: CycleRecord) -> list[CycleState]:
+    """States of a record, one by one."""
+    columns = {item.name: getattr(record, item.name).tolist() for item in fields(CycleState)}
+    rows = zip(*columns.values(), strict=True)
+    return [CycleState(**dict(zip(columns, row, strict=True))) for row in rows]
 
 
 def loads(schedule: LoadSchedule) -> Iterator[tuple[float, Direction]]:

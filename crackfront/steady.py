@@ -15,7 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront import jkr
-from crackfront.cycle import CycleRecord, CycleState, FrontHistory, refuse_outgrown
+from crackfront.cycle import (
+    Checkpoint,
+    CycleRecord,
+    CycleState,
+    FrontHistory,
+    Keep,
+    refuse_outgrown,
+)
 from crackfront.pinning import Field, first_radius, front_adhesion, last_radius, n_angle
 from crackfront.relax import Direction, Status
 from crackfront.units import WORK_OF_ADHESION
@@ -91,6 +98,8 @@ def run_steady(
     record_fronts: bool = False,
     record_energy: bool = False,
     progress: Callable[[CycleState], None] | None = None,
+    resume: Checkpoint | None = None,
+    keep: Keep | None = None,
 ) -> CycleRecord:
     """Approach and retraction over the radii that an estimate of the hysteresis needs.
 
@@ -109,7 +118,7 @@ def run_steady(
         (Units: reduced lateral length)
     elastic_energy : float
         Unit of the requested error. (Units: w_int)
-    tolerance, max_sweeps, solver, record_fronts, record_energy, progress
+    tolerance, max_sweeps, solver, record_fronts, record_energy, progress, resume, keep
         As in :func:`crackfront.cycle.run_cycle`.
 
     Returns
@@ -133,6 +142,8 @@ def run_steady(
         record_fronts=record_fronts,
         record_energy=record_energy,
         progress=progress,
+        resume=resume,
+        keep=keep,
     )
     step = schedule.travel * correlation_length * _penetration_slope(schedule.start)
     n_step = math.floor((schedule.max_penetration - schedule.start) / step)

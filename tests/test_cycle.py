@@ -276,6 +276,21 @@ def test_progress_is_told_of_every_state_in_order(solver):
 
 
 @every_solver
+def test_a_cycle_goes_on_from_any_state_to_the_same_bits(solver):
+    field, schedule = noisy_field(7), LoadSchedule(0.6, 0.15)
+    options = {"solver": solver, "record_fronts": True, "record_energy": True}
+    found = []
+    undisturbed = run_cycle(field, schedule, keep=lambda make: found.append(make()), **options)
+    assert len(found) == undisturbed.penetration.size
+    for checkpoint in found:
+        resumed = run_cycle(field, schedule, resume=checkpoint, **options)
+        assert resumed.end_penetration == undisturbed.end_penetration
+        assert resumed.pull_off_energy == undisturbed.pull_off_energy
+        for name in ("radius", "force", "least_travel", "dissipated_energy", "updates"):
+            assert np.array_equal(getattr(resumed, name), getattr(undisturbed, name))
+
+
+@every_solver
 def test_all_residuals_are_within_the_tolerance(solver):
     for tolerance in (1e-3, 1e-6, 1e-10):
         record = run_cycle(
