@@ -9,7 +9,14 @@ from crackfront.dataset.accuracy import (
     write_errors,
     write_samples,
 )
-from crackfront.dataset.cycles import read_cycle, read_simulation, write_cycle, write_simulation
+from crackfront.dataset.cycles import (
+    read_checkpoint,
+    read_cycle,
+    read_simulation,
+    write_checkpoint,
+    write_cycle,
+    write_simulation,
+)
 from crackfront.dataset.fields import PolarSamples, read_field
 from crackfront.dataset.files import UnreadableFileError, read_attributes, write_text
 from crackfront.dataset.fit import write_fit
@@ -22,6 +29,7 @@ __all__ = [
     "UnreadableFileError",
     "laws_text",
     "read_attributes",
+    "read_checkpoint",
     "read_coverage",
     "read_cycle",
     "read_errors",
@@ -30,6 +38,7 @@ __all__ = [
     "read_samples",
     "read_simulation",
     "read_table",
+    "write_checkpoint",
     "write_coverage",
     "write_cycle",
     "write_errors",

@@ -10,12 +10,20 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crackfront.cycle import CycleRecord
+from crackfront.cycle import Checkpoint, CycleRecord
 from crackfront.dataset.files import UnreadableFileError, labelled, read_dataset, write_dataset
-from crackfront.dataset.schema import ANGLES, COSTS, CURVES, DISSIPATED, RADIUS
+from crackfront.dataset.schema import (
+    ANGLES,
+    COSTS,
+    CURVES,
+    DISSIPATED,
+    LAST_FRONT,
+    RADIUS,
+    TURNING_FRONT,
+)
 from crackfront.provenance import Provenance
 from crackfront.relax import Status
-from crackfront.scene import Simulation, SimulationResult
+from crackfront.scene import PartialRun, Simulation, SimulationResult
 
 Array = NDArray[np.float64]
 
@@ -118,6 +126,58 @@ def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
         raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; remove it")
     costs = (float(dataset[item.name]) for item in COSTS)
     return SimulationResult(simulation, record, *costs)
+
+
+def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> None:
+    """Write what a simulation needs to go on later.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    partial : PartialRun
+        What to write.
+    origin : Provenance
+        Where it comes from.
+    """
+    checkpoint = partial.checkpoint
+    dataset = _cycle_dataset(checkpoint.record, None).assign(
+        {
+            LAST_FRONT.name: labelled(LAST_FRONT, checkpoint.front),
+            TURNING_FRONT.name: labelled(TURNING_FRONT, checkpoint.turn),
+        }
+    )
+    dataset.attrs |= {
+        "simulation": partial.simulation.label,
+        "key": partial.simulation.key,
+        "seconds": partial.seconds,
+        "cpu_seconds": partial.cpu_seconds,
+    }
+    write_dataset(path, dataset, origin)
+
+
+def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
+    """What a simulation needs to go on.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    simulation : Simulation
+        Whose checkpoint it must be.
+
+    Raises
+    ------
+    UnreadableFileError
+        If the file is missing, truncated or that of another simulation.
+    """
+    dataset = read_dataset(path)
+    if dataset.attrs.get("key") != simulation.key or LAST_FRONT.name not in dataset:
+        raise UnreadableFileError(f"{path} is no checkpoint of {simulation.label}; remove it")
+    fronts = (np.asarray(dataset[item.name]) for item in (LAST_FRONT, TURNING_FRONT))
+    checkpoint = Checkpoint(_record(path, dataset), *fronts)
+    costs = (float(dataset.attrs[name]) for name in ("seconds", "cpu_seconds"))
+    return PartialRun(simulation, checkpoint, *costs)
 
 
 def _cycle_dataset(record: CycleRecord, angles: Array | None) -> xr.Dataset:

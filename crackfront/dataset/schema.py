@@ -27,6 +27,8 @@ CURVES = (
 
 DISSIPATED = Variable("dissipated_energy", _step, ENERGY, "energy lost in the jumps of a load step")
 RADIUS = Variable("radius", _front, LATERAL, "front")
+LAST_FRONT = Variable("last_front", (ANGLE,), LATERAL, "front of the last state")
+TURNING_FRONT = Variable("turning_front", (ANGLE,), LATERAL, "front at which its branch began")
 ANGLES = Variable(ANGLE, (ANGLE,), "rad", "angle of a site of the front")
 
 COSTS = (

@@ -14,11 +14,17 @@ from crackfront.scene.parameters import (
     correlation_length,
     resolution,
 )
-from crackfront.scene.run import SimulationResult, compile_solver, run_simulation
+from crackfront.scene.run import (
+    PartialRun,
+    SimulationResult,
+    compile_solver,
+    run_simulation,
+)
 
 __all__ = [
     "FieldKind",
     "Numerics",
+    "PartialRun",
     "Resolution",
     "Simulation",
     "SimulationResult",

@@ -6,12 +6,13 @@ import functools
 import resource
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from crackfront.adhesion import chemical_adhesion
-from crackfront.cycle import CycleRecord, LoadSchedule, run_cycle
+from crackfront.cycle import Checkpoint, CycleRecord, LoadSchedule, run_cycle
 from crackfront.scene.contact import contact_field, simulation_adhesion, simulation_field
 from crackfront.scene.parameters import Simulation, correlation_length
 from crackfront.steady import run_steady
@@ -49,13 +50,42 @@ class SimulationResult:
     peak_memory: float
 
 
-def run_simulation(simulation: Simulation) -> SimulationResult:
+@dataclass(frozen=True, slots=True)
+class PartialRun:
+    """A simulation that has not ended yet.
+
+    Attributes
+    ----------
+    simulation : Simulation
+        What is simulated.
+    checkpoint : Checkpoint
+        What it takes to go on from the last state.
+    seconds, cpu_seconds : float
+        Cost so far, as in :class:`SimulationResult`.
+    """
+
+    simulation: Simulation
+    checkpoint: Checkpoint
+    seconds: float
+    cpu_seconds: float
+
+
+def run_simulation(
+    simulation: Simulation,
+    *,
+    resume: PartialRun | None = None,
+    keep: Callable[[Callable[[], PartialRun]], None] | None = None,
+) -> SimulationResult:
     """Synthesise the surface of a simulation and run its cycle.
 
     Parameters
     ----------
     simulation : Simulation
         What to simulate.
+    resume : PartialRun, optional
+        An earlier run of it to go on from, to the same record bit for bit.
+    keep : callable, optional
+        Called at every new state with a function that makes what a later run goes on from.
 
     Raises
     ------
@@ -63,7 +93,13 @@ def run_simulation(simulation: Simulation) -> SimulationResult:
         If the realised surface does not allow full conformity, e_el >= w_int.
     """
     compile_solver(simulation.solver)
-    wall, cpu = time.perf_counter(), time.process_time()
+    before = (0.0, 0.0) if resume is None else (resume.seconds, resume.cpu_seconds)
+    wall, cpu = time.perf_counter() - before[0], time.process_time() - before[1]
+
+    def partial_run(checkpoint: Callable[[], Checkpoint]) -> PartialRun:
+        seconds, cpu_seconds = time.perf_counter() - wall, time.process_time() - cpu
+        return PartialRun(simulation, checkpoint(), seconds, cpu_seconds)
+
     adhesion = simulation_adhesion(simulation)
     field = simulation_field(simulation, adhesion)
     elastic_energy, rms = adhesion.elastic_energy, adhesion.rms
@@ -85,6 +121,8 @@ def run_simulation(simulation: Simulation) -> SimulationResult:
         solver=simulation.solver,
         record_fronts=simulation.record_fronts,
         record_energy=simulation.record_energy,
+        resume=None if resume is None else resume.checkpoint,
+        keep=None if keep is None else lambda make: keep(functools.partial(partial_run, make)),
     )
     return SimulationResult(
         simulation=simulation,

@@ -1,0 +1,91 @@
+"""A simulation that ends at any state and goes on later is the undisturbed one, bit for bit."""
+
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crackfront.config import load_configuration
+from crackfront.cycle import CycleRecord, LoadSchedule
+from crackfront.dataset import UnreadableFileError, read_checkpoint, write_checkpoint
+from crackfront.provenance import provenance
+from crackfront.scene import run_simulation
+from crackfront.steady import SteadySchedule
+
+TEST = Path(__file__).parents[1] / "config/test.yaml"
+SWEEP = load_configuration(TEST)
+CYCLE = replace(
+    SWEEP.simulation(SWEEP.spectra[1], 0.1, 0),
+    schedule=LoadSchedule(0.5, 0.125),
+    record_fronts=True,
+    record_energy=True,
+)
+STEADY = replace(CYCLE, schedule=SteadySchedule(0.4, 1.2, travel=0.5, error=1e-6))
+
+
+def checkpoints(simulation):
+    """Undisturbed result of a simulation, and its checkpoint at every state."""
+    found = []
+    result = run_simulation(simulation, keep=lambda make: found.append(make()))
+    assert len(found) == result.record.penetration.size
+    return result, found
+
+
+def same_bits(one: CycleRecord, other: CycleRecord) -> bool:
+    """Whether two records are equal in everything."""
+    return all(
+        np.array_equal(
+            getattr(one, item.name),
+            getattr(other, item.name),
+            equal_nan=item.name in ("dissipated_energy",),
+        )
+        for item in fields(CycleRecord)
+    )
+
+
+@pytest.mark.parametrize("simulation", [CYCLE, STEADY], ids=["cycle", "steady"])
+@pytest.mark.parametrize("solver", ["newton", "reference"])
+def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation, solver):
+    simulation = replace(simulation, solver=solver)
+    undisturbed, found = checkpoints(simulation)
+    directions = undisturbed.record.direction
+    assert {1, -1} == set(directions.tolist())
+    for partial in found:
+        write_checkpoint(tmp_path / "checkpoint.nc", partial, provenance())
+        resumed = read_checkpoint(tmp_path / "checkpoint.nc", simulation)
+        computed = []
+        result = run_simulation(simulation, resume=resumed, keep=computed.append)
+        assert same_bits(result.record, undisturbed.record)
+        n_known = partial.checkpoint.record.penetration.size
+        assert len(computed) == directions.size - n_known
+        assert result.cpu_seconds > partial.cpu_seconds
+
+
+def test_a_record_without_fronts_and_energies_goes_on_too(tmp_path):
+    simulation = replace(CYCLE, record_fronts=False, record_energy=False)
+    undisturbed, found = checkpoints(simulation)
+    write_checkpoint(tmp_path / "checkpoint.nc", found[5], provenance())
+    resumed = read_checkpoint(tmp_path / "checkpoint.nc", simulation)
+    record = run_simulation(simulation, resume=resumed).record
+    assert record.radius is None
+    assert record.dissipated_energy is None
+    assert np.array_equal(record.force, undisturbed.record.force)
+    assert np.array_equal(record.iterations, undisturbed.record.iterations)
+
+
+def test_a_checkpoint_of_another_load_is_refused():
+    _, found = checkpoints(CYCLE)
+    with pytest.raises(ValueError, match="it is that of another load"):
+        run_simulation(replace(CYCLE, schedule=LoadSchedule(0.5, 0.25)), resume=found[5])
+
+
+def test_a_truncated_checkpoint_and_that_of_another_simulation_are_refused(tmp_path):
+    _, found = checkpoints(CYCLE)
+    path = tmp_path / "checkpoint.nc"
+    write_checkpoint(path, found[2], provenance())
+    with pytest.raises(UnreadableFileError, match="is no checkpoint of"):
+        read_checkpoint(path, STEADY)
+    path.write_bytes(path.read_bytes()[:3000])
+    with pytest.raises(UnreadableFileError, match="is no complete netCDF file"):
+        read_checkpoint(path, CYCLE)
