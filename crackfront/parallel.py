@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import os
+import secrets
 import shlex
 import shutil
 import signal
@@ -15,6 +16,8 @@ from concurrent.futures import Executor, as_completed
 from pathlib import Path
 from types import FrameType
 from typing import TypeVar, cast
+
+from crackfront import notice
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -127,8 +130,13 @@ def default_launcher() -> str:
     return shlex.quote(found)
 
 
-def launch_ranks(arguments: Sequence[str], n_worker: int, launcher: str | None) -> int:
+def launch_ranks(
+    arguments: Sequence[str], n_worker: int, launcher: str | None, folder: Path
+) -> int:
     """Run a crackfront command on a manager and a number of workers.
+
+    SIGTERM is passed on as a notice, a file that the ranks see, since launchers differ in what
+    they do with it; a second SIGTERM ends the launcher.
 
     Parameters
     ----------
@@ -138,6 +146,8 @@ def launch_ranks(arguments: Sequence[str], n_worker: int, launcher: str | None) 
         Ranks that compute.
     launcher : str or None
         Command that takes `-n` and a number, as in "srun -K1 --mpi=pmi2".
+    folder : Path
+        Folder for the notice, which all ranks see.
 
     Returns
     -------
@@ -156,25 +166,29 @@ def launch_ranks(arguments: Sequence[str], n_worker: int, launcher: str | None) 
         *(sys.executable, "-m", "mpi4py", "-m", "crackfront"),
         *arguments,
     ]
-    environment = {"OMP_NUM_THREADS": "1"} | dict(os.environ)
+    file = folder / f".notice-{secrets.token_hex(8)}"
+    environment = {"OMP_NUM_THREADS": "1"} | dict(os.environ) | {notice.VARIABLE: str(file)}
     try:
         process = subprocess.Popen(command, env=environment)
     except OSError as error:
         raise ValueError(
             f"launcher {command[0]!r} cannot be started ({error.strerror}); name another one"
         ) from error
-    with _end_with_us(process):
+    with _notice_passed_on(process, file):
         return process.wait()
 
 
 @contextlib.contextmanager
-def _end_with_us(process: subprocess.Popen[bytes]) -> Iterator[None]:
-    """End a child where this process is interrupted or told to end."""
+def _notice_passed_on(process: subprocess.Popen[bytes], file: Path) -> Iterator[None]:
+    """Leave a file where this process is told to end; end a child where it is interrupted."""
 
-    def end_child(number: int, frame: FrameType | None) -> None:
-        process.terminate()
+    def leave_notice(number: int, frame: FrameType | None) -> None:
+        try:
+            file.touch(exist_ok=False)
+        except OSError:  # the second time, or where nothing can be written
+            process.terminate()
 
-    before = signal.signal(signal.SIGTERM, end_child)
+    before = signal.signal(signal.SIGTERM, leave_notice)
     try:
         yield
     finally:
@@ -182,3 +196,4 @@ def _end_with_us(process: subprocess.Popen[bytes]) -> Iterator[None]:
         if process.poll() is None:
             process.terminate()
             process.wait()
+        file.unlink(missing_ok=True)

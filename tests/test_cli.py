@@ -256,14 +256,16 @@ def test_simulations_without_a_value_are_counted(tmp_path):
     assert "has a value" in refused("fit", limited, "--output", tmp_path)
 
 
-def test_simulations_that_cannot_be_stored_are_told_and_give_exit_code_one(tmp_path, monkeypatch):
+def test_a_simulation_that_cannot_be_stored_ends_the_run_with_exit_code_one(tmp_path, monkeypatch):
     def full(*_):
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("crackfront.store.write_simulation", full)
+    monkeypatch.setattr("crackfront.store.tasks.write_simulation", full)
     result = run("simulate", TEST, "--output", tmp_path)
     assert result.exit_code == 1
-    assert "8 of 8 simulations could not be run or stored, the first is flat" in result.stderr
+    assert "nothing can be stored (no space left on device); make room" in result.stderr
+    assert "0 of 8 simulations were stored" in result.stderr
+    assert "[2/8]" not in result.output
     assert not (tmp_path / "shards").exists()
 
 

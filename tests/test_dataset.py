@@ -20,6 +20,7 @@ from crackfront.dataset import (
     read_field,
     read_simulation,
     read_table,
+    sweep_row,
     write_cycle,
     write_fit,
     write_hysteresis,
@@ -307,7 +308,10 @@ def results():
 def hysteresis(tmp_path, results):
     """File of the sweep, and the numbers of its statuses."""
     path = tmp_path / "hysteresis.nc"
-    statuses = write_hysteresis(path, SWEEP, lambda item, *rest: results[item.name, *rest], ORIGIN)
+    simulations = [one for item in SWEEP.spectra for one in SWEEP.shard(item)]
+    places = [(one.spectrum_name, one.elastic_energy, one.realisation) for one in simulations]
+    rows = [sweep_row(results[place]) for place in places]
+    statuses = write_hysteresis(path, SWEEP, rows, ORIGIN)
     return path, statuses
 
 

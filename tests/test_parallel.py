@@ -68,7 +68,7 @@ def test_one_rank_does_not_import_mpi(tmp_path):
 
 def test_a_launcher_that_does_not_exist_is_refused():
     with pytest.raises(ValueError, match="launcher 'no-such-mpiexec' cannot be started"):
-        launch_ranks(["plan"], 2, "no-such-mpiexec --flag")
+        launch_ranks(["plan"], 2, "no-such-mpiexec --flag", Path())
 
 
 def test_a_launcher_that_is_nowhere_is_refused(monkeypatch, tmp_path):

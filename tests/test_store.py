@@ -4,13 +4,15 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from crackfront import store as stores
 from crackfront.config import load_configuration
 from crackfront.dataset import read_simulation, read_table
 from crackfront.provenance import provenance
-from crackfront.store import Store
+from crackfront.scene import run_simulation
+from crackfront.store import NOT_STORED, Store, tasks
+from crackfront.store.inventory import holdings
 
 SWEEP = load_configuration(Path(__file__).parents[1] / "config/test.yaml")
 FLAT = SWEEP.shard(SWEEP.spectra[0])
@@ -91,6 +93,43 @@ def test_a_file_of_an_older_solver_is_not_found(store, monkeypatch):
     assert store.inventory(FLAT[:1]).missing == FLAT[:1]
 
 
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [
+        ({"tolerance": 1e-7}, "numerics"),
+        ({"sweep_seed": 2}, "seed"),
+        ({"max_sweeps": 7}, "numerics"),
+    ],
+)
+def test_what_is_stale_is_told_with_what_has_changed(store, change, part):
+    fill(store, FLAT[:2])
+    inventory = store.inventory([replace(FLAT[0], **change), FLAT[1]])
+    assert [item.label for item in inventory.stale] == [FLAT[0].label]
+    assert inventory.stale_sentence() == f"1 stored simulations are stale: 1 as {part} changed"
+    assert store.inventory(FLAT).stale_sentence() == ""
+
+
+def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
+    fill(store, FLAT[:2])
+    monkeypatch.setattr("crackfront.scene.parameters.scene_fingerprint", lambda: "newer")
+    inventory = store.inventory(FLAT)
+    assert len(inventory.missing) == 4
+    assert inventory.stale_sentence() == "2 stored simulations are stale: 2 as sources changed"
+
+
+def test_a_file_without_a_line_in_a_journal_counts(store):
+    fill(store, FLAT)
+    for path in (store.folder / "journals").iterdir():
+        path.unlink()
+    assert store.inventory(FLAT).missing == ()
+
+
+def test_a_line_in_a_journal_without_its_file_does_not_count(store):
+    fill(store, FLAT)
+    store.path(FLAT[2]).unlink()
+    assert store.inventory(FLAT).missing == (FLAT[2],)
+
+
 def test_a_failed_simulation_is_stored_with_its_status(store):
     limited = replace(FLAT[0], max_sweeps=1)
     [(_, finished)] = fill(store, [limited])
@@ -99,23 +138,32 @@ def test_a_failed_simulation_is_stored_with_its_status(store):
     assert store.inventory([limited]).missing == ()
 
 
-def test_what_prevents_a_simulation_is_a_sentence_and_the_others_run(store):
+def test_a_simulation_that_cannot_be_done_is_a_row_and_is_not_tried_again(store):
     impossible = replace(FLAT[0], elastic_energy=0.999999, sweep_seed=5)
     energies = [replace(impossible, realisation=number) for number in range(8)]
     outcomes = fill(store, [*energies, FLAT[0]])
-    errors = [finished.error for _, finished in outcomes if finished.error]
-    assert errors
-    assert all("full conformity needs less than w_int" in error for error in errors)
+    refused = [one for one, finished in outcomes if finished.status == "refused"]
+    assert refused
     assert store.path(FLAT[0]).exists()
+    assert not any(store.path(one).exists() for one in refused)
+    assert store.inventory([*energies, FLAT[0]]).missing == ()
+    rows = holdings(store.folder, refused).rows
+    assert {row.status for row in rows.values()} == {"refused"}
+    for row in rows.values():
+        assert "full conformity needs less than w_int" in row.status_sentence
+        assert np.isnan(row.w_appr)
 
 
-def test_a_full_disk_is_a_sentence(store, monkeypatch):
+def test_a_disk_that_is_full_ends_the_run_at_once_with_a_sentence(store, monkeypatch):
     def fail(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(stores, "write_simulation", fail)
-    [(_, finished)] = fill(store, FLAT[:1])
-    assert "No space left on device" in finished.error
+    with monkeypatch.context() as patched:
+        patched.setattr(tasks, "write_simulation", fail)
+        [(_, finished)] = fill(store, FLAT)
+    assert finished.status == NOT_STORED
+    assert "No space left on device" in finished.sentence
+    assert store.inventory(FLAT).missing == FLAT
 
 
 def test_a_manifest_lists_the_files_of_a_spectrum(store):
@@ -149,10 +197,24 @@ def test_a_complete_sweep_is_aggregated(store):
     assert read_table(path).w_appr.shape == (2, 2, 2)
 
 
-def test_a_defect_that_the_solver_finds_in_itself_does_not_end_the_sweep(store, monkeypatch):
-    def defective(simulation):
-        raise RuntimeError("the solver moved a site past its equilibrium")
+def test_a_defect_that_the_solver_finds_in_itself_is_a_row_and_the_others_run(store, monkeypatch):
+    def defective(simulation, **options):
+        if simulation == FLAT[1]:
+            raise RuntimeError("the solver moved a site past its equilibrium")
+        return run_simulation(simulation, **options)
 
-    monkeypatch.setattr(stores, "run_simulation", defective)
-    ended = [finished.error for _, finished in fill(store, FLAT[:2])]
-    assert ended == ["the solver moved a site past its equilibrium"] * 2
+    monkeypatch.setattr(tasks, "run_simulation", defective)
+    ended = {one: (finished.status, finished.sentence) for one, finished in fill(store, FLAT[:3])}
+    assert ended.pop(FLAT[1]) == ("defect", "the solver moved a site past its equilibrium")
+    assert {status for status, _ in ended.values()} == {"lost_contact"}
+
+
+def test_memory_that_does_not_suffice_ends_the_run_and_leaves_no_row(store, monkeypatch):
+    def devour(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr(tasks, "run_simulation", devour)
+    [(_, finished)] = fill(store, FLAT)
+    assert finished.status == NOT_STORED
+    assert "start fewer ranks" in finished.sentence
+    assert store.inventory(FLAT).missing == FLAT

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 FILE = click.Path(path_type=Path)
 """Type of a parameter that names a file or folder."""
 
+TRY_AGAIN = 75
+"""Exit code of a command that was told to end before it was done (EX_TEMPFAIL of sysexits.h)."""
+
 
 def announce_compilation() -> None:
     """Tell why nothing seems to happen."""
@@ -26,11 +29,12 @@ def announce_compilation() -> None:
         click.echo("compiling the solver (once)")
 
 
-def launch(arguments: list[str], ranks: int, launcher: str | None) -> None:
+def launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path) -> None:
     """Run a command on ranks, and end where they failed."""
     from crackfront import parallel
 
-    code = parallel.launch_ranks(arguments, ranks, launcher)
+    folder.mkdir(parents=True, exist_ok=True)
+    code = parallel.launch_ranks(arguments, ranks, launcher, folder)
     if code != 0:
         click.echo(
             f"Error: the ranks ended with exit code {code}; finished simulations are stored, and "
@@ -40,23 +44,38 @@ def launch(arguments: list[str], ranks: int, launcher: str | None) -> None:
         sys.exit(code if 0 < code < 126 else 1)
 
 
-def fill_store(store: Store, missing: tuple[Simulation, ...], configuration: Path) -> None:
+def fill_store(
+    store: Store,
+    missing: tuple[Simulation, ...],
+    configuration: Path,
+    checkpoint_seconds: float,
+) -> None:
     """Run what is missing and report every simulation as it ends."""
+    from crackfront import notice
     from crackfront.provenance import provenance
+    from crackfront.store import NOT_STORED, STOPPED
 
     if missing:
         announce_compilation()
     started = time.monotonic()
     origin = provenance(configuration.read_text(encoding="utf-8"))
-    errors = []
-    for line, finished in _reported(store.fill(missing, origin), len(missing)):
-        if finished.error:
-            errors.append(line)
-    if errors:
-        raise click.ClickException(
-            f"{len(errors)} of {len(missing)} simulations could not be run or stored, the first "
-            f"is {errors[0]}"
-        )
+    count = 0
+    with notice.heeded():
+        outcomes = store.fill(missing, origin, checkpoint_seconds)
+        for line, finished in _reported(outcomes, len(missing)):
+            if finished.status == NOT_STORED:
+                raise click.ClickException(
+                    f"{line}; {count} of {len(missing)} simulations were stored, and the same "
+                    "command continues with the others"
+                )
+            if finished.status == STOPPED:
+                click.echo(
+                    f"Stopped as told: {count} of {len(missing)} simulations were stored and the "
+                    "running ones kept; the same command continues with the others",
+                    err=True,
+                )
+                sys.exit(TRY_AGAIN)
+            count += 1
     if missing:
         click.echo(f"{len(missing)} simulations in {time.monotonic() - started:.1f} s")
 
@@ -72,9 +91,8 @@ def _reported(
     terminal = sys.stderr.isatty()
     with tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar:
         for count, (simulation, finished) in enumerate(outcomes, start=1):
-            line = f"{simulation.label}: {finished.error or finished.status}"
-            if not finished.error:
-                line += f", {finished.seconds:.2f} s"
+            line = f"{simulation.label}: {finished.status}"
+            line += f", {finished.sentence or f'{finished.seconds:.2f} s'}"
             if not terminal:
                 click.echo(f"[{count}/{total}] {line}")
             elif finished.status not in COMPLETE:

@@ -68,18 +68,31 @@ def plan(configuration: Path, output: Path | None) -> None:
     help="What starts the ranks, as in 'srun -K1 --mpi=pmi2'; also from CRACKFRONT_LAUNCHER.  "
     "[default: mpiexec beside this Python]",
 )
+@click.option(
+    "--checkpoint",
+    type=click.FloatRange(min=0),
+    default=60.0,
+    show_default=True,
+    help="Seconds between checkpoints of a running simulation.",
+)
 def simulate(
     configuration: Path,
     output: Path | None,
     spectrum: str | None,
     ranks: int,
     launcher: str | None,
+    checkpoint: float,
 ) -> None:
-    """Run the simulations of a sweep that are not stored yet."""
-    from crackfront import parallel
+    """Run the simulations of a sweep that are not stored yet.
+
+    SIGTERM is taken as notice: running simulations are kept as far as they are, and the exit code
+    is 75. The same command then goes on from there.
+    """
+    from crackfront import notice, parallel
 
     if not parallel.is_manager(ranks):
-        parallel.serve_tasks("crackfront.store")
+        with notice.heeded():
+            parallel.serve_tasks("crackfront.store.tasks")
         return
     sweep, store = _sweep_and_store(configuration, output)
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
@@ -88,9 +101,9 @@ def simulate(
     busy = min(ranks, len(inventory.missing))
     if busy > 1 and not parallel.under_mpi():
         arguments = ["simulate", str(configuration), "--ranks", str(busy)]
-        arguments += ["--output", str(store.folder)]
+        arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
         arguments += [] if spectrum is None else ["--spectrum", spectrum]
-        launch(arguments, busy, launcher)
+        launch(arguments, busy, launcher, store.folder)
         return
     click.echo(
         f"{configuration}: {len(simulations) - len(inventory.missing)} of {len(simulations)} "
@@ -98,7 +111,9 @@ def simulate(
     )
     for sentence in inventory.unreadable:
         click.echo(f"Warning: {sentence}; it is computed anew", err=True)
-    fill_store(store, inventory.missing, configuration)
+    if sentence := inventory.stale_sentence():
+        click.echo(sentence)
+    fill_store(store, inventory.missing, configuration, checkpoint)
     for item in items:
         manifest = store.write_manifest(item, sweep.shard(item))
     click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")

@@ -21,12 +21,22 @@ from crackfront.dataset.fields import PolarSamples, read_field
 from crackfront.dataset.files import UnreadableFileError, read_attributes, write_text
 from crackfront.dataset.fit import write_fit
 from crackfront.dataset.records import read_record, write_record
-from crackfront.dataset.tables import COMPLETE, read_table, write_hysteresis
+from crackfront.dataset.tables import (
+    COMPLETE,
+    SweepRow,
+    failed_row,
+    read_table,
+    row_fingerprint,
+    sweep_row,
+    write_hysteresis,
+)
 
 __all__ = [
     "COMPLETE",
     "PolarSamples",
+    "SweepRow",
     "UnreadableFileError",
+    "failed_row",
     "laws_text",
     "read_attributes",
     "read_checkpoint",
@@ -38,6 +48,8 @@ __all__ = [
     "read_samples",
     "read_simulation",
     "read_table",
+    "row_fingerprint",
+    "sweep_row",
     "write_checkpoint",
     "write_coverage",
     "write_cycle",

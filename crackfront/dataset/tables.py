@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+import hashlib
+import math
 from collections import Counter
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,8 +20,8 @@ from crackfront.dataset.schema import AMPLITUDE, COORDINATES, HYSTERESIS
 from crackfront.fits import STEADY_DEFINITION, SteadyAdhesion, SweepTable, steady_adhesion
 from crackfront.laws import stated_error
 from crackfront.provenance import Provenance
-from crackfront.scene import SimulationResult
-from crackfront.sweep import NamedSpectrum, Sweep
+from crackfront.scene import Simulation, SimulationResult, correlation_length
+from crackfront.sweep import Sweep
 
 COMPLETE = ("lost_contact", "steady")
 """Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
@@ -27,10 +31,9 @@ NO_STEADY_PART = "no_steady_part"
 
 
 @dataclass(frozen=True, slots=True)
-class _Cell:
-    """One simulation in the file; each field but the first is a variable of that name."""
+class SweepRow:
+    """One simulation in the file; each field is a variable of that name."""
 
-    result: SimulationResult
     w_appr: float
     w_retr: float
     w_appr_error: float
@@ -62,10 +65,7 @@ class _Cell:
 
 
 def write_hysteresis(
-    path: Path,
-    sweep: Sweep,
-    result_of: Callable[[NamedSpectrum, float, int], SimulationResult],
-    origin: Provenance,
+    path: Path, sweep: Sweep, rows: Sequence[SweepRow], origin: Provenance
 ) -> Counter[str]:
     """Write the file of a sweep.
 
@@ -75,8 +75,8 @@ def write_hysteresis(
         netCDF file.
     sweep : Sweep
         Its parameters.
-    result_of : callable
-        Result of a spectrum, an amplitude and a realisation.
+    rows : sequence of SweepRow
+        One for each simulation: by spectrum, amplitude and realisation, the last the fastest.
     origin : Provenance
         Where it comes from.
 
@@ -85,24 +85,16 @@ def write_hysteresis(
     Counter
         Number of simulations of every status.
     """
-    cells = [
-        _cell(result_of(item, energy, realisation), sweep.correlation_length(item))
-        for item in sweep.spectra
-        for energy in sweep.elastic_energies
-        for realisation in range(sweep.n_realisation)
-    ]
     shape = (len(sweep.spectra), len(sweep.elastic_energies), sweep.n_realisation)
     variables = {
-        item.name: labelled(item, np.array([getattr(cell, item.name) for cell in cells]))
+        item.name: labelled(
+            item, np.array([getattr(row, item.name) for row in rows]).reshape(shape)
+        )
         for item in HYSTERESIS
-    }
-    variables = {
-        name: (dims, values.reshape(shape), attributes)
-        for name, (dims, values, attributes) in variables.items()
     }
     dataset = xr.Dataset(variables, coords=_coordinates(sweep), attrs=_attributes(sweep))
     write_dataset(path, dataset, origin)
-    return Counter(cell.status for cell in cells)
+    return Counter(row.status for row in rows)
 
 
 def read_table(path: Path) -> SweepTable:
@@ -129,18 +121,18 @@ def read_table(path: Path) -> SweepTable:
     return SweepTable(**columns)
 
 
-def _cell(result: SimulationResult, correlation_length: float) -> _Cell:
-    """What the file says about one simulation."""
+def sweep_row(result: SimulationResult) -> SweepRow:
+    """What the file of a sweep says about one simulation."""
     record, simulation = result.record, result.simulation
-    steady = steady_adhesion(record, correlation_length)
+    length = correlation_length(simulation.kind, simulation.spectrum)
+    steady = steady_adhesion(record, length)
     status, sentence = _status(record, steady)
     known = status in COMPLETE
     cycle = status == COMPLETE[0]
     numerical = np.nan, np.nan
     if known:
-        numerical = stated_error(simulation, steady, correlation_length)
-    return _Cell(
-        result=result,
+        numerical = stated_error(simulation, steady, length)
+    return SweepRow(
         w_appr=steady.approach if known else np.nan,
         w_retr=steady.retraction if known else np.nan,
         w_appr_error=steady.approach_error if known else np.nan,
@@ -172,6 +164,33 @@ def _cell(result: SimulationResult, correlation_length: float) -> _Cell:
         seed=simulation.seed,
         curve=f"{simulation.stem}.nc",
     )
+
+
+def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
+    """What the file of a sweep says about a simulation that cannot be done.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        The simulation.
+    status, sentence : str
+        Why, in a word and in a sentence.
+    """
+    unknown: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
+    nothing = dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
+    told = {"status": status, "status_sentence": sentence, "seed": simulation.seed, "curve": ""}
+    return SweepRow(**(unknown | nothing | told))
+
+
+@functools.cache
+def row_fingerprint() -> str:
+    """Twelve hexadecimal digits that change with any source that makes a row of a result."""
+    package = Path(__file__).parents[1]
+    sources = [Path(__file__), package / "laws.py", package / "laws.csv"]
+    digest = hashlib.sha256()
+    for path in (*sources, *sorted((package / "fits").glob("*.py"))):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
 
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:

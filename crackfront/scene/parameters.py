@@ -8,7 +8,7 @@ import json
 import math
 from dataclasses import astuple, dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from scipy.fft import next_fast_len
@@ -167,10 +167,19 @@ class Simulation:
     @property
     def key(self) -> str:
         """Sixteen hexadecimal digits that change with anything that determines the result."""
-        shape = (self.spectrum.short_cutoff, self.spectrum.roll_off, self.spectrum.hurst)
-        content = {
+        return _digest(self._content())[:16]
+
+    @property
+    def parts(self) -> dict[str, str]:
+        """Eight hexadecimal digits for each part of the key, to tell which of them has changed."""
+        return {name: _digest(part)[:8] for name, part in self._content().items()}
+
+    def _content(self) -> dict[str, Any]:
+        """What determines the result, part by part."""
+        spectrum = self.spectrum
+        return {
             "kind": self.kind,
-            "spectrum": shape,
+            "spectrum": (spectrum.short_cutoff, spectrum.roll_off, spectrum.hurst),
             "elastic_energy": self.elastic_energy,
             "realisation": self.realisation,
             "seed": self.sweep_seed,
@@ -180,8 +189,6 @@ class Simulation:
             "record": (self.record_fronts, self.record_energy),
             "sources": scene_fingerprint(),
         }
-        text = json.dumps(content, sort_keys=True, allow_nan=False)
-        return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     @property
     def label(self) -> str:
@@ -215,6 +222,12 @@ class Simulation:
         """Expected time in arbitrary units, to start the longest first."""
         # Sweeps and sites are both in proportion to N; weak disorder takes the most sweeps.
         return self.resolution.n_angle**2 / (1 + 3 * self.elastic_energy)
+
+
+def _digest(content: Any) -> str:
+    """Hexadecimal digits that change with what is given."""
+    text = json.dumps(content, sort_keys=True, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 @functools.cache

@@ -1,0 +1,143 @@
+"""The folder of a sweep: where its files are, how they are made, and how they become one."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from crackfront import parallel
+from crackfront.dataset import write_hysteresis, write_text
+from crackfront.provenance import Provenance
+from crackfront.scene import Simulation, compile_solver
+from crackfront.store.inventory import Inventory, holdings, stale
+from crackfront.store.tasks import NOT_STORED, STOPPED, Finished, Task, run_task
+from crackfront.sweep import NamedSpectrum, Sweep, shard_fingerprint
+
+CHECKPOINT_SECONDS = 60.0
+"""Time between checkpoints of a running simulation, where nothing else is asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Store:
+    """Results of a sweep in a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the sweep.
+    """
+
+    folder: Path
+
+    def path(self, simulation: Simulation) -> Path:
+        """File of a simulation."""
+        return self.folder / "curves" / f"{simulation.stem}.nc"
+
+    def manifest(self, item: NamedSpectrum) -> Path:
+        """File that says that all simulations of a spectrum are stored."""
+        return self.folder / "shards" / f"{item.name}.json"
+
+    def inventory(self, simulations: Sequence[Simulation]) -> Inventory:
+        """What is missing among simulations, and why.
+
+        Parameters
+        ----------
+        simulations : sequence of Simulation
+            Simulations to look for.
+        """
+        held = holdings(self.folder, simulations)
+        missing = tuple(one for place, one in enumerate(simulations) if place not in held.rows)
+        return Inventory(missing, held.unreadable, stale(missing, held.older))
+
+    def fill(
+        self,
+        simulations: Sequence[Simulation],
+        origin: Provenance,
+        checkpoint_seconds: float = CHECKPOINT_SECONDS,
+    ) -> Iterator[tuple[Simulation, Finished]]:
+        """Run simulations, the longest first, and store each as soon as it is finished.
+
+        Parameters
+        ----------
+        simulations : sequence of Simulation
+            What to run.
+        origin : Provenance
+            What the files say about their origin.
+        checkpoint_seconds : float, optional
+            Time between checkpoints of a running simulation.
+
+        Yields
+        ------
+        tuple
+            Simulation and how it ended, in the order in which they end. The first that is stopped
+            or cannot be stored is the last.
+
+        Raises
+        ------
+        OSError
+            If nothing can be written in the folder, before anything is run.
+        """
+        for name in ("curves", "journals", "checkpoints"):
+            (self.folder / name).mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=self.folder / "curves"):
+            pass
+        longest_first = sorted(simulations, key=lambda item: item.expected_cost, reverse=True)
+        tasks = [Task(one, self.folder, origin, checkpoint_seconds) for one in longest_first]
+        for solver in {item.solver for item in simulations}:
+            compile_solver(solver)
+        for task, finished in parallel.run_tasks(run_task, tasks):
+            yield task.simulation, finished
+            if finished.status in (STOPPED, NOT_STORED):
+                return
+
+    def write_manifest(self, item: NamedSpectrum, shard: tuple[Simulation, ...]) -> Path:
+        """Write the list of the stored simulations of a spectrum."""
+        content = {
+            "spectrum": item.name,
+            "fingerprint": shard_fingerprint(shard),
+            "simulations": [
+                {"key": one.key, "file": f"curves/{self.path(one).name}"} for one in shard
+            ],
+        }
+        path = self.manifest(item)
+        write_text(path, json.dumps(content, indent=1) + "\n")
+        return path
+
+    def aggregate(self, sweep: Sweep, origin: Provenance) -> tuple[Path, dict[str, int]]:
+        """Write the file of the whole sweep.
+
+        Parameters
+        ----------
+        sweep : Sweep
+            Parameters of the sweep.
+        origin : Provenance
+            What the file says about its origin.
+
+        Returns
+        -------
+        tuple
+            The file, and the number of simulations of every status.
+
+        Raises
+        ------
+        ValueError
+            If simulations are missing or unreadable. The lists of their spectra are removed, so
+            that the workflow runs them again.
+        """
+        simulations = [one for item in sweep.spectra for one in sweep.shard(item)]
+        rows = holdings(self.folder, simulations).rows
+        missing = [one for place, one in enumerate(simulations) if place not in rows]
+        if missing:
+            for name in {one.spectrum_name for one in missing}:
+                self.manifest(sweep.named(name)).unlink(missing_ok=True)
+            raise ValueError(
+                f"{len(missing)} of {len(simulations)} simulations are missing or unreadable in "
+                f"{self.folder}, the first is {missing[0].label}; run `crackfront simulate` with "
+                "this configuration and output, or `make` again"
+            )
+        path = self.folder / "hysteresis.nc"
+        ordered = [rows[place] for place in range(len(simulations))]
+        return path, dict(write_hysteresis(path, sweep, ordered, origin))
