@@ -74,6 +74,8 @@ class Sweep:
         Penetrations to visit: full cycles, or the steady parts of their branches.
     record_fronts, record_energy : bool
         What to record beside the curves.
+    failed_fraction : float
+        Part of the simulations that may end without a value.
     fit : FitRange
         Amplitudes that enter the fit.
     """
@@ -89,6 +91,7 @@ class Sweep:
     schedule: LoadSchedule | SteadySchedule
     record_fronts: bool
     record_energy: bool
+    failed_fraction: float
     fit: FitRange
 
     def named(self, name: str) -> NamedSpectrum:

@@ -11,6 +11,7 @@ from click.testing import CliRunner
 
 from crackfront import __version__, jkr
 from crackfront.cli import main
+from crackfront.relax import Status
 from crackfront.units import WORK_OF_ADHESION
 
 TEST = Path(__file__).parents[1] / "config/test.yaml"
@@ -246,13 +247,18 @@ def test_a_truncated_result_is_named_and_replaced(tmp_path):
     assert "[1/1]" in result.output
 
 
-def test_simulations_without_a_value_are_counted(tmp_path):
+@pytest.mark.parametrize(("allowed", "code"), [("", 1), ("failed_fraction: 1.0\n", 0)])
+def test_simulations_without_a_value_are_counted_and_too_many_fail(tmp_path, allowed, code):
     limited = tmp_path / "limited.yaml"
-    limited.write_text(TEST.read_text().replace("max_sweeps: 100000", "max_sweeps: 2"))
+    text = TEST.read_text().replace("max_sweeps: 100000", "max_sweeps: 2")
+    limited.write_text(text + allowed)
     assert run("simulate", limited, "--output", tmp_path).exit_code == 0
     result = run("aggregate", limited, "--output", tmp_path)
-    assert result.exit_code == 0
+    assert result.exit_code == code
     assert "8 of 8 simulations have no value: 8 step_limit" in result.stderr
+    assert ("failed_fraction of the configuration allows 0.1" in result.stderr) == bool(code)
+    table = xr.load_dataset(tmp_path / "hysteresis.nc")
+    assert set(table["status_sentence"].values.flat) == {Status.STEP_LIMIT.value}
     assert "has a value" in refused("fit", limited, "--output", tmp_path)
 
 

@@ -130,13 +130,16 @@ def aggregate(configuration: Path, output: Path | None) -> None:
     sweep, store = _sweep_and_store(configuration, output)
     path, statuses = store.aggregate(sweep, provenance(configuration.read_text(encoding="utf-8")))
     others = {status: count for status, count in statuses.items() if status not in COMPLETE}
-    if others:
-        told = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
-        click.echo(
-            f"Warning: {sum(others.values())} of {_n_simulation(sweep)} simulations have no "
-            f"value: {told}",
-            err=True,
+    failed, total = sum(others.values()), _n_simulation(sweep)
+    told = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
+    sentence = f"{failed} of {total} simulations have no value: {told}"
+    if failed > sweep.failed_fraction * total:
+        raise click.ClickException(
+            f"{sentence}; failed_fraction of the configuration allows {sweep.failed_fraction:g}. "
+            f"What they ended by stands in status_sentence of {path}"
         )
+    if failed:
+        click.echo(f"Warning: {sentence}", err=True)
     click.echo(f"hysteresis: {path}")
 
 

@@ -105,6 +105,7 @@ def _sweep(configuration: Configuration) -> Sweep:
         schedule=_schedule(load, vertical),
         record_fronts="fronts" in configuration.record,
         record_energy="energy" in configuration.record,
+        failed_fraction=configuration.failed_fraction,
         fit=FitRange(fit.lowest_elastic_energy, fit.highest_elastic_energy, fit.bootstrap),
     )
 

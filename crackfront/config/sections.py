@@ -199,6 +199,7 @@ class Configuration(Section):
     numerics: NumericsSection
     load: LoadSection
     record: tuple[Literal["fronts", "energy"], ...] = ()
+    failed_fraction: Annotated[float, Field(ge=0, le=1)] = 0.1
     fit: FitSection
 
     @model_validator(mode="after")
