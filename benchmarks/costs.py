@@ -1,0 +1,133 @@
+"""Measure what simulations cost: the runs that the cost model is fitted to and held against.
+
+python -m benchmarks.costs --output results/benchmark
+
+Every row of `costs.csv` is one simulation. Copied to `crackfront/costs.csv`, it is what
+`crackfront plan` predicts from.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+from collections.abc import Iterator
+from dataclasses import fields, replace
+from pathlib import Path
+
+import click
+
+from benchmarks.machine import described_machine
+from crackfront.costs import Features, Measured, features
+from crackfront.cycle import LoadSchedule
+from crackfront.dataset import write_text
+from crackfront.scene import Numerics, Simulation, compile_solver, resolution, run_simulation
+from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.steady import SteadySchedule
+
+NUMERICS = Numerics(None, 2.4, 4, "cubic", 4, 4, 200, 1e-4, 10**8, "newton")
+ENERGIES = (0.002, 0.01, 0.05, 0.15)
+STEADY = SteadySchedule(start=1.0, max_penetration=1.5, travel=1.5, error=0.1)
+CYCLE = LoadSchedule(1.0, 0.1)
+
+
+def _simulation(
+    name: str,
+    shape: tuple[float, float, float],
+    energy: float,
+    schedule: LoadSchedule | SteadySchedule,
+    numerics: Numerics = NUMERICS,
+) -> Simulation:
+    """One simulation of a roughness spectrum (short cutoff, roll-off, Hurst exponent)."""
+    spectrum = SelfAffineSpectrum(*shape)
+    return Simulation(
+        spectrum_name=name,
+        kind="roughness",
+        spectrum=spectrum,
+        elastic_energy=energy,
+        realisation=0,
+        sweep_seed=7,
+        resolution=resolution(spectrum, numerics, schedule.max_penetration),
+        schedule=schedule,
+        tolerance=numerics.tolerance,
+        max_sweeps=numerics.max_sweeps,
+        solver=numerics.solver,
+        record_fronts=False,
+        record_energy=False,
+    )
+
+
+def fitted_to() -> Iterator[Simulation]:
+    """Simulations that the model is fitted to."""
+    for cutoff in (0.04, 0.01, 0.005):
+        for energy in ENERGIES:
+            yield _simulation("flat", (cutoff, cutoff, 1.0), energy, STEADY)
+            yield _simulation("h08", (cutoff, 16 * cutoff, 0.8), energy, STEADY)
+    for cutoff in (0.04, 0.01):
+        for energy in ENERGIES:
+            yield _simulation("flat", (cutoff, cutoff, 1.0), energy, CYCLE)
+            yield _simulation("h03", (cutoff, 20 * cutoff, 0.3), energy, CYCLE)
+    for energy in ENERGIES:
+        yield _simulation("h08", (0.0025, 0.04, 0.8), energy, STEADY)
+    for tolerance in (1e-3, 1e-6):
+        numerics = replace(NUMERICS, tolerance=tolerance)
+        for energy in ENERGIES:
+            yield _simulation("flat", (0.02, 0.02, 1.0), energy, STEADY, numerics)
+
+
+def held_out() -> Iterator[Simulation]:
+    """Simulations of other spectra, amplitudes, loads and numerics, to hold the model against."""
+    finer = replace(NUMERICS, angles_per_cutoff=3.2, tolerance=1e-5)
+    longer = replace(STEADY, max_penetration=2.0, travel=2.0)
+    for energy in (0.005, 0.03, 0.1):
+        yield _simulation("flat", (0.0125, 0.0125, 1.0), energy, STEADY)
+        yield _simulation("h03", (0.008, 0.16, 0.3), energy, STEADY)
+        yield _simulation("h08", (0.025, 0.2, 0.8), energy, longer, finer)
+        yield _simulation("h08", (0.02, 0.32, 0.8), energy, LoadSchedule(1.0, 0.05))
+        yield _simulation("flat", (0.015, 0.015, 1.0), energy, LoadSchedule(0.5, 0.05), finer)
+
+
+def measured(simulation: Simulation, held: bool) -> Measured:
+    """What one simulation costs on this machine."""
+    result = run_simulation(simulation)
+    return Measured(
+        name=simulation.label,
+        held_out=held,
+        features=features(simulation),
+        n_state=result.record.penetration.size,
+        cpu_seconds=result.cpu_seconds,
+    )
+
+
+def table(runs: list[Measured]) -> str:
+    """Runs as comma-separated values."""
+    names = [item.name for item in fields(Features)]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    expected = ["expected_n_state" if name == "n_state" else name for name in names]
+    writer.writerow(["name", "held_out", *expected, "n_state", "cpu_seconds"])
+    for run in runs:
+        values = [f"{getattr(run.features, name):.6g}" for name in names]
+        last = [run.n_state, f"{run.cpu_seconds:.4g}"]
+        writer.writerow([run.name, int(run.held_out), *values, *last])
+    return text.getvalue()
+
+
+def main() -> None:
+    """Measure all runs, one after the other."""
+    parser = argparse.ArgumentParser(description="what simulations cost")
+    parser.add_argument("--output", type=Path, default=Path("results/benchmark"))
+    chosen = parser.parse_args()
+    compile_solver(NUMERICS.solver)
+    click.echo(described_machine())
+    runs = []
+    for held, simulations in ((False, fitted_to()), (True, held_out())):
+        for simulation in simulations:
+            runs.append(run := measured(simulation, held))
+            click.echo(f"{run.name}: {run.cpu_seconds:.3g} s, {run.n_state} states")
+    write_text(chosen.output / "costs.csv", table(runs))
+    click.echo(f"Results: {chosen.output / 'costs.csv'}")
+
+
+if __name__ == "__main__":
+    main()

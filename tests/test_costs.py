@@ -1,0 +1,83 @@
+"""What simulations cost: predicted for runs that were held out, and in the direction of sense."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks import costs as benchmark
+from crackfront.config import load_configuration
+from crackfront.costs import expected_cost, features, measured_runs, predicted_seconds
+from crackfront.cycle import LoadSchedule
+
+ROOT = Path(__file__).parents[1]
+SWEEP = load_configuration(ROOT / "config/test.yaml")
+ONE = SWEEP.simulation(SWEEP.spectra[0], 0.1, 0)
+RUNS = measured_runs()
+
+
+def test_times_of_runs_that_were_held_out_are_predicted_within_a_factor_one_and_a_half():
+    held_out = [run for run in RUNS if run.held_out]
+    assert len(held_out) >= 15
+    ratios = predicted_seconds(held_out) / [run.cpu_seconds for run in held_out]
+    worst = np.max(np.maximum(ratios, 1 / ratios))
+    assert worst < 1.5
+
+
+def test_held_out_runs_are_of_other_simulations_than_those_of_the_fit():
+    fitted = {run.features for run in RUNS if not run.held_out}
+    assert not fitted & {run.features for run in RUNS if run.held_out}
+
+
+def test_the_measured_runs_are_those_that_the_command_would_measure():
+    simulations = [*benchmark.fitted_to(), *benchmark.held_out()]
+    assert [run.name for run in RUNS] == [one.label for one in simulations]
+    for run, one in zip(RUNS, simulations, strict=True):
+        known = run.features
+        assert (known.n_angle, known.n_point) == (one.resolution.n_angle, one.resolution.n_point)
+        assert known.n_state == pytest.approx(features(one).n_state, rel=1e-5)
+
+
+def test_numbers_of_states_are_predicted_too():
+    found = np.array([run.n_state for run in RUNS])
+    assert np.all(np.abs(found - [run.features.n_state for run in RUNS]) <= 2 + 0.1 * found)
+
+
+@pytest.mark.parametrize("step", [0.05, 0.2])
+def test_a_cycle_finds_the_states_that_were_expected(step):
+    simulation = replace(ONE, schedule=LoadSchedule(1.0, step))
+    measured = benchmark.measured(simulation, held=True)
+    assert measured.n_state == pytest.approx(measured.features.n_state, abs=1.5)
+
+
+def test_more_sites_cost_more_time_and_more_points_more_memory():
+    sizes = ONE.resolution
+    base = expected_cost(ONE)
+    longer = expected_cost(replace(ONE, resolution=replace(sizes, n_angle=10 * sizes.n_angle)))
+    larger = expected_cost(replace(ONE, resolution=replace(sizes, n_point=10 * sizes.n_point)))
+    fronts = expected_cost(replace(ONE, record_fronts=True))
+    assert longer.seconds > 10 * base.seconds
+    assert larger.memory > base.memory
+    assert fronts.disk > base.disk
+
+
+def test_memory_is_predicted_within_a_factor_one_and_a_half():
+    code = (
+        "from pathlib import Path\n"
+        "from dataclasses import replace\n"
+        "import crackfront.dataset\n"
+        "from crackfront.config import load_configuration\n"
+        "from crackfront.costs import expected_cost\n"
+        "from crackfront.scene import run_simulation\n"
+        f"sweep = load_configuration(Path({str(ROOT / 'config/test.yaml')!r}))\n"
+        "one = sweep.simulation(sweep.spectra[0], 0.1, 0)\n"
+        "one = replace(one, resolution=replace(one.resolution, n_point=2500))\n"
+        "print(run_simulation(one).peak_memory / expected_cost(one).memory)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=200, check=True
+    )
+    assert 1 / 1.5 < float(done.stdout) < 1.5
