@@ -10,19 +10,20 @@ from snakemake.exceptions import WorkflowError
 
 from crackfront.config import (
     SCALES,
-    ConfigurationError,
     figure_files,
     load_configuration,
     load_figure,
+    results_folder,
 )
 from crackfront.figures import FIGURES, figure_fingerprint
 from crackfront.provenance import package_fingerprint
 from crackfront.sweep import shard_fingerprint
 
-unknown = set(config) - {"sweep", "ranks", "scale"}
+unknown = set(config) - {"sweep", "ranks", "block", "scale"}
 if unknown:
     raise WorkflowError(
-        f"--config knows no {', '.join(sorted(unknown))}; its keys are sweep (a file), ranks, scale"
+        f"--config knows no {', '.join(sorted(unknown))}; its keys are sweep "
+        "(a file), ranks, block (realisations of a job), and scale (of the paper's figures)"
     )
 
 SCALE = config.get("scale", "quick")
@@ -35,10 +36,11 @@ SWEEPS = {
     for scale in SCALES
 }
 CONFIGURATION = config.get("sweep", SWEEPS[SCALE])
-RESULTS = f"results/{Path(CONFIGURATION).stem}"
 try:
+    RESULTS = str(results_folder(Path(CONFIGURATION)))
     SWEEP = load_configuration(Path(CONFIGURATION))
-except ConfigurationError as error:
+    SHARDS = {shard.name: shard for shard in SWEEP.shards(config.get("block"))}
+except ValueError as error:
     raise WorkflowError(str(error)) from None
 
 # The command stands beside the Python that runs Snakemake.
@@ -46,7 +48,7 @@ shell.prefix(f"set -euo pipefail; export PATH='{Path(sys.executable).parent}':$P
 
 
 wildcard_constraints:
-    spectrum="[A-Za-z0-9_-]+",
+    shard=r"[A-Za-z0-9_-]+(\.\d+-\d+)?",
 
 
 rule all:

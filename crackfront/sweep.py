@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from crackfront.cycle import LoadSchedule
@@ -28,6 +29,29 @@ class NamedSpectrum:
 
     name: str
     spectrum: SelfAffineSpectrum
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """What one job runs: a spectrum with all its amplitudes, and a block of its realisations.
+
+    Attributes
+    ----------
+    item : NamedSpectrum
+        The spectrum.
+    realisations : range
+        Numbers of the realisations.
+    name : str
+        The spectrum's name, with the first and last realisation where these are not all.
+    """
+
+    item: NamedSpectrum
+    realisations: range
+    name: str
+
+
+MOST_SHARDS = 1000
+"""Jobs of one sweep; a graph of more takes seconds to build and minutes to submit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,16 +165,70 @@ class Sweep:
             record_energy=self.record_energy,
         )
 
-    def shard(self, item: NamedSpectrum) -> tuple[Simulation, ...]:
-        """Simulations of one spectrum, amplitude by amplitude."""
+    def shard(
+        self, item: NamedSpectrum, realisations: range | None = None
+    ) -> tuple[Simulation, ...]:
+        """Simulations of one spectrum, amplitude by amplitude; by default all realisations."""
+        block = range(self.n_realisation) if realisations is None else realisations
         return tuple(
             self.simulation(item, energy, realisation)
             for energy in self.elastic_energies
-            for realisation in range(self.n_realisation)
+            for realisation in block
         )
 
+    @property
+    def n_simulation(self) -> int:
+        """Number of simulations."""
+        return len(self.spectra) * len(self.elastic_energies) * self.n_realisation
 
-def shard_fingerprint(shard: tuple[Simulation, ...]) -> str:
+    def shards(self, block: int | str | None = None) -> tuple[Shard, ...]:
+        """Shards of the sweep.
+
+        Parameters
+        ----------
+        block : int, optional
+            Realisations of a shard; by default all. Text is refused.
+
+        Raises
+        ------
+        ValueError
+            If the block is no positive number, or there are more than :data:`MOST_SHARDS` shards.
+        """
+        size = self.n_realisation if block is None else block
+        if not isinstance(size, int) or size < 1:
+            raise ValueError(f"a block is {size} realisations; it must be 1 or more of them")
+        n_block = -(-self.n_realisation // size)
+        if len(self.spectra) * n_block > MOST_SHARDS:
+            least = -(-self.n_realisation // max(1, MOST_SHARDS // len(self.spectra)))
+            raise ValueError(
+                f"blocks of {size} realisations are {len(self.spectra) * n_block} shards, more "
+                f"than {MOST_SHARDS} jobs; take blocks of {least} or more"
+            )
+        return tuple(
+            self.named_shard(item, range(first, min(first + size, self.n_realisation)))
+            for item in self.spectra
+            for first in range(0, self.n_realisation, size)
+        )
+
+    def named_shard(self, item: NamedSpectrum, realisations: range) -> Shard:
+        """Shard of a spectrum and a block of realisations.
+
+        Raises
+        ------
+        ValueError
+            If the sweep has no such realisations.
+        """
+        everything = range(self.n_realisation)
+        if not realisations or not set(realisations) <= set(everything):
+            raise ValueError(
+                f"realisations {realisations.start} to {realisations.stop - 1} are not among those "
+                f"of the sweep, 0 to {self.n_realisation - 1}"
+            )
+        block = f".{realisations.start}-{realisations.stop - 1}"
+        return Shard(item, realisations, item.name + ("" if realisations == everything else block))
+
+
+def shard_fingerprint(shard: Sequence[Simulation]) -> str:
     """Twelve hexadecimal digits that change with any simulation of a shard."""
     text = "\n".join(simulation.stem for simulation in shard)
     return hashlib.sha256(text.encode()).hexdigest()[:12]

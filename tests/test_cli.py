@@ -1,5 +1,6 @@
 """The command: one cycle on any field, the steps of a sweep, exit codes and sentences."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,10 @@ from click.testing import CliRunner
 
 from crackfront import __version__, jkr
 from crackfront.cli import main
+from crackfront.config import load_configuration
+from crackfront.dataset import failed_row, row_fingerprint
 from crackfront.relax import Status
+from crackfront.store.journal import Entry, Journal
 from crackfront.units import WORK_OF_ADHESION
 
 TEST = Path(__file__).parents[1] / "config/test.yaml"
@@ -228,11 +232,86 @@ def test_a_sweep_runs_from_its_plan_to_its_figures(tmp_path):
     assert (tmp_path / "out/fit.md").read_text(encoding="utf-8").startswith("# ")
 
 
+def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path):
+    run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
+    result = run("plan", TEST, "--output", tmp_path, "--block", "1")
+    assert result.exit_code == 0, result.output
+    [flat, rough, everything] = result.output.split("to run")[1].splitlines()[1:4]
+    assert flat.split()[:3] == ["flat", "2", "4"]
+    assert rough.split()[:3] == ["rough", "2", "0"]
+    assert everything.split()[:3] == ["all", "4", "4"]
+    assert float(everything.split()[3]) > 0
+    assert float(rough.split()[3]) == 0
+
+
+def test_a_plan_tells_what_is_stale_and_why(tmp_path):
+    run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
+    finer = tmp_path / "finer.yaml"
+    finer.write_text(TEST.read_text().replace("tolerance: 1e-6", "tolerance: 1e-7"))
+    result = run("plan", finer, "--output", tmp_path)
+    assert "4 stored simulations are stale: 4 as numerics changed" in result.output
+    result = run("simulate", finer, "--spectrum", "flat", "--output", tmp_path)
+    assert "4 stored simulations are stale: 4 as numerics changed\n[1/4]" in result.output
+
+
+def test_the_status_counts_what_is_done_failed_running_and_waiting(tmp_path):
+    sweep = load_configuration(TEST)
+    run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
+    flat = sweep.shard(sweep.spectra[0])
+    journal = Journal(tmp_path / "journals")
+    refused_row = failed_row(flat[0], "refused", "too rough")
+    parts = (flat[0].key, flat[0].label, flat[0].parts)
+    journal.append(Entry(*parts, definition=row_fingerprint(), row=refused_row))
+    journal.append(Entry(flat[1].key, flat[1].label, flat[1].parts))
+    result = run("status", tmp_path)
+    assert result.exit_code == 0, result.output
+    [_, first, second, sentence] = result.output.splitlines()
+    assert first.split()[:5] == ["flat", "0", "1", "1", "2"]
+    assert float(first.split()[5]) > 0
+    assert second.split() == ["rough", "4", "0", "0", "0", "0"]
+    assert sentence.startswith("5 of 8 simulations have ended; about ")
+    assert sentence.endswith("minutes are left on 1 rank(s)")
+
+
+def test_a_process_that_has_not_shown_itself_for_long_does_not_run(tmp_path):
+    run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
+    one = load_configuration(TEST).shard(load_configuration(TEST).spectra[0])[0]
+    Journal(tmp_path / "journals").append(Entry(one.key, one.label, one.parts))
+    for path in (tmp_path / "journals").iterdir():
+        os.utime(path, (1e9, 1e9))
+    assert run("status", tmp_path).output.splitlines()[-1].endswith("have ended; nothing runs")
+
+
+def test_the_status_of_a_folder_without_a_sweep_is_refused(tmp_path):
+    assert "holds no sweep that was begun" in refused("status", tmp_path)
+
+
 def test_one_spectrum_can_be_run_alone(tmp_path):
     result = run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
     assert result.exit_code == 0
     assert {path.name.split("-")[0] for path in (tmp_path / "curves").iterdir()} == {"rough"}
     assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.json"]
+
+
+def test_a_block_of_realisations_can_be_run_alone(tmp_path):
+    options = ("--spectrum", "rough", "--realisations", "1-1", "--output", tmp_path)
+    assert run("simulate", TEST, *options).exit_code == 0
+    assert {"-r1-" in path.name for path in (tmp_path / "curves").iterdir()} == {True}
+    assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.1-1.json"]
+
+
+@pytest.mark.parametrize("block", ["1", "1-", "2-1", "a-b", "0-9"])
+def test_a_block_that_is_none_is_refused(tmp_path, block):
+    result = run("simulate", TEST, "--realisations", block, "--output", tmp_path / "out")
+    assert result.exit_code == 2
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["a; rm -rf b", "$(touch x)", "..", "-e", "a b", "a'b"])
+def test_a_configuration_whose_name_is_no_name_for_results_is_refused(tmp_path, name):
+    bad = tmp_path / f"{name}.yaml"
+    bad.write_text(TEST.read_text())
+    assert "the results are named after" in refused("plan", bad)
 
 
 def test_a_truncated_result_is_named_and_replaced(tmp_path):

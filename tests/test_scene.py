@@ -235,13 +235,6 @@ def test_a_step_limit_is_a_status_and_no_error():
     assert run_simulation(replace(SIMULATION, max_sweeps=1)).record.status is Status.STEP_LIMIT
 
 
-def test_weak_disorder_is_expected_to_take_longest():
-    weak = replace(SIMULATION, elastic_energy=0.002)
-    assert weak.expected_cost > SIMULATION.expected_cost
-    finer = replace(SIMULATION, resolution=replace(SIMULATION.resolution, n_angle=128))
-    assert finer.expected_cost > weak.expected_cost
-
-
 @pytest.mark.parametrize("kind", ["roughness", "chemical"])
 def test_a_tile_is_made_in_the_memory_of_four(kind):
     n_point = 320

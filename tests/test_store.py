@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from crackfront.config import load_configuration
+from crackfront.costs import expected_cost
 from crackfront.dataset import read_simulation, read_table
 from crackfront.provenance import provenance
 from crackfront.scene import run_simulation
@@ -50,7 +51,7 @@ def test_a_filled_store_lacks_nothing_and_holds_one_file_a_simulation(store):
 
 
 def test_the_longest_simulations_start_first(store):
-    costs = [simulation.expected_cost for simulation, _ in fill(store, FLAT[::-1])]
+    costs = [expected_cost(simulation).seconds for simulation, _ in fill(store, FLAT[::-1])]
     assert costs == sorted(costs, reverse=True)
 
 
@@ -166,11 +167,14 @@ def test_a_disk_that_is_full_ends_the_run_at_once_with_a_sentence(store, monkeyp
     assert store.inventory(FLAT).missing == FLAT
 
 
-def test_a_manifest_lists_the_files_of_a_spectrum(store):
-    path = store.write_manifest(SWEEP.spectra[0], FLAT)
+def test_a_manifest_lists_the_files_of_a_shard(store):
+    [shard, *_] = SWEEP.shards(1)
+    simulations = SWEEP.shard(shard.item, shard.realisations)
+    path = store.write_manifest(shard, simulations)
+    assert path.name == "flat.0-0.json"
     content = json.loads(path.read_text(encoding="utf-8"))
-    assert [entry["key"] for entry in content["simulations"]] == [one.key for one in FLAT]
-    assert store.folder / content["simulations"][0]["file"] == store.path(FLAT[0])
+    assert [entry["key"] for entry in content["simulations"]] == [one.key for one in simulations]
+    assert store.folder / content["simulations"][0]["file"] == store.path(simulations[0])
 
 
 def test_an_incomplete_sweep_is_not_aggregated(store):
@@ -180,14 +184,19 @@ def test_an_incomplete_sweep_is_not_aggregated(store):
     assert not (store.folder / "hysteresis.nc").exists()
 
 
-def test_the_list_of_a_spectrum_with_a_truncated_file_is_taken_back(store):
-    for item in SWEEP.spectra:
-        fill(store, SWEEP.shard(item))
-        store.write_manifest(item, SWEEP.shard(item))
+@pytest.mark.parametrize(
+    ("block", "left"),
+    [(None, ["rough.json"]), (1, ["flat.1-1.json", "rough.0-0.json", "rough.1-1.json"])],
+)
+def test_the_list_of_a_shard_with_a_truncated_file_is_taken_back(store, block, left):
+    for shard in SWEEP.shards(block):
+        simulations = SWEEP.shard(shard.item, shard.realisations)
+        fill(store, simulations)
+        store.write_manifest(shard, simulations)
     store.path(FLAT[0]).write_bytes(b"half")
     with pytest.raises(ValueError, match="1 of 8 simulations are missing or unreadable"):
         store.aggregate(SWEEP, provenance())
-    assert [path.name for path in (store.folder / "shards").iterdir()] == ["rough.json"]
+    assert sorted(path.name for path in (store.folder / "shards").iterdir()) == left
 
 
 def test_a_complete_sweep_is_aggregated(store):

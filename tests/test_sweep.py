@@ -52,6 +52,35 @@ def test_the_fingerprint_of_a_shard_changes_with_its_simulations_alone():
     assert shard_fingerprint(fewer.shard(flat)) == before
 
 
+@pytest.mark.parametrize("block", [None, 1, 3, 10, 11])
+def test_shards_hold_every_simulation_once(block):
+    sweep = replace(SWEEP, n_realisation=10)
+    shards = sweep.shards(block)
+    assert len(shards) == 2 * {None: 1, 1: 10, 3: 4, 10: 1, 11: 1}[block]
+    assert len({shard.name for shard in shards}) == len(shards)
+    found = [one.key for shard in shards for one in sweep.shard(shard.item, shard.realisations)]
+    wanted = [one.key for item in sweep.spectra for one in sweep.shard(item)]
+    assert sorted(found) == sorted(wanted)
+
+
+def test_a_hundred_thousand_simulations_are_no_more_than_a_thousand_jobs():
+    sweep = replace(SWEEP, n_realisation=25_000)
+    with pytest.raises(ValueError, match=r"2500 shards, more than 1000 jobs; take blocks of 50 or"):
+        sweep.shards(20)
+    assert len(sweep.shards(50)) == 1000
+
+
+@pytest.mark.parametrize("block", [0, -1, "many"])
+def test_a_block_that_is_no_number_of_realisations_is_refused(block):
+    with pytest.raises(ValueError, match="it must be 1 or more of them"):
+        SWEEP.shards(block)
+
+
+def test_realisations_that_the_sweep_does_not_have_are_refused():
+    with pytest.raises(ValueError, match="realisations 1 to 2 are not among those"):
+        SWEEP.named_shard(SWEEP.spectra[0], range(1, 3))
+
+
 @pytest.mark.parametrize(
     ("name", "hint"), [("flatt", "did you mean flat?"), ("xyz", "choose one of flat, rough")]
 )

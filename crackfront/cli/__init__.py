@@ -10,7 +10,8 @@ from crackfront import __version__
 from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.cycle import cycle
 from crackfront.cli.figure import check_figures, draw_figure, figure, gallery
-from crackfront.cli.sweep import aggregate, figures, fit, plan, simulate
+from crackfront.cli.outlook import plan, status
+from crackfront.cli.sweep import aggregate, figures, fit, simulate
 
 
 class _RefusalError(click.ClickException):
@@ -51,6 +52,7 @@ for command in (
     cycle,
     plan,
     simulate,
+    status,
     aggregate,
     fit,
     figures,

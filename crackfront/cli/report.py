@@ -21,6 +21,18 @@ TRY_AGAIN = 75
 """Exit code of a command that was told to end before it was done (EX_TEMPFAIL of sysexits.h)."""
 
 
+def block(context: click.Context, parameter: click.Parameter, value: str | None) -> range | None:
+    """Range that an option like 0-49 means, both ends included."""
+    if value is None:
+        return None
+    first, dash, last = value.partition("-")
+    if not (dash and first.isdecimal() and last.isdecimal() and int(first) <= int(last)):
+        raise click.BadParameter(
+            f"{value!r} is no range of numbers; write the first and the last, as in 0-49"
+        )
+    return range(int(first), int(last) + 1)
+
+
 def announce_compilation() -> None:
     """Tell why nothing seems to happen."""
     from crackfront.compiled import kernels_are_cached

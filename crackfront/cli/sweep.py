@@ -1,14 +1,13 @@
-"""The steps of a sweep: plan, simulate, aggregate, fit, figures."""
+"""The steps of a sweep: simulate, aggregate, fit, figures."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE, fill_store, launch
+from crackfront.cli.report import FILE, block, fill_store, launch
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
@@ -26,35 +25,12 @@ _output = click.option(
 @click.command()
 @_configuration
 @_output
-def plan(configuration: Path, output: Path | None) -> None:
-    """Print the shards of a sweep, their sizes and what is stored of them."""
-    sweep, store = _sweep_and_store(configuration, output)
-    click.echo(
-        "spectrum          lambda_s  lambda_r     H         angles        samples         points"
-        "  stored"
-    )
-    for item in sweep.spectra:
-        shape, shard = item.spectrum, sweep.shard(item)
-        sizes = [simulation.resolution for simulation in shard]
-        stored = sum(store.path(simulation).exists() for simulation in shard)
-        click.echo(
-            f"{item.name:16}  {shape.short_cutoff:8.4g}  {shape.roll_off:8.4g}  {shape.hurst:4.2f}"
-            f"  {_span([size.n_angle for size in sizes]):>13}"
-            f"  {_span([1 / size.spacing for size in sizes]):>13}"
-            f"  {_span([size.n_point for size in sizes]):>13}"
-            f"  {stored:3}/{len(shard)}"
-        )
-    energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
-    click.echo(f"{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}")
-    click.echo(f"{sweep.n_realisation} realisations; {_n_simulation(sweep)} simulations")
-    click.echo("samples: per reduced length along a ray; points: along a side of the tile")
-    click.echo(f"results in {store.folder}/")
-
-
-@click.command()
-@_configuration
-@_output
 @click.option("--spectrum", help="Only this spectrum.  [default: all]")
+@click.option(
+    "--realisations",
+    callback=block,
+    help="Only these realisations, as in 0-49.  [default: all]",
+)
 @click.option(
     "--ranks",
     type=click.IntRange(min=1),
@@ -79,6 +55,7 @@ def simulate(
     configuration: Path,
     output: Path | None,
     spectrum: str | None,
+    realisations: range | None,
     ranks: int,
     launcher: str | None,
     checkpoint: float,
@@ -96,13 +73,16 @@ def simulate(
         return
     sweep, store = _sweep_and_store(configuration, output)
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
-    simulations = [one for item in items for one in sweep.shard(item)]
+    chosen = range(sweep.n_realisation) if realisations is None else realisations
+    shards = [sweep.named_shard(item, chosen) for item in items]
+    simulations = [one for item in items for one in sweep.shard(item, chosen)]
     inventory = store.inventory(simulations)
     busy = min(ranks, len(inventory.missing))
     if busy > 1 and not parallel.under_mpi():
         arguments = ["simulate", str(configuration), "--ranks", str(busy)]
         arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
         arguments += [] if spectrum is None else ["--spectrum", spectrum]
+        arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
         launch(arguments, busy, launcher, store.folder)
         return
     click.echo(
@@ -114,8 +94,8 @@ def simulate(
     if sentence := inventory.stale_sentence():
         click.echo(sentence)
     fill_store(store, inventory.missing, configuration, checkpoint)
-    for item in items:
-        manifest = store.write_manifest(item, sweep.shard(item))
+    for shard in shards:
+        manifest = store.write_manifest(shard, sweep.shard(shard.item, shard.realisations))
     click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
 
 
@@ -130,7 +110,7 @@ def aggregate(configuration: Path, output: Path | None) -> None:
     sweep, store = _sweep_and_store(configuration, output)
     path, statuses = store.aggregate(sweep, provenance(configuration.read_text(encoding="utf-8")))
     others = {status: count for status, count in statuses.items() if status not in COMPLETE}
-    failed, total = sum(others.values()), _n_simulation(sweep)
+    failed, total = sum(others.values()), sweep.n_simulation
     told = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
     sentence = f"{failed} of {total} simulations have no value: {told}"
     if failed > sweep.failed_fraction * total:
@@ -191,27 +171,16 @@ def figures(configuration: Path, output: Path | None) -> None:
 
 def _sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, Store]:
     """Sweep of a configuration file, and its store."""
-    from crackfront.config import load_configuration
+    from crackfront.config import load_configuration, results_folder
     from crackfront.store import Store
 
     sweep = load_configuration(configuration)
-    return sweep, Store(Path("results") / configuration.stem if output is None else output)
+    return sweep, Store(results_folder(configuration) if output is None else output)
 
 
 def fit_of_sweep(configuration: Path) -> SweepFit:
     """Fit of the results of a sweep, in `results/` under the name of its configuration."""
     return _fitted(*_sweep_and_store(configuration, None))
-
-
-def _span(values: Sequence[float]) -> str:
-    """Range of values over the amplitudes, or the one that all have."""
-    low, high = f"{min(values):.0f}", f"{max(values):.0f}"
-    return low if low == high else f"{low}-{high}"
-
-
-def _n_simulation(sweep: Sweep) -> int:
-    """Number of simulations of a sweep."""
-    return len(sweep.spectra) * len(sweep.elastic_energies) * sweep.n_realisation
 
 
 def _fitted(sweep: Sweep, store: Store) -> SweepFit:

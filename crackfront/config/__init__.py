@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
@@ -18,7 +19,14 @@ from crackfront.steady import SteadySchedule
 from crackfront.sweep import FitRange, NamedSpectrum, Sweep
 from crackfront.units import Scales
 
-__all__ = ["SCALES", "ConfigurationError", "figure_files", "load_configuration", "load_figure"]
+__all__ = [
+    "SCALES",
+    "ConfigurationError",
+    "figure_files",
+    "load_configuration",
+    "load_figure",
+    "results_folder",
+]
 
 
 def load_configuration(path: Path) -> Sweep:
@@ -46,6 +54,22 @@ def load_configuration(path: Path) -> Sweep:
     _refuse_round_off(path, sweep)
     _refuse_unreachable(path, sweep)
     return sweep
+
+
+def results_folder(path: Path) -> Path:
+    """Folder for the results of a configuration file, named after it.
+
+    Raises
+    ------
+    ConfigurationError
+        If the name is not one for a folder and a command line.
+    """
+    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", path.stem):
+        raise ConfigurationError(
+            f"the results are named after {path.name!r}, which must consist of letters, digits, "
+            "_, - and dots; rename it"
+        )
+    return Path("results") / path.stem
 
 
 def _refuse_unreachable(path: Path, sweep: Sweep) -> None:

@@ -217,12 +217,6 @@ class Simulation:
         )
         return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))
 
-    @property
-    def expected_cost(self) -> float:
-        """Expected time in arbitrary units, to start the longest first."""
-        # Sweeps and sites are both in proportion to N; weak disorder takes the most sweeps.
-        return self.resolution.n_angle**2 / (1 + 3 * self.elastic_energy)
-
 
 def _digest(content: Any) -> str:
     """Hexadecimal digits that change with what is given."""

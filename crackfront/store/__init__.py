@@ -6,7 +6,17 @@ sizes of the files, and, where a process ended between the two, by reading the f
 """
 
 from crackfront.store.inventory import Inventory, Stale
+from crackfront.store.progress import Progress, sweep_progress
 from crackfront.store.store import Store
 from crackfront.store.tasks import NOT_STORED, STOPPED, Finished
 
-__all__ = ["NOT_STORED", "STOPPED", "Finished", "Inventory", "Stale", "Store"]
+__all__ = [
+    "NOT_STORED",
+    "STOPPED",
+    "Finished",
+    "Inventory",
+    "Progress",
+    "Stale",
+    "Store",
+    "sweep_progress",
+]

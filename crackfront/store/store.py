@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import json
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from crackfront import parallel
+from crackfront.costs import expected_cost
 from crackfront.dataset import write_hysteresis, write_text
 from crackfront.provenance import Provenance
 from crackfront.scene import Simulation, compile_solver
 from crackfront.store.inventory import Inventory, holdings, stale
 from crackfront.store.tasks import NOT_STORED, STOPPED, Finished, Task, run_task
-from crackfront.sweep import NamedSpectrum, Sweep, shard_fingerprint
+from crackfront.sweep import Shard, Sweep, shard_fingerprint
 
 CHECKPOINT_SECONDS = 60.0
 """Time between checkpoints of a running simulation, where nothing else is asked for."""
@@ -32,13 +32,18 @@ class Store:
 
     folder: Path
 
+    @property
+    def configuration(self) -> Path:
+        """Configuration with which the folder was filled last."""
+        return self.folder / "configuration.yaml"
+
     def path(self, simulation: Simulation) -> Path:
         """File of a simulation."""
         return self.folder / "curves" / f"{simulation.stem}.nc"
 
-    def manifest(self, item: NamedSpectrum) -> Path:
-        """File that says that all simulations of a spectrum are stored."""
-        return self.folder / "shards" / f"{item.name}.json"
+    def manifest(self, shard: Shard) -> Path:
+        """File that says that all simulations of a shard are stored."""
+        return self.folder / "shards" / f"{shard.name}.json"
 
     def inventory(self, simulations: Sequence[Simulation]) -> Inventory:
         """What is missing among simulations, and why.
@@ -82,9 +87,8 @@ class Store:
         """
         for name in ("curves", "journals", "checkpoints"):
             (self.folder / name).mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=self.folder / "curves"):
-            pass
-        longest_first = sorted(simulations, key=lambda item: item.expected_cost, reverse=True)
+        write_text(self.configuration, origin.configuration)
+        longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
         tasks = [Task(one, self.folder, origin, checkpoint_seconds) for one in longest_first]
         for solver in {item.solver for item in simulations}:
             compile_solver(solver)
@@ -93,16 +97,16 @@ class Store:
             if finished.status in (STOPPED, NOT_STORED):
                 return
 
-    def write_manifest(self, item: NamedSpectrum, shard: tuple[Simulation, ...]) -> Path:
-        """Write the list of the stored simulations of a spectrum."""
+    def write_manifest(self, shard: Shard, simulations: Sequence[Simulation]) -> Path:
+        """Write the list of the stored simulations of a shard."""
         content = {
-            "spectrum": item.name,
-            "fingerprint": shard_fingerprint(shard),
+            "spectrum": shard.item.name,
+            "fingerprint": shard_fingerprint(simulations),
             "simulations": [
-                {"key": one.key, "file": f"curves/{self.path(one).name}"} for one in shard
+                {"key": one.key, "file": f"curves/{self.path(one).name}"} for one in simulations
             ],
         }
-        path = self.manifest(item)
+        path = self.manifest(shard)
         write_text(path, json.dumps(content, indent=1) + "\n")
         return path
 
@@ -124,15 +128,14 @@ class Store:
         Raises
         ------
         ValueError
-            If simulations are missing or unreadable. The lists of their spectra are removed, so
+            If simulations are missing or unreadable. The lists of their shards are removed, so
             that the workflow runs them again.
         """
         simulations = [one for item in sweep.spectra for one in sweep.shard(item)]
         rows = holdings(self.folder, simulations).rows
         missing = [one for place, one in enumerate(simulations) if place not in rows]
         if missing:
-            for name in {one.spectrum_name for one in missing}:
-                self.manifest(sweep.named(name)).unlink(missing_ok=True)
+            self._forget(missing)
             raise ValueError(
                 f"{len(missing)} of {len(simulations)} simulations are missing or unreadable in "
                 f"{self.folder}, the first is {missing[0].label}; run `crackfront simulate` with "
@@ -141,3 +144,11 @@ class Store:
         path = self.folder / "hysteresis.nc"
         ordered = [rows[place] for place in range(len(simulations))]
         return path, dict(write_hysteresis(path, sweep, ordered, origin))
+
+    def _forget(self, missing: Sequence[Simulation]) -> None:
+        """Remove the lists of shards that lack simulations."""
+        keys = {one.key for one in missing}
+        for path in (self.folder / "shards").glob("*.json"):
+            content = json.loads(path.read_text(encoding="utf-8"))
+            if not keys.isdisjoint(entry["key"] for entry in content["simulations"]):
+                path.unlink()

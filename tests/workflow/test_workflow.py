@@ -90,5 +90,21 @@ def test_the_workflow_refuses_a_bad_configuration_before_it_starts(tmp_path, cha
 def test_the_workflow_refuses_unknown_settings(tmp_path):
     done = snakemake(tmp_path, "rank=2")
     assert done.returncode != 0
-    assert "--config knows no rank; its keys are sweep (a file) and ranks" in done.stderr
+    assert "--config knows no rank; its keys are sweep (a file), ranks, and block" in done.stderr
+    assert not (tmp_path / "results").exists()
+
+
+def test_the_workflow_runs_a_job_a_block_of_realisations(tmp_path):
+    done = snakemake(tmp_path, "block=1", ranks=1)
+    assert done.returncode == 0, done.stderr
+    shards = {path.stem for path in (tmp_path / "results/test/shards").iterdir()}
+    assert shards == {"flat.0-0", "flat.1-1", "rough.0-0", "rough.1-1"}
+
+
+def test_the_workflow_refuses_a_sweep_whose_name_a_shell_would_run(tmp_path):
+    sweep = tmp_path / "a; rm -rf b.yaml"
+    sweep.write_text((ROOT / "config/test.yaml").read_text(encoding="utf-8"))
+    done = snakemake(tmp_path, sweep=sweep)
+    assert done.returncode != 0
+    assert "the results are named after 'a; rm -rf b.yaml'" in done.stderr
     assert not (tmp_path / "results").exists()

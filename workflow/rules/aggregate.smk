@@ -1,11 +1,7 @@
 rule aggregate:
     input:
         CONFIGURATION,
-        expand(
-            "{results}/shards/{spectrum}.json",
-            results=RESULTS,
-            spectrum=[item.name for item in SWEEP.spectra],
-        ),
+        expand("{results}/shards/{shard}.json", results=RESULTS, shard=SHARDS),
     output:
         f"{RESULTS}/hysteresis.nc",
     params:

@@ -1,0 +1,111 @@
+"""What a sweep will cost, before it runs, and how far it is, while it does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from crackfront.cli.report import FILE
+
+if TYPE_CHECKING:
+    from crackfront.scene import Simulation
+    from crackfront.sweep import NamedSpectrum
+
+
+@click.command()
+@click.argument("configuration", type=FILE)
+@click.option(
+    "--output", type=FILE, help="Folder of the results.  [default: results/<configuration's name>]"
+)
+@click.option(
+    "--block", type=click.IntRange(min=1), help="Realisations of a shard.  [default: all]"
+)
+def plan(configuration: Path, output: Path | None, block: int | None) -> None:
+    """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
+    from crackfront.config import load_configuration, results_folder
+    from crackfront.store import Store
+
+    sweep = load_configuration(configuration)
+    store = Store(results_folder(configuration) if output is None else output)
+    shards = sweep.shards(block)
+    click.echo("spectrum          lambda_s  lambda_r     H         angles         points    stored")
+    everything: list[Simulation] = []
+    costs = []
+    for item in sweep.spectra:
+        simulations = sweep.shard(item)
+        inventory = store.inventory(simulations)
+        stored = len(simulations) - len(inventory.missing)
+        click.echo(f"{_sizes(item, simulations)}  {stored:5}/{len(simulations)}")
+        n_shard = sum(shard.item is item for shard in shards)
+        costs.append(_costs(item.name, n_shard, inventory.missing))
+        everything += inventory.missing
+        if sentence := inventory.stale_sentence():
+            click.echo(f"  {sentence}")
+    click.echo(
+        "\nto run            shards  simulations  core hours  longest s  MB a rank   MB disk"
+    )
+    click.echo("\n".join([*costs, _costs("all", len(shards), everything)]))
+    energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
+    click.echo(f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}")
+    click.echo(f"{sweep.n_realisation} realisations; {sweep.n_simulation} simulations")
+    click.echo(f"results in {store.folder}/")
+
+
+@click.command()
+@click.argument("folder", type=FILE)
+def status(folder: Path) -> None:
+    """Tell how far the sweep in a folder is; also while it runs, here or elsewhere."""
+    from crackfront.config import load_configuration
+    from crackfront.store import Store, sweep_progress
+
+    configuration = Store(folder).configuration
+    if not configuration.is_file():
+        raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
+    found = sweep_progress(folder, load_configuration(configuration))
+    click.echo("spectrum             done  failed  running  waiting  core hours left")
+    for item in found:
+        click.echo(
+            f"{item.name:16}  {item.done:7}  {item.failed:6}  {item.running:7}  {item.waiting:7}"
+            f"  {item.seconds / 3600:15.3g}"
+        )
+    left, at_work = sum(item.seconds for item in found), sum(item.running for item in found)
+    total = sum(item.done + item.failed + item.running + item.waiting for item in found)
+    ended = sum(item.done + item.failed for item in found)
+    sentence = f"{ended} of {total} simulations have ended"
+    if at_work:
+        sentence += f"; about {left / at_work / 60:.3g} minutes are left on {at_work} rank(s)"
+    elif ended < total:
+        sentence += "; nothing runs"
+    click.echo(sentence)
+
+
+def _sizes(item: NamedSpectrum, simulations: Sequence[Simulation]) -> str:
+    """Shape and sizes of a spectrum."""
+    shape, sizes = item.spectrum, [one.resolution for one in simulations]
+    return (
+        f"{item.name:16}  {shape.short_cutoff:8.4g}  {shape.roll_off:8.4g}  {shape.hurst:4.2f}"
+        f"  {_span([size.n_angle for size in sizes]):>13}"
+        f"  {_span([size.n_point for size in sizes]):>13}"
+    )
+
+
+def _costs(name: str, n_shard: int, missing: Sequence[Simulation]) -> str:
+    """What the missing simulations of a spectrum, or of all, are expected to cost."""
+    from crackfront.costs import expected_cost
+
+    costs = [expected_cost(one) for one in missing]
+    seconds = [cost.seconds for cost in costs]
+    return (
+        f"{name:16}  {n_shard:6}  {len(costs):11}  {sum(seconds) / 3600:10.3g}"
+        f"  {max(seconds, default=0):9.3g}  {max((c.memory for c in costs), default=0) / 1e6:9.0f}"
+        f"  {sum(cost.disk for cost in costs) / 1e6:9.3g}"
+    )
+
+
+def _span(values: Sequence[float]) -> str:
+    """Range of values over the amplitudes, or the one that all have."""
+    low, high = f"{min(values):.0f}", f"{max(values):.0f}"
+    return low if low == high else f"{low}-{high}"
