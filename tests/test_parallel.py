@@ -1,10 +1,8 @@
 """Tasks over ranks: dynamic, the same as without, and no failure that hangs or stays silent."""
 
 import os
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -147,54 +145,3 @@ def test_an_exception_in_a_task_ends_the_job_at_once(tmp_path):
     )
     assert run.returncode != 0
     assert "ZeroDivisionError" in run.stderr
-
-
-def children(process):
-    """Identifiers of the descendants of a process."""
-    listed = subprocess.run(["ps", "-eo", "pid=,ppid="], capture_output=True, text=True, check=True)
-    parents = dict(map(int, line.split()) for line in listed.stdout.splitlines())
-    found = {process}
-    for _ in parents:
-        grown = found | {child for child, parent in parents.items() if parent in found}
-        if grown == found:
-            break
-        found = grown
-    return found - {process}
-
-
-@pytest.mark.mpi
-@pytest.mark.parametrize(
-    "end", [signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
-)
-def test_after_a_kill_only_what_is_missing_is_computed(tmp_path, end):
-    """A rank is killed, or the whole command is told to end, after some simulations."""
-    text = Path(TEST).read_text(encoding="utf-8").replace("angles: 128", "angles: 512")
-    configuration = tmp_path / "sweep.yaml"
-    configuration.write_text(text.replace("realisations: 2", "realisations: 6"))
-    arguments = ["simulate", str(configuration), "--output", str(tmp_path / "out"), "--ranks", "2"]
-    with subprocess.Popen(
-        [sys.executable, "-m", "crackfront", *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    ) as process:
-        for line in process.stdout:
-            if line.startswith("[3/"):
-                break
-        ranks = children(process.pid)
-        if end is signal.SIGTERM:
-            process.terminate()
-        else:
-            os.kill(max(ranks), signal.SIGKILL)
-        output = process.stdout.read()
-    assert process.returncode != 0
-    assert "the same command continues with the others" in output
-    time.sleep(1)
-    assert not ranks & children(1)
-    stored = {path: path.stat().st_mtime_ns for path in (tmp_path / "out/curves").glob("*.nc")}
-    assert 3 <= len(stored) < 24
-    again = crackfront(*arguments)
-    assert again.returncode == 0, again.stderr
-    assert f"{len(stored)} of 24 simulations are stored" in again.stdout
-    assert all(path.stat().st_mtime_ns == moment for path, moment in stored.items())
-    assert len(list((tmp_path / "out/curves").glob("*.nc"))) == 24

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -12,15 +13,19 @@ ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
 
 
-def snakemake(folder, *settings, sweep=ROOT / "config/test.yaml", ranks=2):
-    """Run the workflow in a folder of its own."""
-    command = [
+def command(folder, *settings, sweep=ROOT / "config/test.yaml", ranks=2):
+    """Command that runs the workflow in a folder of its own."""
+    return [
         *(sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")),
         *("--profile", str(ROOT / "workflow/profiles/default"), "--directory", str(folder)),
         *("--cores", "2", "--config", f"sweep={sweep}", f"ranks={ranks}", *settings),
     ]
+
+
+def snakemake(*arguments, **options):
+    """Run the workflow in a folder of its own."""
     return subprocess.run(
-        command,
+        command(*arguments, **options),
         capture_output=True,
         text=True,
         timeout=240,
@@ -108,3 +113,33 @@ def test_the_workflow_refuses_a_sweep_whose_name_a_shell_would_run(tmp_path):
     assert done.returncode != 0
     assert "the results are named after 'a; rm -rf b.yaml'" in done.stderr
     assert not (tmp_path / "results").exists()
+
+
+def test_a_killed_snakemake_costs_nothing_that_is_stored(tmp_path):
+    sweep = tmp_path / "sweep.yaml"
+    text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
+    text = "".join(line for line in text.splitlines(keepends=True) if "name: rough" not in line)
+    sweep.write_text(text.replace("angles: 128", "angles: 512").replace("step: 0.1", "step: 0.05"))
+    curves = tmp_path / "results/sweep/curves"
+    with subprocess.Popen(
+        command(tmp_path, sweep=sweep, ranks=1),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    ) as process:
+        while not any(curves.glob("[!.]*.nc")):
+            time.sleep(0.02)
+            assert process.poll() is None
+        process.kill()
+    before = {path: path.stat().st_mtime_ns for path in curves.glob("[!.]*.nc")}
+    # The job that it leaves goes on beside the new one.
+    done = snakemake(tmp_path, sweep=sweep, ranks=1)
+    assert done.returncode == 0, done.stderr
+    assert before.items() <= states(curves).items()
+    found = xr.load_dataset(tmp_path / "results/sweep/hysteresis.nc").drop_vars(COSTS)
+    assert found.sizes["realisation"] == 2
+    expected = tmp_path / "undisturbed"
+    expected.mkdir()
+    assert snakemake(expected, sweep=sweep, ranks=1).returncode == 0
+    alone = xr.load_dataset(expected / "results/sweep/hysteresis.nc").drop_vars(COSTS)
+    assert found.equals(alone)
