@@ -92,7 +92,7 @@ benchmark: env  ## Solvers against the reference, what each request costs (half 
 	$(IN_ENV) .venv/bin/python -m benchmarks --output results/benchmark
 	$(IN_ENV) .venv/bin/python -m benchmarks.needs --output results/benchmark
 
-accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (30 to 40 minutes)
+accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half an hour on two cores)
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default accuracy
 	@echo "Results: results/accuracy/"
 
