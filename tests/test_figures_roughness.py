@@ -10,7 +10,8 @@ from pydantic import ValidationError
 
 from crackfront.config import load_figure
 from crackfront.figures import FIGURES, RoughnessRecord
-from crackfront.figures.roughness import STRONG, WEAK, fitted_roughness, stiffness_wavevector
+from crackfront.figures.contact import STRONG, WEAK
+from crackfront.figures.roughness_checks import fitted_roughness, stiffness_wavevector
 from crackfront.plots import FIGURE_MAKERS
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "beyond-roughness.yaml"

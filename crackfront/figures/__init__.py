@@ -14,9 +14,9 @@ from crackfront.figures.film_scales import (
 from crackfront.figures.instabilities import (
     InstabilityParameters,
     InstabilityRecord,
-    instability_checks,
     instability_record,
 )
+from crackfront.figures.instability_checks import instability_checks
 from crackfront.figures.mapping import Mapping, MappingParameters, mapping, mapping_checks
 from crackfront.figures.motion import Motion, MotionParameters, motion, motion_checks
 from crackfront.figures.nanodiamond import NanodiamondContact, nanodiamond_contact
@@ -45,9 +45,9 @@ from crackfront.figures.rings_checks import rings_checks
 from crackfront.figures.roughness import (
     RoughnessParameters,
     RoughnessRecord,
-    roughness_checks,
     roughness_record,
 )
+from crackfront.figures.roughness_checks import roughness_checks
 from crackfront.figures.scene import FigureScene, Progress
 from crackfront.figures.smooth import (
     SmoothLoop,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from crackfront import jkr
 from crackfront.cycle import LoadSchedule
@@ -23,8 +23,13 @@ from crackfront.scene import (
     simulation_field,
 )
 from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.units import WORK_OF_ADHESION
+from crackfront.validation import refusal
 
 Array = NDArray[np.float64]
+
+STRONG, WEAK = 0, 1
+"""Places of the two amplitudes that these figures compare."""
 
 _SIDE = 2.4
 """Side of the tile over the radius of the smooth contact, so that no place is met twice."""
@@ -133,3 +138,40 @@ def rough_contact(
         rms=adhesion.rms,
         larkin_length=larkin_length(correlation_length("roughness", spectrum), adhesion.rms),
     )
+
+
+def circle_stiffness(radius: ArrayLike, penetration: ArrayLike) -> Array:
+    """Stiffness of a contact's circle at fixed penetration, a dG/da; mode n of the line adds n.
+
+    Parameters
+    ----------
+    radius : array_like
+        Mean radius of a front. (Units: reduced lateral length)
+    penetration : array_like
+        Rigid body penetration, below radius^2. (Units: reduced vertical length)
+
+    Returns
+    -------
+    array
+        Stiffness. (Units: w_int)
+
+    Examples
+    --------
+    It vanishes where a smooth contact is pulled off:
+
+    >>> from crackfront.jkr import pull_off_penetration, pull_off_radius
+    >>> abs(float(circle_stiffness(pull_off_radius(), pull_off_penetration()))) < 1e-9
+    True
+    """
+    square = np.square(radius)
+    release = jkr.energy_release_rate(radius, penetration) / WORK_OF_ADHESION
+    return np.asarray(release * (4 * square / (square - penetration) - 1))
+
+
+def refuse_rising(largest: float, first: float, last: float) -> None:
+    """Refuse penetrations of a retraction that do not fall."""
+    if not last < first < largest:
+        raise refusal(
+            "penetrations must fall from max_penetration over first_penetration to "
+            f"last_penetration; they are {largest:g}, {first:g} and {last:g}"
+        )

@@ -3,35 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 from scipy.fft import rfft
-from scipy.stats import t as student
 
-from crackfront import jkr
-from crackfront.figures.checks import Check
-from crackfront.figures.contact import RoughContact, rough_contact
+from crackfront.figures.contact import (
+    RoughContact,
+    circle_stiffness,
+    refuse_rising,
+    rough_contact,
+)
 from crackfront.figures.scene import Progress
 from crackfront.records import ADHESION, LATERAL, variable
-from crackfront.units import WORK_OF_ADHESION
 from crackfront.validation import Count, Energy, Positive, Section, refusal
 
 Array = NDArray[np.float64]
 
 _DISORDER, _SURFACE, _MODE, _LAG = "disorder", "surface", "mode", "lag"
-
-STRONG, WEAK = 0, 1
-"""Places of the two amplitudes."""
-
-DEPINNING_EXPONENT, LARKIN_EXPONENT = 0.388, 0.5
-"""Roughness exponents of a line with long-range elasticity at its threshold (Rosso and Krauth,
-Phys. Rev. E 65, 025101), and where disorder is a perturbation."""
-
-_TOLERANCE = 0.05
-"""Largest deviation of an exponent, about that of a crossover within the range of the fit."""
 
 _N_LAG = 60
 
@@ -76,12 +67,7 @@ class RoughnessParameters(Section):
 
     @model_validator(mode="after")
     def _usable(self) -> RoughnessParameters:
-        if not self.last_penetration < self.first_penetration < self.max_penetration:
-            raise refusal(
-                "penetrations must fall from max_penetration over first_penetration to "
-                f"last_penetration; they are {self.max_penetration:g}, "
-                f"{self.first_penetration:g} and {self.last_penetration:g}"
-            )
+        refuse_rising(self.max_penetration, self.first_penetration, self.last_penetration)
         for name in ("strong", "weak"):
             low, high = getattr(self, f"{name}_from"), getattr(self, f"{name}_to")
             if low >= high:
@@ -195,13 +181,10 @@ def _surface(parameters: RoughnessParameters, energy: float, realisation: int) -
     circles = np.mean(fronts, axis=1)
     modes = rfft(fronts, axis=1, norm="forward")[:, 1 : fronts.shape[1] // 2]
     power = 2 * np.pi * circles[:, None] * np.abs(modes) ** 2
-    # a dG/da of a smooth sphere at fixed penetration.
-    release = jkr.energy_release_rate(circles, loads) / WORK_OF_ADHESION
-    stiffness = release * (4 * circles**2 / (circles**2 - loads) - 1)
     return _Surface(
         power=power.mean(axis=0),
         radius=float(circles.mean()),
-        ring_stiffness=float(stiffness.mean()),
+        ring_stiffness=float(circle_stiffness(circles, loads).mean()),
         rms=contact.rms,
         larkin_length=contact.larkin_length,
     )
@@ -219,122 +202,3 @@ def _difference(power: Array, circle: float, mode: NDArray[np.int64], lag: Array
     """Root mean square difference of the radius at two points of a front."""
     angle = 2 * np.pi * lag / circle
     return np.sqrt(4 * (1 - np.cos(np.outer(angle, mode))) @ (power / circle))
-
-
-@dataclass(frozen=True, slots=True)
-class RoughnessFit:
-    """Power law of the spectrum over a range of wavelengths.
-
-    Attributes
-    ----------
-    exponent : float
-        Roughness exponent zeta, mean over the surfaces.
-    reach : float
-        Half of its 95% interval.
-    wavevector, power : (2,) array
-        Ends of the line. (Units: 1 / reduced lateral length, and reduced lateral length**3)
-    """
-
-    exponent: float
-    reach: float
-    wavevector: Array
-    power: Array
-
-
-def stiffness_wavevector(record: RoughnessRecord, index: int) -> Array:
-    """Wavevector of a straight line of the stiffness of each mode, (n + a dG/da) / a.
-
-    The sphere pulls a front back to its circle, which a straight line does not know; so that
-    the spectrum of a front is a power of this stiffness rather than of n alone.
-    """
-    return (record.mode + record.ring_stiffness[index]) / record.radius[index]
-
-
-def fitted_roughness(record: RoughnessRecord, index: int) -> RoughnessFit:
-    r"""Fit of :math:`C \propto \kappa^{-(1 + 2\zeta)}` with kappa of `stiffness_wavevector`.
-
-    Least squares of the logarithm, each surface by itself, all octaves of the same weight.
-
-    Parameters
-    ----------
-    record : RoughnessRecord
-        Data of the figure.
-    index : {0, 1}
-        Strong or weak disorder.
-    """
-    wavelength = 2 * np.pi * record.radius[index] / record.mode
-    used = (wavelength >= record.shortest[index]) & (wavelength <= record.longest[index])
-    wavevector = stiffness_wavevector(record, index)[used]
-    weight = record.mode[used] ** -0.5
-    lines = [
-        np.polyfit(np.log(wavevector), np.log(power[used]), 1, w=weight)
-        for power in record.power[index]
-    ]
-    slopes, levels = np.array(lines).T
-    exponents = -(1 + slopes) / 2
-    error = np.std(exponents, ddof=1) / np.sqrt(exponents.size)
-    ends = wavevector[[0, -1]]
-    return RoughnessFit(
-        exponent=float(exponents.mean()),
-        reach=float(student.ppf(0.975, exponents.size - 1) * error),
-        wavevector=ends,
-        power=np.exp(levels.mean() + slopes.mean() * np.log(ends)),
-    )
-
-
-def roughness_checks(record: RoughnessRecord) -> tuple[Check, ...]:
-    """Exponents above and below the Larkin length.
-
-    Parameters
-    ----------
-    record : RoughnessRecord
-        Data of the figure.
-    """
-    strong, weak = (fitted_roughness(record, index) for index in (STRONG, WEAK))
-    return (
-        _exponent_check(
-            record,
-            STRONG,
-            strong,
-            "strong disorder, beyond the Larkin length: depinning exponent",
-            DEPINNING_EXPONENT,
-        ),
-        _exponent_check(
-            record,
-            WEAK,
-            weak,
-            "weak disorder, below the Larkin length: perturbation theory",
-            LARKIN_EXPONENT,
-        ),
-        Check(
-            "the two exponents differ by more than their intervals",
-            f"> {np.hypot(strong.reach, weak.reach):.3f}",
-            f"{weak.exponent - strong.exponent:.3f}",
-            weak.exponent - strong.exponent > float(np.hypot(strong.reach, weak.reach)),
-            "intervals over surfaces alone, not of the choice of the range",
-        ),
-    )
-
-
-def _exponent_check(
-    record: RoughnessRecord, index: int, fit: RoughnessFit, claim: str, expected: float
-) -> Check:
-    """One exponent against that of the theory."""
-    low, high = record.shortest[index], record.longest[index]
-    middle = np.full(2, np.sqrt(low * high))
-    halves = [
-        fitted_roughness(part, index).exponent
-        for part in (replace(record, longest=middle), replace(record, shortest=middle))
-    ]
-    contained = "contains" if abs(fit.exponent - expected) <= fit.reach else "leaves out"
-    return Check(
-        claim,
-        f"{expected} ± {_TOLERANCE}",
-        f"{fit.exponent:.3f} ± {fit.reach:.3f}",
-        abs(fit.exponent - expected) <= _TOLERANCE,
-        f"the 95% interval of {record.power.shape[1]} surfaces {contained} it; wavelengths "
-        f"{low:.3g} to {high:.3g} ({np.log10(high / low):.2f} decades), their shorter half "
-        f"{halves[0]:.3f}, longer half {halves[1]:.3f}; Larkin length "
-        f"{record.larkin_length[index]:.3g}; the stiffness of the sphere's circle, "
-        f"{record.ring_stiffness[index]:.2g} beside n, is in the abscissa",
-    )

@@ -13,7 +13,8 @@ from scipy.signal import resample
 
 from crackfront import jkr
 from crackfront.figures import InstabilityRecord
-from crackfront.figures.instabilities import STRONG, WEAK, radii_at_zero
+from crackfront.figures.contact import STRONG, WEAK
+from crackfront.figures.instability_checks import radii_at_zero
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLUE, PAGE, PURPLE, VERMILION, blank_figure, house_style
 

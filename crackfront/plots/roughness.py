@@ -9,11 +9,10 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 from numpy.typing import NDArray
 
 from crackfront.figures import RoughnessRecord
-from crackfront.figures.roughness import (
+from crackfront.figures.contact import STRONG, WEAK
+from crackfront.figures.roughness_checks import (
     DEPINNING_EXPONENT,
     LARKIN_EXPONENT,
-    STRONG,
-    WEAK,
     fitted_roughness,
     stiffness_wavevector,
 )
