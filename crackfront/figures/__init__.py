@@ -4,6 +4,12 @@ import functools
 import hashlib
 from pathlib import Path
 
+from crackfront.figures.avalanches import (
+    AvalancheParameters,
+    AvalancheRecord,
+    avalanche_checks,
+    avalanche_record,
+)
 from crackfront.figures.checks import Check, checks_table, close_to
 from crackfront.figures.film_scales import (
     FilmScales,
@@ -65,6 +71,7 @@ from crackfront.scene.parameters import scene_fingerprint
 
 __all__ = [
     "FIGURES",
+    "AvalancheRecord",
     "Check",
     "FigureScene",
     "FilmScales",
@@ -165,6 +172,13 @@ FIGURES = {
         compute=motion,
         checks=motion_checks,
         animated=True,
+    ),
+    "beyond-avalanches": FigureScene(
+        title="Beyond the paper: avalanches",
+        parameters=AvalancheParameters,
+        record=AvalancheRecord,
+        compute=avalanche_record,
+        checks=avalanche_checks,
     ),
 }
 """Figures by the name of their configuration in config/figures."""

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from crackfront.plots.accuracy import laws_figure, work_precision_figure
 from crackfront.plots.animation import Animation, save_animation
+from crackfront.plots.avalanches import avalanche_figure
 from crackfront.plots.densities import film_scales_figure, synthetic_film_figure
 from crackfront.plots.instabilities import instability_figure
 from crackfront.plots.loop import draw_loop, loop_figure
@@ -62,6 +63,7 @@ FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
     "main-3cd": pinned_loop_figure,
     "main-5bc": nanodiamond_figure,
     "beyond-animation": motion_figure,
+    "beyond-avalanches": avalanche_figure,
 }
 """What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""
 
