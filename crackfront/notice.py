@@ -1,7 +1,7 @@
-"""The notice that this process is to end: SIGTERM, or a file where a launcher passes none on.
+"""The notice that this process is to end: SIGTERM, or a file.
 
-A batch system sends SIGTERM some time before it kills. Ranks under `srun` get it themselves;
-`mpiexec` answers it by killing its ranks, so that whoever started it leaves a file instead.
+A batch system sends SIGTERM some time before it kills. Launchers differ in whether they pass it on
+to their ranks or kill them, so that whoever started a launcher leaves the ranks a file instead.
 """
 
 from __future__ import annotations

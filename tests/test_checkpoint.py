@@ -45,7 +45,7 @@ def same_bits(one: CycleRecord, other: CycleRecord) -> bool:
 
 
 @pytest.mark.parametrize("simulation", [CYCLE, STEADY], ids=["cycle", "steady"])
-@pytest.mark.parametrize("solver", ["newton", "reference"])
+@pytest.mark.parametrize("solver", ["newton", pytest.param("reference", marks=pytest.mark.slow)])
 def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation, solver):
     simulation = replace(simulation, solver=solver)
     undisturbed, found = checkpoints(simulation)

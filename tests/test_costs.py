@@ -64,6 +64,7 @@ def test_more_sites_cost_more_time_and_more_points_more_memory():
     assert fronts.disk > base.disk
 
 
+@pytest.mark.slow
 def test_memory_is_predicted_within_a_factor_one_and_a_half():
     code = (
         "from pathlib import Path\n"

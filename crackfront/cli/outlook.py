@@ -31,23 +31,21 @@ def plan(configuration: Path, output: Path | None, block: int | None) -> None:
     sweep = load_configuration(configuration)
     store = Store(results_folder(configuration) if output is None else output)
     shards = sweep.shards(block)
+    shapes = {item: sweep.shard(item) for item in sweep.spectra}
+    inventory = store.inventory([one for simulations in shapes.values() for one in simulations])
     click.echo("spectrum          lambda_s  lambda_r     H         angles         points    stored")
-    everything: list[Simulation] = []
     costs = []
-    for item in sweep.spectra:
-        simulations = sweep.shard(item)
-        inventory = store.inventory(simulations)
-        stored = len(simulations) - len(inventory.missing)
+    for item, simulations in shapes.items():
+        missing = [one for one in inventory.missing if one.spectrum_name == item.name]
+        stored = len(simulations) - len(missing)
         click.echo(f"{_sizes(item, simulations)}  {stored:5}/{len(simulations)}")
-        n_shard = sum(shard.item is item for shard in shards)
-        costs.append(_costs(item.name, n_shard, inventory.missing))
-        everything += inventory.missing
-        if sentence := inventory.stale_sentence():
-            click.echo(f"  {sentence}")
+        costs.append(_costs(item.name, sum(shard.item is item for shard in shards), missing))
+    if sentence := inventory.stale_sentence():
+        click.echo(sentence)
     click.echo(
         "\nto run            shards  simulations  core hours  longest s  MB a rank   MB disk"
     )
-    click.echo("\n".join([*costs, _costs("all", len(shards), everything)]))
+    click.echo("\n".join([*costs, _costs("all", len(shards), inventory.missing)]))
     energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
     click.echo(f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}")
     click.echo(f"{sweep.n_realisation} realisations; {sweep.n_simulation} simulations")

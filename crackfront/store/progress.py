@@ -57,18 +57,21 @@ def sweep_progress(folder: Path, sweep: Sweep) -> list[Progress]:
     sweep : Sweep
         Its parameters.
     """
-    shards = {item.name: sweep.shard(item) for item in sweep.spectra}
-    rows = {name: holdings(folder, shard).rows for name, shard in shards.items()}
+    simulations = [one for item in sweep.spectra for one in sweep.shard(item)]
+    rows = holdings(folder, simulations).rows
     running = _running(folder)
-    pace = _pace([(shards[name][place], row) for name in rows for place, row in rows[name].items()])
+    pace = _pace([(simulations[place], row) for place, row in rows.items()])
     found = []
-    for name, shard in shards.items():
-        ended = rows[name]
-        left = [one for place, one in enumerate(shard) if place not in ended]
-        done = sum(row.status in COMPLETE for row in ended.values())
+    for item in sweep.spectra:
+        places = [i for i, one in enumerate(simulations) if one.spectrum_name == item.name]
+        ended = [rows[place] for place in places if place in rows]
+        left = [simulations[place] for place in places if place not in rows]
+        done = sum(row.status in COMPLETE for row in ended)
         at_work = sum(one.key in running for one in left)
         seconds = pace * sum(expected_cost(one).seconds for one in left)
-        found.append(Progress(name, done, len(ended) - done, at_work, len(left) - at_work, seconds))
+        found.append(
+            Progress(item.name, done, len(ended) - done, at_work, len(left) - at_work, seconds)
+        )
     return found
 
 

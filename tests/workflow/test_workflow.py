@@ -100,7 +100,7 @@ def test_the_workflow_refuses_unknown_settings(tmp_path):
 
 
 def test_the_workflow_runs_a_job_a_block_of_realisations(tmp_path):
-    done = snakemake(tmp_path, "block=1", ranks=1)
+    done = snakemake(tmp_path, "block=1", "--", "results/test/hysteresis.nc", ranks=1)
     assert done.returncode == 0, done.stderr
     shards = {path.stem for path in (tmp_path / "results/test/shards").iterdir()}
     assert shards == {"flat.0-0", "flat.1-1", "rough.0-0", "rough.1-1"}
@@ -120,7 +120,7 @@ def test_a_killed_snakemake_costs_nothing_that_is_stored(tmp_path):
     text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
     text = "".join(line for line in text.splitlines(keepends=True) if "name: rough" not in line)
     sweep.write_text(text.replace("angles: 128", "angles: 512").replace("step: 0.1", "step: 0.05"))
-    curves = tmp_path / "results/sweep/curves"
+    curves, table = tmp_path / "results/sweep/curves", "results/sweep/hysteresis.nc"
     with subprocess.Popen(
         command(tmp_path, sweep=sweep, ranks=1),
         stdout=subprocess.DEVNULL,
@@ -133,13 +133,13 @@ def test_a_killed_snakemake_costs_nothing_that_is_stored(tmp_path):
         process.kill()
     before = {path: path.stat().st_mtime_ns for path in curves.glob("[!.]*.nc")}
     # The job that it leaves goes on beside the new one.
-    done = snakemake(tmp_path, sweep=sweep, ranks=1)
+    done = snakemake(tmp_path, "--", table, sweep=sweep, ranks=1)
     assert done.returncode == 0, done.stderr
     assert before.items() <= states(curves).items()
-    found = xr.load_dataset(tmp_path / "results/sweep/hysteresis.nc").drop_vars(COSTS)
+    found = xr.load_dataset(tmp_path / table).drop_vars(COSTS)
     assert found.sizes["realisation"] == 2
     expected = tmp_path / "undisturbed"
     expected.mkdir()
-    assert snakemake(expected, sweep=sweep, ranks=1).returncode == 0
-    alone = xr.load_dataset(expected / "results/sweep/hysteresis.nc").drop_vars(COSTS)
+    assert snakemake(expected, "--", table, sweep=sweep, ranks=1).returncode == 0
+    alone = xr.load_dataset(expected / table).drop_vars(COSTS)
     assert found.equals(alone)
