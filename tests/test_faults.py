@@ -239,6 +239,7 @@ def test_a_full_disk_ends_the_run_and_room_lets_it_go_on(configuration, same, sm
 def test_a_folder_that_is_read_only_is_refused_before_anything_runs(
     configuration, same, small_disk
 ):
+    subprocess.run(["mount", "-o", "remount,size=8m", str(small_disk)], check=True)
     assert run(*command(configuration, small_disk / "out", "--spectrum", "flat")).returncode == 0
     kept = len(stored(small_disk / "out"))
     subprocess.run(["mount", "-o", "remount,ro,size=8m", str(small_disk)], check=True)
