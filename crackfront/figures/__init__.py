@@ -102,19 +102,26 @@ FIGURES = {
         compute=smooth_loop,
         checks=smooth_loop_checks,
     ),
-    "si-5": FigureScene(
-        title="SI Fig. S-5: hysteresis against disorder, and k against disorder and size",
-        parameters=ParametricStudyParameters,
-        record=ParametricStudy,
-        compute=parametric_study,
-        checks=parametric_study_checks,
-    ),
     "main-2": FigureScene(
         title="Main Fig. 2: rings of high and low work of adhesion",
         parameters=RingsParameters,
         record=RingLoops,
         compute=ring_loops,
         checks=rings_checks,
+    ),
+    "main-3ab": FigureScene(
+        title="Main Fig. 3a, b: a retraction in single elastic instabilities",
+        parameters=InstabilityParameters,
+        record=InstabilityRecord,
+        compute=instability_record,
+        checks=instability_checks,
+    ),
+    "main-3cd": FigureScene(
+        title="Main Fig. 3c, d: the smooth loop of a finely rough sphere, and its fronts at b = 0",
+        parameters=PinnedLoopParameters,
+        record=PinnedLoop,
+        compute=pinned_loop,
+        checks=pinned_loop_checks,
     ),
     "main-4": FigureScene(
         title="Main Fig. 4: roughness, and the work of adhesion that it is equivalent to",
@@ -130,6 +137,20 @@ FIGURES = {
         compute=film_scales,
         checks=film_scales_checks,
     ),
+    "main-5bc": FigureScene(
+        title="Main Fig. 5b, c: a rubber sphere on nanodiamond",
+        parameters=NanodiamondParameters,
+        record=NanodiamondContact,
+        compute=nanodiamond_contact,
+        checks=nanodiamond_checks,
+    ),
+    "si-5": FigureScene(
+        title="SI Fig. S-5: hysteresis against disorder, and k against disorder and size",
+        parameters=ParametricStudyParameters,
+        record=ParametricStudy,
+        compute=parametric_study,
+        checks=parametric_study_checks,
+    ),
     "si-6": FigureScene(
         title="SI Fig. S-6: profile densities of nanodiamond and of synthetic surfaces",
         parameters=SyntheticFilmParameters,
@@ -137,12 +158,12 @@ FIGURES = {
         compute=synthetic_film,
         checks=synthetic_film_checks,
     ),
-    "main-3ab": FigureScene(
-        title="Main Fig. 3a, b: a retraction in single elastic instabilities",
-        parameters=InstabilityParameters,
-        record=InstabilityRecord,
-        compute=instability_record,
-        checks=instability_checks,
+    "beyond-avalanches": FigureScene(
+        title="Beyond the paper: avalanches",
+        parameters=AvalancheParameters,
+        record=AvalancheRecord,
+        compute=avalanche_record,
+        checks=avalanche_checks,
     ),
     "beyond-roughness": FigureScene(
         title="Beyond the paper: roughness of the front",
@@ -151,20 +172,6 @@ FIGURES = {
         compute=roughness_record,
         checks=roughness_checks,
     ),
-    "main-3cd": FigureScene(
-        title="Main Fig. 3c, d: the smooth loop of a finely rough sphere, and its fronts at b = 0",
-        parameters=PinnedLoopParameters,
-        record=PinnedLoop,
-        compute=pinned_loop,
-        checks=pinned_loop_checks,
-    ),
-    "main-5bc": FigureScene(
-        title="Main Fig. 5b, c: a rubber sphere on nanodiamond",
-        parameters=NanodiamondParameters,
-        record=NanodiamondContact,
-        compute=nanodiamond_contact,
-        checks=nanodiamond_checks,
-    ),
     "beyond-animation": FigureScene(
         title="Animation: the fronts of a cycle over the field, beside its loop",
         parameters=MotionParameters,
@@ -172,13 +179,6 @@ FIGURES = {
         compute=motion,
         checks=motion_checks,
         animated=True,
-    ),
-    "beyond-avalanches": FigureScene(
-        title="Beyond the paper: avalanches",
-        parameters=AvalancheParameters,
-        record=AvalancheRecord,
-        compute=avalanche_record,
-        checks=avalanche_checks,
     ),
 }
 """Figures by the name of their configuration in config/figures."""

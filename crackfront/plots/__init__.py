@@ -53,17 +53,17 @@ __all__ = [
 
 FIGURE_MAKERS: dict[str, Callable[[Any], Figure]] = {
     "main-1d": smooth_loop_figure,
-    "si-5": parametric_study_figure,
     "main-2": rings_figure,
+    "main-3ab": instability_figure,
+    "main-3cd": pinned_loop_figure,
     "main-4": mapping_figure,
     "main-5a": film_scales_figure,
-    "si-6": synthetic_film_figure,
-    "main-3ab": instability_figure,
-    "beyond-roughness": roughness_figure,
-    "main-3cd": pinned_loop_figure,
     "main-5bc": nanodiamond_figure,
-    "beyond-animation": motion_figure,
+    "si-5": parametric_study_figure,
+    "si-6": synthetic_film_figure,
     "beyond-avalanches": avalanche_figure,
+    "beyond-roughness": roughness_figure,
+    "beyond-animation": motion_figure,
 }
 """What draws the data of each figure in :data:`crackfront.figures.FIGURES`."""
 
