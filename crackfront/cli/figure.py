@@ -115,8 +115,10 @@ def check_figures(output: Path) -> None:
 def gallery(output: Path, page: Path) -> None:
     """Write the page of all figures beside their checks; of each the paper's scale if it is there.
 
-    The pictures are copied to `figures/` beside the page.
+    The pictures, for a screen, stand in `figures/` beside the page; an animation is that of the
+    results.
     """
+    from crackfront import plots
     from crackfront.dataset import read_attributes, write_text
     from crackfront.figures import FIGURES, checks_table
 
@@ -126,10 +128,13 @@ def gallery(output: Path, page: Path) -> None:
         data = next((path for path in paths if path.exists()), None)
         if data is None:
             continue
-        picture = data.with_suffix(".gif" if data.with_suffix(".gif").exists() else ".png")
-        copied = page.parent / "figures" / picture.name
-        copied.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(picture, copied)
+        record = _record(data)
+        picture = page.parent / "figures" / f"{name}.{'gif' if scene.animated else 'png'}"
+        picture.parent.mkdir(parents=True, exist_ok=True)
+        if scene.animated:
+            shutil.copyfile(data.with_suffix(".gif"), picture)
+        else:
+            plots.save_picture(plots.FIGURE_MAKERS[name](record), picture)
         told = read_attributes(data)
         parts += [
             f"## {scene.title}",
@@ -139,7 +144,7 @@ def gallery(output: Path, page: Path) -> None:
             f"Scale {told['scale']}, {float(told['cpu_seconds']):.0f} s of one core, commit "
             f"{str(told['git_commit'])[:12]}: `{told['command']}`",
             "",
-            *checks_table(scene.checks(_record(data))),
+            *checks_table(scene.checks(record)),
             "",
         ]
     if not parts:

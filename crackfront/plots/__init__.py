@@ -23,7 +23,7 @@ from crackfront.plots.pinned_loop import pinned_loop_figure
 from crackfront.plots.rings import rings_figure
 from crackfront.plots.roughness import roughness_figure
 from crackfront.plots.smooth import smooth_loop_figure
-from crackfront.plots.style import house_style, save_figure
+from crackfront.plots.style import house_style, save_figure, save_picture
 from crackfront.plots.sweep import (
     draw_factor_by_disorder,
     draw_factor_by_length,
@@ -48,6 +48,7 @@ __all__ = [
     "loop_figure",
     "save_animation",
     "save_figure",
+    "save_picture",
     "work_precision_figure",
 ]
 

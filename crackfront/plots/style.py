@@ -30,6 +30,9 @@ COLOURS = (GREEN, BLUE, PURPLE, VERMILION, ORANGE, SKY, BLACK)
 MARKERS = ("s", "o", "^", "D", "v", "P", "X")
 """One colour and marker a spectrum; after seven both repeat, out of step."""
 
+_SCREEN = 144
+"""Pixels an inch of pictures for a screen."""
+
 STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 7.0,
@@ -97,6 +100,20 @@ def save_figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
         figure.savefig(pdf, metadata={"CreationDate": None})
         figure.savefig(png, metadata={"Software": None})
     return pdf, png
+
+
+def save_picture(figure: Figure, path: Path) -> None:
+    """Write a figure as a PNG for a screen, a third as large as that for print.
+
+    Parameters
+    ----------
+    figure : Figure
+        A figure.
+    path : Path
+        File.
+    """
+    with house_style():
+        figure.savefig(path, dpi=_SCREEN, metadata={"Software": None})
 
 
 @contextmanager
