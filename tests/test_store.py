@@ -118,6 +118,18 @@ def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
     assert inventory.stale_sentence() == "2 stored simulations are stale: 2 as sources changed"
 
 
+def test_spectra_of_one_shape_and_two_names_have_rows_of_their_own(store, monkeypatch):
+    def refuse(*_, **__):
+        raise ValueError("too rough")
+
+    twins = [FLAT[0], replace(FLAT[0], spectrum_name="twin")]
+    assert twins[0].key == twins[1].key
+    monkeypatch.setattr(tasks, "run_simulation", refuse)
+    fill(store, twins)
+    rows = holdings(store.folder, twins).rows
+    assert [row.status for row in rows.values()] == ["refused", "refused"]
+
+
 def test_a_file_without_a_line_in_a_journal_counts(store):
     fill(store, FLAT)
     for path in (store.folder / "journals").iterdir():

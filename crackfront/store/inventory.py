@@ -91,12 +91,13 @@ def holdings(folder: Path, simulations: Sequence[Simulation]) -> Holdings:
     simulations : sequence of Simulation
         What to look for.
     """
-    wanted = {simulation.key: place for place, simulation in enumerate(simulations)}
+    # Spectra of one shape and different names have the same keys.
+    wanted = {(one.key, one.label): place for place, one in enumerate(simulations)}
     sizes = _sizes(folder / "curves")
     rows: dict[int, SweepRow] = {}
     older: dict[str, dict[str, str]] = {}
     for entry in _entries(folder):
-        place = wanted.get(entry.key)
+        place = wanted.get((entry.key, entry.label))
         if place is None:
             older[entry.label] = entry.parts
         # A simulation that cannot be done has a row and no file.
