@@ -3,6 +3,7 @@
 #   snakemake --profile workflow/profiles/default --config sweep=config/test.yaml
 #
 # Every rule calls the command `crackfront`, which can be called by hand as well.
+import os
 import sys
 from pathlib import Path
 
@@ -30,9 +31,10 @@ SCALE = config.get("scale", "quick")
 if SCALE not in SCALES:
     raise WorkflowError(f"scale is {SCALE!r}; choose one of {', '.join(SCALES)}")
 
-# The sweep of each scale's SI Fig. S-5.
+# The figures of the paper, and the sweep of each scale's SI Fig. S-5.
+FIGURE_SETTINGS = os.path.relpath(f"{workflow.basedir}/config/figures")
 SWEEPS = {
-    scale: load_figure(Path("config/figures/si-5.yaml"), scale).sweep
+    scale: load_figure(Path(FIGURE_SETTINGS, "si-5.yaml"), scale).sweep
     for scale in SCALES
 }
 CONFIGURATION = config.get("sweep", SWEEPS[SCALE])

@@ -188,8 +188,8 @@ def test_notice_keeps_what_runs_and_ends_cleanly(configuration, same, tmp_path, 
     assert gone(found)
     kept = len(stored(tmp_path))
     assert 3 <= kept < N_SIMULATION
-    checkpoints = list((tmp_path / "checkpoints").iterdir())
-    assert 1 <= len(checkpoints) <= ranks
+    # A simulation that has not come to its first state, or just ends, leaves none.
+    assert len(list((tmp_path / "checkpoints").iterdir())) <= ranks
     assert not list(tmp_path.glob(".notice-*"))
     assert rerun(configuration, tmp_path, "--ranks", str(ranks)) == N_SIMULATION - kept
     assert not any((tmp_path / "checkpoints").iterdir())

@@ -27,12 +27,12 @@ rule paper_figures:
 
 def measured_files(wildcards):
     """Files that the configuration of a figure names."""
-    return figure_files(Path(f"config/figures/{wildcards.figure}.yaml"), SCALE)
+    return figure_files(Path(FIGURE_SETTINGS, f"{wildcards.figure}.yaml"), SCALE)
 
 
 rule figure_data:
     input:
-        configuration="config/figures/{figure}.yaml",
+        configuration=f"{FIGURE_SETTINGS}/{{figure}}.yaml",
         measured=measured_files,
     output:
         f"{PAPER}/{{figure}}.nc",
@@ -44,7 +44,7 @@ rule figure_data:
 
 rule figure_of_sweep:
     input:
-        "config/figures/si-5.yaml",
+        f"{FIGURE_SETTINGS}/si-5.yaml",
         f"results/{Path(SWEEPS[SCALE]).stem}/hysteresis.nc",
     output:
         f"{PAPER}/si-5.nc",
