@@ -10,13 +10,21 @@ from matplotlib.figure import Figure
 
 from crackfront.cli import main
 from crackfront.config import SCALES, ConfigurationError, load_figure
-from crackfront.dataset import UnreadableFileError, read_record, write_record
+from crackfront.dataset import (
+    UnreadableFileError,
+    largest_differences,
+    read_record,
+    write_record,
+)
 from crackfront.figures import FIGURES, Check, SmoothLoop, checks_table, close_to
 from crackfront.plots import FIGURE_MAKERS
 from crackfront.provenance import provenance
 from crackfront.records import variable
 
 CONFIGURATIONS = Path(__file__).parents[1] / "config" / "figures"
+
+
+STATES = ("direction", "penetration", "radius", "force")
 
 
 def ignore(line):
@@ -128,6 +136,20 @@ def test_commands_compute_draw_and_check_a_figure(tmp_path):
     assert run("gallery", "--output", output, "--page", page).exit_code == 0
     assert "![Main Fig. 1d" in page.read_text()
     assert (page.parent / "figures" / "main-1d.png").stat().st_size > 1000
+
+
+def test_data_are_compared_with_a_reference_variable_by_variable(smooth, tmp_path):
+    paths = [tmp_path / f"{name}.nc" for name in ("one", "other", "short")]
+    changed = replace(smooth, force=smooth.force * (1 + 1e-6))
+    shorter = replace(smooth, **{name: getattr(smooth, name)[1:] for name in STATES})
+    for path, loop in zip(paths, (smooth, changed, shorter), strict=True):
+        write_record(path, loop, provenance(), title="smooth")
+    found = largest_differences(paths[1], paths[0])
+    assert found.pop("force") == pytest.approx(1e-6, rel=1e-3)
+    assert set(found.values()) == {0.0}
+    assert largest_differences(paths[2], paths[0])["radius"] == np.inf
+    result = CliRunner().invoke(main, ["compare-figures", str(paths[1]), str(paths[0])])
+    assert "force                        1.0e-06" in result.output
 
 
 def test_commands_refuse_what_is_no_figure(tmp_path):

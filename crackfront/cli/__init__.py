@@ -9,7 +9,13 @@ import click
 from crackfront import __version__
 from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.cycle import cycle
-from crackfront.cli.figure import check_figures, draw_figure, figure, gallery
+from crackfront.cli.figure import (
+    check_figures,
+    compare_figures,
+    draw_figure,
+    figure,
+    gallery,
+)
 from crackfront.cli.outlook import plan, status
 from crackfront.cli.sweep import aggregate, figures, fit, simulate
 
@@ -59,6 +65,7 @@ for command in (
     figure,
     draw_figure,
     check_figures,
+    compare_figures,
     gallery,
     accuracy,
     accuracy_report,

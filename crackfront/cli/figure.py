@@ -105,6 +105,20 @@ def check_figures(output: Path) -> None:
     click.echo(f"checks: {output / 'checks.md'}, {failed} of {count} fail")
 
 
+@click.command("compare-figures")
+@click.argument("data", type=FILE)
+@click.argument("reference", type=FILE)
+def compare_figures(data: Path, reference: Path) -> None:
+    """Tell how much the data of a figure differ from those of a reference, as docs/reference has.
+
+    The numbers are largest differences relative to the largest magnitude, a variable each.
+    """
+    from crackfront.dataset import largest_differences
+
+    for name, difference in largest_differences(data, reference).items():
+        click.echo(f"{name:28} {difference:.1e}")
+
+
 @click.command()
 @click.option(
     "--output", type=FILE, default=_FOLDER, show_default=True, help="Folder of all figures."

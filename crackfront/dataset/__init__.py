@@ -20,7 +20,7 @@ from crackfront.dataset.cycles import (
 from crackfront.dataset.fields import PolarSamples, read_field
 from crackfront.dataset.files import UnreadableFileError, read_attributes, write_text
 from crackfront.dataset.fit import write_fit
-from crackfront.dataset.records import read_record, write_record
+from crackfront.dataset.records import largest_differences, read_record, write_record
 from crackfront.dataset.tables import (
     COMPLETE,
     SweepRow,
@@ -37,6 +37,7 @@ __all__ = [
     "SweepRow",
     "UnreadableFileError",
     "failed_row",
+    "largest_differences",
     "laws_text",
     "read_attributes",
     "read_checkpoint",
