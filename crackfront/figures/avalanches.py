@@ -281,14 +281,14 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
     chosen = record.disorder_index == index
     energy, extent = record.energy[chosen], record.extent[chosen]
     law = size_law(record, index)
-    contained = "contains" if law.low <= SIZE_EXPONENT <= law.high else "leaves out"
+    contained = "contains it" if law.low <= SIZE_EXPONENT <= law.high else "leaves it out"
     yield Check(
         f"{name} disorder: exponent of the swept areas",
         f"{SIZE_EXPONENT} ± {_TOLERANCE}",
         f"{law.exponent:.2f} ({law.low:.2f} to {law.high:.2f})",
         abs(law.exponent - SIZE_EXPONENT) <= _TOLERANCE,
         f"{law.n_value} of {energy.size} avalanches; the 95% interval of a bootstrap over "
-        f"avalanches {contained} it; from {law.smallest:.2g} to the cut-off at {law.cutoff:.2g}, "
+        f"avalanches {contained}; from {law.smallest:.2g} to the cut-off at {law.cutoff:.2g}, "
         f"{np.log10(law.cutoff / law.smallest):.1f} decades; an effective exponent where these are "
         "few, as the sphere's own cut-off need not be exponential",
     )

@@ -127,13 +127,13 @@ def _exponent_check(
         fitted_roughness(part, index).exponent
         for part in (replace(record, longest=middle), replace(record, shortest=middle))
     ]
-    contained = "contains" if abs(fit.exponent - expected) <= fit.reach else "leaves out"
+    contained = "contains it" if abs(fit.exponent - expected) <= fit.reach else "leaves it out"
     return Check(
         claim,
         f"{expected} ± {_TOLERANCE}",
         f"{fit.exponent:.3f} ± {fit.reach:.3f}",
         abs(fit.exponent - expected) <= _TOLERANCE,
-        f"the 95% interval of {record.power.shape[1]} surfaces {contained} it; wavelengths "
+        f"the 95% interval of {record.power.shape[1]} surfaces {contained}; wavelengths "
         f"{low:.3g} to {high:.3g} ({np.log10(high / low):.2f} decades), their shorter half "
         f"{halves[0]:.3f}, longer half {halves[1]:.3f}; Larkin length "
         f"{record.larkin_length[index]:.3g}; the stiffness of the sphere's circle, "
