@@ -34,7 +34,7 @@ READY    = .venv/.ready-$(MPI)
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test nightly accuracy benchmark figures lint lock clean help
+.PHONY: all env test test-cluster nightly accuracy benchmark figures lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP)
@@ -83,14 +83,19 @@ test: env  ## Run the tests that are not slow
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest -m "not slow" --junitxml=$(REPORT)
 
+test-cluster: env  ## Run the tests that need a Slurm, on one started for them (minutes)
+	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm tests/cluster
+
 nightly: env  ## Run all tests, the slow ones too
 	@mkdir -p $(dir $(REPORT))
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT)
 
-benchmark: env  ## Solvers against the reference, what each request costs (half an hour)
+benchmark: env  ## Solvers against the reference, what requests cost, how sweeps scale (40 minutes)
 	$(IN_ENV) .venv/bin/python -m benchmarks --output results/benchmark
 	$(IN_ENV) .venv/bin/python -m benchmarks.needs --output results/benchmark
+	$(IN_ENV) .venv/bin/python -m benchmarks.costs --output results/benchmark
+	$(IN_ENV) .venv/bin/python -m benchmarks.scaling --output results/benchmark
 
 accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half an hour on two cores)
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default accuracy
@@ -120,5 +125,5 @@ clean:  ## Remove .venv and caches, never results
 	find crackfront tests workflow -type d -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
 help:  ## Show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
 	@echo "Variables: SWEEP=$(SWEEP) PYTHON=$(PYTHON) MPI=$(MPI) (see the top of the Makefile)"

@@ -1,0 +1,196 @@
+"""The sweep on a real Slurm: through Snakemake with the profile, and in the face of its limits.
+
+`make test-cluster` installs and starts a Slurm of one machine for these tests alone.
+"""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import xarray as xr
+import yaml
+
+from crackfront.cli import main
+from crackfront.parallel import default_launcher
+
+ROOT = Path(__file__).parents[2]
+COSTS = {"seconds", "cpu_seconds", "peak_memory"}
+SRUN = "srun -K1 --mpi=pmi2"
+
+
+def slurm_answers():
+    """Whether there is a Slurm with an idle node."""
+    if shutil.which("sinfo") is None:
+        return False
+    command = ["sinfo", "--noheader", "--states=idle,mixed"]
+    try:
+        told = subprocess.run(command, capture_output=True, text=True, timeout=20, check=False)
+    except subprocess.TimeoutExpired:
+        return False
+    return told.returncode == 0 and bool(told.stdout.strip())
+
+
+pytestmark = pytest.mark.slurm
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _slurm():
+    if not slurm_answers():
+        pytest.skip("no Slurm answers here; `make test-cluster` starts one where it can")
+
+
+def configuration(folder, *changes):
+    """A sweep of one spectrum, `config/test.yaml` with changes."""
+    lines = (ROOT / "config/test.yaml").read_text(encoding="utf-8").splitlines(keepends=True)
+    text = "".join(line for line in lines if "name: rough" not in line)
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / "sweep.yaml"
+    path.write_text(text)
+    return path
+
+
+def profile(folder, **simulate):
+    """The profile of the repository as a site would adapt it; resources of a shard may change."""
+    content = yaml.safe_load((ROOT / "workflow/profiles/slurm/config.yaml").read_text())
+    content["set-resources"]["simulate"] |= {"tasks": 3, "mem_mb_per_cpu": 500} | simulate
+    content |= {"slurm-init-seconds-before-status-checks": 2, "latency-wait": 5, "retries": 1}
+    (folder / "profile").mkdir()
+    (folder / "profile/config.yaml").write_text(yaml.safe_dump(content))
+    return folder / "profile"
+
+
+def environment():
+    """Environment of a command: this Python's commands first."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    return os.environ | {"OMP_NUM_THREADS": "1", "PATH": path}
+
+
+def snakemake(folder, sweep, target, **simulate):
+    """Command that runs the workflow with the profile up to a target."""
+    return [
+        *(sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")),
+        *("--profile", str(profile(folder, **simulate)), "--directory", str(folder)),
+        *("--seconds-between-status-checks", "1", "--config", f"sweep={sweep}"),
+        *("--", f"results/sweep/{target}"),
+    ]
+
+
+def dataset(folder):
+    """File of a sweep, without costs."""
+    return xr.load_dataset(folder / "hysteresis.nc").drop_vars(COSTS)
+
+
+def undisturbed(sweep, folder):
+    """File of a sweep that this process has run alone."""
+    for command in ("simulate", "aggregate"):
+        main([command, str(sweep), "--output", str(folder)], standalone_mode=False)
+    return dataset(folder)
+
+
+def run(command, timeout=280, **options):
+    """Run a command to its end."""
+    return subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+        check=False,
+        env=environment(),
+        **options,
+    )
+
+
+def until(condition, seconds=120):
+    """Wait for something that must happen."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it did not happen in time"
+        time.sleep(0.1)
+
+
+def stored(folder):
+    """Names and moments of the stored simulations."""
+    return {path.name: path.stat().st_mtime_ns for path in (folder / "curves").glob("[!.]*.nc")}
+
+
+@pytest.mark.parametrize(
+    ("resources", "target"),
+    [
+        pytest.param({"tasks": 2}, "hysteresis.nc", id="serial"),
+        pytest.param({"mpi": SRUN}, "shards/flat.json", id="srun"),
+        pytest.param({"mpi": default_launcher()}, "shards/flat.json", id="mpiexec"),
+    ],
+)
+def test_the_profile_runs_a_shard_and_the_sweep_is_the_undisturbed_one(tmp_path, resources, target):
+    sweep, results = configuration(tmp_path), tmp_path / "results/sweep"
+    done = run(snakemake(tmp_path, sweep, target, **resources))
+    assert done.returncode == 0, done.stderr
+    assert "has been submitted with SLURM jobid" in done.stderr
+    # One journal a process that has simulated.
+    assert len(list((results / "journals").iterdir())) == resources.get("tasks", 3) - 1
+    if target != "hysteresis.nc":
+        main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
+    assert dataset(results).equals(undisturbed(sweep, tmp_path / "alone"))
+
+
+def processes(text):
+    """Identifiers of processes whose command line holds a text."""
+    listed = subprocess.run(
+        ["ps", "-ww", "-eo", "pid=,args="], capture_output=True, text=True, check=True
+    )
+    lines = [line.split(maxsplit=1) for line in listed.stdout.splitlines()]
+    return [int(process) for process, command in lines if text in command]
+
+
+def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
+    changes = (("angles: 128", "angles: 512"), ("step: 0.1", "step: 0.02"))
+    sweep = configuration(tmp_path, *changes, ("realisations: 2", "realisations: 4"))
+    results = tmp_path / "results/sweep"
+    command = snakemake(tmp_path, sweep, "shards/flat.json")
+    with subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment()
+    ) as process:
+        until(lambda: len(stored(results)) >= 2)
+        os.kill(max(processes(f"-m mpi4py -m crackfront simulate {sweep}")), signal.SIGKILL)
+        before = stored(results)
+        told = process.stderr.read()
+    assert process.returncode == 0, told
+    assert told.count("has been submitted with SLURM jobid") == 2
+    assert 2 <= len(before) < 8
+    assert before.items() <= stored(results).items()
+    main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
+    assert dataset(results).equals(undisturbed(sweep, tmp_path / "alone"))
+
+
+def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_path):
+    # Limits are in minutes: with notice 50 s before its end, a job has ten seconds.
+    changes = (("angles: 128", "angles: 2000"), ("step: 0.1", "step: 0.0025"))
+    sweep = configuration(tmp_path, *changes, ("realisations: 2", "realisations: 1"))
+    results = tmp_path / "results"
+    command = f"exec {SRUN} -n 3 {sys.executable} -m mpi4py -m crackfront simulate {sweep} "
+    command += f"--ranks 2 --output {results}"
+    job = ["sbatch", "--wait", "--ntasks=3", "--time=1", "--signal=TERM@50", "--wrap", command]
+    first = run(job, cwd=tmp_path)
+    assert first.returncode != 0
+    assert "Stopped as told: 0 of 2" in next(tmp_path.glob("slurm-*.out")).read_text()
+    checkpoints = [xr.load_dataset(path) for path in (results / "checkpoints").glob("*.nc")]
+    assert len(checkpoints) == 2
+    job = ["sbatch", "--wait", "--ntasks=3", "--wrap", command]
+    assert run(job, cwd=tmp_path).returncode == 0
+    for checkpoint in checkpoints:
+        [path] = (results / "curves").glob(f"*{checkpoint.attrs['key']}.nc")
+        ended = xr.load_dataset(path)
+        known = checkpoint["mean_radius"]
+        assert 5 < known.size < ended["mean_radius"].size
+        assert ended["mean_radius"].values[: known.size].tobytes() == known.values.tobytes()
+        assert ended["cpu_seconds"] > checkpoint.attrs["cpu_seconds"]
+    assert not any((results / "checkpoints").iterdir())
+    main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
+    assert dataset(results).equals(undisturbed(sweep, tmp_path / "alone"))
