@@ -170,15 +170,19 @@ def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
 
 
 def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_path):
-    # Limits are in minutes: with notice 50 s before its end, a job has ten seconds.
     changes = (("angles: 128", "angles: 2000"), ("step: 0.1", "step: 0.0025"))
     sweep = configuration(tmp_path, *changes, ("realisations: 2", "realisations: 1"))
     results = tmp_path / "results"
     command = f"exec {SRUN} -n 3 {sys.executable} -m mpi4py -m crackfront simulate {sweep} "
     command += f"--ranks 2 --output {results}"
-    job = ["sbatch", "--wait", "--ntasks=3", "--time=1", "--signal=TERM@50", "--wrap", command]
-    first = run(job, cwd=tmp_path)
-    assert first.returncode != 0
+    job = ["sbatch", "--parsable", "--ntasks=3", "--time=60", "--signal=TERM@58", "--wrap", command]
+    number = run(job, cwd=tmp_path).stdout.strip()
+    until(lambda: len(list((results / "journals").glob("*"))) == 2)
+    # Limits are in minutes: with notice 58 s before its end, the minute that runs is the last.
+    used = run(["squeue", "--noheader", "--jobs", number, "--format=%M"]).stdout
+    limit = int(used.split(":")[0]) + 1
+    run(["scontrol", "update", f"JobId={number}", f"TimeLimit={limit}"])
+    until(lambda: not run(["squeue", "--noheader", "--jobs", number]).stdout.strip())
     assert "Stopped as told: 0 of 2" in next(tmp_path.glob("slurm-*.out")).read_text()
     checkpoints = [xr.load_dataset(path) for path in (results / "checkpoints").glob("*.nc")]
     assert len(checkpoints) == 2
