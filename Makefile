@@ -4,6 +4,7 @@
 #
 # Variables
 #   SWEEP=config/default.yaml   the configuration that `make` runs; results in results/<its name>/
+#   CLUSTER="slurm and not slow"   leaves out, of `make test-cluster`, what kills and times
 #   SCALE=quick | paper         coarser lengths, or the paper's, for `make figures`
 #   PYTHON=python3              the interpreter that .venv is made from (3.11 or newer)
 #   MPI=wheel | system          wheel (default): MPICH from the package index, no system MPI needed.
@@ -14,6 +15,7 @@
 
 SWEEP  ?= config/default.yaml
 SCALE  ?= quick
+CLUSTER ?= slurm
 PYTHON ?= python3
 MPI    ?= $(if $(wildcard .venv/.packages-system),system,wheel)
 
@@ -84,7 +86,7 @@ test: env  ## Run the tests that are not slow
 	@$(IN_ENV) .venv/bin/python -m pytest -m "not slow" --junitxml=$(REPORT)
 
 test-cluster: env  ## Run the tests that need a Slurm, on one started for them (minutes)
-	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm tests/cluster
+	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m "$(CLUSTER)" tests/cluster
 
 nightly: env  ## Run all tests, the slow ones too
 	@mkdir -p $(dir $(REPORT))

@@ -149,6 +149,7 @@ def processes(text):
     return [int(process) for process, command in lines if text in command]
 
 
+@pytest.mark.slow
 def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
     changes = (("angles: 128", "angles: 512"), ("step: 0.1", "step: 0.02"))
     sweep = configuration(tmp_path, *changes, ("realisations: 2", "realisations: 4"))
@@ -169,6 +170,7 @@ def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
     assert dataset(results).equals(undisturbed(sweep, tmp_path / "alone"))
 
 
+@pytest.mark.slow
 def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_path):
     changes = (("angles: 128", "angles: 2000"), ("step: 0.1", "step: 0.0025"))
     sweep = configuration(tmp_path, *changes, ("realisations: 2", "realisations: 1"))
