@@ -136,14 +136,15 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"{PAPER_FACTOR:g} ± {_ABOUT:g}",
             _interval(factor),
             bool(abs(factor.value - PAPER_FACTOR) <= _ABOUT),
-            "95% interval; k grows with disorder and with the number of correlation lengths "
-            "around the contact, see the panels b and c",
+            "95% interval; k grows with the number of correlation lengths around the contact, and "
+            "falls with disorder beyond the onset: panels b and c",
         ),
         Check(
             "hysteresis in proportion to w_rms^2: exponent 2",
             "2 in the 95% interval",
             _interval(exponent),
             bool(exponent.low <= 2 <= exponent.high),
+            "over the range of the fit, where k falls with disorder",
         ),
         Check(
             "independent of the shape of the spectrum: spread of k among the spectra",
