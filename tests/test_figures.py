@@ -13,6 +13,7 @@ from crackfront.config import SCALES, ConfigurationError, load_figure
 from crackfront.dataset import (
     UnreadableFileError,
     largest_differences,
+    read_attributes,
     read_record,
     write_record,
 )
@@ -21,6 +22,7 @@ from crackfront.plots import FIGURE_MAKERS
 from crackfront.provenance import provenance
 from crackfront.records import variable
 
+REFERENCES = Path(__file__).parents[1] / "docs" / "reference"
 CONFIGURATIONS = Path(__file__).parents[1] / "config" / "figures"
 
 
@@ -136,6 +138,17 @@ def test_commands_compute_draw_and_check_a_figure(tmp_path):
     assert run("gallery", "--output", output, "--page", page).exit_code == 0
     assert "![Main Fig. 1d" in page.read_text()
     assert (page.parent / "figures" / "main-1d.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("path", sorted(REFERENCES.glob("*.nc")), ids=lambda path: path.stem)
+def test_the_kept_data_can_be_read_and_say_where_they_come_from(path):
+    scene = FIGURES[path.stem]
+    checks = scene.checks(read_record(path, scene.record))
+    assert sum(check.passed for check in checks) > len(checks) / 2
+    told = read_attributes(path)
+    assert told["scale"] == "paper"
+    assert told["command"] == f"crackfront figure config/figures/{path.stem}.yaml --scale paper"
+    assert "dirty" not in told["git_commit"]
 
 
 def test_data_are_compared_with_a_reference_variable_by_variable(smooth, tmp_path):
