@@ -104,7 +104,7 @@ accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half
 	@echo "Results: results/accuracy/"
 
 figures: env  ## All figures of the paper; SCALE=quick (15 minutes) or SCALE=paper
-	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config scale=$(SCALE) -- paper_figures
+	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config scale=$(SCALE) -- figures
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
 
 lint: env  ## Style, format, types, import floors, format of the rules

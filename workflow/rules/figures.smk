@@ -1,4 +1,4 @@
-rule figures:
+rule sweep_figures:
     input:
         CONFIGURATION,
         f"{RESULTS}/hysteresis.nc",

@@ -13,7 +13,7 @@ wildcard_constraints:
 ruleorder: figure_animation > figure_drawing
 
 
-rule paper_figures:
+rule figures:
     input:
         expand(
             "{results}/{figure}.{suffix}",
