@@ -16,7 +16,7 @@ import csv
 import functools
 import math
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, fields, replace
+from dataclasses import astuple, dataclass, replace
 from importlib.resources import files
 
 import numpy as np
@@ -222,14 +222,18 @@ def _seconds(coefficients: Sequence[float] | Array, items: Sequence[Features]) -
 
 def _run(row: dict[str, str]) -> Measured:
     """A run from its row."""
-    counts = ("n_angle", "n_point")
-    values = {item.name: row[f"expected_{item.name}" if item.name == "n_state" else item.name]
-              for item in fields(Features)}  # fmt: skip
-    found = {name: int(text) if name in counts else float(text) for name, text in values.items()}
     return Measured(
         name=row["name"],
         held_out=row["held_out"] == "1",
-        features=Features(**found),  # type: ignore[arg-type]
+        features=Features(
+            n_angle=int(row["n_angle"]),
+            n_point=int(row["n_point"]),
+            elastic_energy=float(row["elastic_energy"]),
+            tolerance=float(row["tolerance"]),
+            breadth=float(row["breadth"]),
+            travel=float(row["travel"]),
+            n_state=float(row["expected_n_state"]),
+        ),
         n_state=int(row["n_state"]),
         cpu_seconds=float(row["cpu_seconds"]),
     )
