@@ -165,6 +165,25 @@ def test_data_are_compared_with_a_reference_variable_by_variable(smooth, tmp_pat
     assert "force                        1.0e-06" in result.output
 
 
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
+    tmp_path, monkeypatch
+):
+    (tmp_path / "taken").write_text("a file")
+    monkeypatch.setitem(FIGURES, "main-1d", replace(FIGURES["main-1d"], compute=None))
+    arguments = [CONFIGURATIONS / "main-1d.yaml", "--output", tmp_path / "taken"]
+    result = CliRunner().invoke(main, ["figure", *map(str, arguments)])
+    assert result.exit_code == 2
+    assert "cannot be used: Not a directory" in result.output
+
+
+def test_the_figure_of_a_sweep_that_was_not_run_says_how_to_run_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "config").symlink_to(CONFIGURATIONS.parent)
+    result = CliRunner().invoke(main, ["figure", "config/figures/si-5.yaml"])
+    assert result.exit_code == 2
+    assert "run the sweep first: make SWEEP=config/default.yaml" in result.output
+
+
 def test_commands_refuse_what_is_no_figure(tmp_path):
     result = CliRunner().invoke(main, ["draw-figure", str(tmp_path / "other.nc")])
     assert result.exit_code == 2

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation
+from crackfront.cli.report import FILE, announce_compilation, refuse_unwritable
 from crackfront.cli.sweep import fit_of_sweep
 
 _FOLDER = Path("results/figures")
@@ -43,12 +43,13 @@ def figure(configuration: Path, scale: str, output: Path) -> None:
     started = time.perf_counter(), time.process_time()
     parameters = load_figure(configuration, scale)
     scene = FIGURES[configuration.stem]
+    path = output / scale / f"{configuration.stem}.nc"
+    refuse_unwritable(path.parent)
     if isinstance(parameters, ParametricStudyParameters):
         record = scene.compute(parameters, click.echo, fit_of_sweep(Path(parameters.sweep)))
     else:
         announce_compilation()
         record = scene.compute(parameters, click.echo)
-    path = output / scale / f"{configuration.stem}.nc"
     origin = provenance(configuration.read_text(encoding="utf-8"))
     spent = time.perf_counter() - started[0], time.process_time() - started[1]
     write_record(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -39,6 +40,19 @@ def announce_compilation() -> None:
 
     if not kernels_are_cached():
         click.echo("compiling the solver (once)")
+
+
+def refuse_unwritable(folder: Path) -> None:
+    """Raise where no file can be written in a folder, before anything is computed for it.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be made, or takes no file.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryFile(dir=folder):
+        pass
 
 
 def launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path) -> None:

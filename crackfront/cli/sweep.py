@@ -179,8 +179,20 @@ def _sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, S
 
 
 def fit_of_sweep(configuration: Path) -> SweepFit:
-    """Fit of the results of a sweep, in `results/` under the name of its configuration."""
-    return _fitted(*_sweep_and_store(configuration, None))
+    """Fit of the results of a sweep, in `results/` under the name of its configuration.
+
+    Raises
+    ------
+    ValueError
+        If the sweep has not been run.
+    """
+    sweep, store = _sweep_and_store(configuration, None)
+    if not (store.folder / "hysteresis.nc").exists():
+        raise ValueError(
+            f"{store.folder} holds no hysteresis.nc; run the sweep first: "
+            f"make SWEEP={configuration}"
+        )
+    return _fitted(sweep, store)
 
 
 def _fitted(sweep: Sweep, store: Store) -> SweepFit:
