@@ -6,18 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import model_validator
 
 from crackfront import jkr
-from crackfront.cycle import LoadSchedule, run_cycle
+from crackfront.cycle import run_cycle
 from crackfront.figures.checks import Check, close_to
-from crackfront.figures.rough import RoughParameters, patch_of
+from crackfront.figures.rough import RoughCycleParameters, patch_of
 from crackfront.figures.scene import Progress
 from crackfront.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.relax import Status
-from crackfront.scene import Simulation, compile_solver, simulation_adhesion, simulation_field
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.validation import Energy, Positive
+from crackfront.scene import compile_solver, simulation_adhesion, simulation_field
 
 Array = NDArray[np.float64]
 
@@ -27,38 +24,8 @@ _PATCH_POINTS = 400
 """Points along a side of the field that is shown."""
 
 
-class MotionParameters(RoughParameters):
-    """What the animation shows: a contact on a flat spectrum, whose instabilities can be seen.
-
-    Attributes
-    ----------
-    short_cutoff : float
-        Shortest wavelength. (Units: reduced lateral length)
-    elastic_energy : float
-        Energy of full conformity. (Units: w_int)
-    max_penetration, step : float
-        Penetrations to visit, a frame each. (Units: reduced vertical length)
-    """
-
-    short_cutoff: Positive
-    elastic_energy: Energy
-    max_penetration: Positive
-    step: Positive
-
-    @model_validator(mode="after")
-    def _possible(self) -> MotionParameters:
-        self.simulation()
-        return self
-
-    @property
-    def schedule(self) -> LoadSchedule:
-        """Penetrations to visit."""
-        return LoadSchedule(self.max_penetration, self.step)
-
-    def simulation(self) -> Simulation:
-        """The simulation."""
-        spectrum = SelfAffineSpectrum(self.short_cutoff, self.short_cutoff, hurst=1.0)
-        return self.simulation_of(spectrum, self.elastic_energy, self.schedule)
+class MotionParameters(RoughCycleParameters):
+    """What the animation shows: a contact on a flat spectrum, whose instabilities can be seen."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,14 +8,14 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from crackfront import jkr
-from crackfront.cycle import LoadSchedule, loads
+from crackfront.cycle import loads
 from crackfront.figures.checks import Check, close_to
 from crackfront.figures.rough import (
     ONE_DIGIT,
-    RoughParameters,
+    RoughCycleParameters,
     first_touch,
     patch_of,
     rough_spectrum,
@@ -26,10 +26,10 @@ from crackfront.laws import stated_error
 from crackfront.pinning import front_adhesion
 from crackfront.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.relax import Status
-from crackfront.scene import Simulation, simulation_adhesion, simulation_field
+from crackfront.scene import simulation_adhesion, simulation_field
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.units import WORK_OF_ADHESION
-from crackfront.validation import Energy, Positive
+from crackfront.validation import Positive
 
 Array = NDArray[np.float64]
 
@@ -45,45 +45,27 @@ _PATCH_POINTS = 600
 """Points along a side of the patch of the field."""
 
 
-class PinnedLoopParameters(RoughParameters):
+class PinnedLoopParameters(RoughCycleParameters):
     """What Fig. 3c and 3d show.
 
     Attributes
     ----------
-    short_cutoff, roll_off : float
-        Wavelengths of the spectrum. (Units: reduced lateral length)
+    roll_off : float
+        Roll-off wavelength of the spectrum. (Units: reduced lateral length)
     hurst : float
         Its Hurst exponent.
-    elastic_energy : float
-        Energy of full conformity. (Units: w_int)
-    max_penetration, step : float
-        Penetrations to visit. (Units: reduced vertical length)
     patch_side : float
         Side of the part of the field that is shown. (Units: reduced lateral length)
     """
 
-    short_cutoff: Positive
     roll_off: Positive
     hurst: Annotated[float, Field(gt=0, le=1)]
-    elastic_energy: Energy
-    max_penetration: Positive
-    step: Positive
     patch_side: Positive
 
-    @model_validator(mode="after")
-    def _possible(self) -> PinnedLoopParameters:
-        self.simulation()
-        return self
-
     @property
-    def schedule(self) -> LoadSchedule:
-        """Penetrations to visit."""
-        return LoadSchedule(self.max_penetration, self.step)
-
-    def simulation(self) -> Simulation:
-        """The simulation."""
-        spectrum = rough_spectrum(self.short_cutoff, self.roll_off, self.hurst)
-        return self.simulation_of(spectrum, self.elastic_energy, self.schedule)
+    def spectrum(self) -> SelfAffineSpectrum:
+        """Shape of the spectrum."""
+        return rough_spectrum(self.short_cutoff, self.roll_off, self.hurst)
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
 from scipy.ndimage import map_coordinates
 
 from crackfront.cycle import FrontHistory, LoadSchedule, refuse_outgrown
@@ -15,7 +15,7 @@ from crackfront.pinning import TileField, first_radius, n_angle
 from crackfront.scene import Numerics, Simulation, compile_solver, resolution
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.units import WORK_OF_ADHESION
-from crackfront.validation import Positive, Section, refusal
+from crackfront.validation import Energy, Positive, Section, refusal
 
 Array = NDArray[np.float64]
 
@@ -94,6 +94,44 @@ class RoughParameters(Section):
                 f"error is {self.error:g}, but the finest numerics leave {left:.2g}; ask for that"
             )
         return simulation
+
+
+class RoughCycleParameters(RoughParameters):
+    """What a figure of a whole cycle needs beside the shape of its spectrum.
+
+    Attributes
+    ----------
+    short_cutoff : float
+        Shortest wavelength. (Units: reduced lateral length)
+    elastic_energy : float
+        Energy of full conformity. (Units: w_int)
+    max_penetration, step : float
+        Penetrations to visit. (Units: reduced vertical length)
+    """
+
+    short_cutoff: Positive
+    elastic_energy: Energy
+    max_penetration: Positive
+    step: Positive
+
+    @model_validator(mode="after")
+    def _possible(self) -> RoughCycleParameters:
+        self.simulation()
+        return self
+
+    @property
+    def spectrum(self) -> SelfAffineSpectrum:
+        """Shape of the spectrum, flat where nothing else is said."""
+        return SelfAffineSpectrum(self.short_cutoff, self.short_cutoff, hurst=1.0)
+
+    @property
+    def schedule(self) -> LoadSchedule:
+        """Penetrations to visit."""
+        return LoadSchedule(self.max_penetration, self.step)
+
+    def simulation(self) -> Simulation:
+        """The simulation."""
+        return self.simulation_of(self.spectrum, self.elastic_energy, self.schedule)
 
 
 def rough_spectrum(
