@@ -123,6 +123,12 @@ def expected_cost(simulation: Simulation) -> Cost:
     simulation : Simulation
         A simulation.
     """
+    return _cost(replace(simulation, realisation=0))
+
+
+@functools.lru_cache(maxsize=4096)
+def _cost(simulation: Simulation) -> Cost:
+    """What all realisations of a simulation are expected to cost."""
     item, sizes = features(simulation), simulation.resolution
     fronts = 8 * item.n_state * sizes.n_angle if simulation.record_fronts else 0.0
     return Cost(

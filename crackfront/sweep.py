@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import difflib
 import hashlib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from crackfront.cycle import LoadSchedule
 from crackfront.laws import chosen_numerics
@@ -165,16 +165,29 @@ class Sweep:
             record_energy=self.record_energy,
         )
 
+    def simulations(
+        self, item: NamedSpectrum | None = None, realisations: range | None = None
+    ) -> Iterator[Simulation]:
+        """Simulations one after the other: by spectrum, amplitude and realisation.
+
+        Parameters
+        ----------
+        item : NamedSpectrum, optional
+            The spectrum; by default all.
+        realisations : range, optional
+            Numbers of the realisations; by default all.
+        """
+        block = range(self.n_realisation) if realisations is None else realisations
+        for one in self.spectra if item is None else (item,):
+            for energy in self.elastic_energies:
+                first = self.simulation(one, energy, 0)
+                yield from (replace(first, realisation=number) for number in block)
+
     def shard(
         self, item: NamedSpectrum, realisations: range | None = None
     ) -> tuple[Simulation, ...]:
         """Simulations of one spectrum, amplitude by amplitude; by default all realisations."""
-        block = range(self.n_realisation) if realisations is None else realisations
-        return tuple(
-            self.simulation(item, energy, realisation)
-            for energy in self.elastic_energies
-            for realisation in block
-        )
+        return tuple(self.simulations(item, realisations))
 
     @property
     def n_simulation(self) -> int:

@@ -17,7 +17,8 @@ ENDED = replace(BEGUN, definition="now", row=failed_row(ONE, "refused", "too rou
 
 def entries(folder, definition="now"):
     """Entries of all journals of a folder."""
-    return [entry for path in journal_paths(folder) for entry in read_journal(path, definition)]
+    paths = journal_paths(folder)
+    return [entry for path in paths for _, entry in read_journal(path, definition)]
 
 
 def same(one, other):

@@ -9,10 +9,11 @@ import pytest
 
 from crackfront.config import load_configuration
 from crackfront.costs import expected_cost
-from crackfront.dataset import read_simulation, read_table
+from crackfront.dataset import read_simulation, read_table, tables
+from crackfront.dataset.files import read_dataset
 from crackfront.provenance import provenance
 from crackfront.scene import run_simulation
-from crackfront.store import NOT_STORED, Store, tasks
+from crackfront.store import NOT_STORED, Store, ledger, tasks
 from crackfront.store.inventory import holdings
 
 SWEEP = load_configuration(Path(__file__).parents[1] / "config/test.yaml")
@@ -126,8 +127,8 @@ def test_spectra_of_one_shape_and_two_names_have_rows_of_their_own(store, monkey
     assert twins[0].key == twins[1].key
     monkeypatch.setattr(tasks, "run_simulation", refuse)
     fill(store, twins)
-    rows = holdings(store.folder, twins).rows
-    assert [row.status for row in rows.values()] == ["refused", "refused"]
+    rows = [held.row for held in holdings(store.folder, twins)]
+    assert [row.status for row in rows] == ["refused", "refused"]
 
 
 def test_a_file_without_a_line_in_a_journal_counts(store):
@@ -160,9 +161,9 @@ def test_a_simulation_that_cannot_be_done_is_a_row_and_is_not_tried_again(store)
     assert store.path(FLAT[0]).exists()
     assert not any(store.path(one).exists() for one in refused)
     assert store.inventory([*energies, FLAT[0]]).missing == ()
-    rows = holdings(store.folder, refused).rows
-    assert {row.status for row in rows.values()} == {"refused"}
-    for row in rows.values():
+    rows = [held.row for held in holdings(store.folder, refused)]
+    assert {row.status for row in rows} == {"refused"}
+    for row in rows:
         assert "full conformity needs less than w_int" in row.status_sentence
         assert np.isnan(row.w_appr)
 
@@ -216,6 +217,21 @@ def test_a_complete_sweep_is_aggregated(store):
     path, statuses = store.aggregate(SWEEP, provenance("text"))
     assert statuses == {"lost_contact": 8}
     assert read_table(path).w_appr.shape == (2, 2, 2)
+
+
+def test_a_sweep_is_aggregated_the_same_whatever_is_held_at_once(store, monkeypatch):
+    simulations = list(SWEEP.simulations())
+    fill(store, simulations[:3])
+    # Some files have no line in a journal any more.
+    for path in (store.folder / "journals").iterdir():
+        path.unlink()
+    fill(store, simulations[3:])
+    whole = read_dataset(store.aggregate(SWEEP, provenance("text"))[0])
+    monkeypatch.setattr(ledger, "ROWS_AT_ONCE", 3)
+    monkeypatch.setattr(tables, "ROWS_AT_ONCE", 1)
+    parts = read_dataset(store.aggregate(SWEEP, provenance("text"))[0])
+    assert parts.drop_attrs().identical(whole.drop_attrs())
+    assert [*whole["curve"].values.flat] == [f"{one.stem}.nc" for one in simulations]
 
 
 def test_a_defect_that_the_solver_finds_in_itself_is_a_row_and_the_others_run(store, monkeypatch):

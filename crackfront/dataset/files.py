@@ -4,16 +4,37 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable
-from dataclasses import asdict
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from crackfront.provenance import Provenance, utc_now
 from crackfront.records import Variable
+
+_PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
+"""How arrays are compressed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A part of the values of some variables.
+
+    Attributes
+    ----------
+    place : tuple of int or slice
+        Where in the dimensions of the variables it belongs.
+    columns : sequence of array
+        Values of each variable; texts as objects.
+    """
+
+    place: tuple[int | slice, ...]
+    columns: Sequence[NDArray[Any]]
 
 
 class UnreadableFileError(ValueError):
@@ -37,6 +58,61 @@ def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
     origin : Provenance
         Where it comes from.
     """
+    replace_atomically(path, lambda part: _write(part, dataset, origin))
+
+
+def write_dataset_in_blocks(
+    path: Path,
+    dataset: xr.Dataset,
+    variables: Sequence[Variable],
+    blocks: Iterable[Block],
+    origin: Provenance,
+) -> None:
+    """Write a dataset whose variables come block by block, atomically, holding one block at a time.
+
+    Parameters
+    ----------
+    path : Path
+        File; its folder is created.
+    dataset : xarray.Dataset
+        Coordinates and attributes.
+    variables : sequence of Variable
+        The variables, all of the same dimensions.
+    blocks : iterable of Block
+        All of their values.
+    origin : Provenance
+        Where it comes from.
+    """
+
+    def write(part: Path) -> None:
+        _write(part, dataset, origin)
+        with netCDF4.Dataset(part, "a") as file:
+            for block in blocks:
+                for variable, values in zip(variables, block.columns, strict=True):
+                    if variable.name not in file.variables:
+                        _create(file, variable, values)
+                    file[variable.name][block.place] = values
+
+    replace_atomically(path, write)
+
+
+def _create(file: netCDF4.Dataset, variable: Variable, values: NDArray[Any]) -> None:
+    """Create a variable for values like those of a block, in chunks of a block's size."""
+    text = values.dtype == object
+    sizes = [len(file.dimensions[name]) for name in variable.dims]
+    created = file.createVariable(
+        variable.name,
+        str if text else values.dtype,
+        variable.dims,
+        fill_value=None if text else False,
+        chunksizes=[1] * (len(sizes) - 1) + [min(sizes[-1], values.size)],
+        **({} if text else _PACKED),
+    )
+    created.setncatts(variable.attributes)
+
+
+def _write(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
+    """Write a dataset with its origin under a name."""
     stamped = dataset.assign_attrs(asdict(origin), date=utc_now())
     encoding: dict[str, dict[str, Any]] = {
         str(name): {"_FillValue": None}
@@ -45,11 +121,8 @@ def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
     }
     for name, values in stamped.variables.items():
         if values.ndim > 1 and str(name) in encoding:
-            encoding[str(name)] |= {"zlib": True, "shuffle": True, "complevel": 1}
-    replace_atomically(
-        path,
-        lambda part: stamped.to_netcdf(part, engine="netcdf4", encoding=encoding),
-    )
+            encoding[str(name)] |= _PACKED
+    stamped.to_netcdf(path, engine="netcdf4", encoding=encoding)
 
 
 def write_text(path: Path, text: str) -> None:
@@ -74,8 +147,15 @@ def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
         part.unlink(missing_ok=True)
 
 
-def read_dataset(path: Path) -> xr.Dataset:
+def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset:
     """Dataset of a file, in memory.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    names : collection of str, optional
+        Variables to read beside the coordinates, those that are there; by default all.
 
     Raises
     ------
@@ -86,7 +166,8 @@ def read_dataset(path: Path) -> xr.Dataset:
         raise UnreadableFileError(f"{path} does not exist; check the name")
     try:
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
-            return dataset.load()
+            others = [] if names is None else [name for name in dataset if name not in names]
+            return dataset.drop_vars(others).load()
     except (OSError, RuntimeError, ValueError) as error:
         raise UnreadableFileError(
             f"{path} is no complete netCDF file; remove it or write it again"
@@ -101,7 +182,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
     UnreadableFileError
         If there is no such file or it is no complete netCDF file.
     """
-    return {str(name): value for name, value in read_dataset(path).attrs.items()}
+    return {str(name): value for name, value in read_dataset(path, ()).attrs.items()}
 
 
 def _umask() -> int:

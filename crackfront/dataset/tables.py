@@ -6,22 +6,33 @@ import functools
 import hashlib
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, fields
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from crackfront.cycle import CycleRecord
-from crackfront.dataset.files import UnreadableFileError, labelled, read_dataset, write_dataset
+from crackfront.dataset.files import (
+    Block,
+    UnreadableFileError,
+    labelled,
+    read_dataset,
+    write_dataset_in_blocks,
+)
 from crackfront.dataset.schema import AMPLITUDE, COORDINATES, HYSTERESIS
 from crackfront.fits import STEADY_DEFINITION, SteadyAdhesion, SweepTable, steady_adhesion
 from crackfront.laws import stated_error
 from crackfront.provenance import Provenance
 from crackfront.scene import Simulation, SimulationResult, correlation_length
 from crackfront.sweep import Sweep
+
+ROWS_AT_ONCE = 4096
+"""Rows that are written at once."""
 
 COMPLETE = ("lost_contact", "steady")
 """Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
@@ -65,9 +76,9 @@ class SweepRow:
 
 
 def write_hysteresis(
-    path: Path, sweep: Sweep, rows: Sequence[SweepRow], origin: Provenance
+    path: Path, sweep: Sweep, rows: Iterable[SweepRow], origin: Provenance
 ) -> Counter[str]:
-    """Write the file of a sweep.
+    """Write the file of a sweep, in the memory of a few thousand rows.
 
     Parameters
     ----------
@@ -75,7 +86,7 @@ def write_hysteresis(
         netCDF file.
     sweep : Sweep
         Its parameters.
-    rows : sequence of SweepRow
+    rows : iterable of SweepRow
         One for each simulation: by spectrum, amplitude and realisation, the last the fastest.
     origin : Provenance
         Where it comes from.
@@ -85,16 +96,26 @@ def write_hysteresis(
     Counter
         Number of simulations of every status.
     """
-    shape = (len(sweep.spectra), len(sweep.elastic_energies), sweep.n_realisation)
-    variables = {
-        item.name: labelled(
-            item, np.array([getattr(row, item.name) for row in rows]).reshape(shape)
-        )
-        for item in HYSTERESIS
-    }
-    dataset = xr.Dataset(variables, coords=_coordinates(sweep), attrs=_attributes(sweep))
-    write_dataset(path, dataset, origin)
-    return Counter(row.status for row in rows)
+    dataset = xr.Dataset(coords=_coordinates(sweep), attrs=_attributes(sweep))
+    statuses: Counter[str] = Counter()
+
+    def blocks() -> Iterator[Block]:
+        remaining = iter(rows)
+        for cell in np.ndindex(len(sweep.spectra), len(sweep.elastic_energies)):
+            for start in range(0, sweep.n_realisation, ROWS_AT_ONCE):
+                stop = min(start + ROWS_AT_ONCE, sweep.n_realisation)
+                block = list(islice(remaining, stop - start))
+                statuses.update(row.status for row in block)
+                yield Block((*cell, slice(start, stop)), _columns(block))
+
+    write_dataset_in_blocks(path, dataset, HYSTERESIS, blocks(), origin)
+    return statuses
+
+
+def _columns(rows: Sequence[SweepRow]) -> list[NDArray[Any]]:
+    """Columns of rows in the order of their variables; texts as objects."""
+    columns = [np.array([getattr(row, item.name) for row in rows]) for item in HYSTERESIS]
+    return [column.astype(object) if column.dtype.kind == "U" else column for column in columns]
 
 
 def read_table(path: Path) -> SweepTable:
@@ -110,15 +131,29 @@ def read_table(path: Path) -> SweepTable:
     ValueError
         If the file is missing, truncated or that of something else.
     """
-    dataset = read_dataset(path)
     sources = {name: name for name in SweepTable.__dataclass_fields__}
     sources["e_el_requested"] = AMPLITUDE
+    dataset = read_dataset(path, sources.values())
     missing = [name for name in sources.values() if name not in dataset]
     if missing:
         raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; aggregate the sweep again")
     columns = {name: np.asarray(dataset[source]) for name, source in sources.items()}
     columns["spectrum"] = columns["spectrum"].astype(np.str_)
     return SweepTable(**columns)
+
+
+def read_statuses(path: Path) -> Counter[str]:
+    """Number of simulations of every status in the file of a sweep.
+
+    Raises
+    ------
+    ValueError
+        If the file is missing, truncated or that of something else.
+    """
+    dataset = read_dataset(path, ("status",))
+    if "status" not in dataset:
+        raise UnreadableFileError(f"{path} lacks status; aggregate the sweep again")
+    return Counter(dataset["status"].values.ravel().tolist())
 
 
 def sweep_row(result: SimulationResult) -> SweepRow:

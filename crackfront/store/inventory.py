@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,11 +11,10 @@ from crackfront.dataset import (
     SweepRow,
     UnreadableFileError,
     read_simulation,
-    row_fingerprint,
     sweep_row,
 )
 from crackfront.scene import Simulation
-from crackfront.store.journal import Entry, journal_paths, read_journal
+from crackfront.store.ledger import Ledger
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,80 +61,72 @@ class Inventory:
 
 
 @dataclass(frozen=True, slots=True)
-class Holdings:
-    """Simulations of a list, by their places in it.
+class Holding:
+    """What a store has of one simulation.
 
     Attributes
     ----------
-    rows : dict of int to SweepRow
-        Rows of those that are stored.
-    unreadable : tuple of str
-        A sentence for every file that is there and of no use.
-    older : dict of str to dict
-        Parts of the keys of simulations that are not in the list, by their labels.
+    simulation : Simulation
+        The simulation.
+    row : SweepRow or None
+        Its row, where it is stored.
+    unreadable : str
+        A sentence where its file is there and of no use, else empty.
     """
 
-    rows: dict[int, SweepRow]
-    unreadable: tuple[str, ...]
-    older: dict[str, dict[str, str]]
+    simulation: Simulation
+    row: SweepRow | None
+    unreadable: str = ""
 
 
-def holdings(folder: Path, simulations: Sequence[Simulation]) -> Holdings:
-    """What a store has of simulations.
+def holdings(
+    folder: Path, simulations: Iterable[Simulation], ledger: Ledger | None = None
+) -> Iterator[Holding]:
+    """What a store has of simulations, one after the other.
 
     Parameters
     ----------
     folder : Path
         Folder of the store.
-    simulations : sequence of Simulation
+    simulations : iterable of Simulation
+        What to look for.
+    ledger : Ledger, optional
+        The rows of its journals, where they have been found before.
+    """
+    curves = folder / "curves"
+    for simulation, row in (ledger or Ledger(folder)).rows(simulations):
+        if row is not None:
+            yield Holding(simulation, row)
+            continue
+        path = curves / f"{simulation.stem}.nc"
+        if not path.is_file():
+            yield Holding(simulation, None)
+            continue
+        try:
+            yield Holding(simulation, sweep_row(read_simulation(path, simulation)))
+        except UnreadableFileError as error:
+            yield Holding(simulation, None, str(error))
+
+
+def inventory(folder: Path, simulations: Iterable[Simulation]) -> Inventory:
+    """What a store lacks of simulations, and why.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the store.
+    simulations : iterable of Simulation
         What to look for.
     """
-    # Spectra of one shape and different names have the same keys.
-    wanted = {(one.key, one.label): place for place, one in enumerate(simulations)}
-    sizes = _sizes(folder / "curves")
-    rows: dict[int, SweepRow] = {}
-    older: dict[str, dict[str, str]] = {}
-    for entry in _entries(folder):
-        place = wanted.get((entry.key, entry.label))
-        if place is None:
-            older[entry.label] = entry.parts
-        # A simulation that cannot be done has a row and no file.
-        elif (
-            entry.row is not None
-            and place not in rows
-            and sizes.get(f"{simulations[place].stem}.nc", 0) == entry.size
-        ):
-            rows[place] = entry.row
-    unreadable = []
-    for place, simulation in enumerate(simulations):
-        path = folder / "curves" / f"{simulation.stem}.nc"
-        if place not in rows and path.name in sizes:
-            try:
-                rows[place] = sweep_row(read_simulation(path, simulation))
-            except UnreadableFileError as error:
-                unreadable.append(str(error))
-    return Holdings(rows, tuple(unreadable), older)
-
-
-def stale(missing: Sequence[Simulation], older: dict[str, dict[str, str]]) -> tuple[Stale, ...]:
-    """Those of missing simulations that are stored with another key, and what changed it."""
-    return tuple(
-        Stale(one.label, tuple(name for name, part in one.parts.items() if part != known.get(name)))
-        for one in missing
-        if (known := older.get(one.label)) is not None
+    ledger = Ledger(folder)
+    absent = [one for one in holdings(folder, simulations, ledger) if one.row is None]
+    missing = tuple(one.simulation for one in absent)
+    return Inventory(
+        missing,
+        unreadable=tuple(one.unreadable for one in absent if one.unreadable),
+        stale=tuple(
+            Stale(one.label, tuple(name for name, part in one.parts.items() if part != known[name]))
+            for one in missing
+            if (known := ledger.parts(one.label)) is not None
+        ),
     )
-
-
-def _entries(folder: Path) -> Iterator[Entry]:
-    """Entries of all journals of a store."""
-    definition = row_fingerprint()
-    for path in journal_paths(folder / "journals"):
-        yield from read_journal(path, definition)
-
-
-def _sizes(folder: Path) -> dict[str, int]:
-    """Bytes of the files of a folder, which need not exist."""
-    if not folder.is_dir():
-        return {}
-    with os.scandir(folder) as files:
-        return {file.name: file.stat().st_size for file in files}

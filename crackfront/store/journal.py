@@ -10,6 +10,7 @@ import zlib
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 from crackfront.dataset import SweepRow
 
@@ -81,8 +82,8 @@ class Journal:
         os.utime(self._path)
 
 
-def read_journal(path: Path, definition: str) -> Iterator[Entry]:
-    """Entries of a journal; a line that is torn or changed is left out.
+def read_journal(path: Path, definition: str) -> Iterator[tuple[int, Entry]]:
+    """Places and entries of a journal; a line that is torn or changed is left out.
 
     Parameters
     ----------
@@ -90,16 +91,36 @@ def read_journal(path: Path, definition: str) -> Iterator[Entry]:
         The journal.
     definition : str
         Fingerprint of what a row is now; of another one, the entry comes without its row.
+
+    Yields
+    ------
+    tuple
+        Byte at which the line begins, for :func:`read_entry`, and what it says.
     """
+    place = 0
     with path.open("rb") as file:
         for line in file:
-            checksum, _, text = line.rstrip(b"\n").partition(b" ")
-            if not line.endswith(b"\n") or checksum != b"%08x" % zlib.crc32(text):
-                continue
-            content = json.loads(text)
-            row = content.pop("row")
-            known = row is not None and content["definition"] == definition
-            yield Entry(**content, row=SweepRow(**row) if known else None)
+            entry = _entry(line, definition)
+            if entry is not None:
+                yield place, entry
+            place += len(line)
+
+
+def read_entry(file: BinaryIO, place: int, definition: str) -> Entry | None:
+    """Entry of an open journal at a place; None where the line is torn or changed."""
+    file.seek(place)
+    return _entry(file.readline(), definition)
+
+
+def _entry(line: bytes, definition: str) -> Entry | None:
+    """What a line says, if it is whole."""
+    checksum, _, text = line.rstrip(b"\n").partition(b" ")
+    if not line.endswith(b"\n") or checksum != b"%08x" % zlib.crc32(text):
+        return None
+    content = json.loads(text)
+    row = content.pop("row")
+    known = row is not None and content["definition"] == definition
+    return Entry(**content, row=SweepRow(**row) if known else None)
 
 
 def journal_paths(folder: Path) -> list[Path]:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crackfront.costs import expected_cost
-from crackfront.dataset import COMPLETE, SweepRow, row_fingerprint
-from crackfront.scene import Simulation
+from crackfront.dataset import COMPLETE, row_fingerprint
 from crackfront.store.inventory import holdings
 from crackfront.store.journal import journal_paths, read_journal
+from crackfront.store.ledger import Ledger
 from crackfront.sweep import Sweep
 
 SECONDS_TO_LIVE = 120.0
@@ -57,32 +56,25 @@ def sweep_progress(folder: Path, sweep: Sweep) -> list[Progress]:
     sweep : Sweep
         Its parameters.
     """
-    simulations = [one for item in sweep.spectra for one in sweep.shard(item)]
-    rows = holdings(folder, simulations).rows
-    running = _running(folder)
-    pace = _pace([(simulations[place], row) for place, row in rows.items()])
-    found = []
+    running, ledger = _running(folder), Ledger(folder)
+    found, paces = [], []
     for item in sweep.spectra:
-        places = [i for i, one in enumerate(simulations) if one.spectrum_name == item.name]
-        ended = [rows[place] for place in places if place in rows]
-        left = [simulations[place] for place in places if place not in rows]
-        done = sum(row.status in COMPLETE for row in ended)
-        at_work = sum(one.key in running for one in left)
-        seconds = pace * sum(expected_cost(one).seconds for one in left)
-        found.append(
-            Progress(item.name, done, len(ended) - done, at_work, len(left) - at_work, seconds)
-        )
-    return found
-
-
-def _pace(ended: Sequence[tuple[Simulation, SweepRow]]) -> float:
-    """Measured over expected time of simulations that have ended; 1 where there is none."""
-    ratios = [
-        row.cpu_seconds / expected_cost(simulation).seconds
-        for simulation, row in ended
-        if row.cpu_seconds > 0
-    ]
-    return statistics.median(ratios) if ratios else 1.0
+        done = failed = at_work = waiting = 0
+        seconds = 0.0
+        for held in holdings(folder, sweep.simulations(item), ledger):
+            expected = expected_cost(held.simulation).seconds
+            if held.row is None:
+                at_work += held.simulation.key in running
+                waiting += held.simulation.key not in running
+                seconds += expected
+                continue
+            done += held.row.status in COMPLETE
+            failed += held.row.status not in COMPLETE
+            if held.row.cpu_seconds > 0:
+                paces.append(held.row.cpu_seconds / expected)
+        found.append(Progress(item.name, done, failed, at_work, waiting, seconds))
+    pace = statistics.median(paces) if paces else 1.0
+    return [replace(one, seconds=pace * one.seconds) for one in found]
 
 
 def _running(folder: Path) -> set[str]:
@@ -94,7 +86,7 @@ def _running(folder: Path) -> set[str]:
     found = set()
     for path, moment in moments.items():
         if newest - moment < SECONDS_TO_LIVE:
-            entries = list(read_journal(path, row_fingerprint()))
+            entries = [entry for _, entry in read_journal(path, row_fingerprint())]
             if entries and not entries[-1].definition:
                 found.add(entries[-1].key)
     return found

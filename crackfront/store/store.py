@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from crackfront import parallel
 from crackfront.costs import expected_cost
-from crackfront.dataset import write_hysteresis, write_text
+from crackfront.dataset import SweepRow, write_hysteresis, write_text
 from crackfront.provenance import Provenance
 from crackfront.scene import Simulation, compile_solver
-from crackfront.store.inventory import Inventory, holdings, stale
+from crackfront.store.inventory import Inventory, holdings, inventory
 from crackfront.store.tasks import NOT_STORED, STOPPED, Finished, Task, run_task
 from crackfront.sweep import Shard, Sweep, shard_fingerprint
 
@@ -45,17 +45,15 @@ class Store:
         """File that says that all simulations of a shard are stored."""
         return self.folder / "shards" / f"{shard.name}.json"
 
-    def inventory(self, simulations: Sequence[Simulation]) -> Inventory:
+    def inventory(self, simulations: Iterable[Simulation]) -> Inventory:
         """What is missing among simulations, and why.
 
         Parameters
         ----------
-        simulations : sequence of Simulation
+        simulations : iterable of Simulation
             Simulations to look for.
         """
-        held = holdings(self.folder, simulations)
-        missing = tuple(one for place, one in enumerate(simulations) if place not in held.rows)
-        return Inventory(missing, held.unreadable, stale(missing, held.older))
+        return inventory(self.folder, simulations)
 
     def fill(
         self,
@@ -131,19 +129,24 @@ class Store:
             If simulations are missing or unreadable. The lists of their shards are removed, so
             that the workflow runs them again.
         """
-        simulations = [one for item in sweep.spectra for one in sweep.shard(item)]
-        rows = holdings(self.folder, simulations).rows
-        missing = [one for place, one in enumerate(simulations) if place not in rows]
+        path = self.folder / "hysteresis.nc"
+        return path, dict(write_hysteresis(path, sweep, self._rows(sweep), origin))
+
+    def _rows(self, sweep: Sweep) -> Iterator[SweepRow]:
+        """Rows of a whole sweep; where one is missing, all are looked for and none is left."""
+        missing: list[Simulation] = []
+        for held in holdings(self.folder, sweep.simulations()):
+            if held.row is None:
+                missing.append(held.simulation)
+            elif not missing:
+                yield held.row
         if missing:
             self._forget(missing)
             raise ValueError(
-                f"{len(missing)} of {len(simulations)} simulations are missing or unreadable in "
+                f"{len(missing)} of {sweep.n_simulation} simulations are missing or unreadable in "
                 f"{self.folder}, the first is {missing[0].label}; run `crackfront simulate` with "
                 "this configuration and output, or `make` again"
             )
-        path = self.folder / "hysteresis.nc"
-        ordered = [rows[place] for place in range(len(simulations))]
-        return path, dict(write_hysteresis(path, sweep, ordered, origin))
 
     def _forget(self, missing: Sequence[Simulation]) -> None:
         """Remove the lists of shards that lack simulations."""
