@@ -36,7 +36,7 @@ READY    = .venv/.ready-$(MPI)
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test test-cluster nightly accuracy benchmark figures lint lock clean help
+.PHONY: all env test test-cluster nightly accuracy benchmark figures report lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP)
@@ -106,6 +106,10 @@ accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half
 figures: env  ## All figures of the paper; SCALE=quick (15 minutes) or SCALE=paper
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config scale=$(SCALE) -- figures
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
+
+report: env  ## The sweep SWEEP as one page of HTML: fit, figures, configuration, provenance
+	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP) --report $(RESULTS)report.html
+	@echo "Report: $(RESULTS)report.html"
 
 lint: env  ## Style, format, types, import floors, format of the rules
 	.venv/bin/ruff check

@@ -45,8 +45,13 @@ try:
 except ValueError as error:
     raise WorkflowError(str(error)) from None
 
+SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
+
 # The command stands beside the Python that runs Snakemake.
 shell.prefix(f"set -euo pipefail; export PATH='{Path(sys.executable).parent}':$PATH; ")
+
+
+report: "workflow/report/workflow.rst"
 
 
 wildcard_constraints:
@@ -59,10 +64,10 @@ rule all:
         expand(
             "{results}/figures/{figure}.{suffix}",
             results=RESULTS,
-            figure=["hysteresis", "loop", "factor"],
+            figure=SWEEP_FIGURES,
             suffix=["pdf", "png"],
         ),
-        f"{RESULTS}/fit.md",
+        f"{RESULTS}/summary.html",
 
 
 include: "workflow/rules/simulate.smk"

@@ -17,7 +17,7 @@ from crackfront.cli.figure import (
     gallery,
 )
 from crackfront.cli.outlook import plan, status
-from crackfront.cli.sweep import aggregate, figures, fit, simulate
+from crackfront.cli.sweep import aggregate, figures, fit, simulate, summary
 
 
 class _RefusalError(click.ClickException):
@@ -61,6 +61,7 @@ for command in (
     status,
     aggregate,
     fit,
+    summary,
     figures,
     figure,
     draw_figure,

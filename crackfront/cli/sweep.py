@@ -141,6 +141,29 @@ def fit(configuration: Path, output: Path | None) -> None:
 @click.command()
 @_configuration
 @_output
+def summary(configuration: Path, output: Path | None) -> None:
+    """Write summary.html: the fit, how the simulations ended, the configuration, the origin."""
+    from crackfront.dataset import read_attributes, read_statuses, write_text
+    from crackfront.summary import summary_page
+
+    sweep, store = _sweep_and_store(configuration, output)
+    table = store.folder / "hysteresis.nc"
+    attributes = {name: str(value) for name, value in read_attributes(table).items()}
+    page = summary_page(
+        f"Adhesion hysteresis: {configuration.stem}",
+        (store.folder / "fit.md").read_text(encoding="utf-8"),
+        read_statuses(table),
+        attributes.pop("configuration"),
+        attributes | {"seed of the sweep": str(sweep.seed)},
+    )
+    path = store.folder / "summary.html"
+    write_text(path, page)
+    click.echo(f"summary: {path}")
+
+
+@click.command()
+@_configuration
+@_output
 def figures(configuration: Path, output: Path | None) -> None:
     """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
     from crackfront import plots

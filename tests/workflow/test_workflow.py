@@ -1,6 +1,8 @@
 """The whole workflow by Snakemake on the configuration `test`, with real ranks of MPI."""
 
+import base64
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -39,20 +41,64 @@ def states(folder):
     return {path: path.stat().st_mtime_ns for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.fixture(scope="module")
+def serial(tmp_path_factory):
+    """Folder of a whole run without MPI."""
+    folder = tmp_path_factory.mktemp("serial")
+    done = snakemake(folder, ranks=1)
+    assert done.returncode == 0, done.stderr
+    assert str(Path("results/test/fit.md")) in done.stdout
+    return folder
+
+
 @pytest.mark.mpi
-def test_the_workflow_gives_the_same_with_one_rank_and_with_two(tmp_path):
+def test_the_workflow_gives_the_same_with_one_rank_and_with_two(tmp_path, serial):
+    done = snakemake(tmp_path, ranks=2)
+    assert done.returncode == 0, done.stderr
     datasets = []
-    for ranks in (1, 2):
-        folder = tmp_path / str(ranks)
-        folder.mkdir()
-        done = snakemake(folder, ranks=ranks)
-        assert done.returncode == 0, done.stderr
+    for folder in (serial, tmp_path):
         results = folder / "results/test"
-        assert str(Path("results/test/fit.md")) in done.stdout
         for name in ("hysteresis.pdf", "hysteresis.png", "loop.pdf", "factor.png"):
             assert (results / "figures" / name).stat().st_size > 1000
         datasets.append(xr.load_dataset(results / "hysteresis.nc").drop_vars(COSTS))
     assert datasets[0].equals(datasets[1])
+
+
+def seen_in_browser(page, profile):
+    """A page as Chromium sees it when its scripts have run, without any network."""
+    options = (
+        *("--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-sync"),
+        *("--disable-background-networking", "--disable-component-update"),
+        *("--host-resolver-rules=MAP * ~NOTFOUND", "--virtual-time-budget=10000", "--dump-dom"),
+    )
+    done = subprocess.run(
+        ["chromium", *options, f"--user-data-dir={profile}", page.as_uri()],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    return done.stdout
+
+
+@pytest.mark.skipif(not shutil.which("chromium"), reason="needs chromium: apt-get install chromium")
+def test_the_report_is_one_page_that_a_browser_shows_without_a_network(tmp_path, serial):
+    report = tmp_path / "report.html"
+    done = snakemake(serial, "--report", str(report), ranks=1)
+    assert done.returncode == 0, done.stderr
+    text = report.read_text(encoding="utf-8")
+    for name in ("figures/hysteresis.png", "figures/loop.png", "figures/factor.png"):
+        content = (serial / "results/test" / name).read_bytes()
+        assert base64.b64encode(content).decode() in text
+    seen = seen_in_browser(report, tmp_path / "profile")
+    for words in ("a crack front pinned by the roughness", "Figures", "Fit, configuration and"):
+        assert words in " ".join(seen.split())
+    summary = seen_in_browser(serial / "results/test/summary.html", tmp_path / "profile")
+    assert "<td>lost_contact</td><td>8</td>" in summary
+    assert "<th>midpoint slope m</th>" in summary
+    for item in ("git_commit", "command", "platform", "seed of the sweep"):
+        assert f"<td>{item}</td>" in summary
+    assert (ROOT / "config/test.yaml").read_text(encoding="utf-8").splitlines()[-1] in summary
 
 
 def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path):

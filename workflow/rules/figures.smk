@@ -3,12 +3,16 @@ rule sweep_figures:
         CONFIGURATION,
         f"{RESULTS}/hysteresis.nc",
     output:
-        expand(
-            "{results}/figures/{figure}.{suffix}",
-            results=RESULTS,
-            figure=["hysteresis", "loop", "factor"],
-            suffix=["pdf", "png"],
-        ),
+        expand("{results}/figures/{figure}.pdf", results=RESULTS, figure=SWEEP_FIGURES),
+        *[
+            report(
+                f"{RESULTS}/figures/{figure}.png",
+                caption=f"../report/{figure}.rst",
+                category="Figures",
+                labels={"figure": figure},
+            )
+            for figure in SWEEP_FIGURES
+        ],
     params:
         sources=package_fingerprint(),
     shell:

@@ -8,3 +8,20 @@ rule fit:
         sources=package_fingerprint(),
     shell:
         "crackfront fit {CONFIGURATION:q} --output {RESULTS:q}"
+
+
+rule summary:
+    input:
+        CONFIGURATION,
+        f"{RESULTS}/hysteresis.nc",
+        f"{RESULTS}/fit.md",
+    output:
+        report(
+            f"{RESULTS}/summary.html",
+            caption="../report/summary.rst",
+            category="Fit, configuration and provenance",
+        ),
+    params:
+        sources=package_fingerprint(),
+    shell:
+        "crackfront summary {CONFIGURATION:q} --output {RESULTS:q}"

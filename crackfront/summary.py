@@ -1,0 +1,59 @@
+"""The page that shows a sweep to a reader: fit, statuses, configuration, origin."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
+
+from markdown_it import MarkdownIt
+
+_STYLE = (
+    "body{font:15px/1.5 sans-serif;max-width:75em;margin:2em auto;padding:0 1em;color:#222}"
+    "table{border-collapse:collapse;margin:1em 0;font-size:90%}"
+    "th,td{border:1px solid #bbb;padding:.25em .6em;text-align:left;vertical-align:top}"
+    "th{background:#eee}pre{background:#f5f5f5;padding:1em;overflow-x:auto}"
+)
+
+
+def summary_page(
+    title: str, fit: str, statuses: Mapping[str, int], configuration: str, origin: Mapping[str, str]
+) -> str:
+    """A page of HTML that needs no other file.
+
+    Parameters
+    ----------
+    title : str
+        Title of the page.
+    fit : str
+        Table of the fit, in Markdown.
+    statuses : mapping of str to int
+        Number of simulations of every status.
+    configuration : str
+        Text of the configuration.
+    origin : mapping of str to str
+        What the results say of their origin.
+    """
+    return "\n".join(
+        [
+            f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}'
+            f"</title><style>{_STYLE}</style></head><body>",
+            # Raw HTML in the text stays text.
+            MarkdownIt("commonmark", {"html": False}).enable("table").render(fit),
+            "<h2>Simulations</h2>",
+            _table(("status", "simulations"), {k: str(n) for k, n in sorted(statuses.items())}),
+            "<h2>Origin</h2>",
+            _table(("", ""), origin),
+            "<h2>Configuration</h2>",
+            f"<pre>{escape(configuration)}</pre>",
+            "</body></html>\n",
+        ]
+    )
+
+
+def _table(head: tuple[str, str], rows: Mapping[str, str]) -> str:
+    """A table of two columns."""
+    cells = [f"<tr><th>{head[0]}</th><th>{head[1]}</th></tr>"] if any(head) else []
+    cells += [
+        f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in rows.items()
+    ]
+    return f"<table>{''.join(cells)}</table>"
