@@ -21,6 +21,10 @@ _PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
 """How arrays are compressed."""
 
 
+_SECONDS_TO_WRITE = 3600.0
+"""Time after which a file that is not finished will not be."""
+
+
 @dataclass(frozen=True, slots=True)
 class Block:
     """A part of the values of some variables.
@@ -106,6 +110,7 @@ def _create(file: netCDF4.Dataset, variable: Variable, values: NDArray[Any]) -> 
         variable.dims,
         fill_value=None if text else False,
         chunksizes=[1] * (len(sizes) - 1) + [min(sizes[-1], values.size)],
+        chunk_cache=values.nbytes,  # a chunk is written once; the default holds megabytes of them
         **({} if text else _PACKED),
     )
     created.setncatts(variable.attributes)
@@ -145,6 +150,22 @@ def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
+
+
+def leftover_parts(folder: Path) -> list[Path]:
+    """Files that writers began in a folder and did not finish within the last hour.
+
+    Their age is that against a file which is created now, by the clock of the file system.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder in which files are written.
+    """
+    with tempfile.NamedTemporaryFile(prefix=".", suffix=".part", dir=folder) as new:
+        now = Path(new.name).stat().st_mtime
+        parts = [path for path in folder.glob(".*.part") if path.name != Path(new.name).name]
+        return [path for path in parts if now - path.stat().st_mtime > _SECONDS_TO_WRITE]
 
 
 def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset:
