@@ -1,6 +1,9 @@
 """The store: what is finished stays, what is missing or broken is found and run."""
 
 import json
+import os
+import subprocess
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +16,7 @@ from crackfront.dataset import read_simulation, read_table, tables
 from crackfront.dataset.files import read_dataset
 from crackfront.provenance import provenance
 from crackfront.scene import run_simulation
-from crackfront.store import NOT_STORED, Store, ledger, tasks
+from crackfront.store import NOT_STORED, Store, ledger, tasks, write_archive
 from crackfront.store.inventory import holdings
 
 SWEEP = load_configuration(Path(__file__).parents[1] / "config/test.yaml")
@@ -232,6 +235,50 @@ def test_a_sweep_is_aggregated_the_same_whatever_is_held_at_once(store, monkeypa
     parts = read_dataset(store.aggregate(SWEEP, provenance("text"))[0])
     assert parts.drop_attrs().identical(whole.drop_attrs())
     assert [*whole["curve"].values.flat] == [f"{one.stem}.nc" for one in simulations]
+
+
+@pytest.mark.parametrize("curves", [True, False])
+def test_an_archive_holds_what_was_archived_under_checksums_that_fit(store, tmp_path, curves):
+    fill(store, list(SWEEP.simulations()))
+    store.aggregate(SWEEP, provenance("text"))
+    (store.folder / "curves/.killed.part").write_text("half")
+    (store.folder / "elsewhere").symlink_to(__file__)
+    path = tmp_path / "sweep.zip"
+    n_file = write_archive(store.folder, path, curves=curves)
+    with zipfile.ZipFile(path) as archive:
+        assert len(archive.namelist()) == n_file + 1
+        archive.extractall(tmp_path / "unpacked")
+    unpacked = tmp_path / "unpacked/sweep"
+    done = subprocess.run(
+        ["sha256sum", "--check", "SHA256SUMS"],
+        cwd=unpacked,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.count(": OK") == n_file
+    names = {str(file.relative_to(unpacked)) for file in unpacked.rglob("*") if file.is_file()}
+    wanted = {"hysteresis.nc", "configuration.yaml", "SHA256SUMS"}
+    wanted |= {f"curves/{one.stem}.nc" for one in SWEEP.simulations()} if curves else set()
+    assert {name for name in names if not name.startswith("journals/")} == wanted
+
+
+def test_a_sweep_that_was_not_run_is_not_archived(store, tmp_path):
+    fill(store, FLAT[:1])
+    with pytest.raises(ValueError, match=r"holds no hysteresis.nc; run the sweep before it is ar"):
+        write_archive(store.folder, tmp_path / "sweep.zip", curves=True)
+
+
+def test_what_a_killed_process_left_half_written_is_removed_by_the_next_run(store):
+    fill(store, FLAT[:1])
+    old, new = (store.folder / "curves" / f".{name}.part" for name in ("old", "new"))
+    for path in (old, new):
+        path.write_text("half")
+    moment = old.stat().st_mtime - 7200
+    os.utime(old, (moment, moment))
+    fill(store, FLAT[1:2])
+    assert not old.exists()
+    assert new.exists()
 
 
 def test_a_defect_that_the_solver_finds_in_itself_is_a_row_and_the_others_run(store, monkeypatch):

@@ -17,7 +17,7 @@ from crackfront.cli.figure import (
     gallery,
 )
 from crackfront.cli.outlook import plan, status
-from crackfront.cli.sweep import aggregate, figures, fit, simulate, summary
+from crackfront.cli.sweep import aggregate, archive, figures, fit, simulate, summary
 
 
 class _RefusalError(click.ClickException):
@@ -63,6 +63,7 @@ for command in (
     fit,
     summary,
     figures,
+    archive,
     figure,
     draw_figure,
     check_figures,

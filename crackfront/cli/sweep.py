@@ -162,6 +162,18 @@ def summary(configuration: Path, output: Path | None) -> None:
 
 
 @click.command()
+@click.argument("folder", type=FILE)
+@click.option("--output", type=FILE, help="The archive.  [default: <folder>.zip]")
+@click.option("--curves/--no-curves", default=True, help="With the files of all simulations.")
+def archive(folder: Path, output: Path | None, curves: bool) -> None:
+    """Pack the results of a sweep into a ZIP file with checksums, SHA256SUMS."""
+    from crackfront.store import write_archive
+
+    path = folder.with_suffix(".zip") if output is None else output
+    click.echo(f"archive: {path}, {write_archive(folder, path, curves=curves)} files")
+
+
+@click.command()
 @_configuration
 @_output
 def figures(configuration: Path, output: Path | None) -> None:

@@ -18,7 +18,13 @@ from crackfront.dataset.cycles import (
     write_simulation,
 )
 from crackfront.dataset.fields import PolarSamples, read_field
-from crackfront.dataset.files import UnreadableFileError, read_attributes, write_text
+from crackfront.dataset.files import (
+    UnreadableFileError,
+    leftover_parts,
+    read_attributes,
+    replace_atomically,
+    write_text,
+)
 from crackfront.dataset.fit import write_fit
 from crackfront.dataset.records import largest_differences, read_record, write_record
 from crackfront.dataset.tables import (
@@ -40,6 +46,7 @@ __all__ = [
     "failed_row",
     "largest_differences",
     "laws_text",
+    "leftover_parts",
     "read_attributes",
     "read_checkpoint",
     "read_coverage",
@@ -51,6 +58,7 @@ __all__ = [
     "read_simulation",
     "read_statuses",
     "read_table",
+    "replace_atomically",
     "row_fingerprint",
     "sweep_row",
     "write_checkpoint",

@@ -5,6 +5,7 @@ it; one that cannot be done has its row alone. What is there is found by the jou
 sizes of the files, and, where a process ended between the two, by reading the file.
 """
 
+from crackfront.store.archive import write_archive
 from crackfront.store.inventory import Inventory, Stale
 from crackfront.store.progress import Progress, sweep_progress
 from crackfront.store.store import Store
@@ -19,4 +20,5 @@ __all__ = [
     "Stale",
     "Store",
     "sweep_progress",
+    "write_archive",
 ]

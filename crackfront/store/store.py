@@ -9,7 +9,7 @@ from pathlib import Path
 
 from crackfront import parallel
 from crackfront.costs import expected_cost
-from crackfront.dataset import SweepRow, write_hysteresis, write_text
+from crackfront.dataset import SweepRow, leftover_parts, write_hysteresis, write_text
 from crackfront.provenance import Provenance
 from crackfront.scene import Simulation, compile_solver
 from crackfront.store.inventory import Inventory, holdings, inventory
@@ -85,6 +85,8 @@ class Store:
         """
         for name in ("curves", "journals", "checkpoints"):
             (self.folder / name).mkdir(parents=True, exist_ok=True)
+            for part in leftover_parts(self.folder / name):
+                part.unlink(missing_ok=True)
         write_text(self.configuration, origin.configuration)
         longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
         tasks = [Task(one, self.folder, origin, checkpoint_seconds) for one in longest_first]
