@@ -18,6 +18,7 @@ from crackfront.provenance import provenance
 from crackfront.scene import run_simulation
 from crackfront.store import NOT_STORED, Store, ledger, tasks, write_archive
 from crackfront.store.inventory import holdings
+from crackfront.store.journal import Entry, Journal
 
 SWEEP = load_configuration(Path(__file__).parents[1] / "config/test.yaml")
 FLAT = SWEEP.shard(SWEEP.spectra[0])
@@ -120,6 +121,13 @@ def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
     inventory = store.inventory(FLAT)
     assert len(inventory.missing) == 4
     assert inventory.stale_sentence() == "2 stored simulations are stale: 2 as sources changed"
+
+
+def test_a_part_that_keys_did_not_have_before_is_told_as_changed(store):
+    old = Entry("0" * 16, FLAT[0].label, {"kind": FLAT[0].parts["kind"]}, definition="older")
+    Journal(store.folder / "journals").append(old)
+    [stale] = store.inventory(FLAT[:1]).stale
+    assert set(stale.changed) == set(FLAT[0].parts) - {"kind"}
 
 
 def test_spectra_of_one_shape_and_two_names_have_rows_of_their_own(store, monkeypatch):

@@ -125,7 +125,10 @@ def inventory(folder: Path, simulations: Iterable[Simulation]) -> Inventory:
         missing,
         unreadable=tuple(one.unreadable for one in absent if one.unreadable),
         stale=tuple(
-            Stale(one.label, tuple(name for name, part in one.parts.items() if part != known[name]))
+            Stale(
+                one.label,
+                tuple(name for name, part in one.parts.items() if part != known.get(name)),
+            )
             for one in missing
             if (known := ledger.parts(one.label)) is not None
         ),
