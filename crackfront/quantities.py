@@ -1,0 +1,101 @@
+"""Quantities with units, from texts such as 0.7MPa and to them; the only importer of pint."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from tokenize import TokenError
+from typing import Any
+
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
+"""A number and what stands behind it."""
+
+_POWER = re.compile(r"([A-Za-zµ]+)([2-9])(?!\w)")
+"""A power without a sign for it, as in J/m2."""
+
+
+def si_value(text: str, unit: str, *, what: str) -> float:
+    """Value of a quantity in an SI unit.
+
+    Parameters
+    ----------
+    text : str
+        A positive number and its unit, as in 0.7MPa or 63 mJ/m2.
+    unit : str
+        Unit to convert to; the text may be in any of the same dimension.
+    what : str
+        What the quantity is, for the refusal.
+
+    Raises
+    ------
+    ValueError
+        If there is no unit, an unknown one or one of another dimension, or the number is not
+        positive and finite.
+
+    Examples
+    --------
+    >>> round(si_value("63mJ/m2", "J/m^2", what="work of adhesion"), 12)
+    0.063
+    """
+    import pint
+
+    example = f"write a number and a unit of {_NAMES[unit]}, as in {_EXAMPLES[unit]}"
+    found = _QUANTITY.fullmatch(text)
+    if found is None:
+        raise ValueError(f"{what} is {text!r}, which is no number with a unit; {example}")
+    if found[2] is None:
+        raise ValueError(f"{what} is {text!r}, without a unit; {example}")
+    try:
+        given = _registry().parse_units(_POWER.sub(r"\1^\2", found[2]))
+        value = float(_registry().Quantity(float(found[1]), given).to(unit).magnitude)
+    except pint.DimensionalityError as error:
+        raise ValueError(f"{what} is {text!r}, which is no {_NAMES[unit]}; {example}") from error
+    # A unit that is no expression fails in the tokenizer of Python, which pint does not catch.
+    except (pint.PintError, TokenError, SyntaxError, ValueError, TypeError) as error:
+        raise ValueError(
+            f"{what} is {text!r}, whose unit {found[2]} is unknown; {example}"
+        ) from error
+    if not (math.isfinite(value) and value > 0):
+        raise ValueError(f"{what} is {text!r}; it must be positive and finite")
+    return value
+
+
+_EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2"}
+_NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area"}
+
+
+@functools.cache
+def _registry() -> Any:
+    """Registry of units; made once, as it takes half a second."""
+    import pint
+
+    return pint.UnitRegistry()
+
+
+_PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+
+
+def prefixed(unit: str, *values: float, digits: int = 3) -> str:
+    """Values in a unit with the prefix that the first of them calls for.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit without a prefix.
+    *values : float
+        A number, or a number and the ends of its interval. (Units: `unit`)
+    digits : int, optional
+        Significant digits.
+
+    Examples
+    --------
+    >>> prefixed("m", 2.1e-6), prefixed("J/m2", 0.0329, 0.0282, 0.0376)
+    ('2.1 um', '32.9 mJ/m2 (28.2 to 37.6)')
+    """
+    known = abs(values[0]) > 0 and math.isfinite(values[0])
+    power = 3 * math.floor(math.log10(abs(values[0]) * (1 + 1e-9)) / 3) if known else 0
+    power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
+    first, *ends = (f"{value / 10.0**power:.{digits}g}" for value in values)
+    interval = f" ({ends[0]} to {ends[1]})" if ends and math.isfinite(values[1]) else ""
+    return f"{first} {_PREFIXES[power]}{unit}{interval}"

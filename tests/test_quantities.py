@@ -1,0 +1,47 @@
+"""Quantities with units: what is read, and one sentence for what is not."""
+
+import pytest
+
+from crackfront.quantities import si_value
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("0.7MPa", "Pa", 0.7e6),
+        ("700 kPa", "Pa", 0.7e6),
+        ("63mJ/m2", "J/m^2", 0.063),
+        ("63 mJ/m^2", "J/m^2", 0.063),
+        ("63mJ/m²", "J/m^2", 0.063),
+        ("0.063N/m", "J/m^2", 0.063),
+        ("1.25e-3m", "m", 1.25e-3),
+        ("5µm", "m", 5e-6),
+    ],
+)
+def test_a_quantity_is_converted_to_si(text, unit, value):
+    assert si_value(text, unit, what="it") == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("0.7", "without a unit"),
+        ("0.7kg", "no pressure"),
+        ("0.7mm", "no pressure"),
+        ("0.7Pa)", "unknown"),
+        ("0.7MPaa", "unknown"),
+        ("", "no number"),
+        ("MPa", "no number"),
+        ("0.7(Pa", "unknown"),
+        ("-0.7MPa", "positive"),
+        ("0MPa", "positive"),
+        ("nanMPa", "no number"),
+        ("1e400MPa", "positive"),
+        ("0.7%", "no pressure"),
+    ],
+)
+def test_a_missing_or_absurd_unit_is_refused_with_the_value_and_an_example(text, sentence):
+    with pytest.raises(ValueError, match="modulus is") as caught:
+        si_value(text, "Pa", what="modulus")
+    assert sentence in str(caught.value)
+    assert repr(text) in str(caught.value)
