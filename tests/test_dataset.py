@@ -22,6 +22,7 @@ from crackfront.dataset import (
     read_table,
     sweep_row,
     write_cycle,
+    write_field,
     write_fit,
     write_hysteresis,
     write_simulation,
@@ -217,6 +218,17 @@ def test_a_tile_is_read_by_the_names_of_its_dimensions(tmp_path, order):
     assert np.array_equal(field.work_of_adhesion, tile().values)
     assert field.pixel == 0.5
     assert field.rms == pytest.approx(np.std(tile().values) / WORK_OF_ADHESION)
+
+
+def test_a_tile_that_was_written_is_read_back(tmp_path, rng):
+    adhesion = AdhesionMap(rng.uniform(0.1, 0.5, (6, 8)), 0.3, elastic_energy=0.1, rms=0.6)
+    write_field(tmp_path / "F.nc", adhesion, ORIGIN, source="scan.x3p")
+    field = read_field(tmp_path / "F.nc")
+    assert np.array_equal(field.work_of_adhesion, adhesion.work_of_adhesion)
+    assert field.pixel == pytest.approx(0.3)
+    attributes = xr.load_dataset(tmp_path / "F.nc").attrs
+    assert (attributes["e_el"], attributes["source"]) == (0.1, "scan.x3p")
+    assert attributes["git_commit"] == ORIGIN.git_commit
 
 
 @pytest.mark.parametrize("order", [("radius", "angle"), ("angle", "radius")])

@@ -17,7 +17,7 @@ from crackfront.dataset.cycles import (
     write_cycle,
     write_simulation,
 )
-from crackfront.dataset.fields import PolarSamples, read_field
+from crackfront.dataset.fields import PolarSamples, read_field, write_field
 from crackfront.dataset.files import (
     UnreadableFileError,
     leftover_parts,
@@ -65,6 +65,7 @@ __all__ = [
     "write_coverage",
     "write_cycle",
     "write_errors",
+    "write_field",
     "write_fit",
     "write_hysteresis",
     "write_record",

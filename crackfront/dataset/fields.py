@@ -1,4 +1,4 @@
-"""Files of given fields: the work of adhesion on a periodic tile or on rays."""
+"""Files of fields: the work of adhesion on a periodic tile or on rays."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.adhesion import AdhesionMap
-from crackfront.dataset.files import UnreadableFileError, read_dataset
+from crackfront.dataset.files import UnreadableFileError, read_dataset, write_dataset
 from crackfront.pinning import Interpolation, PolarField, polar_field
+from crackfront.provenance import Provenance
+from crackfront.records import LATERAL
 from crackfront.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -72,6 +74,37 @@ def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionM
             "numbers of (x, y) or of (radius, angle), or of (radius) for rings"
         )
     return _tile(path, values) if "x" in dims else _rays(path, values, interpolation)
+
+
+def write_field(
+    path: Path, adhesion: AdhesionMap, origin: Provenance, **attributes: str | float
+) -> None:
+    """Write a periodic tile as :func:`read_field` reads it.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    adhesion : AdhesionMap
+        Work of adhesion on the tile.
+    origin : Provenance
+        Where it comes from.
+    **attributes : str or float
+        What else the file says of itself.
+    """
+    values = adhesion.work_of_adhesion
+    about = {"units": "pi w_int", "long_name": "local work of adhesion; w_int is 1/pi"}
+    axis = {"units": LATERAL}
+    coordinates = {
+        name: ((name,), adhesion.pixel * np.arange(count), axis)
+        for name, count in zip(("x", "y"), values.shape, strict=True)
+    }
+    dataset = xr.Dataset(
+        {NAME: (("x", "y"), values, about)},
+        coords=coordinates,
+        attrs={"e_el": adhesion.elastic_energy, "w_rms": adhesion.rms, **attributes},
+    )
+    write_dataset(path, dataset, origin)
 
 
 def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
