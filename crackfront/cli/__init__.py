@@ -17,6 +17,8 @@ from crackfront.cli.figure import (
     gallery,
 )
 from crackfront.cli.outlook import plan, status
+from crackfront.cli.predict import predict
+from crackfront.cli.surface import surface
 from crackfront.cli.sweep import aggregate, archive, figures, fit, simulate, summary
 
 
@@ -56,6 +58,8 @@ def main() -> None:
 
 for command in (
     cycle,
+    surface,
+    predict,
     plan,
     simulate,
     status,

@@ -20,6 +20,7 @@ from crackfront.plots.motion import motion_animation, motion_figure
 from crackfront.plots.nanodiamond import nanodiamond_figure
 from crackfront.plots.parametric import parametric_study_figure
 from crackfront.plots.pinned_loop import pinned_loop_figure
+from crackfront.plots.prediction import prediction_figure
 from crackfront.plots.rings import rings_figure
 from crackfront.plots.roughness import roughness_figure
 from crackfront.plots.smooth import smooth_loop_figure
@@ -46,6 +47,7 @@ __all__ = [
     "hysteresis_figure",
     "laws_figure",
     "loop_figure",
+    "prediction_figure",
     "save_animation",
     "save_figure",
     "save_picture",

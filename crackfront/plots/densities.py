@@ -13,8 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from crackfront.figures import FilmScales, SyntheticFilm
 from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
 
-_WAVEVECTOR = r"wavevector $q$ (m$^{-1}$)"
-_PROFILE = r"$C^\mathrm{1D}$ (m$^3$)"
+Array = NDArray[np.float64]
+
+WAVEVECTOR_LABEL = r"wavevector $q$ (m$^{-1}$)"
+PROFILE_LABEL = r"$C^\mathrm{1D}$ (m$^3$)"
+ISOTROPIC_LABEL = r"$C^\mathrm{iso}$ (m$^4$)"
 _CONVERTED = r"$q\,C^\mathrm{iso}/\pi$ (paper's conversion)"
 
 
@@ -30,9 +33,15 @@ def film_scales_figure(record: FilmScales) -> Figure:
         figure = blank_figure(COLUMN, 1.35 * COLUMN)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.25, 1))
         for axes in (upper, lower):
-            _set_scales(axes, record.wavevector)
+            set_density_scales(axes, record.wavevector)
         upper.plot(record.wavevector, record.isotropic, color=BLACK)
-        _draw_bars(upper, record)
+        draw_dominant_scales(
+            upper,
+            record.mean_square,
+            record.shortest,
+            record.longest,
+            float(record.isotropic.max()),
+        )
         _draw_roll_off(upper, record)
         lower.plot(record.wavevector, record.profile, color=BLACK, label="exact projection")
         lower.plot(record.wavevector, record.converted, color=BLUE, dashes=(4, 2), label=_CONVERTED)
@@ -42,10 +51,10 @@ def film_scales_figure(record: FilmScales) -> Figure:
             lower.plot(q, density, ".", color=VERMILION, markersize=2, label="measured")
         lower.axvline(2 * np.pi / record.roll_off, color="0.6", linewidth=0.6, zorder=1)
         lower.legend(loc="lower left")
-        upper.set_ylabel(r"$C^\mathrm{iso}$ (m$^4$)")
-        lower.set_ylabel(_PROFILE)
-        _add_wavelengths(upper)
-        lower.set_xlabel(_WAVEVECTOR)
+        upper.set_ylabel(ISOTROPIC_LABEL)
+        lower.set_ylabel(PROFILE_LABEL)
+        add_wavelengths(upper)
+        lower.set_xlabel(WAVEVECTOR_LABEL)
         return figure
 
 
@@ -60,7 +69,7 @@ def synthetic_film_figure(record: SyntheticFilm) -> Figure:
     with house_style():
         figure = blank_figure(COLUMN, 0.9 * COLUMN)
         axes = figure.add_subplot()
-        _set_scales(axes, record.wavevector)
+        set_density_scales(axes, record.wavevector)
         axes.plot(
             record.wavevector, record.profile, color=VERMILION, label="nanodiamond, ideal spectrum"
         )
@@ -72,10 +81,10 @@ def synthetic_film_figure(record: SyntheticFilm) -> Figure:
         axes.plot(record.mode, record.synthetic, color=BLUE, linewidth=0.8, label=label)
         _draw_end(axes, f"tile {1e6 * record.side:.3g} µm", record.side, "left")
         _draw_end(axes, f"cutoff {1e6 * record.shortest:.3g} µm", record.shortest, "right")
-        axes.set_ylabel(_PROFILE)
-        axes.set_xlabel(_WAVEVECTOR)
+        axes.set_ylabel(PROFILE_LABEL)
+        axes.set_xlabel(WAVEVECTOR_LABEL)
         axes.set_ylim(top=20 * float(record.profile.max()))
-        _add_wavelengths(axes)
+        add_wavelengths(axes)
         axes.legend(
             loc="lower left", frameon=True, facecolor="white", framealpha=1, edgecolor="none"
         )
@@ -97,22 +106,33 @@ def _draw_end(axes: Axes, name: str, length: float, alignment: Literal["left", "
     )
 
 
-def _draw_bars(axes: Axes, record: FilmScales) -> None:
-    """Bars of the scales that carry 80% of the mean squares, above the density."""
+def draw_dominant_scales(
+    axes: Axes, mean_square: Array, shortest: Array, longest: Array, highest: float
+) -> None:
+    """Bars of the scales that carry 80% of the mean squares, above a density.
+
+    Parameters
+    ----------
+    axes : Axes
+        Axes of an isotropic density, in SI units, whose wavevectors have their limits.
+    mean_square, shortest, longest : (3,) array
+        Mean squares of heights, half-derivatives and slopes, and the ends of their scales.
+        (Units: m^(2 - 2 order), m)
+    highest : float
+        Largest density that is drawn. (Units: m^4)
+    """
     names = (
-        rf"$h_\mathrm{{rms}}^{{(0)}} = {1e9 * record.mean_square[0] ** 0.5:.0f}$ nm",
-        rf"$h_\mathrm{{rms}}^{{(1/2)}} = {1e4 * record.mean_square[1] ** 0.5:.1f}"
+        rf"$h_\mathrm{{rms}}^{{(0)}} = {1e9 * mean_square[0] ** 0.5:.0f}$ nm",
+        rf"$h_\mathrm{{rms}}^{{(1/2)}} = {1e4 * mean_square[1] ** 0.5:.1f}"
         r"\times10^{-4}$ m$^{1/2}$",
-        rf"$h_\mathrm{{rms}}^{{(1)}} = {record.mean_square[2] ** 0.5:.2f}$",
+        rf"$h_\mathrm{{rms}}^{{(1)}} = {mean_square[2] ** 0.5:.2f}$",
     )
-    highest = float(record.isotropic.max())
-    for level, (name, shortest, longest) in enumerate(
-        zip(names, record.shortest, record.longest, strict=True)
-    ):
+    middle = axes.get_xlim()[0] * axes.get_xlim()[1]
+    for level, (name, short, long) in enumerate(zip(names, shortest, longest, strict=True)):
         height = highest * 10.0 ** (5.4 - 1.9 * level)
-        ends = 2 * np.pi / longest, 2 * np.pi / shortest
+        ends = 2 * np.pi / long, 2 * np.pi / short
         axes.plot(ends, [height, height], color=BLACK, linewidth=2.5, solid_capstyle="butt")
-        on_right = bool(ends[1] ** 2 < record.wavevector[0] * record.wavevector[-1])
+        on_right = bool(ends[1] ** 2 < middle)
         axes.annotate(
             name,
             (ends[on_right], height),
@@ -140,14 +160,14 @@ def _draw_roll_off(axes: Axes, record: FilmScales) -> None:
     )
 
 
-def _set_scales(axes: Axes, wavevector: NDArray[np.float64]) -> None:
+def set_density_scales(axes: Axes, wavevector: Array) -> None:
     """Logarithmic axes, over these wavevectors."""
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(wavevector[0], wavevector[-1])
 
 
-def _add_wavelengths(axes: Axes) -> None:
+def add_wavelengths(axes: Axes) -> None:
     """Wavelengths on the upper edge."""
     axes.tick_params(which="both", top=False)
     above = axes.secondary_xaxis("top", functions=(_micrometres, _micrometres))
@@ -156,6 +176,6 @@ def _add_wavelengths(axes: Axes) -> None:
     above.set_xlabel(r"wavelength $2\pi/q$ (µm)")
 
 
-def _micrometres(wavevector: ArrayLike) -> NDArray[np.float64]:
+def _micrometres(wavevector: ArrayLike) -> Array:
     """Wavelength in micrometres of a wavevector in 1/m, and back."""
     return np.asarray(2e6 * np.pi / np.maximum(wavevector, 1e-100))

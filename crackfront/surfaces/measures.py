@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -89,8 +90,9 @@ class Surface:
 
     @property
     def checksum(self) -> str:
-        """Checksums of all files, in their order."""
-        return "".join(item.checksum for item in self.measurements)
+        """Eight hexadecimal digits of the content of all files, in their order."""
+        text = "".join(item.checksum for item in self.measurements)
+        return hashlib.sha256(text.encode()).hexdigest()[:8]
 
     def conformity_energy(self, contact_modulus: float) -> Uncertain:
         """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2.

@@ -1,0 +1,337 @@
+"""`crackfront surface` and `crackfront predict`: what they say, write and refuse."""
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from crackfront import plots
+from crackfront.cli import main
+from crackfront.dataset import read_cycle, read_field
+from crackfront.factors import BRANCHES, expected_factors
+from crackfront.fits import PAPER_FACTOR
+from crackfront.plots.prediction import prediction_figure
+from crackfront.prediction import (
+    Prediction,
+    predicted,
+    prediction_notes,
+    reduced_spectrum,
+    surface_factors,
+    theory_limits,
+)
+from crackfront.records import variables
+from crackfront.surfaces import Treatment, measured_surface, read_measurements, zero_load_radius
+from crackfront.units import Scales
+
+FOLDER = Path(__file__).parents[1] / "examples/scans"
+DETAIL, OVERVIEW = FOLDER / "nanodiamond-detail.al3d", FOLDER / "nanodiamond-overview.al3d"
+SCENE = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
+SPHERE = {
+    "--modulus": "0.7MPa",
+    "--poisson": "0.5",
+    "--radius": "1.25mm",
+    "--work-of-adhesion": "63mJ/m2",
+}
+
+
+@pytest.fixture(scope="module")
+def surface():
+    return measured_surface(read_measurements([DETAIL, OVERVIEW]))
+
+
+@pytest.fixture(scope="module")
+def factors(surface):
+    return surface_factors(surface, SCENE)
+
+
+@pytest.fixture(scope="module")
+def prediction(surface, factors):
+    return predicted(surface, SCENE, factors)
+
+
+def sphere(**changes):
+    """Options of the sphere; None leaves one out."""
+    named = SPHERE | {f"--{name.replace('_', '-')}": value for name, value in changes.items()}
+    return [part for item in named.items() if item[1] is not None for part in item]
+
+
+def run(*arguments):
+    """Result of a command."""
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+def refused(*arguments):
+    """Sentence of a command that is refused."""
+    result = run(*arguments)
+    assert result.exit_code == 2, result.output
+    assert "Traceback" not in result.output
+    [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
+    return sentence
+
+
+@pytest.fixture
+def predict(tmp_path, monkeypatch):
+    """Result of a prediction for the shipped scans, without the seconds that figures take."""
+
+    def command(*more, scans=(DETAIL, OVERVIEW), drawn=False, **changes):
+        if not drawn:
+            monkeypatch.setattr(plots, "save_figure", lambda figure, stem: ())
+        return run("predict", *scans, *sphere(**changes), "--figure", tmp_path / "figure", *more)
+
+    return command
+
+
+def test_the_law_holds_between_the_predicted_numbers(prediction):
+    w_int, e_el = prediction.work_of_adhesion, prediction.e_el
+    assert prediction.w_appr == pytest.approx(w_int - (1 + prediction.k_appr) * e_el)
+    assert prediction.w_retr == pytest.approx(w_int - (1 - prediction.k_retr) * e_el)
+    hysteresis = prediction.w_retr - prediction.w_appr
+    assert prediction.hysteresis == pytest.approx(hysteresis, rel=1e-3)
+    assert prediction.w_rms == pytest.approx(2 * np.sqrt(e_el * w_int))
+    assert prediction.paper_w_retr - prediction.paper_w_appr == pytest.approx(
+        2 * PAPER_FACTOR * e_el
+    )
+    force = 1.5 * np.pi * SCENE.radius
+    assert prediction.pull_off_force == pytest.approx(force * prediction.w_retr)
+    assert prediction.pull_off_force_smooth == pytest.approx(force * w_int)
+    held = prediction.pull_off_force_held / prediction.pull_off_force
+    assert held == pytest.approx(5 / 9)
+
+
+def test_intervals_hold_those_of_k_and_of_e_el(prediction):
+    for name in ("k_appr", "k_retr", "w_appr", "w_retr", "hysteresis", "pull_off_force"):
+        low, value, high = (getattr(prediction, name + end) for end in ("_low", "", "_high"))
+        assert low < value < high
+    e_el = prediction.e_el
+    by_factor = e_el * (prediction.k_appr_high - prediction.k_appr)
+    by_energy = 1.96 * (1 + prediction.k_appr) * prediction.e_el_error
+    below = prediction.w_appr - prediction.w_appr_low
+    assert below == pytest.approx(np.hypot(by_factor, by_energy))
+
+
+def test_nanodiamond_is_predicted_as_it_was_simulated(prediction):
+    """Main Fig. 5 at the paper's scale (docs/gallery.md): 32.1 and 71.6 mJ/m2."""
+    assert prediction.w_appr_low < 32.1e-3 < prediction.w_appr_high
+    assert prediction.w_retr_low < 71.6e-3 < prediction.w_retr_high
+    assert prediction.e_el == pytest.approx(11e-3, rel=0.15)
+
+
+def test_the_factors_are_those_of_the_table_for_the_reduced_spectrum(surface, factors):
+    shape = reduced_spectrum(surface.fitted.spectrum, SCENE)
+    energy = surface.conformity_energy(SCENE.contact_modulus).value / SCENE.work_of_adhesion
+    assert shape.elastic_energy == pytest.approx(energy, rel=1e-12)
+    expected = expected_factors(shape, energy, zero_load_radius(SCENE) / SCENE.lateral)
+    assert factors.spectra == expected.spectra
+    for branch in BRANCHES:
+        found, known = getattr(factors, branch), getattr(expected, branch)
+        assert (found.value, found.low, found.high) == pytest.approx(
+            (known.value, known.low, known.high)
+        )
+
+
+def test_a_prediction_does_not_depend_on_the_units_of_its_options(predict):
+    one = json.loads(predict("--json").output)["prediction"]
+    other = json.loads(
+        predict("--json", modulus="7e5 Pa", radius="0.00125m", work_of_adhesion="0.063N/m").output
+    )["prediction"]
+    for name, entry in one.items():
+        assert other[name]["value"] == pytest.approx(entry["value"], rel=1e-9)
+
+
+def test_the_limits_say_by_how_much_the_theory_applies(surface, prediction):
+    conformity, slopes, features = theory_limits(surface, prediction)
+    assert conformity.margin == pytest.approx(SCENE.work_of_adhesion / prediction.e_el)
+    assert slopes.margin == pytest.approx(1 / surface.measures[2].rms.value)
+    assert features.margin == pytest.approx(prediction.contact_radius / surface.measures[1].longest)
+    assert all(item.holds for item in (conformity, slopes, features))
+
+
+def test_a_small_sphere_is_outside_of_the_limits(surface):
+    small = replace(SCENE, radius=5e-6)
+    found = predicted(surface, small, surface_factors(surface, small))
+    assert not theory_limits(surface, found)[2].holds
+
+
+def test_scans_smaller_than_the_contact_are_told(surface, prediction, factors):
+    notes = prediction_notes(surface, prediction, factors)
+    for path in (DETAIL, OVERVIEW):
+        assert any(str(path) in note and "smaller than the contact" in note for note in notes)
+    assert any("k is interpolated from simulated spectra (flat-coarser" in note for note in notes)
+
+
+def test_weak_disorder_is_told_to_be_near_the_onset(predict):
+    content = json.loads(predict("--json", modulus="5kPa", radius="70um").output)
+    assert any("near the onset of hysteresis" in note for note in content["notes"])
+    assert any("below the weakest disorder" in note for note in content["notes"])
+    assert content["prediction"]["hysteresis_low"]["value"] == 0
+    assert content["prediction"]["hysteresis"]["value"] > 0
+
+
+def test_strong_disorder_is_told_to_be_beyond_the_table(predict):
+    content = json.loads(predict("--json", modulus="2.6MPa").output)
+    assert any("above the strongest disorder" in note for note in content["notes"])
+    assert any("has to be pressed on" in note for note in content["notes"])
+    assert content["prediction"]["w_appr"]["value"] < 0
+
+
+def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
+    result = predict(drawn=True)
+    assert result.exit_code == 0, result.output
+    for text in (
+        "nanodiamond-overview.al3d: al3d, 144 x 144 points, 43.2 um x 43.2 um",
+        "SYNTHETIC, not a measurement",
+        "hurst",
+        "w_appr ",
+        "w_retr ",
+        "pull-off, given load",
+        "with the paper's k = 3",
+        "The theory applies",
+        "inside by a factor of",
+    ):
+        assert text in result.output
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["figure.pdf", "figure.png"]
+
+
+def test_json_has_units_for_everything_that_is_predicted(predict, surface, prediction):
+    content = json.loads(predict("--json").output)
+    assert set(content["prediction"]) == {item.name for item in variables(Prediction)}
+    for item in variables(Prediction):
+        entry = content["prediction"][item.name]
+        assert entry["units"] == item.units
+        assert entry["value"] == pytest.approx(getattr(prediction, item.name), rel=1e-12)
+    assert [item["checksum"] for item in content["measurements"]] == [
+        item.checksum for item in surface.measurements
+    ]
+    density = content["measurements"][1]["isotropic_density"]
+    assert density["density"]["units"] == "m^4"
+    assert len(density["wavevector"]["value"]) == len(density["density"]["value"]) > 10
+    assert content["simulation"] is None
+
+
+def test_simulations_find_what_is_predicted(predict):
+    """A scene with few sites: long waves of the overview under a small sphere."""
+    result = predict(
+        *("--simulate", "--realisations", "2", "--seed", "1", "--json"),
+        scans=(OVERVIEW,),
+        radius="0.5mm",
+        modulus="1.5MPa",
+    )
+    assert result.exit_code == 0, result.output
+    content = json.loads(result.output)
+    assert any("longer than any that was simulated" in note for note in content["notes"])
+    found, law = content["simulation"], content["prediction"]
+    assert found["realisations"] == 2
+    assert found["w_appr"]["low"] < found["w_appr"]["value"] < found["w_appr"]["high"]
+    assert law["k_appr_low"]["value"] < found["k"]["value"] < law["k_appr_high"]["value"]
+    assert found["hysteresis"]["value"] == pytest.approx(
+        found["w_retr"]["value"] - found["w_appr"]["value"]
+    )
+
+
+def test_a_single_simulation_has_no_interval(predict):
+    more = ("--simulate", "--realisations", "1")
+    options = {"scans": (OVERVIEW,), "radius": "0.5mm", "modulus": "1.5MPa"}
+    content = json.loads(predict(*more, "--json", **options).output)
+    assert content["simulation"]["w_appr"]["low"] is None
+    text = predict(*more, **options).output
+    assert "simulating 1 surface(s), about" in text
+    value = 1e3 * content["simulation"]["w_appr"]["value"]
+    assert f"w_appr                {value:.3g} mJ/m2\n" in text
+
+
+def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
+    upper, force, lower = prediction_figure(surface, prediction).axes[:3]
+    if upper.get_ylabel() == "" or "force" in lower.get_ylabel():
+        force, lower = lower, force
+    for axes, densities in ((upper, surface.isotropic), (lower, surface.profiles)):
+        for line, density in zip(axes.lines, densities, strict=False):
+            np.testing.assert_array_equal(line.get_ydata(), density.value)
+    radius, values = force.lines[1].get_data()
+    assert values.min() == pytest.approx(-1e3 * prediction.pull_off_force, rel=1e-3)
+    assert radius[np.argmin(values)] < 1e6 * prediction.contact_radius
+    assert "mN" in force.get_ylabel()
+
+
+def test_a_map_becomes_a_field_that_a_cycle_runs_on(tmp_path):
+    field, out = tmp_path / "field.nc", tmp_path / "out.nc"
+    coarse = sphere(radius="20um")
+    result = run("surface", OVERVIEW, *coarse, "--shortest", "4um", "--field", field)
+    assert result.exit_code == 0, result.output
+    assert "of the power law would add" in result.output
+    adhesion = read_field(field)
+    assert adhesion.work_of_adhesion.shape == (288, 288)
+    scene = replace(SCENE, radius=20e-6)
+    assert adhesion.pixel * scene.lateral == pytest.approx(0.3e-6)
+    more = ("--max-penetration", 0.2, "--step", 0.4, "--tolerance", 1e-3, "--angles", 64)
+    result = run("cycle", "--field", field, *more, "--output", out)
+    assert result.exit_code == 0, result.output
+    assert read_cycle(out).penetration.size > 1
+
+
+def test_a_surface_alone_has_no_energy_and_with_a_sphere_it_has(surface):
+    alone = run("surface", DETAIL, OVERVIEW)
+    assert alone.exit_code == 0, alone.output
+    assert "e_el  " not in alone.output
+    assert "e_el  " in run("surface", DETAIL, OVERVIEW, *sphere()).output
+    content = json.loads(run("surface", DETAIL, OVERVIEW, *sphere(), "--json").output)
+    energy = surface.conformity_energy(SCENE.contact_modulus)
+    assert content["e_el"]["value"] == pytest.approx(energy.value)
+    assert content["prediction"] is None
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"modulus": "0.7"}, "--modulus is '0.7', without a unit"),
+        ({"modulus": "0.7kg"}, "--modulus is '0.7kg', which is no pressure"),
+        ({"radius": "1.25MPa"}, "--radius is '1.25MPa', which is no length"),
+        ({"work_of_adhesion": "63mJ"}, "--work-of-adhesion is '63mJ', which is no energy per area"),
+        ({"radius": "-1mm"}, "--radius is '-1mm'; it must be positive"),
+        ({"modulus": "100GPa"}, "no contact conforms fully and the theory does not apply"),
+    ],
+)
+def test_a_sphere_that_makes_no_sense_is_refused(tmp_path, changes, sentence):
+    figure = ("--figure", tmp_path / "figure")
+    assert sentence in refused("predict", OVERVIEW, *sphere(**changes), *figure)
+
+
+def test_every_kind_of_bad_scan_is_refused_with_a_sentence(tmp_path, monkeypatch, rng):
+    figure = ("--figure", tmp_path / "figure")
+    noise, plain = tmp_path / "noise.sur", tmp_path / "plain.txt"
+    noise.write_bytes(rng.bytes(777))
+    np.savetxt(plain, rng.standard_normal((64, 64)))
+    for scan, more, sentence in (
+        (noise, (), "is in no format that SurfaceTopography reads"),
+        (plain, (), "states no unit of length"),
+        (plain, ("--unit", "um", "--size", "5x5"), "--size is '5x5'"),
+        (tmp_path / "absent.al3d", (), "cannot be used"),
+        (OVERVIEW, ("--shortest", "5"), "--shortest is '5', without a unit"),
+        (OVERVIEW, ("--shortest", "15um"), "a spectrum needs 2 octaves"),
+    ):
+        assert sentence in refused("predict", scan, *sphere(), *figure, *more)
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    assert "pip install 'crackfront[surfaces]'" in refused("predict", OVERVIEW, *sphere(), *figure)
+
+
+def test_a_field_needs_the_whole_sphere_and_one_scan(tmp_path):
+    field = ("--field", tmp_path / "field.nc")
+    assert "the sphere is incomplete" in refused("surface", OVERVIEW, *field)
+    assert "the sphere is incomplete" in refused("surface", OVERVIEW, *sphere(radius=None), *field)
+    assert "--field takes one scan" in refused("surface", OVERVIEW, DETAIL, *sphere(), *field)
+    within = (*field, "--place", "within")
+    assert "is smaller than the contact" in refused("surface", OVERVIEW, *sphere(), *within)
+    assert not (tmp_path / "field.nc").exists()
+
+
+def test_a_treatment_is_what_the_options_say(surface):
+    [coarse] = read_measurements([OVERVIEW], Treatment("height", shortest=2e-6))
+    found = json.loads(
+        run("surface", OVERVIEW, "--detrend", "height", "--shortest", "2um", "--json").output
+    )
+    assert found["measurements"][0]["shortest"]["value"] == coarse.shortest
+    energy = measured_surface([coarse]).measures[1].rms.value
+    assert found["measures"][1]["rms"]["value"] == pytest.approx(energy, rel=1e-12)
