@@ -1,5 +1,7 @@
 """Configurations: what is accepted, and one clear sentence for everything that is not."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -7,6 +9,7 @@ import yaml
 
 from crackfront.config import ConfigurationError, load_configuration
 from crackfront.steady import SteadySchedule
+from crackfront.surfaces import measured_surface, read_measurements
 from crackfront.units import Scales
 
 ROOT = Path(__file__).parents[1]
@@ -373,3 +376,113 @@ def test_a_tolerance_below_round_off_is_refused_before_anything_runs(tmp_path):
     path = written(tmp_path, GOOD.replace("tolerance: 1e-6", "tolerance: 1e-20"))
     with pytest.raises(ConfigurationError, match="below the round-off of the 240 sites of flat"):
         load_configuration(path)
+
+
+SCANS = ROOT / "examples/scans"
+SCENE = "scales: {radius: 1.25e-3, work_of_adhesion: 63e-3, contact_modulus: 0.9333e6}\n"
+MEASURED = f"""
+spectra:
+  - name: film
+    surface: {{file: [{SCANS}/nanodiamond-detail.al3d, {SCANS}/nanodiamond-overview.al3d]}}
+"""
+
+
+def with_surface(spectra=MEASURED, scales=SCENE, **changes):
+    """The good text with the spectra of surfaces, in metres."""
+    start, end = GOOD.index("spectra:"), GOOD.index("amplitudes:")
+    text = GOOD[:start] + scales + spectra.lstrip() + GOOD[end:]
+    text = text.replace("{max_penetration: 1.0, step: 0.1}", "{max_penetration: 1e-6, step: 1e-7}")
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+def test_a_spectrum_may_be_that_of_measurements(tmp_path):
+    sweep = load_configuration(written(tmp_path, with_surface()))
+    [item] = sweep.spectra
+    surface = measured_surface(read_measurements(sorted(SCANS.glob("*.al3d"))))
+    found = surface.fitted.spectrum
+    assert item.name == f"film-{surface.checksum}"
+    for name in ("short_cutoff", "roll_off"):
+        length = getattr(item.spectrum, name) * sweep.scales.lateral
+        assert length == pytest.approx(getattr(found, name), rel=1e-4)
+    assert item.spectrum.hurst == pytest.approx(found.hurst, rel=1e-4)
+
+
+def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
+    scan = tmp_path / "scan.al3d"
+    spectra = f"spectra:\n  - {{name: film, surface: {{file: {scan}}}}}\n"
+    content = (SCANS / "nanodiamond-overview.al3d").read_bytes()
+    stems = []
+    for comment in (b"SYNTHETIC", b"Synthetic"):
+        scan.write_bytes(content.replace(b"SYNTHETIC", comment))
+        sweep = load_configuration(written(tmp_path, with_surface(spectra)))
+        stems.append([one.stem for one in sweep.shard(sweep.spectra[0])])
+    assert not set(stems[0]) & set(stems[1])
+    scan.write_bytes(content)
+    again = load_configuration(written(tmp_path, with_surface(spectra)))
+    assert [one.stem for one in again.shard(again.spectra[0])] == stems[0]
+
+
+def test_no_scan_is_read_for_spectra_that_are_given(tmp_path):
+    code = (
+        "import sys; from pathlib import Path; from crackfront.config import load_configuration; "
+        f"load_configuration(Path({str(written(tmp_path, GOOD))!r})); "
+        "assert 'SurfaceTopography' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=100)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (
+            with_surface(scales=""),
+            "spectrum 'film' is that of a surface in metres; give the section scales",
+        ),
+        (
+            with_surface(
+                **{
+                    "field: roughness": "field: chemical",
+                    "{elastic_energy": "{work_of_adhesion_rms",
+                }
+            ),
+            "spectrum 'film' is that of heights; field must be roughness",
+        ),
+        (
+            with_surface(MEASURED.rstrip() + "\n    hurst: 0.8\n"),
+            "spectra[0]: surface already decides hurst; remove one or the other",
+        ),
+        (
+            with_surface("spectra:\n  - {name: film, surface: {file: nowhere.al3d}}\n"),
+            "spectra[0].surface: nowhere.al3d cannot be read: No such file or directory",
+        ),
+        (
+            with_surface(f"spectra:\n  - {{name: film, surface: {{file: {ROOT}/README.md}}}}\n"),
+            f"spectra[0].surface: {ROOT}/README.md is in no format that SurfaceTopography reads",
+        ),
+        (
+            with_surface("spectra:\n  - {name: film, surface: {file: a.al3d, detrend: all}}\n"),
+            "spectra[0].surface.detrend is 'all'; it must be 'center', 'height', 'slope' or",
+        ),
+        (
+            with_surface("spectra:\n  - {name: film, surface: {file: []}}\n"),
+            "spectra[0].surface.file is []; it must have at least one entry",
+        ),
+        (
+            with_surface("spectra:\n  - {name: film, surface: {file: [a.al3d, 3]}}\n"),
+            "spectra[0].surface.file[1] is 3; it must be the name of a file",
+        ),
+        (
+            with_surface("spectra:\n  - {name: film, surface: {file: 3}}\n"),
+            "spectra[0].surface.file is 3; it must be a list",
+        ),
+        (
+            changed("{name: flat, short_cutoff: 0.1, hurst: 1.0}", "{name: flat, hurst: 1.0}"),
+            "spectra[0]: key short_cutoff is missing; add it, or name a surface",
+        ),
+    ],
+)
+def test_a_spectrum_that_is_no_measured_one_is_refused(tmp_path, text, sentence):
+    assert refusal(tmp_path, text).startswith(sentence)

@@ -10,12 +10,19 @@ from pydantic import ValidationError
 
 from crackfront.config.figures import SCALES, figure_files, load_figure
 from crackfront.config.reading import ConfigurationError, content_of, sentences
-from crackfront.config.sections import Configuration, LoadSection, NumericsSection
+from crackfront.config.sections import (
+    Configuration,
+    LoadSection,
+    NumericsSection,
+    SpectrumSection,
+    SurfaceSection,
+)
 from crackfront.cycle import LoadSchedule
 from crackfront.laws import numerical_error
 from crackfront.scene import Numerics, resolution
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.steady import SteadySchedule
+from crackfront.surfaces import Treatment, measured_surface, read_measurements
 from crackfront.sweep import FitRange, NamedSpectrum, Sweep
 from crackfront.units import Scales
 
@@ -50,7 +57,10 @@ def load_configuration(path: Path) -> Sweep:
         raise ConfigurationError(
             "\n".join(f"{path}: {line}" for line in sentences(error.errors(), Configuration))
         ) from error
-    sweep = _sweep(configuration)
+    try:
+        sweep = _sweep(configuration)
+    except ConfigurationError as error:
+        raise ConfigurationError(f"{path}: {error}") from error
     _refuse_round_off(path, sweep)
     _refuse_unreachable(path, sweep)
     return sweep
@@ -112,15 +122,8 @@ def _sweep(configuration: Configuration) -> Sweep:
         kind=configuration.field,
         scales=scales,
         spectra=tuple(
-            NamedSpectrum(
-                item.name,
-                SelfAffineSpectrum(
-                    short_cutoff=item.short_cutoff / lateral,
-                    roll_off=(item.roll_off or item.short_cutoff) / lateral,
-                    hurst=item.hurst,
-                ),
-            )
-            for item in configuration.spectra
+            _named_spectrum(position, item, lateral)
+            for position, item in enumerate(configuration.spectra)
         ),
         elastic_energies=configuration.amplitudes.elastic_energies,
         n_realisation=configuration.realisations,
@@ -132,6 +135,46 @@ def _sweep(configuration: Configuration) -> Sweep:
         failed_fraction=configuration.failed_fraction,
         fit=FitRange(fit.lowest_elastic_energy, fit.highest_elastic_energy, fit.bootstrap),
     )
+
+
+def _named_spectrum(position: int, section: SpectrumSection, lateral: float) -> NamedSpectrum:
+    """Spectrum of a section, lengths divided by a unit."""
+    if section.surface is None:
+        short, hurst = section.short_cutoff, section.hurst
+        assert short is not None, "the schema asks for it"
+        assert hurst is not None, "the schema asks for it"
+        return NamedSpectrum(
+            section.name,
+            SelfAffineSpectrum(short / lateral, (section.roll_off or short) / lateral, hurst),
+        )
+    try:
+        spectrum, checksum = _fitted(section.surface)
+    except OSError as error:
+        raise ConfigurationError(
+            f"spectra[{position}].surface: {error.filename} cannot be read: {error.strerror}"
+        ) from error
+    except ValueError as error:
+        raise ConfigurationError(f"spectra[{position}].surface: {error}") from error
+    return NamedSpectrum(
+        f"{section.name}-{checksum}",
+        SelfAffineSpectrum(
+            spectrum.short_cutoff / lateral, spectrum.roll_off / lateral, spectrum.hurst
+        ),
+    )
+
+
+def _fitted(section: SurfaceSection) -> tuple[SelfAffineSpectrum, str]:
+    """Spectrum of a surface in metres, and eight digits that change with any of its files.
+
+    Five digits of each parameter, so that simulations keep their names whatever the round-off.
+    """
+    treatment = Treatment(section.detrend, section.unit, section.size, section.shortest)
+    surface = measured_surface(read_measurements(section.file, treatment))
+    found = surface.fitted.spectrum
+    short, long, hurst = (
+        float(f"{value:.5g}") for value in (found.short_cutoff, found.roll_off, found.hurst)
+    )
+    return SelfAffineSpectrum(short, max(short, long), hurst), surface.checksum
 
 
 def _numerics(section: NumericsSection) -> Numerics:

@@ -115,6 +115,7 @@ _SHORT = {
     "too_short": "it must have at least one entry",
     "string_pattern_mismatch": "it must consist of letters, digits, _ and -",
     "finite_number": "it must be finite",
+    "path_type": "it must be the name of a file",
 }
 
 _MEANING = {

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from crackfront.pinning import Interpolation
 from crackfront.relax import SOLVERS
 from crackfront.scene import FieldKind
-from crackfront.validation import Count, Energy, Positive, Section, refusal
+from crackfront.surfaces import Detrend
+from crackfront.validation import Count, Energy, InputFile, Positive, Section, refusal
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 
@@ -22,17 +23,48 @@ class ScalesSection(Section):
     contact_modulus: Positive
 
 
+def _several(value: Any) -> Any:
+    """The list that a single file stands for."""
+    return (value,) if isinstance(value, str) else value
+
+
+class SurfaceSection(Section):
+    """Measurements of a surface, read as :class:`crackfront.surfaces.Treatment` says."""
+
+    file: Annotated[tuple[InputFile, ...], BeforeValidator(_several), Field(min_length=1)]
+    detrend: Detrend = "curvature"
+    unit: str | None = None
+    size: tuple[Positive, ...] | None = None
+    shortest: Positive | None = None
+
+
 class SpectrumSection(Section):
-    """Shape of one spectrum."""
+    """Shape of one spectrum: its parameters, or the surface that it is fitted to."""
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
-    short_cutoff: Positive
+    short_cutoff: Positive | None = None
     roll_off: Positive | None = None
-    hurst: Annotated[float, Field(gt=0, le=1)]
+    hurst: Annotated[float, Field(gt=0, le=1)] | None = None
+    surface: SurfaceSection | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> SpectrumSection:
+        own = {name: getattr(self, name) for name in ("short_cutoff", "roll_off", "hurst")}
+        if self.surface is not None:
+            given = [name for name, value in own.items() if value is not None]
+            if given:
+                raise refusal(
+                    f"surface already decides {', '.join(given)}; remove one or the other"
+                )
+            return self
+        missing = [name for name in ("short_cutoff", "hurst") if own[name] is None]
+        if missing:
+            raise refusal(f"key {', '.join(missing)} is missing; add it, or name a surface")
+        return self
 
     @model_validator(mode="after")
     def _ordered(self) -> SpectrumSection:
-        if self.roll_off is not None and self.roll_off < self.short_cutoff:
+        if self.roll_off and self.short_cutoff and self.roll_off < self.short_cutoff:
             raise refusal(
                 f"roll_off {self.roll_off:g} is shorter than short_cutoff {self.short_cutoff:g}; "
                 "lower the cutoff or raise the roll-off (equal values give a flat spectrum)"
@@ -210,6 +242,13 @@ class Configuration(Section):
                 "amplitudes.elastic_energy has no meaning for a chemical field; give "
                 "amplitudes.work_of_adhesion_rms"
             )
+        measured = [item.name for item in self.spectra if item.surface is not None]
+        if measured and self.scales is None:
+            raise refusal(
+                f"spectrum {measured[0]!r} is that of a surface in metres; give the section scales"
+            )
+        if measured and self.field == "chemical":
+            raise refusal(f"spectrum {measured[0]!r} is that of heights; field must be roughness")
         energies, fit = self.amplitudes.elastic_energies, self.fit
         if not any(
             fit.lowest_elastic_energy <= energy <= fit.highest_elastic_energy for energy in energies
