@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from crackfront import plots
 from crackfront.cli import main
 from crackfront.dataset import read_cycle, read_field
-from crackfront.factors import BRANCHES, expected_factors
+from crackfront.factors import BRANCHES, expected_factors, leave_one_out_error
 from crackfront.fits import PAPER_FACTOR
 from crackfront.plots.prediction import prediction_figure
 from crackfront.prediction import (
@@ -27,7 +27,8 @@ from crackfront.records import variables
 from crackfront.surfaces import Treatment, measured_surface, read_measurements, zero_load_radius
 from crackfront.units import Scales
 
-FOLDER = Path(__file__).parents[1] / "examples/scans"
+ROOT = Path(__file__).parents[1]
+FOLDER = ROOT / "examples/scans"
 DETAIL, OVERVIEW = FOLDER / "nanodiamond-detail.al3d", FOLDER / "nanodiamond-overview.al3d"
 SCENE = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
 SPHERE = {
@@ -335,3 +336,21 @@ def test_a_treatment_is_what_the_options_say(surface):
     assert found["measurements"][0]["shortest"]["value"] == coarse.shortest
     energy = measured_surface([coarse]).measures[1].rms.value
     assert found["measures"][1]["rms"]["value"] == pytest.approx(energy, rel=1e-12)
+
+
+def test_the_documentation_shows_what_the_command_prints(predict, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    names = [path.relative_to(ROOT) for path in (DETAIL, OVERVIEW)]
+    page = (ROOT / "docs/surfaces.md").read_text(encoding="utf-8")
+    shown = page.split("```text\n")[1].split("```")[0]
+    assert predict(scans=names).output == shown
+    command = page.split("```sh\n")[1].split("```")[0].replace("\\\n", " ").split()
+    assert command == ["crackfront", "predict", *map(str, names), *sphere()]
+
+
+def test_the_documentation_states_the_errors_of_the_table():
+    page = (ROOT / "docs/surfaces.md").read_text(encoding="utf-8")
+    energies = (0.002, 0.05, 0.15, 0.4)
+    errors = [f"{leave_one_out_error(energy, 'both'):.2f} at {energy:g}" for energy in energies]
+    stated = ", ".join(errors).replace("at 0.002", "at e_el/w_int = 0.002")
+    assert stated in page

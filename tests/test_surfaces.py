@@ -23,6 +23,7 @@ from crackfront.surfaces import (
     zero_load_radius,
 )
 from crackfront.surfaces.densities import topography
+from crackfront.surfaces.reading import surface_library
 from crackfront.synthesis import gaussian_field
 from crackfront.units import WORK_OF_ADHESION, Scales
 
@@ -186,6 +187,33 @@ def test_the_shortest_wavelength_may_be_named(scan):
     [measurement] = read_measurements([scan], Treatment(shortest=1e-6))
     assert measurement.shortest == 1e-6
     assert isotropic_density(measurement).wavevector.max() < 2 * np.pi / 1e-6
+
+
+@pytest.mark.parametrize(
+    ("known", "low", "high"),
+    [
+        ({"resolution": {"value": 0.9, "unit": "um"}}, 0.9e-6, 0.9e-6),
+        ({"tip_radius": {"value": 0.5, "unit": "um"}}, 0.7e-6, 2.5e-6),
+        ({"resolution": {"value": 10, "unit": "nm"}}, 0.625e-6, 0.625e-6),
+    ],
+)
+def test_the_reliability_that_a_file_states_bounds_the_wavelengths(
+    tmp_path, heights, known, low, high
+):
+    info = {"instrument": {"name": "test", "parameters": known}}
+    library = surface_library().Topography(heights, (SIDE, SIDE), unit="m", info=info)
+    library.to_netcdf(str(tmp_path / "scan.nc"))
+    [measurement] = read_measurements([tmp_path / "scan.nc"])
+    assert measurement.format == "nc"
+    assert low * (1 - 1e-6) <= measurement.shortest <= high * (1 + 1e-6)
+
+
+def test_a_channel_without_heights_is_refused(monkeypatch, scan):
+    module = surface_library().IO.Reader
+    monkeypatch.setattr(
+        module.ChannelInfo, "data_kind", property(lambda channel: module.DataKind.PHASE)
+    )
+    assert "channel 'Default' holds phase, no heights" in refusal([scan])
 
 
 def test_the_surface_does_not_depend_on_a_tilt_or_a_curvature(tmp_path, heights, scan):

@@ -182,8 +182,8 @@ def _measurement(path: Path, treatment: Treatment) -> Measurement:
     level = level.to_unit("m")
     size = tuple(map(float, level.physical_sizes))
     pixel = max(side / count for side, count in zip(size, heights.shape, strict=True))
-    own = raw.to_unit("m").short_reliability_cutoff() if missing == 0 else None
-    shortest = max(PIXELS_PER_WAVE * pixel, own or 0.0, treatment.shortest or 0.0)
+    stated = level.short_reliability_cutoff() or 0.0
+    shortest = max(PIXELS_PER_WAVE * pixel, stated, treatment.shortest or 0.0)
     longest = min(size) / WAVES_PER_SIDE
     if longest < 2**FEWEST_OCTAVES * shortest:
         raise ValueError(
