@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from benchmarks import predictions
+from benchmarks.predictions import TABLE_HEAD, comparison_row
 from crackfront import plots
 from crackfront.cli import main
 from crackfront.dataset import read_cycle, read_field
@@ -72,6 +74,12 @@ def refused(*arguments):
     assert "Traceback" not in result.output
     [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
     return sentence
+
+
+@pytest.fixture(scope="module")
+def comparisons():
+    """Predictions beside simulations; half a minute."""
+    return tuple(predictions.comparisons())
 
 
 @pytest.fixture
@@ -354,3 +362,19 @@ def test_the_documentation_states_the_errors_of_the_table():
     errors = [f"{leave_one_out_error(energy, 'both'):.2f} at {energy:g}" for energy in energies]
     stated = ", ".join(errors).replace("at 0.002", "at e_el/w_int = 0.002")
     assert stated in page
+
+
+@pytest.mark.slow
+def test_predictions_hold_for_surfaces_that_the_table_does_not(comparisons):
+    for item in comparisons:
+        found, k = item.found.k, item.factors.both
+        assert k.low < found.value < k.high
+        assert abs(found.value - k.value) < 0.3
+        assert item.prediction.w_appr_low < item.found.w_appr.value < item.prediction.w_appr_high
+        assert item.prediction.w_retr_low < item.found.w_retr.value < item.prediction.w_retr_high
+
+
+@pytest.mark.slow
+def test_the_documentation_holds_the_predictions_and_their_simulations(comparisons):
+    page = (ROOT / "docs/surfaces.md").read_text(encoding="utf-8")
+    assert "\n".join([TABLE_HEAD, *map(comparison_row, comparisons)]) in page
