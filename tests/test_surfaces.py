@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks import scans
-from crackfront.adhesion import half_derivative_mean_square
+from crackfront.adhesion import half_derivative_mean_square, rough_adhesion
 from crackfront.figures.synthetic_film import profile_periodogram
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.surfaces import (
@@ -376,6 +376,27 @@ def test_the_apex_is_above_the_centre_of_the_scan(scan):
     x, y = np.unravel_index(np.argmax(deviation), deviation.shape)
     assert abs(int(x) - 128) <= 8
     assert abs(int(y) - 128) <= 1
+
+
+def test_a_periodic_map_is_a_tile_as_it_stands(rng):
+    heights = gaussian_field(SPECTRUM, 128, SIDE, rng)
+    adhesion = measured_adhesion(periodic_measurement(heights), SOFT)
+    expected = rough_adhesion(heights / SOFT.vertical, SIDE / 128 / SOFT.lateral)
+    assert adhesion.pixel == pytest.approx(expected.pixel)
+    assert adhesion.work_of_adhesion == pytest.approx(expected.work_of_adhesion, rel=1e-9)
+
+
+def test_a_map_of_odd_and_unequal_sides_has_a_tile(tmp_path, rng):
+    heights = map_heights(rng)[:100, :71]
+    content = scans.al3d(heights, SIDE / 128, "unequal")
+    (tmp_path / "scan.al3d").write_bytes(content)
+    [measurement] = read_measurements([tmp_path / "scan.al3d"])
+    assert measurement.size == pytest.approx((100 * SIDE / 128, 71 * SIDE / 128))
+    adhesion = measured_adhesion(measurement, SOFT)
+    assert adhesion.work_of_adhesion.shape == (200, 142)
+    found = adhesion.elastic_energy * SOFT.work_of_adhesion
+    measured = SOFT.contact_modulus / 4 * measured_mean_square(measurement, 0.5)
+    assert found == pytest.approx(measured, rel=0.4)
 
 
 def test_a_scan_smaller_than_the_contact_is_tiled_or_refused(scan):

@@ -30,7 +30,8 @@ def measured_adhesion(
 
     The scan is mirrored at its edges, which leaves no steps there, on a tile of twice its sides;
     waves shorter than can be trusted are taken away. The apex of the sphere is the centre of the
-    scan. A map with oblong pixels is interpolated by cubic splines on square ones.
+    scan. A map with oblong pixels is interpolated by cubic splines on square ones, and one that is
+    periodic is a tile as it stands.
 
     Parameters
     ----------
@@ -67,7 +68,8 @@ def measured_adhesion(
             f"{measurement.path}: the scan of {_micrometres(measurement.size)} is smaller than the "
             f"contact at zero load, {1e6 * across:.3g} um across; tile it, or use its spectrum"
         )
-    whole = topography(_with_square_pixels(measurement)).mirror_stitch()
+    scan = topography(_with_square_pixels(measurement))
+    whole = scan if measurement.periodic else scan.mirror_stitch()
     tile = surface_library().Topography(
         whole.heights(), whole.physical_sizes, periodic=True, unit="m"
     )
@@ -75,9 +77,9 @@ def measured_adhesion(
         # The library calls an inverse transform in a way that numpy will change.
         warnings.simplefilter("ignore", DeprecationWarning)
         heights = tile.shortcut(cutoff_wavelength=measurement.shortest).heights()
-    # The mirror images stand behind the scan: half a scan further its centre is the tile's.
-    quarter = [count // 4 for count in heights.shape]
-    centred = np.roll(heights, quarter, axis=(0, 1))
+    # Mirror images stand behind the scan: half a scan further its centre is that of the tile.
+    behind = [0 if measurement.periodic else count // 4 for count in heights.shape]
+    centred = np.roll(heights, behind, axis=(0, 1))
     return rough_adhesion(
         np.ascontiguousarray(centred) / scales.vertical, tile.pixel_size[0] / scales.lateral
     )
