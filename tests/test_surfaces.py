@@ -23,7 +23,7 @@ from crackfront.surfaces import (
     zero_load_radius,
 )
 from crackfront.surfaces.densities import topography
-from crackfront.surfaces.reading import surface_library
+from crackfront.surfaces.files import surface_library
 from crackfront.synthesis import gaussian_field
 from crackfront.units import WORK_OF_ADHESION, Scales
 

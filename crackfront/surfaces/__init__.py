@@ -1,6 +1,7 @@
 """Measured surfaces: the only importer of SurfaceTopography, which reads and detrends them."""
 
 from crackfront.surfaces.densities import Density, isotropic_density, profile_density
+from crackfront.surfaces.files import Detrend, Treatment
 from crackfront.surfaces.fitting import FittedSpectrum, Uncertain, fitted_spectrum
 from crackfront.surfaces.measures import (
     ORDERS,
@@ -9,7 +10,7 @@ from crackfront.surfaces.measures import (
     measured_mean_square,
     measured_surface,
 )
-from crackfront.surfaces.reading import Detrend, Measurement, Treatment, read_measurements
+from crackfront.surfaces.reading import Measurement, read_measurements
 from crackfront.surfaces.tile import Placement, measured_adhesion, zero_load_radius
 
 __all__ = [

@@ -14,7 +14,8 @@ from scipy.fft import fftfreq, fftn
 from scipy.signal import get_window
 from scipy.special import digamma, polygamma
 
-from crackfront.surfaces.reading import Measurement, surface_library
+from crackfront.surfaces.files import surface_library
+from crackfront.surfaces.reading import Measurement
 
 Array = NDArray[np.float64]
 

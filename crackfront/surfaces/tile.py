@@ -13,7 +13,8 @@ from scipy.interpolate import RectBivariateSpline
 from crackfront import jkr
 from crackfront.adhesion import AdhesionMap, rough_adhesion
 from crackfront.surfaces.densities import topography
-from crackfront.surfaces.reading import Measurement, surface_library
+from crackfront.surfaces.files import surface_library
+from crackfront.surfaces.reading import Measurement
 from crackfront.units import Scales
 
 Placement = Literal["tiled", "within"]

@@ -1,92 +1,27 @@
-r"""The factors k of a surface that was not simulated, from those of surfaces that were.
-
-`python -m benchmarks.factors` makes `factors.csv` from the results of sweeps: of every spectrum and
-amplitude the factors of the two branches,
-
-.. math:: k_{appr} = (w_{int} - e_{el} - w_{appr}) / e_{el}, \quad
-          k_{retr} = (w_{retr} - w_{int} + e_{el}) / e_{el},
-
-and k, their mean. A spectrum is a place in the plane of two lengths relative to the radius of the
-contact: the correlation length of w_loc and the roll-off. Within a spectrum k is interpolated in
-the logarithm of e_el, between spectra with inverse distances.
-"""
+"""Factors k by interpolation in the table, with intervals."""
 
 from __future__ import annotations
 
-import csv
-import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
-from importlib.resources import files
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from crackfront.factors.measured import MeasuredFactors, factor_groups, place_of
 from crackfront.fits import PERTURBATION_FACTOR
 from crackfront.fits.notes import ONSET
 from crackfront.spectrum import SelfAffineSpectrum
 
 Array = NDArray[np.float64]
 
-_ROLL_OFF_OCTAVES = 3.0
-"""Octaves of the roll-off that count as much as one of the correlation length: k depends on the
-whole surface through the latter, on its long waves only weakly."""
-
 _POWER = 4
 """Weights fall with this power of the distance."""
 
 BRANCHES = ("approach", "retraction", "both")
 """Whose factor: k_appr, k_retr and k, their mean."""
-
-
-@dataclass(frozen=True, slots=True)
-class MeasuredFactors:
-    """Factors of one spectrum at one amplitude, means over realisations.
-
-    Attributes
-    ----------
-    spectrum : str
-        Name of the spectrum.
-    short_cutoff, roll_off, hurst : float
-        Its shape. (Lengths in the reduced lateral unit)
-    correlation_length, contact_radius : float
-        Of w_loc, and of the contact in the middle of the steady branches.
-        (Units: reduced lateral length)
-    elastic_energy : float
-        e_el measured on the tiles. (Units: w_int)
-    realisations : int
-        Surfaces.
-    approach, retraction, both : float
-        k_appr, k_retr and their mean.
-    approach_error, retraction_error, both_error : float
-        Their standard errors.
-    numerical_error : float
-        Standard error of k that the numerics leave.
-    """
-
-    spectrum: str
-    short_cutoff: float
-    roll_off: float
-    hurst: float
-    correlation_length: float
-    contact_radius: float
-    elastic_energy: float
-    realisations: int
-    approach: float
-    approach_error: float
-    retraction: float
-    retraction_error: float
-    both: float
-    both_error: float
-    numerical_error: float
-
-    @property
-    def place(self) -> tuple[float, float]:
-        """Octaves of the correlation length and, weighted, of the roll-off."""
-        return _place(self.correlation_length, self.roll_off, self.contact_radius)
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,8 +111,8 @@ def expected_factors(
             f"energy of full conformity is {elastic_energy:.4g} w_int; the factors k need one "
             "between 0 and 1"
         )
-    groups = _groups()
-    here = _place(spectrum.correlation_length, spectrum.roll_off, contact_radius)
+    groups = factor_groups()
+    here = place_of(spectrum.correlation_length, spectrum.roll_off, contact_radius)
     weights = _weights(here, groups)
     order = np.argsort(-weights)
     energies = [row.elastic_energy for group in groups for row in group]
@@ -214,7 +149,7 @@ def leave_one_out_error(elastic_energy: float, branch: str) -> float:
     branch : str
         A name in :data:`BRANCHES`.
     """
-    groups = _groups()
+    groups = factor_groups()
     errors = []
     for group in groups:
         others = [other for other in groups if other is not group]
@@ -222,34 +157,6 @@ def leave_one_out_error(elastic_energy: float, branch: str) -> float:
         known = [_at(other, elastic_energy, branch) for other in others]
         errors.append(float(weights @ known) - _at(group, elastic_energy, branch))
     return math.sqrt(float(np.mean(np.square(errors))))
-
-
-@functools.cache
-def measured_factors() -> tuple[MeasuredFactors, ...]:
-    """Rows of `factors.csv`."""
-    text = files("crackfront").joinpath("factors.csv").read_text(encoding="utf-8")
-    return tuple(
-        MeasuredFactors(**{item.name: _TYPES[str(item.type)](row[item.name]) for item in _FIELDS})
-        for row in csv.DictReader(text.splitlines())
-    )
-
-
-_FIELDS = fields(MeasuredFactors)
-_TYPES: dict[str, type[Any]] = {"str": str, "int": int, "float": float}
-
-
-@functools.cache
-def _groups() -> tuple[tuple[MeasuredFactors, ...], ...]:
-    """Rows of every spectrum, with increasing amplitude."""
-    found: dict[str, list[MeasuredFactors]] = {}
-    for row in sorted(measured_factors(), key=lambda row: row.elastic_energy):
-        found.setdefault(row.spectrum, []).append(row)
-    return tuple(map(tuple, found.values()))
-
-
-def _place(correlation_length: float, roll_off: float, radius: float) -> tuple[float, float]:
-    """Place of a spectrum: octaves of its two lengths relative to the contact."""
-    return math.log2(correlation_length / radius), math.log2(roll_off / radius) / _ROLL_OFF_OCTAVES
 
 
 def _weights(here: tuple[float, float], groups: Sequence[Sequence[MeasuredFactors]]) -> Array:
