@@ -7,13 +7,19 @@ reduced units (R = 1, w_int = 1/pi, E' = 3/4).
 from collections.abc import Callable
 from typing import Any
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crackfront.plots.accuracy import laws_figure, work_precision_figure
 from crackfront.plots.animation import Animation, save_animation
 from crackfront.plots.avalanches import avalanche_figure
-from crackfront.plots.densities import film_scales_figure, synthetic_film_figure
-from crackfront.plots.instabilities import instability_figure
+from crackfront.plots.densities import (
+    draw_spectrum,
+    film_scales_figure,
+    synthetic_film_figure,
+)
+from crackfront.plots.fronts import draw_field, draw_fronts, draw_heights
+from crackfront.plots.instabilities import draw_instabilities, instability_figure
 from crackfront.plots.loop import draw_loop, loop_figure
 from crackfront.plots.mapping import mapping_figure
 from crackfront.plots.motion import motion_animation, motion_figure
@@ -24,7 +30,7 @@ from crackfront.plots.prediction import prediction_figure
 from crackfront.plots.rings import rings_figure
 from crackfront.plots.roughness import roughness_figure
 from crackfront.plots.smooth import smooth_loop_figure
-from crackfront.plots.style import house_style, save_figure, save_picture
+from crackfront.plots.style import house_style, save_figure, save_picture, shown_axes
 from crackfront.plots.sweep import (
     draw_factor_by_disorder,
     draw_factor_by_length,
@@ -37,11 +43,17 @@ from crackfront.plots.sweep import (
 __all__ = [
     "ANIMATION_MAKERS",
     "FIGURE_MAKERS",
+    "Axes",
     "draw_factor_by_disorder",
     "draw_factor_by_length",
+    "draw_field",
+    "draw_fronts",
+    "draw_heights",
     "draw_hysteresis",
+    "draw_instabilities",
     "draw_loop",
     "draw_spectra",
+    "draw_spectrum",
     "factor_figure",
     "house_style",
     "hysteresis_figure",
@@ -51,6 +63,7 @@ __all__ = [
     "save_animation",
     "save_figure",
     "save_picture",
+    "shown_axes",
     "work_precision_figure",
 ]
 

@@ -1,7 +1,8 @@
-"""Main Fig. 5a and SI Fig. S-6: spectral densities of the nanodiamond film, in SI units."""
+"""Spectral densities: of any surface, and of the nanodiamond film (main Fig. 5a, SI Fig. S-6)."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from numpy.typing import ArrayLike, NDArray
 
 from crackfront.figures import FilmScales, SyntheticFilm
+from crackfront.plots.parts import LATERAL_UNIT
 from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
 
 Array = NDArray[np.float64]
@@ -19,6 +21,52 @@ WAVEVECTOR_LABEL = r"wavevector $q$ (m$^{-1}$)"
 PROFILE_LABEL = r"$C^\mathrm{1D}$ (m$^3$)"
 ISOTROPIC_LABEL = r"$C^\mathrm{iso}$ (m$^4$)"
 _CONVERTED = r"$q\,C^\mathrm{iso}/\pi$ (paper's conversion)"
+
+
+def draw_spectrum(
+    axes: Axes,
+    wavevector: Array,
+    density: Array,
+    rms: Array,
+    shortest: Array,
+    longest: Array,
+    ideal: Array | None = None,
+) -> None:
+    """Isotropic density of a surface, with bars of the scales that dominate its rms measures.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    wavevector : (n_wave,) array
+        Magnitudes q. (Units: 1 / reduced lateral length)
+    density : (n_wave,) array
+        C(q). (Units: (3 pi w_int R / 4E')^2)
+    rms : (3,) array
+        Rms height, half-derivative and slope. (Units: reduced)
+    shortest, longest : (3,) array
+        Wavelengths between which 80% of their squares lie. (Units: reduced lateral length)
+    ideal : (n_wave,) array, optional
+        Density of the spectrum that the surface was made from, zero where it has none.
+    """
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.plot(wavevector, density, color=BLUE, label="surface")
+    names = [
+        rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$"
+        for order, value in zip(("0", "1/2", "1"), rms, strict=True)
+    ]
+    axes.set_xlim(0.7 * wavevector[0], 1.4 * wavevector[-1])
+    _add_bars(axes, names, 2 * np.pi / longest, 2 * np.pi / shortest)
+    if ideal is not None:
+        kept = ideal > 0
+        axes.plot(
+            wavevector[kept], ideal[kept], color=BLACK, dashes=(4, 2), label="spectrum", zorder=3
+        )
+    axes.set_ylim(bottom=0.1 * float(density.min()))
+    axes.set_xlabel(rf"wavevector $q$ $\times$ {LATERAL_UNIT}")
+    axes.set_ylabel(r"$C^\mathrm{iso}$ / $(3\pi w_\mathrm{int}R/4E')^2$")
+    axes.legend(loc="lower left")
 
 
 def film_scales_figure(record: FilmScales) -> Figure:
@@ -40,7 +88,6 @@ def film_scales_figure(record: FilmScales) -> Figure:
             record.mean_square,
             record.shortest,
             record.longest,
-            float(record.isotropic.max()),
         )
         _draw_roll_off(upper, record)
         lower.plot(record.wavevector, record.profile, color=BLACK, label="exact projection")
@@ -106,10 +153,8 @@ def _draw_end(axes: Axes, name: str, length: float, alignment: Literal["left", "
     )
 
 
-def draw_dominant_scales(
-    axes: Axes, mean_square: Array, shortest: Array, longest: Array, highest: float
-) -> None:
-    """Bars of the scales that carry 80% of the mean squares, above a density.
+def draw_dominant_scales(axes: Axes, mean_square: Array, shortest: Array, longest: Array) -> None:
+    """Bars of the scales that carry 80% of the mean squares, above what is drawn.
 
     Parameters
     ----------
@@ -118,8 +163,6 @@ def draw_dominant_scales(
     mean_square, shortest, longest : (3,) array
         Mean squares of heights, half-derivatives and slopes, and the ends of their scales.
         (Units: m^(2 - 2 order), m)
-    highest : float
-        Largest density that is drawn. (Units: m^4)
     """
     names = (
         rf"$h_\mathrm{{rms}}^{{(0)}} = {1e9 * mean_square[0] ** 0.5:.0f}$ nm",
@@ -127,12 +170,19 @@ def draw_dominant_scales(
         r"\times10^{-4}$ m$^{1/2}$",
         rf"$h_\mathrm{{rms}}^{{(1)}} = {mean_square[2] ** 0.5:.2f}$",
     )
-    middle = axes.get_xlim()[0] * axes.get_xlim()[1]
-    for level, (name, short, long) in enumerate(zip(names, shortest, longest, strict=True)):
-        height = highest * 10.0 ** (5.4 - 1.9 * level)
-        ends = 2 * np.pi / long, 2 * np.pi / short
+    _add_bars(axes, names, 2 * np.pi / longest, 2 * np.pi / shortest)
+
+
+def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -> None:
+    """Bars between wavevectors with their names, above what is drawn."""
+    (left, right), top = (
+        axes.get_xlim(),
+        max(float(np.max(line.get_ydata())) for line in axes.get_lines()),
+    )
+    for level, (name, *ends) in enumerate(zip(names, lowest, highest, strict=True)):
+        height = top * 10.0 ** (5.4 - 1.9 * level)
         axes.plot(ends, [height, height], color=BLACK, linewidth=2.5, solid_capstyle="butt")
-        on_right = bool(ends[1] ** 2 < middle)
+        on_right = bool(ends[1] ** 2 < left * right)
         axes.annotate(
             name,
             (ends[on_right], height),
@@ -142,7 +192,7 @@ def draw_dominant_scales(
             va="center",
             bbox={"facecolor": "white", "linewidth": 0, "pad": 1},
         )
-    axes.set_ylim(top=highest * 10.0**6.6)
+    axes.set_ylim(top=top * 10.0**6.6)
 
 
 def _draw_roll_off(axes: Axes, record: FilmScales) -> None:

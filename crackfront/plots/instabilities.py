@@ -15,12 +15,15 @@ from crackfront import jkr
 from crackfront.figures import InstabilityRecord
 from crackfront.figures.contact import STRONG, WEAK
 from crackfront.figures.instability_checks import radii_at_zero
+from crackfront.plots.fronts import label_plane
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLUE, PAGE, PURPLE, VERMILION, blank_figure, house_style
 
 Array = NDArray[np.float64]
 
 _COLOURS = "viridis"
+
+_ENERGY_LABEL = r"dissipated energy / $(9\pi^5 w_\mathrm{int}^5R^4/16E'^2)^{1/3}$"
 
 _FINER = 4
 """Points of a drawn front per site; the front is smooth between its sites."""
@@ -51,11 +54,7 @@ def instability_figure(record: InstabilityRecord) -> Figure:
             orientation="horizontal",
             extend="min",
         )
-        bar.set_label(
-            r"dissipated energy / $(9\pi^5 w_\mathrm{int}^5R^4/16E'^2)^{1/3}$",
-            fontsize=7,
-            labelpad=1,
-        )
+        bar.set_label(_ENERGY_LABEL, fontsize=7, labelpad=1)
         _draw_cycle(right, record)
         left.set_title("a", loc="left", fontweight="bold")
         right.set_title("b", loc="left", fontweight="bold")
@@ -69,21 +68,88 @@ def _draw_quarter(axes: Axes, record: InstabilityRecord, index: int, norm: LogNo
     angle = np.pi / 2 * np.linspace(0, 1, fronts[0].shape[1]) + (
         np.pi / 2 if index == STRONG else 0
     )
-    compass = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     middle = np.array([_GAP if index == WEAK else -_GAP, 0.0])
     patches, energies = [], []
     for before, after, energy in zip(*fronts, record.energy[chosen], strict=True):
-        moved = np.abs(after - before) > record.travel
-        edges = np.flatnonzero(np.diff(moved.astype(int), prepend=0, append=0))
-        for first, last in edges.reshape(-1, 2):
-            # One point more at each end, where the two fronts meet.
-            part = slice(max(first - 1, 0), last + 1)
-            there, back = before[part, None] * compass[part], after[part, None] * compass[part]
-            patches.append(np.concatenate([there, back[::-1]]) + middle)
+        for patch in _patches(before, after, angle, record.travel):
+            patches.append(patch + middle)
             energies.append(energy)
+    _add_patches(axes, patches, energies, norm)
+
+
+def draw_instabilities(
+    axes: Axes, angle: Array, before: Array, after: Array, energy: Array, travel: float
+) -> None:
+    """What each instability has swept, coloured by the energy that it dissipated.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    angle : (n_angle,) array
+        Angles of the sites. (Units: rad)
+    before, after : (n_jump, n_angle) array
+        Fronts before and after. (Units: reduced lateral length)
+    energy : (n_jump,) array
+        Dissipated energies. (Units: pi w_int R times a reduced vertical length)
+    travel : float
+        Smallest motion of a site that is drawn. (Units: reduced lateral length)
+
+    Raises
+    ------
+    ValueError
+        If there is no instability.
+    """
+    if energy.size == 0:
+        raise ValueError("the branch has no instability; there is none to draw")
+    norm = LogNorm(np.quantile(energy, 0.02), energy.max())
+    patches, energies = [], []
+    for one, other, lost in zip(before, after, energy, strict=True):
+        # Begin on the site that moved least, so that no patch spans the ends of the array.
+        turn = -int(np.argmin(np.abs(other - one)))
+        first, last, around = (_closed(np.roll(values, turn)) for values in (one, other, angle))
+        for patch in _patches(first, last, around, travel):
+            patches.append(patch)
+            energies.append(lost)
+    _add_patches(axes, patches, energies, norm)
+    bar = axes.figure.colorbar(ScalarMappable(norm, _COLOURS), ax=axes, pad=0.02, extend="min")
+    bar.set_label(_ENERGY_LABEL)
+    reach = 1.05 * max(float(np.max(before)), float(np.max(after)))
+    axes.set_xlim(-reach, reach)
+    axes.set_ylim(-reach, reach)
+    axes.set_aspect("equal")
+    label_plane(axes)
+
+
+def _closed(values: Array) -> Array:
+    """Values around the perimeter, the first repeated at the end."""
+    return np.append(values, values[0])
+
+
+def _patches(before: Array, after: Array, angle: Array, travel: float) -> list[Array]:
+    """Outlines of the contiguous parts of a perimeter that moved."""
+    compass = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    moved = np.abs(after - before) > travel
+    edges = np.flatnonzero(np.diff(moved.astype(int), prepend=0, append=0))
+    found = []
+    for first, last in edges.reshape(-1, 2):
+        # One point more at each end, where the two fronts meet.
+        part = slice(max(first - 1, 0), last + 1)
+        there, back = before[part, None] * compass[part], after[part, None] * compass[part]
+        found.append(np.concatenate([there, back[::-1]]))
+    return found
+
+
+def _add_patches(axes: Axes, patches: list[Array], energies: list[float], norm: LogNorm) -> None:
+    """Patches in the colours of their energies."""
     axes.add_collection(
         PolyCollection(
-            patches, array=energies, norm=norm, cmap=_COLOURS, edgecolors="black", linewidths=0.2
+            patches,
+            array=np.array(energies),
+            norm=norm,
+            cmap=_COLOURS,
+            edgecolors="black",
+            linewidths=0.2,
         )
     )
 

@@ -5,28 +5,13 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
 from crackfront.figures import Motion
 from crackfront.plots.animation import Animation
-from crackfront.plots.parts import (
-    ADHESION_LABEL,
-    FIELD_COLOURS,
-    FORCE_LABEL,
-    LATERAL_UNIT,
-    PENETRATION_LABEL,
-    RADIUS_LABEL,
-)
+from crackfront.plots.fronts import closed_front, draw_field
+from crackfront.plots.parts import FORCE_LABEL, PENETRATION_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
-
-Array = NDArray[np.float64]
-
-_MOST_GREYS = 10
-"""Shades of the field; few, so that frames compress well."""
 
 _LAST_FRAMES = 10
 """Frames without contact at the end."""
@@ -39,7 +24,8 @@ class _Scene:
         self._shown = shown
         self.figure = blank_figure(PAGE, 0.47 * PAGE)
         left, right = self.figure.subplots(1, 2)
-        _draw_field(left, shown)
+        mean, reach = 1 - shown.elastic_energy, 4 * np.sqrt(shown.elastic_energy)
+        draw_field(left, shown.x, shown.y, shown.patch, mean, reach)
         _draw_axes(right, shown)
         (self._front,) = left.plot([], [], linewidth=1.2)
         self._title = left.set_title(f"{PENETRATION_LABEL} = $+0.00$")
@@ -60,7 +46,8 @@ class _Scene:
         shown, last = self._shown, self._shown.direction.size
         state = min(frame, last - 1)
         self._front.set_color(BLUE if shown.direction[state] > 0 else VERMILION)
-        self._front.set_data(*_closed(shown, state) if frame < last else ([], []))
+        front = closed_front(shown.angle, shown.front[state])
+        self._front.set_data(*front if frame < last else ([], []))
         b = shown.penetration[state] if frame < last else shown.end_penetration
         lost = "" if frame < last else ": contact lost"
         self._title.set_text(f"{PENETRATION_LABEL} = ${b:+.2f}${lost}")
@@ -100,24 +87,6 @@ def motion_animation(shown: Motion) -> Animation:
         )
 
 
-def _draw_field(axes: Axes, shown: Motion) -> None:
-    """Work of adhesion in a few shades."""
-    mean, reach = 1 - shown.elastic_energy, 4 * np.sqrt(shown.elastic_energy)
-    levels = MaxNLocator(_MOST_GREYS).tick_values(mean - reach, mean + reach)
-    shades = ScalarMappable(BoundaryNorm(levels, FIELD_COLOURS.N), FIELD_COLOURS)
-    # Coloured once, not once a frame.
-    axes.imshow(
-        shades.to_rgba(shown.patch.T, bytes=True),
-        origin="lower",
-        extent=(shown.x[0], shown.x[-1], shown.y[0], shown.y[-1]),
-        interpolation="nearest",
-    )
-    bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, format="%.1f", extend="both")
-    bar.set_label(rf"local {ADHESION_LABEL}")
-    axes.set_xlabel(rf"$x$ / {LATERAL_UNIT}")
-    axes.set_ylabel(rf"$y$ / {LATERAL_UNIT}")
-
-
 def _draw_axes(axes: Axes, shown: Motion) -> None:
     """Axes that hold the whole loop."""
     axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
@@ -129,10 +98,3 @@ def _draw_axes(axes: Axes, shown: Motion) -> None:
         setter(low - 0.06 * (high - low), high + above * (high - low))
     axes.set_xlabel(f"mean {RADIUS_LABEL}")
     axes.set_ylabel(FORCE_LABEL)
-
-
-def _closed(shown: Motion, state: int) -> tuple[Array, Array]:
-    """A front as a closed curve."""
-    angle = np.append(shown.angle, shown.angle[0])
-    radius = np.append(shown.front[state], shown.front[state, 0])
-    return radius * np.cos(angle), radius * np.sin(angle)

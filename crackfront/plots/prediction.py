@@ -80,14 +80,12 @@ def _draw_isotropic(axes: Axes, surface: Surface) -> None:
         label="self-affine fit",
         zorder=4,
     )
-    shown = [item.value for item in surface.isotropic if item is not None]
     measures = surface.measures
     draw_dominant_scales(
         axes,
         np.array([item.rms.value**2 for item in measures]),
         np.array([item.shortest for item in measures]),
         np.array([item.longest for item in measures]),
-        max([fitted.spectrum.plateau, *(float(values.max()) for values in shown)]),
     )
     axes.set_ylabel(ISOTROPIC_LABEL)
     axes.legend(loc="lower left")

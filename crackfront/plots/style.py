@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -29,6 +30,9 @@ BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = (
 COLOURS = (GREEN, BLUE, PURPLE, VERMILION, ORANGE, SKY, BLACK)
 MARKERS = ("s", "o", "^", "D", "v", "P", "X")
 """One colour and marker a spectrum; after seven both repeat, out of step."""
+
+_SHOWN = 4.0
+"""Width of a figure on a screen (Units: inch)."""
 
 _SCREEN = 144
 """Pixels an inch of pictures for a screen."""
@@ -77,6 +81,20 @@ def blank_figure(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     return figure
+
+
+@contextmanager
+def shown_axes() -> Iterator[Axes]:
+    """Axes of a new figure that a notebook shows, unless drawing on them fails."""
+    from matplotlib import pyplot
+
+    with house_style():
+        figure = pyplot.figure(figsize=(_SHOWN, 0.8 * _SHOWN), dpi=_SCREEN)
+        try:
+            yield figure.add_subplot()
+        except BaseException:
+            pyplot.close(figure)
+            raise
 
 
 def save_figure(figure: Figure, stem: Path) -> tuple[Path, Path]:

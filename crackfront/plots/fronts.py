@@ -1,0 +1,123 @@
+"""Fronts over the field that pins them, and surfaces."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from crackfront.plots.parts import ADHESION_LABEL, FIELD_COLOURS, HEIGHT_LABEL, LATERAL_UNIT
+from crackfront.plots.style import BLUE, VERMILION
+
+Array = NDArray[np.float64]
+
+_MOST_GREYS = 10
+"""Shades of the field; few, so that frames of an animation compress well."""
+
+_MARGIN = 1.15
+"""How far the axes reach, over the largest radius."""
+
+
+def draw_field(
+    axes: Axes, x: Array, y: Array, adhesion: NDArray[np.floating], mean: float, reach: float
+) -> None:
+    """Work of adhesion in a few shades, with a colour bar.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    x : (n_x,) array
+        Abscissae. (Units: reduced lateral length)
+    y : (n_y,) array
+        Ordinates. (Units: reduced lateral length)
+    adhesion : (n_x, n_y) array
+        Work of adhesion. (Units: w_int)
+    mean, reach : float
+        Middle of the shades, and how far they go to either side. (Units: w_int)
+    """
+    levels = MaxNLocator(_MOST_GREYS).tick_values(mean - reach, mean + reach)
+    shades = ScalarMappable(BoundaryNorm(levels, FIELD_COLOURS.N), FIELD_COLOURS)
+    # Coloured once, not once a frame.
+    axes.imshow(
+        shades.to_rgba(adhesion.T, bytes=True),
+        origin="lower",
+        extent=(x[0], x[-1], y[0], y[-1]),
+        interpolation="nearest",
+    )
+    bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, format="%.1f", extend="both")
+    bar.set_label(rf"local {ADHESION_LABEL}")
+    label_plane(axes)
+
+
+def draw_heights(axes: Axes, x: Array, y: Array, heights: Array) -> None:
+    """Heights in colours, peaks bright, with a colour bar.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    x : (n_x,) array
+        Abscissae. (Units: reduced lateral length)
+    y : (n_y,) array
+        Ordinates. (Units: reduced lateral length)
+    heights : (n_x, n_y) array
+        Heights. (Units: reduced vertical length)
+    """
+    image = axes.imshow(
+        heights.T,
+        origin="lower",
+        extent=(x[0], x[-1], y[0], y[-1]),
+        interpolation="nearest",
+        cmap="cividis",
+    )
+    bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
+    bar.set_label(HEIGHT_LABEL.format("height"))
+    label_plane(axes)
+
+
+def draw_fronts(
+    axes: Axes, angle: Array, radius: Array, direction: NDArray[np.int64], most: int = 24
+) -> None:
+    """Fronts of both branches as closed curves, not more of a branch than asked for.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    angle : (n_angle,) array
+        Angles of the sites. (Units: rad)
+    radius : (n_step, n_angle) array
+        The fronts. (Units: reduced lateral length)
+    direction : (n_step,) int array
+        +1 in approach, -1 in retraction.
+    most : int, optional
+        Fronts of a branch that are drawn, at most; the last is one of them.
+    """
+    for sign, colour, label in ((1, BLUE, "approach"), (-1, VERMILION, "retraction")):
+        branch = radius[direction == sign]
+        every = -(-len(branch) // most) or 1
+        for count, front in enumerate(branch[::-1][::every]):
+            name = label if count == 0 else None
+            axes.plot(*closed_front(angle, front), color=colour, linewidth=0.7, label=name)
+    reach = _MARGIN * float(np.max(radius))
+    axes.set_xlim(-reach, reach)
+    axes.set_ylim(-reach, reach)
+    axes.set_aspect("equal")
+    axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
+    label_plane(axes)
+
+
+def label_plane(axes: Axes) -> None:
+    """Names and units of both lateral axes."""
+    axes.set_xlabel(rf"$x$ / {LATERAL_UNIT}")
+    axes.set_ylabel(rf"$y$ / {LATERAL_UNIT}")
+
+
+def closed_front(angle: Array, radius: Array) -> tuple[Array, Array]:
+    """Abscissae and ordinates of a front, the first point repeated at the end."""
+    around, out = np.append(angle, angle[0]), np.append(radius, radius[0])
+    return out * np.cos(around), out * np.sin(around)
