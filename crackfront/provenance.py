@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from crackfront import __version__
 from crackfront.compiled import solver_fingerprint
+from crackfront.version import __version__
 
 PACKAGE = Path(__file__).parent
 

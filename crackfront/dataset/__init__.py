@@ -1,5 +1,7 @@
 """The only owner of xarray and netCDF: the schema, reading, writing and aggregation."""
 
+from xarray import DataArray, Dataset
+
 from crackfront.dataset.accuracy import (
     laws_text,
     read_coverage,
@@ -10,6 +12,8 @@ from crackfront.dataset.accuracy import (
     write_samples,
 )
 from crackfront.dataset.cycles import (
+    cycle_dataset,
+    cycle_record,
     read_checkpoint,
     read_cycle,
     read_simulation,
@@ -26,7 +30,10 @@ from crackfront.dataset.files import (
     write_text,
 )
 from crackfront.dataset.fit import write_fit
+from crackfront.dataset.loops import jump_dataset, loop_measures
+from crackfront.dataset.quantities import in_reduced_units, in_si_units, refuse_other_units
 from crackfront.dataset.records import largest_differences, read_record, write_record
+from crackfront.dataset.surfaces import surface_adhesion, surface_array, surface_kind
 from crackfront.dataset.tables import (
     COMPLETE,
     SweepRow,
@@ -40,13 +47,21 @@ from crackfront.dataset.tables import (
 
 __all__ = [
     "COMPLETE",
+    "DataArray",
+    "Dataset",
     "PolarSamples",
     "SweepRow",
     "UnreadableFileError",
+    "cycle_dataset",
+    "cycle_record",
     "failed_row",
+    "in_reduced_units",
+    "in_si_units",
+    "jump_dataset",
     "largest_differences",
     "laws_text",
     "leftover_parts",
+    "loop_measures",
     "read_attributes",
     "read_checkpoint",
     "read_coverage",
@@ -58,8 +73,12 @@ __all__ = [
     "read_simulation",
     "read_statuses",
     "read_table",
+    "refuse_other_units",
     "replace_atomically",
     "row_fingerprint",
+    "surface_adhesion",
+    "surface_array",
+    "surface_kind",
     "sweep_row",
     "write_checkpoint",
     "write_coverage",

@@ -44,7 +44,7 @@ def write_cycle(
     angles : (n_angle,) array, optional
         Angles of the sites, if not 0, 2 pi / N, ... (Units: rad)
     """
-    write_dataset(path, _cycle_dataset(record, angles), origin)
+    write_dataset(path, cycle_dataset(record, angles), origin)
 
 
 def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> None:
@@ -67,7 +67,7 @@ def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -
         result.peak_memory,
     )
     simulation = result.simulation
-    dataset = _cycle_dataset(result.record, None).assign(
+    dataset = cycle_dataset(result.record).assign(
         {item.name: labelled(item, value) for item, value in zip(COSTS, costs, strict=True)}
     )
     dataset.attrs |= {
@@ -99,7 +99,7 @@ def read_cycle(path: Path) -> CycleRecord:
     UnreadableFileError
         If the file is missing, truncated or holds no cycle.
     """
-    return _record(path, read_dataset(path))
+    return cycle_record(read_dataset(path), path)
 
 
 def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
@@ -120,7 +120,7 @@ def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
     dataset = read_dataset(path)
     if dataset.attrs.get("key") != simulation.key:
         raise UnreadableFileError(f"{path} is not the result of {simulation.label}; remove it")
-    record = _record(path, dataset)
+    record = cycle_record(dataset, path)
     missing = [item.name for item in COSTS if item.name not in dataset]
     if missing:
         raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; remove it")
@@ -141,7 +141,7 @@ def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> Non
         Where it comes from.
     """
     checkpoint = partial.checkpoint
-    dataset = _cycle_dataset(checkpoint.record, None).assign(
+    dataset = cycle_dataset(checkpoint.record).assign(
         {
             LAST_FRONT.name: labelled(LAST_FRONT, checkpoint.front),
             TURNING_FRONT.name: labelled(TURNING_FRONT, checkpoint.turn),
@@ -175,13 +175,21 @@ def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
     if dataset.attrs.get("key") != simulation.key or LAST_FRONT.name not in dataset:
         raise UnreadableFileError(f"{path} is no checkpoint of {simulation.label}; remove it")
     fronts = (np.asarray(dataset[item.name]) for item in (LAST_FRONT, TURNING_FRONT))
-    checkpoint = Checkpoint(_record(path, dataset), *fronts)
+    checkpoint = Checkpoint(cycle_record(dataset, path), *fronts)
     costs = (float(dataset.attrs[name]) for name in ("seconds", "cpu_seconds"))
     return PartialRun(simulation, checkpoint, *costs)
 
 
-def _cycle_dataset(record: CycleRecord, angles: Array | None) -> xr.Dataset:
-    """Labelled curves of a record."""
+def cycle_dataset(record: CycleRecord, angles: Array | None = None) -> xr.Dataset:
+    """Labelled curves of a record.
+
+    Parameters
+    ----------
+    record : CycleRecord
+        The states of a cycle.
+    angles : (n_angle,) array, optional
+        Angles of the sites, if not 0, 2 pi / N, ... (Units: rad)
+    """
     variables = {item.name: labelled(item, getattr(record, item.name)) for item in CURVES}
     if record.dissipated_energy is not None:
         variables[DISSIPATED.name] = labelled(DISSIPATED, record.dissipated_energy)
@@ -200,13 +208,26 @@ def _cycle_dataset(record: CycleRecord, angles: Array | None) -> xr.Dataset:
     return xr.Dataset(variables, attrs=attributes)
 
 
-def _record(path: Path, dataset: xr.Dataset) -> CycleRecord:
-    """Record that a dataset holds."""
+def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> CycleRecord:
+    """Record that a dataset holds.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        What :func:`cycle_dataset` made.
+    place : Path or str, optional
+        What an error calls it.
+
+    Raises
+    ------
+    UnreadableFileError
+        If it holds no cycle.
+    """
     missing = [item.name for item in CURVES if item.name not in dataset]
     name = str(dataset.attrs.get("status", "")).upper()
     if missing or name not in Status.__members__ or "end_penetration" not in dataset.attrs:
         what = ", ".join(missing) or "a known status"
-        raise UnreadableFileError(f"{path} holds no cycle: it lacks {what}")
+        raise UnreadableFileError(f"{place} holds no cycle: it lacks {what}")
     known = {item.name for item in fields(CycleRecord)} - {"pull_off_energy"}
     columns: dict[str, Any] = {
         str(name): np.asarray(values) for name, values in dataset.data_vars.items() if name in known

@@ -109,32 +109,50 @@ def write_field(
 
 def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
     """Map of a periodic tile."""
-    pixels = [_spacing(path, values, name) for name in ("x", "y")]
-    if abs(pixels[1] / pixels[0] - 1) > TOLERANCE:
-        raise UnreadableFileError(
-            f"{path}: the spacing is {pixels[0]:.6g} in x and {pixels[1]:.6g} in y; they must "
-            "be equal"
-        )
-    samples = np.ascontiguousarray(values.transpose("x", "y"), dtype=float)
+    try:
+        samples, pixel = tile_samples(values)
+    except ValueError as error:
+        raise UnreadableFileError(f"{path}: {error}") from error
     # The refusal of values that are not finite, with their place, is that of the field.
     with np.errstate(invalid="ignore"):
         rms = float(np.std(samples) / WORK_OF_ADHESION)
-    return AdhesionMap(samples, pixels[0], elastic_energy=rms**2 / 4, rms=rms)
+    return AdhesionMap(samples, pixel, elastic_energy=rms**2 / 4, rms=rms)
 
 
-def _spacing(path: Path, values: xr.DataArray, name: str) -> float:
+def tile_samples(values: xr.DataArray) -> tuple[Array, float]:
+    """Values of a tile, first axis x, and their spacing.
+
+    Parameters
+    ----------
+    values : xarray.DataArray
+        Values of the dimensions x and y, in any order, with their coordinates.
+
+    Raises
+    ------
+    ValueError
+        If a coordinate is missing or not uniform, or the two spacings differ.
+    """
+    pixels = [_spacing(values, name) for name in ("x", "y")]
+    if abs(pixels[1] / pixels[0] - 1) > TOLERANCE:
+        raise ValueError(
+            f"the spacing is {pixels[0]:.6g} in x and {pixels[1]:.6g} in y; they must be equal"
+        )
+    return np.ascontiguousarray(values.transpose("x", "y"), dtype=float), pixels[0]
+
+
+def _spacing(values: xr.DataArray, name: str) -> float:
     """Uniform spacing of a coordinate."""
     if name not in values.coords or values.sizes[name] < 2:
-        raise UnreadableFileError(
-            f"{path}: {NAME} has {values.sizes[name]} point(s) along {name} and "
+        raise ValueError(
+            f"{values.name} has {values.sizes[name]} point(s) along {name} and "
             f"{'a' if name in values.coords else 'no'} coordinate {name}; give 2 or more with "
             "their positions"
         )
     steps = np.diff(np.asarray(values[name], dtype=float))
     mean = float(np.mean(steps))
     if not (mean > 0 and np.max(np.abs(steps - mean)) <= TOLERANCE * mean):
-        raise UnreadableFileError(
-            f"{path}: {name} advances by {np.min(steps):.6g} to {np.max(steps):.6g}; it must "
+        raise ValueError(
+            f"{name} advances by {np.min(steps):.6g} to {np.max(steps):.6g}; it must "
             "increase in equal steps"
         )
     return mean

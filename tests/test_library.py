@@ -1,0 +1,410 @@
+"""What `import crackfront` offers: surfaces, loops, units and plots, all of them xarray."""
+
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib import pyplot
+from matplotlib.figure import Figure
+
+import crackfront as cf
+from crackfront import jkr, library
+from crackfront.cycle import LoadSchedule, dissipated_energy
+from crackfront.dataset import cycle_record
+from crackfront.fits import steady_adhesion
+from crackfront.library.surfaces import chosen_simulation
+from crackfront.library.tiles import measured_correlation_length
+from crackfront.records import ADHESION, FORCE, LATERAL, VERTICAL
+from crackfront.scene import run_simulation, simulation_adhesion, simulation_field
+from crackfront.units import WORK_OF_ADHESION
+
+SPHERE = cf.Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
+FLAT = cf.SelfAffineSpectrum(0.4, 0.4, hurst=1.0)
+COARSE = {"short_cutoff": 0.4, "elastic_energy": 0.05, "side": 4.0, "error": 0.05, "seed": 3}
+
+
+@pytest.fixture(autouse=True)
+def _no_figures():
+    """No figure of pyplot from before, as that of the docstring of the package."""
+    pyplot.close("all")
+
+
+@pytest.fixture(scope="module")
+def surface():
+    """A coarse rough surface."""
+    return cf.random_surface(**COARSE)
+
+
+@pytest.fixture(scope="module")
+def loop(surface):
+    """Its loop."""
+    return cf.run_loop(surface, step=0.05, error=0.05, energy=True)
+
+
+@pytest.fixture(scope="module")
+def jumps(surface):
+    """The instabilities of its retraction."""
+    return cf.find_instabilities(surface, error=0.05, step=0.1)
+
+
+def tile(values, name="height", units=VERTICAL, spacing=0.1):
+    """A surface of a user's own."""
+    axes = {
+        axis: (axis, spacing * np.arange(count), {"units": LATERAL})
+        for axis, count in zip("xy", values.shape, strict=True)
+    }
+    return xr.DataArray(values, axes, ("x", "y"), name, {"units": units})
+
+
+def axes_of_a_figure():
+    """Axes that pyplot knows nothing of."""
+    return Figure().add_subplot()
+
+
+def test_importing_the_package_is_light():
+    heavy = "{'xarray', 'matplotlib', 'numba', 'scipy', 'mpi4py'}"
+    code = f"import crackfront, sys; assert not {heavy} & sys.modules.keys()"
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_the_package_offers_the_library_and_its_version():
+    assert sorted(cf.__all__) == sorted([*library.__all__, "__version__"])
+    assert set(cf.__all__) <= set(dir(cf))
+    for name in library.__all__:
+        assert getattr(cf, name) is getattr(library, name)
+
+
+def test_a_name_that_the_package_has_not_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="has no attribute 'run_lop'"):
+        cf.run_lop  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    "smooth",
+    [tile(np.zeros((8, 8))), tile(np.ones((8, 8)), "work_of_adhesion", ADHESION)],
+    ids=["heights", "adhesion"],
+)
+def test_the_loop_of_a_smooth_surface_is_that_of_jkr(smooth):
+    found = cf.run_loop(smooth, step=0.25)
+    radii = [jkr.equilibrium_radius(penetration) for penetration in found.penetration.values]
+    np.testing.assert_allclose(found.mean_radius, radii, rtol=1e-7)
+    np.testing.assert_allclose(found.force, jkr.equilibrium_force(np.array(radii)), atol=1e-7)
+    assert found.attrs["status"] == "lost_contact"
+    assert (float(found.e_el), float(found.w_rms)) == (0, 0)
+
+
+def test_the_loop_of_a_simulation_is_that_of_the_library_to_round_off(surface, loop):
+    load, given = LoadSchedule(1.0, 0.05), {"error": 0.05, "side": 4.0, "seed": 3}
+    requested = chosen_simulation("roughness", FLAT, 0.05, load, **given)
+    # Sites, samples and tolerance follow from what was measured on the tile.
+    measured = chosen_simulation("roughness", FLAT, float(loop.e_el), load, **given)
+    tile = {"n_point": surface.sizes["x"], "tile_side": 4.0}
+    record = run_simulation(
+        replace(
+            requested,
+            resolution=replace(measured.resolution, **tile),
+            tolerance=measured.tolerance,
+            record_fronts=True,
+        )
+    ).record
+    # Only the pixel differs, which the library takes from the coordinates.
+    np.testing.assert_allclose(loop.radius, record.radius, rtol=1e-8)
+    np.testing.assert_allclose(loop.force, record.force, rtol=1e-7, atol=1e-7)
+
+
+@pytest.mark.parametrize("kind", ["roughness", "chemical"])
+def test_a_random_surface_is_that_of_the_sweep_of_its_seed(kind):
+    found = cf.random_surface(**COARSE, kind=kind, realisation=2)
+    simulation = chosen_simulation(
+        kind, FLAT, 0.05, LoadSchedule(1, 1), error=0.05, side=4.0, seed=3, realisation=2
+    )
+    adhesion = simulation_adhesion(simulation)
+    if kind == "chemical":
+        np.testing.assert_allclose(found * WORK_OF_ADHESION, adhesion.work_of_adhesion, rtol=1e-15)
+    else:
+        measured = cf.run_loop(found, step=0.5, error=0.05)
+        assert float(measured.e_el) == pytest.approx(adhesion.elastic_energy, rel=1e-12)
+        assert float(measured.w_rms) == pytest.approx(adhesion.rms, rel=1e-12)
+
+
+def test_another_seed_or_realisation_is_another_surface():
+    surfaces = [
+        cf.random_surface(0.4, 0.05, side=4, seed=seed, realisation=number)
+        for seed, number in ((1, 0), (2, 0), (1, 1))
+    ]
+    for one, other in ((0, 1), (0, 2), (1, 2)):
+        assert abs(np.corrcoef(surfaces[one].values.flat, surfaces[other].values.flat)[0, 1]) < 0.5
+
+
+def test_the_measures_of_a_loop_are_those_of_its_curves(loop):
+    steady = steady_adhesion(cycle_record(loop), float(loop.correlation_length))
+    names = {"w_appr": "approach", "w_retr": "retraction", "hysteresis": "hysteresis"}
+    assert {name: float(loop[name]) for name in names} == pytest.approx(
+        {name: getattr(steady, item) for name, item in names.items()}, nan_ok=True
+    )
+    assert loop.attrs["steady_sentence"] == steady.sentence
+
+
+def test_the_expected_numerical_errors_are_within_the_asked_one():
+    fine = cf.random_surface(0.1, 0.02, seed=1)
+    found = cf.run_loop(fine, step=0.05, error=0.1, fronts=False)
+    size = float(found.w_retr_numerical_error)
+    assert 0 < size < 0.1
+    assert "radius" not in found
+
+
+def test_the_energies_of_a_loop_sum_up_to_its_work(loop):
+    pull_off = loop.attrs["pull_off_energy"]
+    b = np.append(loop.penetration, loop.attrs["end_penetration"])
+    radius = np.vstack([loop.radius, loop.radius[-1:]])
+    # While the penetration changes the front is held.
+    held = [
+        jkr.force(front, (one + other) / 2).mean()
+        for front, one, other in zip(radius, b, b[1:], strict=False)
+    ]
+    work = float(np.sum(held * np.diff(b)))
+    assert float(loop.dissipated_energy.sum()) + pull_off == pytest.approx(work, abs=1e-3)
+
+
+def test_si_units_and_back_change_nothing(surface, loop, jumps):
+    for data in (surface, loop, jumps):
+        back = cf.in_reduced_units(cf.in_si_units(data, SPHERE), SPHERE)
+        xr.testing.assert_allclose(back, data, rtol=1e-13)
+        assert set(back.attrs) == set(data.attrs)
+        for name, value in data.attrs.items():
+            same = value if isinstance(value, str) else pytest.approx(value, rel=1e-13)
+            assert back.attrs[name] == same
+        assert {name: part.attrs for name, part in back.coords.items()} == {
+            name: part.attrs for name, part in data.coords.items()
+        }
+
+
+def test_a_loop_in_si_units_has_forces_in_newtons(loop):
+    found = cf.in_si_units(loop, SPHERE)
+    assert found.force.attrs["units"] == "N"
+    np.testing.assert_allclose(found.force, loop.force * SPHERE.force)
+    np.testing.assert_allclose(found.contact_area, loop.contact_area * SPHERE.lateral**2)
+    np.testing.assert_allclose(found.w_rms, loop.w_rms * 63e-3)
+    assert found.attrs["end_penetration"] == loop.attrs["end_penetration"] * SPHERE.vertical
+    assert found.direction.dtype == loop.direction.dtype
+
+
+def test_heights_in_nanometres_give_the_loop_of_reduced_ones(surface, loop):
+    measured = cf.in_si_units(surface, SPHERE)
+    measured = measured.assign_coords(
+        {axis: (axis, 1e6 * measured[axis].values, {"units": "um"}) for axis in "xy"}
+    )
+    measured = (1e9 * measured).assign_attrs(units="nm")
+    found = cf.run_loop(cf.in_reduced_units(measured, SPHERE), step=0.05, error=0.05)
+    assert float(found.e_el) == pytest.approx(float(loop.e_el), rel=1e-12)
+    np.testing.assert_allclose(found.force, loop.force, atol=1e-3)
+
+
+def test_a_surface_may_come_with_its_dimensions_in_any_order(surface):
+    one, other = (
+        cf.run_loop(given, step=0.5, error=0.05) for given in (surface, surface.transpose("y", "x"))
+    )
+    np.testing.assert_array_equal(one.radius, other.radius)
+
+
+def test_without_the_spectrum_the_pixels_decide(surface, loop):
+    names = ("short_cutoff", "roll_off", "hurst")
+    bare = surface.drop_attrs()
+    bare = bare.assign_attrs(units=VERTICAL).assign_coords(
+        {axis: (axis, surface[axis].values, {"units": LATERAL}) for axis in "xy"}
+    )
+    assert not set(names) & bare.attrs.keys()
+    found = cf.run_loop(bare, step=0.05)
+    assert found.sizes["angle"] >= 2 * np.pi * jkr.equilibrium_radius(1.0) / float(
+        np.diff(bare.x)[0]
+    )
+    assert np.isnan(found.w_appr_numerical_error)
+    lost = [float(item.force.min()) for item in (found, loop)]
+    assert lost[0] == pytest.approx(lost[1], abs=0.05)
+
+
+def test_the_correlation_length_is_that_of_the_spectrum():
+    fine = cf.random_surface(0.05, 0.05, seed=2)
+    found = measured_correlation_length(fine.values, float(fine.x[1] - fine.x[0]))
+    # Heights of a flat spectrum: the mean of q over 0 to q_s is 2/3 of it.
+    assert found == pytest.approx(1.5 * 0.05, rel=0.02)
+
+
+def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jumps):
+    assert jumps.sizes["instability"] > 3
+    assert np.all(jumps.dissipated_energy > 0)
+    assert np.all(jumps.after <= jumps.before + 1e-12)
+    assert np.all(np.diff(jumps.penetration) < 0)
+    swept = 0.5 * (jumps.before**2 - jumps.after**2).sum("angle") * 2 * np.pi / jumps.sizes["angle"]
+    assert np.all(jumps.area <= swept + 1e-12)
+    simulation = chosen_simulation(
+        "roughness", FLAT, 0.05, LoadSchedule(1.0, 0.1), error=0.05, side=4.0, seed=3
+    )
+    if simulation.resolution.n_angle == jumps.sizes["angle"]:
+        field, last = simulation_field(simulation), jumps.isel(instability=-1)
+        expected = dissipated_energy(
+            last.before.values, last.after.values, float(last.penetration), field
+        )
+        assert float(last.dissipated_energy) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"short_cutoff": -1.0}, "short_cutoff is -1.0; it must be positive"),
+        ({"elastic_energy": 1.5}, "elastic_energy is 1.5; it must lie between 0 and 1"),
+        ({"error": 0.0}, "error is 0.0; it must lie between 0 and 1"),
+        ({"roll_off": 0.1}, "roll_off 0.1 is shorter than short_cutoff 0.4"),
+        ({"hurst": 0.0}, "hurst is 0.0; it must lie in"),
+        ({"side": 0.1}, "side is 0.1; the tile must hold the short cutoff, 0.4"),
+        ({"kind": "rough"}, "kind is 'rough'; choose one of roughness, chemical"),
+        ({"seed": -1}, "seed is -1; it must be 0 or more"),
+        ({"realisation": -2}, "realisation is -2; it must be 0 or more"),
+    ],
+)
+def test_a_surface_that_cannot_be_is_refused(given, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.random_surface(**(COARSE | given))
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda one: one.rename("z"), "named 'z'; say what its values are by the name height or"),
+        (lambda one: one.rename(None), "named None; say what its values are"),
+        (
+            lambda one: one.assign_attrs(units="nm"),
+            "height has the units 'nm'; .* in_reduced_units",
+        ),
+        (lambda one: one.assign_attrs(units=FORCE), "height has the units 'pi w_int R'"),
+        (lambda one: one.drop_attrs(), "has the units None"),
+        (lambda one: one.rename(x="u"), r"dimensions \(u, y\); a tile must have x and y"),
+        (lambda one: one.drop_vars("x"), "no coordinate x"),
+        (lambda one: one.where(one.x > one.x[0]), "height is nan at x index 0, y index 0"),
+        (lambda one: one.assign_attrs(short_cutoff=0.8, roll_off=0.8), "waves shorter than its"),
+        (lambda one: 6 * one, "energy of full conformity is"),
+        (lambda one: one[::2, ::2], "but the finest numerics on"),
+    ],
+)
+def test_a_surface_that_cannot_be_used_is_refused(surface, change, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.run_loop(change(surface), error=0.05)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"solver": "magic"}, "solver is 'magic'; choose one of newton, reference"),
+        ({"step": 0.0}, "load step is 0.0; it must be positive"),
+        ({"max_penetration": -1.0}, "max penetration -1.0 never makes contact"),
+        ({"error": 1e-6}, "error is 1e-06, but the finest numerics"),
+    ],
+)
+def test_a_loop_that_cannot_be_run_is_refused(surface, given, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.run_loop(surface, **({"error": 0.05} | given))
+
+
+def test_a_direction_that_is_none_is_refused(surface):
+    with pytest.raises(ValueError, match="direction is 0; give 1 for approach or -1"):
+        cf.find_instabilities(surface, direction=0)
+
+
+@pytest.mark.parametrize(
+    ("units", "sentence"),
+    [
+        ("kg", "'kg', which cannot be converted to m"),
+        ("furlongz", "'furlongz', which cannot"),
+        (None, "the units None, which cannot"),
+    ],
+)
+def test_units_of_another_quantity_are_refused(surface, units, sentence):
+    given = cf.in_si_units(surface, SPHERE).assign_attrs(units=units)
+    with pytest.raises(ValueError, match=sentence):
+        cf.in_reduced_units(given, SPHERE)
+
+
+def test_unknown_variables_have_no_units_to_convert(loop):
+    with pytest.raises(ValueError, match="extra is no variable of a surface or of a cycle; drop"):
+        cf.in_si_units(loop.assign(extra=loop.force), SPHERE)
+    with pytest.raises(ValueError, match="the array has no name"):
+        cf.in_si_units(loop.force.rename(None), SPHERE)
+
+
+def test_plots_draw_on_given_axes_and_leave_nothing_behind(surface, loop, jumps):
+    given = axes_of_a_figure()
+    assert cf.plot_loop(loop, given) is given
+    branch = loop.direction.values == 1
+    markers = next(line for line in given.get_lines() if line.get_label() == "approach")
+    np.testing.assert_array_equal(markers.get_xdata(), loop.mean_radius[branch])
+    for drawn in (
+        cf.plot_fronts(loop, surface, axes_of_a_figure()),
+        cf.plot_surface(surface, axes_of_a_figure()),
+        cf.plot_spectrum(surface, axes_of_a_figure()),
+        cf.plot_instabilities(jumps, axes_of_a_figure()),
+    ):
+        assert drawn.get_xlabel()
+        drawn.figure.canvas.draw()
+    assert pyplot.get_fignums() == []
+
+
+def test_without_axes_a_plot_makes_a_figure_of_pyplot(loop):
+    axes = cf.plot_loop(loop)
+    assert pyplot.get_fignums() == [axes.figure.number]
+
+
+def test_the_drawn_fronts_are_closed_and_the_last_of_a_branch_is_one_of_them(loop):
+    axes = cf.plot_fronts(loop, axes=axes_of_a_figure(), most=3)
+    lines = axes.get_lines()
+    assert len(lines) <= 6
+    for line in lines:
+        x, y = line.get_data()
+        assert (x[0], y[0]) == (x[-1], y[-1])
+    retraction = [line for line in lines if line.get_label() == "retraction"]
+    np.testing.assert_allclose(np.hypot(*retraction[0].get_data())[:-1], loop.radius[-1])
+
+
+def test_the_patches_of_the_instabilities_have_the_swept_area(jumps):
+    [patches] = cf.plot_instabilities(jumps, axes_of_a_figure()).collections
+    area = 0.0
+    for path in patches.get_paths():
+        x, y = path.vertices.T
+        area += abs(np.dot(x[:-1], y[1:]) - np.dot(x[1:], y[:-1])) / 2
+    assert area == pytest.approx(float(jumps.area.sum()), rel=0.05)
+
+
+def test_the_rms_values_of_a_spectrum_are_those_of_the_surface():
+    x = 0.1 * np.arange(20)
+    wave = tile(0.03 * np.cos(2 * np.pi * x)[:, None] * np.ones(20))
+    labels = [text.get_text() for text in cf.plot_spectrum(wave, axes_of_a_figure()).texts]
+    height = 0.03 / np.sqrt(2)
+    for label, order in zip(labels, (0, 0.5, 1), strict=True):
+        assert f"{height * (2 * np.pi) ** order:.3g}" in label
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda surface, loop, jumps: cf.plot_loop(cf.in_si_units(loop, SPHERE)), "'m'; the attr"),
+        (lambda surface, loop, jumps: cf.plot_loop(loop.drop_vars("force")), "it lacks force"),
+        (lambda surface, loop, jumps: cf.plot_fronts(loop.drop_vars("radius")), "fronts=True"),
+        (lambda surface, loop, jumps: cf.plot_fronts(loop, most=0), "most is 0"),
+        (lambda surface, loop, jumps: cf.plot_spectrum(0 * surface), "the surface is flat"),
+        (lambda surface, loop, jumps: cf.plot_instabilities(jumps[{"instability": []}]), "none"),
+        (
+            lambda surface, loop, jumps: cf.plot_spectrum(
+                (1 + surface).rename("work_of_adhesion").assign_attrs(units=ADHESION)
+            ),
+            "work_of_adhesion has no height spectrum",
+        ),
+    ],
+)
+def test_what_cannot_be_plotted_is_refused_and_leaves_no_figure(
+    surface, loop, jumps, call, sentence
+):
+    with pytest.raises(ValueError, match=sentence):
+        call(surface, loop, jumps)
+    assert pyplot.get_fignums() == []
