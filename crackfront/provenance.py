@@ -79,7 +79,9 @@ def utc_now() -> str:
 @functools.cache
 def git_commit() -> str:
     """Commit of the sources, with "-dirty" where they were changed since; or "unknown"."""
+    # Without the tags, whose names would stand for the commit.
     command = ["git", "-C", str(PACKAGE), "describe", "--always", "--dirty", "--abbrev=40"]
+    command.append("--exclude=*")
     try:
         result = subprocess.run(command, capture_output=True, text=True, timeout=10, check=False)
     except (OSError, subprocess.TimeoutExpired):

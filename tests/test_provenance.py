@@ -59,6 +59,9 @@ def test_a_commit_is_named_in_full_and_changes_are_told(monkeypatch, tmp_path):
     git_commit.cache_clear()
     assert len(clean) == 40
     assert git_commit() == f"{clean}-dirty"
+    subprocess.run([*git, "tag", "-a", "-m", "first", "v1.0"], check=True, capture_output=True)
+    git_commit.cache_clear()
+    assert git_commit() == f"{clean}-dirty"
 
 
 def test_the_fingerprint_of_the_package_changes_with_any_source(monkeypatch, tmp_path):

@@ -1,0 +1,117 @@
+"""The package: its version from git or without, its wheel, and what cites it."""
+
+import subprocess
+import sys
+import tarfile
+import tomllib
+import zipfile
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+import yaml
+
+from crackfront import __version__
+
+ROOT = Path(__file__).parents[1]
+
+pytestmark = pytest.mark.skipif(
+    not (ROOT / ".git").exists(), reason="these sources are no clone of the repository"
+)
+
+
+def told(*command, **options):
+    """What a command prints."""
+    done = subprocess.run(
+        [str(part) for part in command],
+        check=True,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        **options,
+    )
+    return done.stdout.strip()
+
+
+def scm_version(folder):
+    """Version that a build of a folder would have."""
+    return told(sys.executable, "-m", "setuptools_scm", cwd=folder).splitlines()[-1]
+
+
+@pytest.fixture(scope="module")
+def archive(tmp_path_factory):
+    """Sources as a release's tarball holds them."""
+    folder = tmp_path_factory.mktemp("archive")
+    told("git", "-C", ROOT, "archive", "--output", folder / "sources.tar", "HEAD")
+    with tarfile.open(folder / "sources.tar") as sources:
+        sources.extractall(folder / "sources", filter="data")
+    return folder / "sources"
+
+
+@pytest.fixture(scope="module")
+def wheel(archive, tmp_path_factory):
+    """Wheel that is built from the tarball with the tools that are installed."""
+    folder = tmp_path_factory.mktemp("wheel")
+    pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet")
+    told(*pip, "--no-deps", "--no-build-isolation", "--no-index", "-w", folder, archive)
+    [path] = folder.iterdir()
+    return path
+
+
+def test_a_shallow_clone_without_tags_has_a_version_that_names_its_commit(tmp_path):
+    told("git", "clone", "-q", "--depth", "1", "--no-tags", f"file://{ROOT}", tmp_path / "clone")
+    commit = told("git", "-C", ROOT, "rev-parse", "--short=7", "HEAD")
+    assert f"+g{commit}" in scm_version(tmp_path / "clone")
+
+
+def test_a_tagged_commit_has_the_version_of_its_tag(tmp_path):
+    told("git", "clone", "-q", "--depth", "1", "--no-tags", f"file://{ROOT}", tmp_path / "clone")
+    told("git", "-C", tmp_path / "clone", "tag", "v7.1.0")
+    assert scm_version(tmp_path / "clone") == "7.1.0"
+
+
+def test_a_tarball_names_its_commit_and_bare_sources_the_last_release(archive, tmp_path):
+    commit = told("git", "-C", ROOT, "rev-parse", "HEAD")
+    assert f"node: {commit}" in (archive / ".git_archival.txt").read_text()
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        (tmp_path / name).write_bytes((archive / name).read_bytes())
+    assert scm_version(tmp_path) == "0.1.0"
+
+
+def test_the_wheel_holds_the_laws_and_the_types_and_no_tests(wheel):
+    names = zipfile.ZipFile(wheel).namelist()
+    modules = {str(path.relative_to(ROOT)) for path in (ROOT / "crackfront").rglob("*.py")}
+    committed = set(told("git", "-C", ROOT, "ls-tree", "-r", "--name-only", "HEAD").splitlines())
+    assert (modules & committed) <= set(names)
+    assert {"crackfront/laws.csv", "crackfront/costs.csv", "crackfront/py.typed"} <= set(names)
+    others = {name.split("/")[0] for name in names} - {"crackfront"}
+    assert len(others) == 1
+    assert others.pop().endswith(".dist-info")
+
+
+def test_the_wheel_imports_in_an_empty_environment(wheel, tmp_path):
+    told(sys.executable, "-m", "venv", "--without-pip", tmp_path / "empty")
+    python = tmp_path / "empty/bin/python"
+    pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "--python", python)
+    told(*pip, "install", "--quiet", "--no-deps", "--no-index", wheel)
+    code = "import crackfront; print(crackfront.__version__)"
+    assert told(python, "-c", code, cwd=tmp_path) == wheel.name.split("-")[1].replace("_", "+")
+    assert (tmp_path / "empty/bin/crackfront").is_file()
+
+
+def test_the_version_is_that_of_the_installed_package():
+    assert __version__ == version("crackfront")
+
+
+def test_the_extras_that_are_promised_exist():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert {"surfaces", "docs", "dev", "workflow"} <= set(project["optional-dependencies"])
+
+
+def test_the_citation_names_the_paper_and_the_licence():
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert citation["cff-version"] == "1.2.0"
+    assert citation["license"] == "MIT"
+    assert (ROOT / "LICENSE").read_text().startswith("MIT License")
+    [paper] = citation["references"]
+    assert "stickier" in paper["title"]
