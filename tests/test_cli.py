@@ -1,6 +1,9 @@
 """The command: one cycle on any field, the steps of a sweep, exit codes and sentences."""
 
+import json
 import os
+import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +15,7 @@ from click.testing import CliRunner
 
 from crackfront import __version__, jkr
 from crackfront.cli import main
+from crackfront.cli.report import TRY_AGAIN
 from crackfront.config import load_configuration
 from crackfront.dataset import failed_row, row_fingerprint
 from crackfront.relax import Status
@@ -383,6 +387,95 @@ def test_bad_numbers_of_ranks_are_refused(tmp_path, ranks):
 
 def test_the_version_is_that_of_the_package():
     assert __version__ in run("--version").output
+
+
+def commands_of_help():
+    """Every example in the help of a command, continued lines joined, with the command's name."""
+    for name, command in main.commands.items():
+        text = (command.epilog or "").split("Examples:\n")[-1].replace("\\\n", " ")
+        for line in text.splitlines():
+            yield name, line.split("#")[0].strip()
+
+
+def test_every_command_is_listed_and_shows_examples_of_itself():
+    text = run("--help").output
+    shown = list(commands_of_help())
+    for name in main.commands:
+        assert f"\n  {name} " in text
+        assert "Examples:" in run(name, "--help").output
+        assert any(
+            f"crackfront {name} " in f"{line} " for command, line in shown if command == name
+        )
+
+
+@pytest.mark.parametrize(("name", "line"), list(commands_of_help()))
+def test_the_examples_of_the_help_name_options_that_exist(name, line):
+    words = shlex.split(line.replace("$(", " ").replace(")", " "))
+    given = {word for word in words if word.startswith("--")}
+    known = {option for item in main.commands[name].params for option in item.opts}
+    assert given <= known
+
+
+def test_the_exit_codes_of_the_help_are_those_of_the_commands():
+    text = run("--help").output
+    for code in (0, 1, 2, TRY_AGAIN):
+        assert re.search(rf"^ +{code} +\w", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_script_of_completion_calls_the_command(shell):
+    result = run("completion", shell)
+    assert result.exit_code == 0
+    assert "_CRACKFRONT_COMPLETE" in result.output
+    assert "crackfront" in result.output
+
+
+def test_a_shell_completes_commands():
+    told = subprocess.run(
+        [sys.executable, "-c", "from crackfront.cli import main; main(prog_name='crackfront')"],
+        env=os.environ
+        | {
+            "_CRACKFRONT_COMPLETE": "bash_complete",
+            "COMP_WORDS": "crackfront check",
+            "COMP_CWORD": "1",
+        },
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    assert told.stdout.split() == ["plain,check-figures"]
+
+
+def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path):
+    output = ("--output", tmp_path, "--json")
+    before = json.loads(run("plan", TEST, *output).output)
+    assert (before["simulations"], before["missing"], before["shards"]) == (8, 8, ["flat", "rough"])
+    assert before["core_seconds"] > before["longest_seconds"] > 0
+    for command in ("simulate", "aggregate"):
+        assert run(command, TEST, *output[:2]).exit_code == 0
+    after = json.loads(run("plan", TEST, *output).output)
+    assert (after["missing"], after["core_seconds"]) == (0, 0)
+    (tmp_path / "configuration.yaml").write_text(TEST.read_text())
+    spectra = json.loads(run("status", tmp_path, "--json").output)["spectra"]
+    assert [(one["name"], one["done"], one["waiting"]) for one in spectra] == [
+        ("flat", 4, 0),
+        ("rough", 4, 0),
+    ]
+    told = json.loads(run("fit", TEST, *output).output)
+    assert told == json.loads((tmp_path / "fit.json").read_text())
+
+
+def test_machines_read_how_a_cycle_ended(smooth_tile, tmp_path):
+    told = json.loads(cycle(smooth_tile, tmp_path, "--json").stdout)
+    dataset = xr.load_dataset(tmp_path / "out.nc")
+    assert told == {
+        "output": str(tmp_path / "out.nc"),
+        "states": dataset.sizes["step"],
+        "status": "lost_contact",
+        "end_penetration": dataset.attrs["end_penetration"],
+        "lowest_force": float(dataset["force"].min()),
+    }
 
 
 def test_help_imports_nothing_heavy():

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation
+from crackfront.cli.report import FILE, announce_compilation, examples
 
 _output = click.option(
     "--output",
@@ -24,7 +24,12 @@ _ASKED = (0.1, 0.03, 0.01)
 """Errors of k whose coverage is measured."""
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront accuracy flat-0.04",
+        "crackfront accuracy flat-0.04 --study asked --realisations 4",
+    )
+)
 @click.argument("scene")
 @_output
 @click.option(
@@ -65,7 +70,12 @@ def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
     click.echo(f"errors: {path}")
 
 
-@click.command("accuracy-report")
+@click.command(
+    "accuracy-report",
+    epilog=examples(
+        "crackfront accuracy-report --page docs/accuracy.md",
+    ),
+)
 @_output
 @click.option("--page", type=FILE, help="Page whose tables are written anew, as docs/accuracy.md.")
 def accuracy_report(output: Path, page: Path | None) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation
+from crackfront.cli.report import FILE, announce_compilation, as_json, echo_json, examples
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,7 +18,13 @@ if TYPE_CHECKING:
     from crackfront.pinning import Field, Interpolation
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront cycle --field tile.nc --max-penetration 1 --output cycle.nc --watch",
+        "crackfront cycle --field tile.nc --max-penetration 1 --step 0.05 --record fronts \\",
+        "  --record energy --output cycle.nc",
+    )
+)
 @click.option("--field", "field_file", type=FILE, required=True, help="netCDF file of the field.")
 @click.option("--max-penetration", type=float, required=True, help="Largest penetration.")
 @click.option(
@@ -68,6 +74,12 @@ if TYPE_CHECKING:
     help="Pieces between samples of a ray.  [default: cubic on a tile, linear on polar samples]",
 )
 @click.option("--output", type=FILE, required=True, help="netCDF file of the cycle.")
+@click.option(
+    "--watch",
+    is_flag=True,
+    help="Show front and loop on the terminal as they grow; elsewhere print a line a state.",
+)
+@as_json
 def cycle(
     field_file: Path,
     max_penetration: float,
@@ -80,6 +92,8 @@ def cycle(
     samples_per_pixel: float | None,
     interpolation: Interpolation | None,
     output: Path,
+    watch: bool,
+    as_json: bool,
 ) -> None:
     """Run one approach and retraction on a field from a file.
 
@@ -91,6 +105,9 @@ def cycle(
     The exit code is 0 where the cycle ended by losing contact and 1 where it ended early; the
     output is written in both cases. It is 2 where the input cannot be used.
     """
+    import numpy as np
+
+    from crackfront.cli.watch import Watch
     from crackfront.cycle import DEFAULT_STEP, LoadSchedule, run_cycle
     from crackfront.dataset import write_cycle
     from crackfront.pinning import n_angle
@@ -106,7 +123,8 @@ def cycle(
             "--record fronts: on rings the front is a circle, whose radius every record holds as "
             "mean_radius; leave it out"
         )
-    announce_compilation()
+    announce_compilation(err=as_json)
+    shown = Watch(max_penetration) if watch else None
     outcome = run_cycle(
         field,
         schedule,
@@ -115,15 +133,30 @@ def cycle(
         solver=solver,
         record_fronts="fronts" in record,
         record_energy="energy" in record,
-        progress=_report,
+        progress=None if watch else _report,
+        keep=shown,
     )
+    if shown is not None:
+        shown.finish()
     write_cycle(output, outcome, provenance(), directions)
-    click.echo(f"{outcome.penetration.size} states: {output}")
+    if as_json:
+        echo_json(
+            {
+                "output": output,
+                "states": outcome.penetration.size,
+                "status": outcome.status.name.lower(),
+                "end_penetration": outcome.end_penetration,
+                "lowest_force": float(np.min(outcome.force)) if outcome.force.size else None,
+            }
+        )
+    else:
+        click.echo(f"{outcome.penetration.size} states: {output}")
     if outcome.status is not Status.LOST_CONTACT:
         raise click.ClickException(
             f"at penetration {outcome.end_penetration:.6g} {outcome.status.value}"
         )
-    click.echo(f"contact was lost at penetration {outcome.end_penetration:.6g}")
+    if not as_json:
+        click.echo(f"contact was lost at penetration {outcome.end_penetration:.6g}")
 
 
 def _contact(

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, refuse_unwritable
+from crackfront.cli.report import (
+    FILE,
+    announce_compilation,
+    as_json,
+    echo_json,
+    examples,
+    refuse_unwritable,
+)
 from crackfront.cli.sweep import fit_of_sweep
 
 _FOLDER = Path("results/figures")
@@ -21,7 +30,11 @@ _GALLERY = (
 )
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront figure config/figures/main-3ab.yaml --scale paper",
+    )
+)
 @click.argument("configuration", type=FILE)
 @click.option(
     "--scale",
@@ -64,7 +77,12 @@ def figure(configuration: Path, scale: str, output: Path) -> None:
     click.echo(f"data: {path}")
 
 
-@click.command("draw-figure")
+@click.command(
+    "draw-figure",
+    epilog=examples(
+        "crackfront draw-figure results/figures/quick/main-3ab.nc",
+    ),
+)
 @click.argument("data", type=FILE)
 def draw_figure(data: Path) -> None:
     """Draw a figure from its data, beside them, and its animation where it has one."""
@@ -79,48 +97,77 @@ def draw_figure(data: Path) -> None:
         click.echo(f"animation: {plots.save_animation(animation, data.with_suffix(''))}")
 
 
-@click.command("check-figures")
+@click.command(
+    "check-figures",
+    epilog=examples(
+        "crackfront check-figures",
+        "crackfront check-figures --json",
+    ),
+)
 @click.option(
     "--output", type=FILE, default=_FOLDER, show_default=True, help="Folder of all figures."
 )
-def check_figures(output: Path) -> None:
+@as_json
+def check_figures(output: Path, as_json: bool) -> None:
     """Compare the data of all figures with what the paper states, in checks.md."""
     from crackfront.config import SCALES
     from crackfront.dataset import write_text
     from crackfront.figures import FIGURES, checks_table
 
-    lines, failed, count = ["# Checks of the figures"], 0, 0
+    lines, found = ["# Checks of the figures"], []
     for scale in SCALES:
         for name, scene in FIGURES.items():
             path = output / scale / f"{name}.nc"
             if not path.exists():
                 continue
             checks = scene.checks(_record(path))
-            count += len(checks)
-            failed += sum(not check.passed for check in checks)
+            found += [{"figure": name, "scale": scale, **asdict(check)} for check in checks]
             lines += ["", f"## {scene.title} ({scale})", "", *checks_table(checks)]
-    if count == 0:
+    if not found:
         raise ValueError(f"{output} holds no data of figures; run crackfront figure first")
+    count, failed = len(found), sum(not check["passed"] for check in found)
     lines += ["", f"{count - failed} of {count} checks pass.", ""]
     write_text(output / "checks.md", "\n".join(lines))
+    if as_json:
+        echo_json(found)
+        return
     click.echo(f"checks: {output / 'checks.md'}, {failed} of {count} fail")
 
 
-@click.command("compare-figures")
+@click.command(
+    "compare-figures",
+    epilog=examples(
+        "crackfront compare-figures results/figures/paper/main-3cd.nc docs/reference/main-3cd.nc",
+    ),
+)
 @click.argument("data", type=FILE)
 @click.argument("reference", type=FILE)
-def compare_figures(data: Path, reference: Path) -> None:
+@as_json
+def compare_figures(data: Path, reference: Path, as_json: bool) -> None:
     """Tell how much the data of a figure differ from those of a reference, as docs/reference has.
 
     The numbers are largest differences relative to the largest magnitude, a variable each.
     """
     from crackfront.dataset import largest_differences
 
-    for name, difference in largest_differences(data, reference).items():
+    differences = largest_differences(data, reference)
+    if as_json:
+        echo_json(
+            {
+                name: str(value) if math.isinf(value) else value
+                for name, value in differences.items()
+            }
+        )
+        return
+    for name, difference in differences.items():
         click.echo(f"{name:28} {difference:.1e}")
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront gallery --page docs/gallery.md",
+    )
+)
 @click.option(
     "--output", type=FILE, default=_FOLDER, show_default=True, help="Folder of all figures."
 )

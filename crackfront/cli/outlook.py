@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE
+from crackfront.cli.report import FILE, as_json, echo_json, examples
 
 if TYPE_CHECKING:
     from crackfront.scene import Simulation
-    from crackfront.sweep import NamedSpectrum
+    from crackfront.sweep import NamedSpectrum, Shard, Sweep
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront plan config/paper.yaml",
+        "crackfront plan config/default.yaml --json",
+    )
+)
 @click.argument("configuration", type=FILE)
 @click.option(
     "--output", type=FILE, help="Folder of the results.  [default: results/<configuration's name>]"
@@ -23,7 +29,8 @@ if TYPE_CHECKING:
 @click.option(
     "--block", type=click.IntRange(min=1), help="Realisations of a shard.  [default: all]"
 )
-def plan(configuration: Path, output: Path | None, block: int | None) -> None:
+@as_json
+def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
     from crackfront.config import load_configuration, results_folder
     from crackfront.store import Store
@@ -33,6 +40,9 @@ def plan(configuration: Path, output: Path | None, block: int | None) -> None:
     shards = sweep.shards(block)
     shapes = {item: sweep.shard(item) for item in sweep.spectra}
     inventory = store.inventory([one for simulations in shapes.values() for one in simulations])
+    if as_json:
+        echo_json(_plan(sweep, store.folder, shards, inventory.missing))
+        return
     click.echo("spectrum          lambda_s  lambda_r     H         angles         points    stored")
     costs = []
     for item, simulations in shapes.items():
@@ -52,9 +62,15 @@ def plan(configuration: Path, output: Path | None, block: int | None) -> None:
     click.echo(f"results in {store.folder}/")
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront status results/default",
+        "crackfront status results/default --json",
+    )
+)
 @click.argument("folder", type=FILE)
-def status(folder: Path) -> None:
+@as_json
+def status(folder: Path, as_json: bool) -> None:
     """Tell how far the sweep in a folder is; also while it runs, here or elsewhere."""
     from crackfront.config import load_configuration
     from crackfront.store import Store, sweep_progress
@@ -63,6 +79,9 @@ def status(folder: Path) -> None:
     if not configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
     found = sweep_progress(folder, load_configuration(configuration))
+    if as_json:
+        echo_json({"spectra": [asdict(item) for item in found]})
+        return
     click.echo("spectrum             done  failed  running  waiting  core hours left")
     for item in found:
         click.echo(
@@ -78,6 +97,28 @@ def status(folder: Path) -> None:
     elif ended < total:
         sentence += "; nothing runs"
     click.echo(sentence)
+
+
+def _plan(
+    sweep: Sweep, folder: Path, shards: Sequence[Shard], missing: Sequence[Simulation]
+) -> dict[str, object]:
+    """What a machine wants to know of a plan; costs are those of what is missing."""
+    from crackfront.costs import expected_cost
+
+    costs = [expected_cost(one) for one in missing]
+    return {
+        "results": folder,
+        "spectra": [item.name for item in sweep.spectra],
+        "elastic_energies": sweep.elastic_energies,
+        "realisations": sweep.n_realisation,
+        "simulations": sweep.n_simulation,
+        "missing": len(missing),
+        "shards": [shard.name for shard in shards],
+        "core_seconds": sum(cost.seconds for cost in costs),
+        "longest_seconds": max((cost.seconds for cost in costs), default=0.0),
+        "bytes_a_rank": max((cost.memory for cost in costs), default=0.0),
+        "bytes_on_disk": sum(cost.disk for cost in costs),
+    }
 
 
 def _sizes(item: NamedSpectrum, simulations: Sequence[Simulation]) -> str:

@@ -1,7 +1,8 @@
-"""What commands share: running the missing simulations, and telling how far they are."""
+"""What commands share: their help, running what is missing, and telling how far they are."""
 
 from __future__ import annotations
 
+import json
 import sys
 import tempfile
 import time
@@ -18,8 +19,23 @@ if TYPE_CHECKING:
 FILE = click.Path(path_type=Path)
 """Type of a parameter that names a file or folder."""
 
+as_json = click.option(
+    "--json", "as_json", is_flag=True, help="Print one JSON value instead, for machines."
+)
+"""Option of a command whose answer machines may want."""
+
 TRY_AGAIN = 75
 """Exit code of a command that was told to end before it was done (EX_TEMPFAIL of sysexits.h)."""
+
+
+def examples(*lines: str) -> str:
+    """End of the help of a command: command lines that show its use."""
+    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+
+
+def echo_json(content: object) -> None:
+    """Print one JSON value; a number that is none would be a defect."""
+    click.echo(json.dumps(content, indent=2, allow_nan=False, default=str))
 
 
 def block(context: click.Context, parameter: click.Parameter, value: str | None) -> range | None:
@@ -34,12 +50,12 @@ def block(context: click.Context, parameter: click.Parameter, value: str | None)
     return range(int(first), int(last) + 1)
 
 
-def announce_compilation() -> None:
-    """Tell why nothing seems to happen."""
+def announce_compilation(*, err: bool = False) -> None:
+    """Tell why nothing seems to happen, beside the output where that is for machines."""
     from crackfront.compiled import kernels_are_cached
 
     if not kernels_are_cached():
-        click.echo("compiling the solver (once)")
+        click.echo("compiling the solver (once)", err=err)
 
 
 def refuse_unwritable(folder: Path) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE, block, fill_store, launch
+from crackfront.cli.report import FILE, as_json, block, examples, fill_store, launch
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
@@ -22,7 +22,12 @@ _output = click.option(
 )
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront simulate config/default.yaml --ranks 4",
+        "crackfront simulate config/default.yaml --spectrum flat --realisations 0-1",
+    )
+)
 @_configuration
 @_output
 @click.option("--spectrum", help="Only this spectrum.  [default: all]")
@@ -99,7 +104,11 @@ def simulate(
     click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront aggregate config/default.yaml",
+    )
+)
 @_configuration
 @_output
 def aggregate(configuration: Path, output: Path | None) -> None:
@@ -123,10 +132,16 @@ def aggregate(configuration: Path, output: Path | None) -> None:
     click.echo(f"hysteresis: {path}")
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront fit config/default.yaml",
+        "crackfront fit config/default.yaml --json",
+    )
+)
 @_configuration
 @_output
-def fit(configuration: Path, output: Path | None) -> None:
+@as_json
+def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the last."""
     from crackfront.dataset import write_fit
     from crackfront.provenance import provenance
@@ -134,11 +149,18 @@ def fit(configuration: Path, output: Path | None) -> None:
     sweep, store = _sweep_and_store(configuration, output)
     fitted = _fitted(sweep, store)
     paths = write_fit(store.folder, fitted, provenance(configuration.read_text(encoding="utf-8")))
+    if as_json:
+        click.echo(paths[1].read_text(encoding="utf-8"))
+        return
     click.echo(paths[2].read_text(encoding="utf-8"))
     click.echo(f"fit: {', '.join(map(str, paths))}")
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront figures config/default.yaml",
+    )
+)
 @_configuration
 @_output
 def summary(configuration: Path, output: Path | None) -> None:

@@ -1,0 +1,172 @@
+"""A running cycle on a terminal: the front from above, beside the loop as it grows."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from crackfront.cycle import Checkpoint, CycleRecord
+
+    Array = NDArray[np.float64]
+
+_ROWS = 18
+"""Height of the two panels, in lines."""
+
+_NARROWEST = 60
+"""Columns below which the panels are not drawn."""
+
+_SECONDS = 0.1
+"""Time between two frames, so that drawing costs next to nothing."""
+
+_DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
+"""Bits of the dots of a Braille character, two to the right and four down."""
+
+_COLOURS = {1: "blue", -1: "red"}
+"""Colours of approach and retraction."""
+
+
+class Canvas:
+    """Dots in Braille characters, two by four to each; a character has the colour of its last dot.
+
+    Parameters
+    ----------
+    columns, rows : int
+        Size in characters.
+    left, right, bottom, top : float
+        Coordinates of the edges.
+    """
+
+    def __init__(
+        self, columns: int, rows: int, left: float, right: float, bottom: float, top: float
+    ) -> None:
+        self._bits = [[0] * columns for _ in range(rows)]
+        self._colours: list[list[str | None]] = [[None] * columns for _ in range(rows)]
+        self._left, self._top = left, top
+        self._scale = (2 * columns - 1) / (right - left), (4 * rows - 1) / (top - bottom)
+
+    def add(self, x: Array, y: Array, colour: str) -> None:
+        """Put dots at points; those outside are left out."""
+        for abscissa, ordinate in zip(x.tolist(), y.tolist(), strict=True):
+            column = round((abscissa - self._left) * self._scale[0])
+            row = round((self._top - ordinate) * self._scale[1])
+            if 0 <= column < 2 * len(self._bits[0]) and 0 <= row < 4 * len(self._bits):
+                self._bits[row // 4][column // 2] |= _DOTS[row % 4][column % 2]
+                self._colours[row // 4][column // 2] = colour
+
+    def lines(self) -> list[str]:
+        """Lines of characters, coloured."""
+        return [
+            "".join(
+                click.style(chr(0x2800 + bits), fg=colour) if bits else " "
+                for bits, colour in zip(row, colours, strict=True)
+            )
+            for row, colours in zip(self._bits, self._colours, strict=True)
+        ]
+
+
+class Watch:
+    """What is called at every new state: frames on a terminal, a line a state elsewhere.
+
+    Parameters
+    ----------
+    max_penetration : float
+        Largest penetration of the cycle, which decides how much the panels show.
+    """
+
+    def __init__(self, max_penetration: float) -> None:
+        from crackfront import jkr
+
+        # Room for a contact that sticks more than a smooth one, or less.
+        smooth = jkr.equilibrium_radius(max_penetration)
+        self._largest = 1.15 * smooth
+        self._forces = 1.5 * jkr.pull_off_force(), float(jkr.equilibrium_force(smooth)) + 0.7
+        self._last: Callable[[], Checkpoint] | None = None
+        self._drawn = 0
+        self._next = 0.0
+
+    def __call__(self, checkpoint: Callable[[], Checkpoint]) -> None:
+        """Show the last state, if the last frame was not just now."""
+        self._last = checkpoint
+        if not sys.stderr.isatty():
+            click.echo(state_line(checkpoint().record), err=True)
+        elif time.monotonic() >= self._next:
+            self._show(checkpoint())
+            self._next = time.monotonic() + _SECONDS
+
+    def finish(self) -> None:
+        """Show the last state of all, which may have come just after a frame."""
+        if self._last is not None and sys.stderr.isatty():
+            self._show(self._last())
+
+    def _show(self, checkpoint: Checkpoint) -> None:
+        """Replace the last frame."""
+        columns, rows = os.get_terminal_size(sys.stderr.fileno())
+        lines = [state_line(checkpoint.record)]
+        # A frame that does not fit cannot be replaced.
+        if columns >= _NARROWEST and rows > _ROWS + 2:
+            lines += frame(checkpoint, columns - 1, self._largest, self._forces)
+        back = f"\x1b[{self._drawn}A\x1b[J" if self._drawn else ""
+        click.echo(back + "\n".join(lines), err=True)
+        self._drawn = len(lines)
+
+
+def state_line(record: CycleRecord) -> str:
+    """What is told of the last state of a record."""
+    branch = "approach" if record.direction[-1] > 0 else "retraction"
+    return (
+        f"state {record.penetration.size}, {branch}: penetration {record.penetration[-1]:+.4f}, "
+        f"radius {record.mean_radius[-1]:.4f}, force {record.force[-1]:+.4f}"
+    )
+
+
+def frame(
+    checkpoint: Checkpoint, columns: int, largest: float, forces: tuple[float, float]
+) -> list[str]:
+    """Front and loop side by side, with their scales below.
+
+    Parameters
+    ----------
+    checkpoint : Checkpoint
+        The states so far, and the front of the last.
+    columns : int
+        Width in characters.
+    largest : float
+        Largest radius that is shown. (Units: reduced lateral length)
+    forces : tuple of float
+        Lowest and highest force that are shown. (Units: pi w_int R)
+
+    Returns
+    -------
+    list of str
+        Lines; a character is about twice as high as wide, so that the front looks round.
+    """
+    import numpy as np
+
+    record, front = checkpoint.record, checkpoint.front
+    left = 2 * _ROWS
+    plane = Canvas(left, _ROWS, -largest, largest, -largest, largest)
+    # Several dots a site, so that the curve is closed on the canvas.
+    site = np.linspace(0, front.size, max(front.size, 600))
+    radius = np.interp(site, np.arange(front.size + 1), np.append(front, front[0]))
+    angle = 2 * np.pi * site / front.size
+    colour = _COLOURS[int(record.direction[-1])]
+    plane.add(radius * np.cos(angle), radius * np.sin(angle), colour)
+    loop = Canvas(columns - left - 3, _ROWS, 0.0, largest, *forces)
+    ground = np.linspace(0.0, largest, 400)
+    loop.add(ground, np.zeros_like(ground), "bright_black")
+    for direction, name in _COLOURS.items():
+        branch = record.direction == direction
+        loop.add(record.mean_radius[branch], record.force[branch], name)
+    rows = [f"{one} │ {other}" for one, other in zip(plane.lines(), loop.lines(), strict=True)]
+    below = f"front, |x|, |y| < {largest:.3g}"
+    told = f"force {forces[0]:.3g} to {forces[1]:.3g} over radius 0 to {largest:.3g}"
+    return [*rows, f"{below:{left}} │ {told}"[:columns]]
