@@ -36,7 +36,7 @@ READY    = .venv/.ready-$(MPI)
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test test-cluster nightly accuracy benchmark figures report lint lock clean help
+.PHONY: all env test test-cluster nightly accuracy benchmark figures report docs lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP)
@@ -111,6 +111,10 @@ report: env  ## The sweep SWEEP as one page of HTML: fit, figures, configuration
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP) --report $(RESULTS)report.html
 	@echo "Report: $(RESULTS)report.html"
 
+docs: env  ## Pages in docs/_build/html, examples executed, warnings as errors (a minute)
+	@$(IN_ENV) .venv/bin/python -m sphinx -W --keep-going --quiet -b html docs docs/_build/html
+	@echo "Documentation: docs/_build/html/index.html"
+
 lint: env  ## Style, format, types, import floors, format of the rules
 	.venv/bin/ruff check
 	.venv/bin/ruff format --check
@@ -127,7 +131,8 @@ lock:  ## Resolve requirements.in and pyproject.toml anew into requirements.lock
 	@echo "Locked: requirements.lock"
 
 clean:  ## Remove .venv and caches, never results
-	rm -rf .venv .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache build *.egg-info
+	rm -rf .venv .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache build *.egg-info \
+	  docs/_build docs/api docs/examples
 	find crackfront tests workflow -type d -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
 help:  ## Show this list

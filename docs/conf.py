@@ -1,0 +1,115 @@
+"""How the pages are built: `make docs`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+import crackfront
+
+project = "crackfront"
+author = "crackfront developers"
+copyright = f"2026, {author}"
+version = release = crackfront.__version__
+
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
+    "numpydoc",
+    "myst_parser",
+    "sphinx_gallery.gen_gallery",
+]
+exclude_patterns = ["_build", "_templates"]
+templates_path = ["_templates"]
+numfig = True
+default_role = "literal"
+
+# The reference: every docstring is checked for what numpydoc can check.
+autosummary_generate = True
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"
+numpydoc_show_class_members = False
+numpydoc_validation_checks = {
+    "GL03",
+    "GL05",
+    "GL06",
+    "GL07",
+    "GL09",
+    "GL10",
+    "SS02",
+    "SS04",
+    "PR02",
+    "PR03",
+    "PR05",
+    "PR06",
+    "PR10",
+    "SA02",
+    "SA03",
+}
+
+# The pages, which are read on GitHub too.
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_heading_anchors = 3
+
+# The examples, executed; an error in one of them ends the build.
+sphinx_gallery_conf = {
+    "examples_dirs": str(Path(__file__).parents[1] / "examples"),
+    "gallery_dirs": "examples",
+    "filename_pattern": r"\.py$",
+    "within_subsection_order": "FileNameSortKey",
+    "abort_on_example_error": True,
+    "remove_config_comments": True,
+    "show_memory": False,
+    "show_signature": False,
+    "download_all_examples": False,
+}
+
+html_theme = "pydata_sphinx_theme"
+html_title = "crackfront"
+html_show_sourcelink = False
+# Pages that stand alone have nothing to list beside them.
+html_sidebars = {
+    name: []
+    for name in (
+        "index",
+        "tutorial",
+        "equations",
+        "model",
+        "accuracy",
+        "command-line",
+        "cluster",
+        "gallery",
+    )
+}
+html_theme_options = {
+    "navigation_with_keys": False,
+    "header_links_before_dropdown": 6,
+    "show_toc_level": 2,
+    "secondary_sidebar_items": ["page-toc"],
+    "footer_start": ["copyright"],
+    "footer_end": [],
+}
+
+
+def _is_foreign(
+    app: Sphinx, what: str, name: str, member: object, skip: bool, options: object
+) -> bool | None:
+    """Whether a member of a module comes from another package, as a function that it imports."""
+    home = getattr(member, "__module__", None)
+    return True if home is not None and not home.startswith("crackfront") else None
+
+
+def _escape_magnitudes(
+    app: Sphinx, what: str, name: str, member: object, options: object, lines: list[str]
+) -> None:
+    """Bars of a summary are magnitudes, not substitutions of reStructuredText."""
+    if lines:
+        lines[0] = lines[0].replace("|", r"\|")
+
+
+def setup(app: Sphinx) -> None:
+    """Leave out what is not ours, before numpydoc reads what is."""
+    app.connect("autodoc-skip-member", _is_foreign)
+    app.connect("autodoc-process-docstring", _escape_magnitudes, priority=400)

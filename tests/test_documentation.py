@@ -1,0 +1,80 @@
+"""The pages: what they show runs, and says what is true."""
+
+import doctest
+import re
+from pathlib import Path
+
+import pytest
+from matplotlib import pyplot
+
+from crackfront import library
+from crackfront.cli import main
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+
+
+@pytest.fixture
+def _elsewhere(tmp_path, monkeypatch):
+    """A folder for what the pages write, and no other figure of pyplot."""
+    monkeypatch.chdir(tmp_path)
+    pyplot.close("all")
+    yield
+    pyplot.close("all")
+
+
+@pytest.mark.usefixtures("_elsewhere")
+def test_the_tutorial_gives_what_it_shows():
+    page = DOCS / "tutorial.md"
+    # The end of a block would pass for output.
+    text = page.read_text().replace("```", "")
+    test = doctest.DocTestParser().get_doctest(text, {}, page.name, str(page), 0)
+    found = doctest.DocTestRunner().run(test)
+    assert found.attempted >= 12
+    assert found.failed == 0
+    assert Path("loop.png").stat().st_size > 10_000
+    assert Path("loop.nc").is_file()
+
+
+@pytest.mark.usefixtures("_elsewhere")
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
+def test_the_python_of_a_page_runs(page):
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+    assert len(blocks) == 1
+    exec(compile(blocks[0], page, "exec"), {})
+    assert len(pyplot.get_fignums()) == 1
+
+
+def test_the_page_of_the_command_line_names_every_command_and_exit_code():
+    page = (DOCS / "command-line.md").read_text()
+    for name in main.commands:
+        assert f"`crackfront {name}`" in page
+    epilog = main.epilog or ""
+    assert re.findall(r"^\| (\d+) \|", page, re.MULTILINE) == re.findall(
+        r"^  (\d+) ", epilog, re.MULTILINE
+    )
+
+
+def test_the_page_of_the_reference_names_the_whole_library():
+    page = (DOCS / "reference-pages.md").read_text()
+    functions = {name for name in library.__all__ if name.islower()}
+    assert functions <= set(re.findall(r"^   (\w+)$", page, re.MULTILINE))
+
+
+def test_every_page_is_in_a_list_of_pages():
+    listed = set()
+    for page in ("index.md", "background.md"):
+        text = (DOCS / page).read_text()
+        for block in re.findall(r"```\{toctree\}\n(.*?)```", text, re.DOTALL):
+            lines = [line for line in block.splitlines() if line and not line.startswith(":")]
+            listed |= {line.split("<")[-1].rstrip(">") for line in lines}
+    pages = {str(path.relative_to(DOCS).with_suffix("")) for path in DOCS.glob("*.md")}
+    assert pages - {"index"} <= listed
+
+
+def test_the_examples_are_found_by_their_gallery():
+    assert len(list((ROOT / "examples").glob("*.py"))) >= 5
+    for path in (ROOT / "examples").glob("*.py"):
+        title, underline = path.read_text().split('"""')[1].strip().splitlines()[:2]
+        assert set(underline) == {"="}
+        assert len(underline) == len(title)
