@@ -1,5 +1,6 @@
 """Figures of the paper: their configurations, data, checks, drawings and commands."""
 
+import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -134,6 +135,10 @@ def test_commands_compute_draw_and_check_a_figure(tmp_path):
     assert data.with_suffix(".pdf").stat().st_size > 1000
     assert run("check-figures", "--output", output).exit_code == 0
     assert "4 of 4 checks pass" in (output / "checks.md").read_text()
+    told = json.loads(run("check-figures", "--output", output, "--json").stdout)
+    assert [(one["figure"], one["scale"], one["passed"]) for one in told] == [
+        ("main-1d", "quick", True)
+    ] * 4
     page = tmp_path / "docs" / "gallery.md"
     assert run("gallery", "--output", output, "--page", page).exit_code == 0
     assert "![Main Fig. 1d" in page.read_text()
@@ -163,6 +168,10 @@ def test_data_are_compared_with_a_reference_variable_by_variable(smooth, tmp_pat
     assert largest_differences(paths[2], paths[0])["radius"] == np.inf
     result = CliRunner().invoke(main, ["compare-figures", str(paths[1]), str(paths[0])])
     assert "force                        1.0e-06" in result.output
+    arguments = ["compare-figures", str(paths[2]), str(paths[0]), "--json"]
+    told = json.loads(CliRunner().invoke(main, arguments).stdout)
+    assert told["radius"] is None
+    assert told["approach"] == 0.0
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(

@@ -152,12 +152,8 @@ def compare_figures(data: Path, reference: Path, as_json: bool) -> None:
 
     differences = largest_differences(data, reference)
     if as_json:
-        echo_json(
-            {
-                name: str(value) if math.isinf(value) else value
-                for name, value in differences.items()
-            }
-        )
+        # Shapes that disagree are infinitely different, for which JSON has no number.
+        echo_json({name: None if math.isinf(one) else one for name, one in differences.items()})
         return
     for name, difference in differences.items():
         click.echo(f"{name:28} {difference:.1e}")

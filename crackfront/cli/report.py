@@ -8,7 +8,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -35,7 +35,12 @@ def examples(*lines: str) -> str:
 
 def echo_json(content: object) -> None:
     """Print one JSON value; a number that is none would be a defect."""
-    click.echo(json.dumps(content, indent=2, allow_nan=False, default=str))
+    click.echo(json.dumps(content, indent=2, allow_nan=False, default=_plain))
+
+
+def _plain(value: Any) -> object:
+    """What JSON has for a path, or for a scalar of numpy."""
+    return str(value) if isinstance(value, Path) else value.item()
 
 
 def block(context: click.Context, parameter: click.Parameter, value: str | None) -> range | None:
