@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from scipy.ndimage import map_coordinates
 
+from crackfront.asked import EXCESS, asked_simulation
 from crackfront.cycle import FrontHistory, LoadSchedule, refuse_outgrown
-from crackfront.laws import chosen_numerics, numerical_error
+from crackfront.laws import numerical_error
 from crackfront.pinning import TileField, first_radius, n_angle
-from crackfront.scene import Numerics, Simulation, compile_solver, resolution
+from crackfront.scene import Simulation, compile_solver
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.units import WORK_OF_ADHESION
 from crackfront.validation import Energy, Positive, Section, refusal
@@ -59,37 +60,18 @@ class RoughParameters(Section):
         PydanticCustomError
             If the finest numerics leave more than the asked error.
         """
-        # What the error decides is that of a coarse resolution here, and replaced.
-        given = Numerics(
-            angles=None,
-            angles_per_cutoff=1.0,
-            samples_per_cutoff=4.0,
-            interpolation="cubic",
-            pixels_per_cutoff=4.0,
+        simulation = asked_simulation(
+            "roughness",
+            spectrum,
+            elastic_energy,
+            schedule,
+            error=self.error,
             tile_roll_offs=self.tile_roll_offs,
             tile_cutoffs=200,
-            tolerance=1e-3,
-            max_sweeps=100_000_000,
-            solver="newton",
-        )
-        numerics = chosen_numerics(self.error, "roughness", spectrum, elastic_energy, given)
-        simulation = Simulation(
-            spectrum_name="figure",
-            kind="roughness",
-            spectrum=spectrum,
-            elastic_energy=elastic_energy,
-            realisation=0,
-            sweep_seed=self.seed,
-            resolution=resolution(spectrum, numerics, schedule.max_penetration),
-            schedule=schedule,
-            tolerance=numerics.tolerance,
-            max_sweeps=numerics.max_sweeps,
-            solver=numerics.solver,
-            record_fronts=False,
-            record_energy=False,
+            seed=self.seed,
         )
         left = max(numerical_error(simulation)) / elastic_energy
-        if left > 1.2 * self.error:
+        if left > EXCESS * self.error:
             raise refusal(
                 f"error is {self.error:g}, but the finest numerics leave {left:.2g}; ask for that"
             )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from crackfront.asked import EXCESS
 from crackfront.cycle import LoadSchedule
 from crackfront.dataset import DataArray, surface_adhesion, surface_kind
 from crackfront.laws import numerical_error
@@ -11,9 +12,6 @@ from crackfront.library.surfaces import chosen_simulation
 from crackfront.library.tiles import measured_correlation_length, stated_spectrum
 from crackfront.pinning import TileField
 from crackfront.scene import Simulation, contact_field, tile_contact
-
-_EXCESS = 1.2
-"""By how much the expected error may exceed the asked one: knobs have two digits."""
 
 _TOLERANCE = 1e-8
 """Force that may be left on a surface whose spectrum is not known, relative to w_int."""
@@ -77,7 +75,7 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
     sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
     simulation = replace(chosen, resolution=sizes)
     left = max(numerical_error(simulation)) / adhesion.elastic_energy
-    if left > _EXCESS * error:
+    if left > EXCESS * error:
         pixels = spectrum.short_cutoff / adhesion.pixel
         raise ValueError(
             f"error is {error:g}, but the finest numerics on {pixels:.3g} pixels per short cutoff "

@@ -8,10 +8,10 @@ from typing import get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.asked import asked_simulation
 from crackfront.cycle import LoadSchedule
 from crackfront.dataset import DataArray, surface_array
-from crackfront.laws import chosen_numerics
-from crackfront.scene import FieldKind, Numerics, Simulation, resolution, simulation_adhesion
+from crackfront.scene import FieldKind, Simulation, simulation_adhesion
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.synthesis import gaussian_field
 from crackfront.units import WORK_OF_ADHESION
@@ -113,7 +113,7 @@ def chosen_simulation(
     seed: int = 0,
     realisation: int = 0,
 ) -> Simulation:
-    """Simulation whose numerics the measured laws choose for an asked error.
+    """Simulation of a surface that a user asks for, refused where there is none.
 
     Parameters
     ----------
@@ -149,35 +149,16 @@ def chosen_simulation(
         raise ValueError(
             f"side is {side}; the tile must hold the short cutoff, {spectrum.short_cutoff:g}"
         )
-    cutoffs = TILE_CUTOFFS if side is None else side / spectrum.short_cutoff
-    # What the error decides is that of a coarse resolution here, and replaced.
-    given = Numerics(
-        angles=None,
-        angles_per_cutoff=1.0,
-        samples_per_cutoff=4.0,
-        interpolation="cubic",
-        pixels_per_cutoff=4.0,
+    return asked_simulation(
+        kind,
+        spectrum,
+        elastic_energy,
+        schedule,
+        error=error,
         tile_roll_offs=TILE_ROLL_OFFS if side is None else 0.0,
-        tile_cutoffs=cutoffs,
-        tolerance=1e-3,
-        max_sweeps=10_000_000,
-        solver="newton",
-    )
-    chosen = chosen_numerics(error, kind, spectrum, elastic_energy, given)
-    return Simulation(
-        spectrum_name="surface",
-        kind=kind,
-        spectrum=spectrum,
-        elastic_energy=elastic_energy,
+        tile_cutoffs=TILE_CUTOFFS if side is None else side / spectrum.short_cutoff,
+        seed=seed,
         realisation=realisation,
-        sweep_seed=seed,
-        resolution=resolution(spectrum, chosen, schedule.max_penetration),
-        schedule=schedule,
-        tolerance=chosen.tolerance,
-        max_sweeps=chosen.max_sweeps,
-        solver=chosen.solver,
-        record_fronts=False,
-        record_energy=False,
     )
 
 

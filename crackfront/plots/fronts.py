@@ -103,11 +103,15 @@ def draw_fronts(
         for count, front in enumerate(branch[::-1][::every]):
             name = label if count == 0 else None
             axes.plot(*closed_front(angle, front), color=colour, linewidth=0.7, label=name)
-    reach = _MARGIN * float(np.max(radius))
+    frame_plane(axes, _MARGIN * float(np.max(radius)))
+    axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
+
+
+def frame_plane(axes: Axes, reach: float) -> None:
+    """A square of the plane around the apex, with its names and units."""
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-reach, reach)
     axes.set_aspect("equal")
-    axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
     label_plane(axes)
 
 

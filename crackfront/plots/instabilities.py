@@ -15,7 +15,7 @@ from crackfront import jkr
 from crackfront.figures import InstabilityRecord
 from crackfront.figures.contact import STRONG, WEAK
 from crackfront.figures.instability_checks import radii_at_zero
-from crackfront.plots.fronts import label_plane
+from crackfront.plots.fronts import frame_plane
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLUE, PAGE, PURPLE, VERMILION, blank_figure, house_style
 
@@ -114,11 +114,7 @@ def draw_instabilities(
     _add_patches(axes, patches, energies, norm)
     bar = axes.figure.colorbar(ScalarMappable(norm, _COLOURS), ax=axes, pad=0.02, extend="min")
     bar.set_label(_ENERGY_LABEL)
-    reach = 1.05 * max(float(np.max(before)), float(np.max(after)))
-    axes.set_xlim(-reach, reach)
-    axes.set_ylim(-reach, reach)
-    axes.set_aspect("equal")
-    label_plane(axes)
+    frame_plane(axes, 1.05 * max(float(np.max(before)), float(np.max(after))))
 
 
 def _closed(values: Array) -> Array:
