@@ -112,6 +112,7 @@ report: env  ## The sweep SWEEP as one page of HTML: fit, figures, configuration
 	@echo "Report: $(RESULTS)report.html"
 
 docs: env  ## Pages in docs/_build/html, examples executed, warnings as errors (a minute)
+	@rm -rf docs/_build docs/api docs/examples
 	@$(IN_ENV) .venv/bin/python -m sphinx -W --keep-going --quiet -b html docs docs/_build/html
 	@echo "Documentation: docs/_build/html/index.html"
 
