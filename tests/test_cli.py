@@ -13,6 +13,7 @@ import pytest
 import xarray as xr
 from click.testing import CliRunner
 
+import crackfront as cf
 from crackfront import __version__, jkr
 from crackfront.cli import main
 from crackfront.cli.report import TRY_AGAIN
@@ -387,6 +388,30 @@ def test_bad_numbers_of_ranks_are_refused(tmp_path, ranks):
 
 def test_the_version_is_that_of_the_package():
     assert __version__ in run("--version").output
+
+
+@pytest.mark.parametrize("kind", ["roughness", "chemical"])
+def test_a_surface_of_the_library_is_a_field_of_a_cycle(kind, tmp_path):
+    surface = cf.random_surface(0.4, 0.05, kind=kind, side=4, error=0.05, seed=3)
+    surface.to_netcdf(tmp_path / "surface.nc")
+    assert cycle(tmp_path / "surface.nc", tmp_path, "--record", "fronts").exit_code == 0
+    bare = surface.drop_attrs(deep=False).assign_attrs(units=surface.attrs["units"])
+    found = cf.run_loop(bare, step=0.25)
+    np.testing.assert_allclose(xr.load_dataset(tmp_path / "out.nc").radius, found.radius, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("roughness", "surface.nc: x has the units 'm'; the attribute units must be"),
+        ("chemical", "surface.nc: work_of_adhesion is in J / m^2; convert it to reduced units"),
+    ],
+)
+def test_a_surface_in_si_units_is_refused_as_a_field(kind, words, tmp_path):
+    surface = cf.random_surface(0.4, 0.05, kind=kind, side=4, error=0.05)
+    cf.in_si_units(surface, cf.Scales(1e-3, 50e-3, 1e6)).to_netcdf(tmp_path / "surface.nc")
+    output = ("--max-penetration", 1, "--output", tmp_path / "out.nc")
+    assert words in refused("cycle", "--field", tmp_path / "surface.nc", *output)
 
 
 def commands_of_help():

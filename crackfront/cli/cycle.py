@@ -100,7 +100,8 @@ def cycle(
     The field is a periodic tile work_of_adhesion(x, y), whose centre is the apex of the sphere,
     or samples work_of_adhesion(radius, angle), whose angles are the sites of the front. On rings,
     work_of_adhesion(radius), the front is a circle and the problem scalar. All quantities are in
-    reduced units: R = 1, w_int = 1/pi, E' = 3/4.
+    reduced units: R = 1, w_int = 1/pi, E' = 3/4. Surfaces of the Python library, saved by
+    surface.to_netcdf, are fields as well.
 
     The exit code is 0 where the cycle ended by losing contact and 1 where it ended early; the
     output is written in both cases. It is 2 where the input cannot be used.

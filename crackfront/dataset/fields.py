@@ -11,16 +11,18 @@ from numpy.typing import NDArray
 
 from crackfront.adhesion import AdhesionMap
 from crackfront.dataset.files import UnreadableFileError, read_dataset, write_dataset
+from crackfront.dataset.quantities import SURFACES
+from crackfront.dataset.surfaces import surface_adhesion
+from crackfront.dataset.tiles import TOLERANCE, tile_samples
 from crackfront.pinning import Interpolation, PolarField, polar_field
 from crackfront.provenance import Provenance
-from crackfront.records import LATERAL
+from crackfront.records import ADHESION, LATERAL
 from crackfront.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
 
-NAME = "work_of_adhesion"
-TOLERANCE = 1e-6
-"""Largest deviation from equal spacing, relative to it."""
+NAME = SURFACES["chemical"].name
+_HEIGHT = SURFACES["roughness"].name
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +44,12 @@ class PolarSamples:
 def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionMap | PolarSamples:
     """Work of adhesion of a file: a periodic tile, or samples on rays.
 
-    The variable `work_of_adhesion` is in reduced units, in which w_int is 1/pi. Its dimensions
+    The variable `work_of_adhesion` is in reduced units, in which w_int is 1/pi, or relative to
+    w_int where its attribute `units` says so, as that of the library does. Its dimensions
     are x and y (equal and uniform spacing, coordinates needed; the sphere's apex is the tile's
     centre, half a side from the first point) or radius and angle (radius as a coordinate; angles
-    equally spaced in rad), in any order. On rings it is the radius alone.
+    equally spaced in rad), in any order. On rings it is the radius alone. A variable `height`
+    instead is a rough surface as the library makes it.
 
     Parameters
     ----------
@@ -60,10 +64,12 @@ def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionM
         If the file is missing or truncated, or its content is not as said.
     """
     dataset = read_dataset(path)
+    if NAME not in dataset and _HEIGHT in dataset:
+        return _map_of(path, dataset[_HEIGHT])
     if NAME not in dataset:
         raise UnreadableFileError(
             f"{path} has no variable {NAME} (it has: {', '.join(map(str, dataset.data_vars))}); "
-            f"name the field {NAME}"
+            f"name the field {NAME}, or the heights of a surface {_HEIGHT}"
         )
     values = dataset[NAME]
     dims = {str(name) for name in values.dims}
@@ -73,6 +79,9 @@ def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionM
             f"{path}: {NAME} is {values.dtype} of ({', '.join(map(str, values.dims))}); it must be "
             "numbers of (x, y) or of (radius, angle), or of (radius) for rings"
         )
+    _refuse_other_units(path, values)
+    if values.attrs.get("units") == ADHESION:
+        values = values * WORK_OF_ADHESION
     return _tile(path, values) if "x" in dims else _rays(path, values, interpolation)
 
 
@@ -92,8 +101,8 @@ def write_field(
     **attributes : str or float
         What else the file says of itself.
     """
-    values = adhesion.work_of_adhesion
-    about = {"units": "pi w_int", "long_name": "local work of adhesion; w_int is 1/pi"}
+    values = adhesion.work_of_adhesion / WORK_OF_ADHESION
+    about = {"units": ADHESION, "long_name": "local work of adhesion"}
     axis = {"units": LATERAL}
     coordinates = {
         name: ((name,), adhesion.pixel * np.arange(count), axis)
@@ -107,6 +116,26 @@ def write_field(
     write_dataset(path, dataset, origin)
 
 
+def _refuse_other_units(path: Path, values: xr.DataArray) -> None:
+    """Raise if the field or a length says that it is in units other than reduced ones."""
+    lengths = [values[name] for name in ("x", "y", "radius") if name in values.coords]
+    for part in (values, *lengths):
+        units = str(part.attrs.get("units", ""))
+        if units not in ("", "1", ADHESION) and not units.startswith("reduced"):
+            raise UnreadableFileError(
+                f"{path}: {part.name} is in {units}; convert it to reduced units, as "
+                "crackfront.in_reduced_units does, and remove or renew its attribute units"
+            )
+
+
+def _map_of(path: Path, heights: xr.DataArray) -> AdhesionMap:
+    """Map that is equivalent to the heights of a file."""
+    try:
+        return surface_adhesion(heights)
+    except ValueError as error:
+        raise UnreadableFileError(f"{path}: {error}") from error
+
+
 def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
     """Map of a periodic tile."""
     try:
@@ -117,45 +146,6 @@ def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
     with np.errstate(invalid="ignore"):
         rms = float(np.std(samples) / WORK_OF_ADHESION)
     return AdhesionMap(samples, pixel, elastic_energy=rms**2 / 4, rms=rms)
-
-
-def tile_samples(values: xr.DataArray) -> tuple[Array, float]:
-    """Values of a tile, first axis x, and their spacing.
-
-    Parameters
-    ----------
-    values : xarray.DataArray
-        Values of the dimensions x and y, in any order, with their coordinates.
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is missing or not uniform, or the two spacings differ.
-    """
-    pixels = [_spacing(values, name) for name in ("x", "y")]
-    if abs(pixels[1] / pixels[0] - 1) > TOLERANCE:
-        raise ValueError(
-            f"the spacing is {pixels[0]:.6g} in x and {pixels[1]:.6g} in y; they must be equal"
-        )
-    return np.ascontiguousarray(values.transpose("x", "y"), dtype=float), pixels[0]
-
-
-def _spacing(values: xr.DataArray, name: str) -> float:
-    """Uniform spacing of a coordinate."""
-    if name not in values.coords or values.sizes[name] < 2:
-        raise ValueError(
-            f"{values.name} has {values.sizes[name]} point(s) along {name} and "
-            f"{'a' if name in values.coords else 'no'} coordinate {name}; give 2 or more with "
-            "their positions"
-        )
-    steps = np.diff(np.asarray(values[name], dtype=float))
-    mean = float(np.mean(steps))
-    if not (mean > 0 and np.max(np.abs(steps - mean)) <= TOLERANCE * mean):
-        raise ValueError(
-            f"{name} advances by {np.min(steps):.6g} to {np.max(steps):.6g}; it must "
-            "increase in equal steps"
-        )
-    return mean
 
 
 def _rays(path: Path, values: xr.DataArray, interpolation: Interpolation) -> PolarSamples:

@@ -7,9 +7,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
-from crackfront.dataset.fields import tile_samples
 from crackfront.dataset.files import labelled
 from crackfront.dataset.quantities import SURFACES, refuse_other_units
+from crackfront.dataset.tiles import tile_samples
 from crackfront.records import LATERAL, Variable
 from crackfront.scene import FieldKind
 

@@ -1,0 +1,51 @@
+"""Labelled values on a uniform grid, as plain arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-6
+"""Largest deviation from equal spacing, relative to it."""
+
+
+def tile_samples(values: xr.DataArray) -> tuple[Array, float]:
+    """Values of a tile, first axis x, and their spacing.
+
+    Parameters
+    ----------
+    values : xarray.DataArray
+        Values of the dimensions x and y, in any order, with their coordinates.
+
+    Raises
+    ------
+    ValueError
+        If a coordinate is missing or not uniform, or the two spacings differ.
+    """
+    pixels = [_spacing(values, name) for name in ("x", "y")]
+    if abs(pixels[1] / pixels[0] - 1) > TOLERANCE:
+        raise ValueError(
+            f"the spacing is {pixels[0]:.6g} in x and {pixels[1]:.6g} in y; they must be equal"
+        )
+    return np.ascontiguousarray(values.transpose("x", "y"), dtype=float), pixels[0]
+
+
+def _spacing(values: xr.DataArray, name: str) -> float:
+    """Uniform spacing of a coordinate."""
+    if name not in values.coords or values.sizes[name] < 2:
+        raise ValueError(
+            f"{values.name} has {values.sizes[name]} point(s) along {name} and "
+            f"{'a' if name in values.coords else 'no'} coordinate {name}; give 2 or more with "
+            "their positions"
+        )
+    steps = np.diff(np.asarray(values[name], dtype=float))
+    mean = float(np.mean(steps))
+    if not (mean > 0 and np.max(np.abs(steps - mean)) <= TOLERANCE * mean):
+        raise ValueError(
+            f"{name} advances by {np.min(steps):.6g} to {np.max(steps):.6g}; it must "
+            "increase in equal steps"
+        )
+    return mean
