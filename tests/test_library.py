@@ -308,6 +308,11 @@ def test_a_loop_that_cannot_be_run_is_refused(surface, given, sentence):
         cf.run_loop(surface, **({"error": 0.05} | given))
 
 
+def test_an_error_that_is_none_is_refused_even_where_the_pixels_decide():
+    with pytest.raises(ValueError, match="error is 2; it must lie between 0 and 1"):
+        cf.run_loop(tile(np.zeros((8, 8))), error=2)
+
+
 def test_a_direction_that_is_none_is_refused(surface):
     with pytest.raises(ValueError, match="direction is 0; give 1 for approach or -1"):
         cf.find_instabilities(surface, direction=0)

@@ -8,7 +8,7 @@ from crackfront.asked import EXCESS
 from crackfront.cycle import LoadSchedule
 from crackfront.dataset import DataArray, surface_adhesion, surface_kind
 from crackfront.laws import numerical_error
-from crackfront.library.surfaces import chosen_simulation
+from crackfront.library.surfaces import chosen_simulation, refuse_no_fraction
 from crackfront.library.tiles import measured_correlation_length, stated_spectrum
 from crackfront.pinning import TileField
 from crackfront.scene import Simulation, contact_field, tile_contact
@@ -58,8 +58,9 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
     Raises
     ------
     ValueError
-        If the surface cannot be used, or its pixels are too coarse for the asked error.
+        If surface or error cannot be used, or the pixels are too coarse for the error.
     """
+    refuse_no_fraction("error", error)
     adhesion = surface_adhesion(surface)
     length = measured_correlation_length(adhesion.work_of_adhesion, adhesion.pixel)
     spectrum, deepest = stated_spectrum(surface), schedule.max_penetration

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,7 +39,7 @@ class _Measures:
 
 def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
     """Given axes in the style that they have, or new ones in that of the package."""
-    return plots.shown_axes() if axes is None else contextlib.nullcontext(axes)
+    return plots.shown_axes() if axes is None else nullcontext(axes)
 
 
 def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:

@@ -139,9 +139,8 @@ def chosen_simulation(
     """
     if kind not in get_args(FieldKind):
         raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
-    for name, value in (("error", error), ("elastic_energy", elastic_energy)):
-        if not 0 < value < 1:
-            raise ValueError(f"{name} is {value}; it must lie between 0 and 1")
+    refuse_no_fraction("error", error)
+    refuse_no_fraction("elastic_energy", elastic_energy)
     for name, number in (("seed", seed), ("realisation", realisation)):
         if number < 0:
             raise ValueError(f"{name} is {number}; it must be 0 or more")
@@ -160,6 +159,12 @@ def chosen_simulation(
         seed=seed,
         realisation=realisation,
     )
+
+
+def refuse_no_fraction(name: str, value: float) -> None:
+    """Raise if a number does not lie between 0 and 1."""
+    if not 0 < value < 1:
+        raise ValueError(f"{name} is {value}; it must lie between 0 and 1")
 
 
 def _values(simulation: Simulation) -> Array:
