@@ -24,10 +24,18 @@ extensions = [
 exclude_patterns = ["_build", "_templates"]
 templates_path = ["_templates"]
 numfig = True
+nitpicky = True
+# Constants that a module has from another one are on no page, and other packages on none of ours.
+nitpick_ignore_regex = [
+    ("py:data", r".*"),
+    ("py:class", r"xarray\..*"),
+    ("py:meth", r"SelfAffineSpectrum\..*"),
+]
 default_role = "literal"
 
 # The reference: every docstring is checked for what numpydoc can check.
 autosummary_generate = True
+autosummary_ignore_module_all = False
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 numpydoc_show_class_members = False

@@ -1,4 +1,4 @@
-"""Configuration files: read, validated in full, and turned into a :class:`Sweep`."""
+"""Configuration files: read, validated in full, and turned into a sweep."""
 
 from __future__ import annotations
 
