@@ -61,6 +61,32 @@ def si_value(text: str, unit: str, *, what: str) -> float:
     return value
 
 
+def unit_value(given: str, unit: str) -> float:
+    """Value of one unit in another.
+
+    Parameters
+    ----------
+    given, unit : str
+        Two units of the same dimension.
+
+    Raises
+    ------
+    ValueError
+        If one of them is unknown or they differ in their dimensions.
+
+    Examples
+    --------
+    >>> unit_value("mJ / m^2", "J / m^2")
+    0.001
+    """
+    import pint
+
+    try:
+        return float(_registry().Quantity(1.0, given).to(unit).magnitude)
+    except (pint.PintError, TokenError, SyntaxError, TypeError) as error:
+        raise ValueError(f"a {given} is not to be had in {unit}") from error
+
+
 _EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2"}
 _NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area"}
 

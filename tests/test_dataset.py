@@ -224,7 +224,7 @@ def test_a_tile_that_was_written_is_read_back(tmp_path, rng):
     adhesion = AdhesionMap(rng.uniform(0.1, 0.5, (6, 8)), 0.3, elastic_energy=0.1, rms=0.6)
     write_field(tmp_path / "F.nc", adhesion, ORIGIN, source="scan.x3p")
     field = read_field(tmp_path / "F.nc")
-    assert np.array_equal(field.work_of_adhesion, adhesion.work_of_adhesion)
+    np.testing.assert_allclose(field.work_of_adhesion, adhesion.work_of_adhesion, rtol=4e-16)
     assert field.pixel == pytest.approx(0.3)
     attributes = xr.load_dataset(tmp_path / "F.nc").attrs
     assert (attributes["e_el"], attributes["source"]) == (0.1, "scan.x3p")

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, refuse_unwritable
+from crackfront.cli.report import (
+    FILE,
+    announce_compilation,
+    as_json,
+    echo_json,
+    examples,
+    refuse_unwritable,
+)
 from crackfront.cli.scans import (
     Reading,
     Sphere,
@@ -27,10 +33,15 @@ if TYPE_CHECKING:
 _RESULTS = Path("results/predict")
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront predict examples/scans/nanodiamond-detail.al3d --modulus 0.7MPa \\",
+        "    --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2 --json",
+    )
+)
 @reading_options
 @sphere_options(required=True)
-@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of text.")
+@as_json
 @click.option(
     "--simulate", is_flag=True, help="Run the simulations that the prediction stands for."
 )
@@ -93,7 +104,7 @@ def predict(
     outcome = _simulated(found, scene, realisations, seed, as_json) if simulate else None
     if as_json:
         content = machine_readable(found, scene, prediction, factors, limits, notes, outcome)
-        click.echo(json.dumps(content, indent=1, allow_nan=False))
+        echo_json(content)
         return
     for path in paths:
         click.echo(f"figure: {path}")

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE
+from crackfront.cli.report import FILE, as_json, echo_json, examples
 from crackfront.cli.scans import (
     Reading,
     Sphere,
@@ -24,10 +23,16 @@ if TYPE_CHECKING:
     from crackfront.units import Scales
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront surface examples/scans/nanodiamond-detail.al3d",
+        "crackfront surface scan.x3p --modulus 0.7MPa --poisson 0.5 --radius 20um \\",
+        "    --work-of-adhesion 63mJ/m2 --field field.nc",
+    )
+)
 @reading_options
 @sphere_options(required=False)
-@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of text.")
+@as_json
 @click.option("--field", type=FILE, help="Write the very map as a field for crackfront cycle.")
 @click.option(
     "--place",
@@ -64,9 +69,7 @@ def surface(
     found = surface_of(reading)
     notes = tuple(surface_notes(found))
     if as_json:
-        click.echo(
-            json.dumps(machine_readable(found, scene, notes=notes), indent=1, allow_nan=False)
-        )
+        echo_json(machine_readable(found, scene, notes=notes))
     else:
         click.echo(surface_text(found))
         if scene is not None:

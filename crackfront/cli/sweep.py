@@ -156,11 +156,7 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     click.echo(f"fit: {', '.join(map(str, paths))}")
 
 
-@click.command(
-    epilog=examples(
-        "crackfront figures config/default.yaml",
-    )
-)
+@click.command(epilog=examples("crackfront summary config/default.yaml"))
 @_configuration
 @_output
 def summary(configuration: Path, output: Path | None) -> None:
@@ -183,19 +179,24 @@ def summary(configuration: Path, output: Path | None) -> None:
     click.echo(f"summary: {path}")
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "crackfront archive results/default",
+        "crackfront archive results/default --no-curves --output numbers.zip",
+    )
+)
 @click.argument("folder", type=FILE)
 @click.option("--output", type=FILE, help="The archive.  [default: <folder>.zip]")
-@click.option("--curves/--no-curves", default=True, help="With the files of all simulations.")
-def archive(folder: Path, output: Path | None, curves: bool) -> None:
+@click.option("--no-curves", is_flag=True, help="Without the files of the single simulations.")
+def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
     """Pack the results of a sweep into a ZIP file with checksums, SHA256SUMS."""
     from crackfront.store import write_archive
 
     path = folder.with_suffix(".zip") if output is None else output
-    click.echo(f"archive: {path}, {write_archive(folder, path, curves=curves)} files")
+    click.echo(f"archive: {path}, {write_archive(folder, path, curves=not no_curves)} files")
 
 
-@click.command()
+@click.command(epilog=examples("crackfront figures config/default.yaml"))
 @_configuration
 @_output
 def figures(configuration: Path, output: Path | None) -> None:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-import pint
 import xarray as xr
 
 from crackfront.dataset.loops import JUMPS
@@ -19,6 +17,7 @@ from crackfront.dataset.schema import (
     HYSTERESIS,
     RADIUS,
 )
+from crackfront.quantities import unit_value
 from crackfront.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, Variable
 from crackfront.scene import FieldKind
 from crackfront.units import Scales
@@ -219,15 +218,9 @@ def _si_value(name: str, part: xr.DataArray) -> float:
     if given == needed:
         return 1.0
     try:
-        return float(_registry().Quantity(1.0, given).to(needed).magnitude)
-    except (pint.PintError, TypeError, ValueError) as error:
+        return unit_value(str(given), needed)
+    except ValueError as error:
         raise ValueError(
             f"{name} has the units {given!r}, which cannot be converted to {needed}; set its "
             "attribute units"
         ) from error
-
-
-@functools.cache
-def _registry() -> pint.UnitRegistry[float]:
-    """Units that pint knows."""
-    return pint.UnitRegistry()
