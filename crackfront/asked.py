@@ -6,6 +6,7 @@ from crackfront.cycle import LoadSchedule
 from crackfront.laws import chosen_numerics
 from crackfront.scene import FieldKind, Numerics, Simulation, resolution
 from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.steady import SteadySchedule
 
 EXCESS = 1.2
 """By how much an expected error may exceed the asked one: knobs have two digits."""
@@ -15,7 +16,7 @@ def asked_simulation(
     kind: FieldKind,
     spectrum: SelfAffineSpectrum,
     elastic_energy: float,
-    schedule: LoadSchedule,
+    schedule: LoadSchedule | SteadySchedule,
     *,
     error: float,
     tile_roll_offs: float,
@@ -33,7 +34,7 @@ def asked_simulation(
         Its shape. (Units: reduced lateral length)
     elastic_energy : float
         Energy of full conformity. (Units: w_int)
-    schedule : LoadSchedule
+    schedule : LoadSchedule or SteadySchedule
         Penetrations; the largest decides the number of sites.
     error : float
         Standard error of the factor k of either branch that the numerics may leave.

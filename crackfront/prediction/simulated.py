@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from crackfront import jkr
+from crackfront.asked import asked_simulation
 from crackfront.costs import expected_cost
 from crackfront.fits.estimate import mean_estimate
 from crackfront.fits.steady import steady_adhesion
-from crackfront.laws import chosen_numerics, numerical_error
+from crackfront.laws import numerical_error
 from crackfront.prediction.law import Range, reduced_spectrum
-from crackfront.scene import Numerics, Simulation, correlation_length, resolution, run_simulation
+from crackfront.scene import Simulation, correlation_length, run_simulation
 from crackfront.steady import SteadySchedule
 from crackfront.surfaces import Surface
 from crackfront.units import Scales
@@ -28,8 +29,8 @@ _START, _DEEPEST, _TRAVEL, _STEADY_ERROR = 1.0, 1.5, 1.5, 0.1
 _WAY = 15.0
 """Correlation lengths that the contact grows by at least, for a few independent states."""
 
-_TILE = Numerics(None, 1.0, 4.0, "cubic", 4.0, 4.0, 200.0, 1e-3, 10_000_000, "newton")
-"""Tile, solver and its limit, as there; the asked error decides the rest."""
+_TILE_ROLL_OFFS, _TILE_CUTOFFS = 4.0, 200.0
+"""Side of the tile, as there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,24 +87,19 @@ def prediction_simulations(
     if not energy < 1:
         raise ValueError(f"e_el is {energy:.3g} w_int; no simulation conforms fully at 1 or more")
     schedule = _schedule(spectrum.correlation_length)
-    numerics = chosen_numerics(ERROR, "roughness", spectrum, energy, _TILE)
+    first = asked_simulation(
+        "roughness",
+        spectrum,
+        energy,
+        schedule,
+        error=ERROR,
+        tile_roll_offs=_TILE_ROLL_OFFS,
+        tile_cutoffs=_TILE_CUTOFFS,
+        seed=seed,
+    )
+    name = f"measured-{surface.checksum}"
     return tuple(
-        Simulation(
-            spectrum_name=f"measured-{surface.checksum}",
-            kind="roughness",
-            spectrum=spectrum,
-            elastic_energy=energy,
-            realisation=number,
-            sweep_seed=seed,
-            resolution=resolution(spectrum, numerics, schedule.max_penetration),
-            schedule=schedule,
-            tolerance=numerics.tolerance,
-            max_sweeps=numerics.max_sweeps,
-            solver=numerics.solver,
-            record_fronts=False,
-            record_energy=False,
-        )
-        for number in range(realisations)
+        replace(first, spectrum_name=name, realisation=number) for number in range(realisations)
     )
 
 
