@@ -87,6 +87,7 @@ html_sidebars = {
         "model",
         "accuracy",
         "command-line",
+        "surfaces",
         "cluster",
         "gallery",
     )

@@ -90,12 +90,15 @@ def raw_topography(path: Path, treatment: Treatment) -> tuple[Any, str, str]:
     library = surface_library()
     try:
         reader = library.open_topography(str(path))
+        channel = reader.default_channel
     except library.Exceptions.CannotDetectFileFormat as error:
         raise ValueError(
             f"{path} is in no format that SurfaceTopography reads, or damaged; export it from the "
             "instrument again, as X3P if there is a choice"
         ) from error
-    channel = reader.default_channel
+    # A damaged file may fail anywhere in a parser that is not ours.
+    except Exception as error:
+        raise _unreadable(path, "what its head says", error) from error
     if channel.data_kind.value != "height":
         raise ValueError(
             f"{path}: channel {channel.name!r} holds {channel.data_kind.value}, no heights; export "
@@ -105,12 +108,8 @@ def raw_topography(path: Path, treatment: Treatment) -> tuple[Any, str, str]:
     try:
         raw = reader.topography(channel_index=channel.index, **given)
         raw.heights()
-    # A damaged file may fail anywhere in a parser that is not ours.
     except Exception as error:
-        raise ValueError(
-            f"{path} cannot be read as {reader.format()}: {_first_line(error)}; export it from the "
-            "instrument again"
-        ) from error
+        raise _unreadable(path, reader.format(), error) from error
     if not raw.is_uniform:
         raise ValueError(
             f"{path}: the points are not equally spaced; resample the line on a uniform grid"
@@ -147,6 +146,14 @@ def _completed(path: Path, name: str, channel: Any, treatment: Treatment) -> dic
         stated = " x ".join(f"{side:g}" for side in channel.physical_sizes)
         raise ValueError(f"{path} states its own size, {stated} {channel.unit}; leave --size out")
     return given
+
+
+def _unreadable(path: Path, name: str, error: Exception) -> ValueError:
+    """What is said of a file at which a reader fails."""
+    return ValueError(
+        f"{path} cannot be read as {name}: {_first_line(error)}; export it from the instrument "
+        "again"
+    )
 
 
 def _first_line(error: Exception) -> str:
