@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import heapq
-import resource
 import subprocess
 import sys
 import tempfile
@@ -24,7 +23,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.machine import described_machine
+from benchmarks.machine import described_machine, peak_memory, restart_peak
 from crackfront.config import load_configuration
 from crackfront.costs import expected_cost, measured_runs, predicted_seconds
 from crackfront.dataset import failed_row, row_fingerprint, write_text
@@ -198,10 +197,11 @@ def aggregation(n_simulation: int) -> tuple[float, float]:
     # In memory, so that writing them costs no time.
     with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
         sweep = synthetic(Path(folder), n_simulation)
+        restart_peak()
         started = time.perf_counter()
         Store(Path(folder)).aggregate(sweep, provenance())
         seconds = time.perf_counter() - started
-    return seconds, 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return seconds, 1e6 * peak_memory()
 
 
 def report(plays: dict[int, list[Played]]) -> str:
