@@ -18,6 +18,7 @@ from crackfront.cli.figure import (
 )
 from crackfront.cli.outlook import plan, status
 from crackfront.cli.sweep import aggregate, archive, figures, fit, simulate, summary
+from crackfront.cli.validate import validate
 
 
 class _RefusalError(click.ClickException):
@@ -71,5 +72,6 @@ for command in (
     gallery,
     accuracy,
     accuracy_report,
+    validate,
 ):
     main.add_command(command)

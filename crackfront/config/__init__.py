@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from crackfront.config.figures import SCALES, figure_files, load_figure
 from crackfront.config.reading import ConfigurationError, content_of, sentences
 from crackfront.config.sections import Configuration, LoadSection, NumericsSection
+from crackfront.config.validation import load_validation
 from crackfront.cycle import LoadSchedule
 from crackfront.laws import numerical_error
 from crackfront.scene import Numerics, resolution
@@ -25,6 +26,7 @@ __all__ = [
     "figure_files",
     "load_configuration",
     "load_figure",
+    "load_validation",
     "results_folder",
 ]
 
