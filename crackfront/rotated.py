@@ -115,8 +115,8 @@ def adhesion_on_rays(
     wavevector, direction, amplitude = _modes(heights, pixel)
     # The transform counts its points from their middle one.
     middle = (1 + n_sample // 2) * spacing
-    values = np.empty((n_sample, angles.size))
-    for column, angle in enumerate(angles):
+    values = np.zeros((n_sample, angles.size))
+    for column, angle in enumerate(angles if amplitude.size else ()):
         projected = wavevector * np.cos(direction - angle)
         seen = direction - angle if rotated else direction
         seen = np.abs(np.arctan2(np.sin(seen), np.cos(seen)))

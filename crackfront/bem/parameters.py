@@ -17,7 +17,7 @@ from crackfront.bem.contact import refuse_unresolved
 from crackfront.cycle import LoadSchedule
 from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.synthesis import gaussian_field
-from crackfront.validation import Positive, Section, refusal
+from crackfront.validation import Energy, Positive, Section, refusal
 
 Array = NDArray[np.float64]
 
@@ -36,6 +36,14 @@ class FrontSection(Section):
 
     n_angle: Annotated[int, Field(ge=4)]
     spacing: Positive
+
+
+class StatisticsSection(Section):
+    """Surfaces on which the front is run with and without the rotation of the crack."""
+
+    surfaces: Annotated[int, Field(ge=2)]
+    n_point: Annotated[int, Field(ge=16)]
+    elastic_energy: Energy
 
 
 class ValidationParameters(Section):
@@ -57,6 +65,8 @@ class ValidationParameters(Section):
         Largest pressure out of balance, relative to the largest tension.
     front : FrontSection
         Resolution of the front model.
+    statistics : StatisticsSection or None
+        What shows that the rotation has no effect on averages.
     cases : tuple of CaseSection
         Grids, ranges of attraction (Units: reduced vertical length) and energies of full
         conformity (Units: w_int, 0 for a smooth sphere); a step of their own where it is given.
@@ -70,6 +80,7 @@ class ValidationParameters(Section):
     shown_penetration: Annotated[float, Field(allow_inf_nan=False)]
     tolerance: Annotated[float, Field(gt=0, lt=1)]
     front: FrontSection
+    statistics: StatisticsSection | None = None
     cases: Annotated[tuple[CaseSection, ...], Field(min_length=1)]
 
     @model_validator(mode="after")
@@ -90,11 +101,11 @@ class ValidationParameters(Section):
                 raise refusal(f"cases[{number}]: {error}") from error
             shown = self.shown_penetration / step
             if not (
-                abs(shown - round(shown)) < 1e-9 and self.shown_penetration <= self.max_penetration
+                abs(shown - round(shown)) < 1e-9 and self.shown_penetration < self.max_penetration
             ):
                 raise refusal(
                     f"shown_penetration {self.shown_penetration:g} is no state of cases[{number}]; "
-                    f"it must be a multiple of the step {step:g} up to max_penetration "
+                    f"it must be a multiple of the step {step:g} and below max_penetration "
                     f"{self.max_penetration:g}"
                 )
         return self
@@ -141,7 +152,9 @@ class Case:
         return f"{self.label}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 
     def heights(self) -> Array:
-        """Roughness of the sphere, the same surface for all grids and amplitudes.
+        """Roughness of the sphere, the same surface for all grids and amplitudes of a seed.
+
+        The noise belongs to wavevectors, not to the points of a grid.
 
         Returns
         -------

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE, refuse_unwritable
+from crackfront.cli.report import FILE, announce_compilation, refuse_unwritable
 
 if TYPE_CHECKING:
     from crackfront.bem import BoundaryCycle, Case
@@ -23,7 +23,8 @@ def validate(configuration: Path, output: Path | None) -> None:
     Every load step of the boundary elements is on disk at once: a run that is killed goes on with
     the next one.
     """
-    from crackfront.bem import validation_cases
+    from crackfront import dataset, plots
+    from crackfront.bem import validation, validation_cases, validation_report
     from crackfront.config import load_validation, results_folder
     from crackfront.provenance import provenance
 
@@ -31,9 +32,27 @@ def validate(configuration: Path, output: Path | None) -> None:
     folder = output or results_folder(configuration)
     refuse_unwritable(folder)
     origin = provenance(configuration.read_text(encoding="utf-8"))
-    for case in validation_cases(parameters):
-        cycle = _boundary_cycle(case, folder / f"{case.stem}.nc", origin)
-        click.echo(f"{case.label}: {cycle.status}")
+    announce_compilation()
+    cycles = [
+        (case, _boundary_cycle(case, folder / f"{case.stem}.nc", origin))
+        for case in validation_cases(parameters)
+    ]
+    found = validation(parameters, cycles, click.echo)
+    for name, rows, along in (
+        ("differences", found.differences, "case"),
+        ("speed", found.speeds, "case"),
+        ("rotation", found.effects, "surface"),
+    ):
+        if rows:
+            dataset.write_records(folder / f"{name}.nc", rows, along, origin)
+    if found.picture is not None:
+        dataset.write_record(folder / "picture.nc", found.picture, origin)
+        drawn = plots.validation_figure(found.picture)
+        for path in plots.save_figure(drawn, folder / "validation"):
+            click.echo(f"figure: {path}")
+    report = validation_report(found.differences, found.speeds, found.effects)
+    dataset.write_text(folder / "validation.md", report)
+    click.echo(f"tables: {folder / 'validation.md'}")
 
 
 def _boundary_cycle(case: Case, path: Path, origin: Provenance) -> BoundaryCycle:

@@ -26,7 +26,13 @@ from crackfront.dataset.files import (
     write_text,
 )
 from crackfront.dataset.fit import write_fit
-from crackfront.dataset.records import largest_differences, read_record, write_record
+from crackfront.dataset.records import (
+    largest_differences,
+    read_record,
+    read_records,
+    write_record,
+    write_records,
+)
 from crackfront.dataset.tables import (
     COMPLETE,
     SweepRow,
@@ -54,6 +60,7 @@ __all__ = [
     "read_errors",
     "read_field",
     "read_record",
+    "read_records",
     "read_samples",
     "read_simulation",
     "read_statuses",
@@ -68,6 +75,7 @@ __all__ = [
     "write_fit",
     "write_hysteresis",
     "write_record",
+    "write_records",
     "write_samples",
     "write_simulation",
     "write_text",

@@ -32,6 +32,7 @@ from crackfront.plots.sweep import (
     factor_figure,
     hysteresis_figure,
 )
+from crackfront.plots.validation import validation_figure
 
 __all__ = [
     "ANIMATION_MAKERS",
@@ -49,6 +50,7 @@ __all__ = [
     "save_animation",
     "save_figure",
     "save_picture",
+    "validation_figure",
     "work_precision_figure",
 ]
 
