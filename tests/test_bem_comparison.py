@@ -27,6 +27,7 @@ from crackfront.bem import (
     validation_cases,
     validation_report,
 )
+from crackfront.bem.front import perimeter_at
 from crackfront.bem.perimeter import N_ANGLE
 from crackfront.bem.report import power_of
 from crackfront.cli import main
@@ -198,6 +199,16 @@ def test_states_are_shared_by_penetration_and_direction(front):
     assert force_error(fewer, record) == pytest.approx(0.5)
 
 
+def test_perimeters_are_asked_for_where_there_is_contact(front):
+    record = front.record
+    here = perimeter_at(0.3, -1, record, record.radius)
+    np.testing.assert_array_equal(
+        here, record.radius[(record.direction == -1) & np.isclose(record.penetration, 0.3)][0]
+    )
+    with pytest.raises(ValueError, match=r"no contact at penetration -3 in retraction; raise"):
+        perimeter_at(-3.0, -1, record, record.radius)
+
+
 def test_the_exponent_of_a_power_law_is_found():
     assert power_of([0.01, 0.03, 0.1], [2e-4, 18e-4, 0.02]) == pytest.approx(2)
 
@@ -233,6 +244,13 @@ def test_a_validation_writes_its_numbers_its_tables_and_its_figure(results):
     for effect in effects:
         assert 0.5 < effect.approach_fixed < 1.5
         assert effect.retraction != effect.retraction_fixed
+    jumps_of = [
+        read_records(results / f"jumps-{of}.nc", Jump, "jump") for of in ("boundary", "front")
+    ]
+    assert [len(found) for found in jumps_of] == [rows[3].jumps_shared] * 2
+    for theirs, ours in zip(*jumps_of, strict=True):
+        assert abs(theirs.penetration - ours.penetration) <= 0.1
+        assert theirs.direction == ours.direction
     text = (results / "validation.md").read_text()
     assert text == validation_report(rows, speeds, effects)
     assert text.count("| 64 |") == 5

@@ -4,16 +4,10 @@ The libraries that it needs (the extra `bem`) are imported where a contact is ma
 else of the package depends on them.
 """
 
-from crackfront.bem.comparison import (
-    Comparison,
-    FrontCycle,
-    comparison,
-    force_error,
-    front_cycle,
-    shared_states,
-)
+from crackfront.bem.comparison import Comparison, comparison, shared_jumps
 from crackfront.bem.contact import HalfSpaceContact, half_space_contact
 from crackfront.bem.cycle import RUNNING, BoundaryCycle, boundary_cycle, contact_loads
+from crackfront.bem.front import FrontCycle, force_error, front_cycle, shared_states
 from crackfront.bem.jumps import Jump, jumps, matched_jumps
 from crackfront.bem.minimise import Equilibrium, equilibrium
 from crackfront.bem.parameters import Case, ValidationParameters, validation_cases
@@ -55,6 +49,7 @@ __all__ = [
     "matched_jumps",
     "perimeter",
     "rotation_effects",
+    "shared_jumps",
     "shared_states",
     "speed",
     "validation",

@@ -1,47 +1,26 @@
-"""The crack front on the heights of a case, and its differences from the boundary elements."""
+"""Differences of the crack front from the boundary elements of one case."""
 
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.adhesion import rough_adhesion
 from crackfront.bem.cycle import BoundaryCycle
-from crackfront.bem.jumps import Jump, jumps, matched_jumps
+from crackfront.bem.front import FrontCycle, on_rays, perimeter_at, shared_states
+from crackfront.bem.jumps import SharedJumps, jumps, matched_jumps
 from crackfront.bem.parameters import Case
-from crackfront.bem.perimeter import N_ANGLE
-from crackfront.cycle import CycleRecord, run_cycle
+from crackfront.cycle import CycleRecord
 from crackfront.records import ADHESION, FORCE, VERTICAL, variable
-from crackfront.relax import Status
-from crackfront.rotated import rotated_field
+from crackfront.relax import Direction
 
 Array = NDArray[np.float64]
 
-_TOLERANCE = 1e-6
 _SAME_PLACE, _SAME_LOAD = 1.0, 0.1
 """Largest distance of matched jumps along the front, in short cutoffs, and in penetration."""
-
-
-@dataclass(frozen=True, slots=True)
-class FrontCycle:
-    """A cycle of the crack front on the heights of a case.
-
-    Attributes
-    ----------
-    record : CycleRecord
-        Its states, with the fronts.
-    mapping_seconds, cycle_seconds : float
-        Processor time of the field and of the cycle. (Units: s)
-    """
-
-    record: CycleRecord
-    mapping_seconds: float
-    cycle_seconds: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,35 +57,6 @@ class Comparison:
     front_seconds: float = variable("processor time of the front", "s")
 
 
-def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = True) -> FrontCycle:
-    """Cycle of the crack front on the heights of a case.
-
-    Parameters
-    ----------
-    case : Case
-        Surface and load.
-    n_angle, spacing, rotated
-        As in :func:`crackfront.rotated.rotated_field`.
-
-    Raises
-    ------
-    ValueError
-        If the cycle does not end by losing contact.
-    """
-    began = time.process_time()
-    field = rotated_field(
-        case.heights(), case.pixel, n_angle, spacing, case.side / 2, rotated=rotated
-    )
-    mapped = time.process_time()
-    record = run_cycle(field, case.schedule, tolerance=_TOLERANCE, record_fronts=True)
-    if record.status is not Status.LOST_CONTACT:
-        raise ValueError(
-            f"{case.label}: at penetration {record.end_penetration:.6g} the front "
-            f"{record.status.value}; raise n_angle or lower the spacing"
-        )
-    return FrontCycle(record, mapped - began, time.process_time() - mapped)
-
-
 def comparison(
     case: Case, boundary: BoundaryCycle, front: FrontCycle, *, rotated: bool
 ) -> Comparison:
@@ -127,22 +77,13 @@ def comparison(
         Whether its crack turned.
     """
     record = front.record
-    theirs, ours = shared_states(boundary, record)
-    touching = np.any(boundary.radius[theirs], axis=1)
-    theirs, ours = theirs[touching], ours[touching]
-    apart = np.abs(boundary.radius[theirs] - on_rays(record.radius)[ours])
-    distance = np.mean(apart, axis=1) / case.short_cutoff
-    shown = np.isclose(record.penetration[ours], case.shown_penetration, atol=1e-9)
-    approach, retraction = (
-        float(np.mean(distance[shown & (record.direction[ours] == sign)])) for sign in (1, -1)
-    )
-    kept = _comparable(boundary, case.short_cutoff / 8)[theirs]
-    theirs, ours, distance = theirs[kept], ours[kept], distance[kept]
+    theirs, ours = _compared_states(case, boundary, record)
     force = boundary.force[theirs] - record.force[ours]
     area = boundary.contact_area[theirs] / record.contact_area[ours] - 1
+    apart = np.abs(boundary.radius[theirs] - on_rays(record.radius)[ours])
     compared = record.penetration[ours][record.direction[ours] > 0]
-    pairs, boundary_jumps, front_jumps = _shared_jumps(case, boundary, record, theirs, ours)
-    shift = np.array([one.penetration - other.penetration for one, other in pairs])
+    shared = shared_jumps(case, boundary, front)
+    shift = np.array([one.penetration - other.penetration for one, other in shared.pairs])
     return Comparison(
         n_point=case.n_point,
         interaction_range=case.interaction_range,
@@ -155,14 +96,14 @@ def comparison(
         force_largest=float(np.max(np.abs(force))),
         area_mean=float(np.mean(area)),
         area_rms=float(np.sqrt(np.mean(area**2))),
-        perimeter_approach=approach,
-        perimeter_retraction=retraction,
-        perimeter_all=float(np.mean(distance)),
-        jumps_boundary=boundary_jumps,
-        jumps_front=front_jumps,
-        jumps_shared=len(pairs),
-        jump_shift=float(np.mean(shift)) if pairs else 0.0,
-        jump_spread=float(np.sqrt(np.mean(shift**2))) if pairs else 0.0,
+        perimeter_approach=_shown_distance(case, boundary, record, 1),
+        perimeter_retraction=_shown_distance(case, boundary, record, -1),
+        perimeter_all=float(np.mean(apart)) / case.short_cutoff,
+        jumps_boundary=shared.n_boundary,
+        jumps_front=shared.n_front,
+        jumps_shared=len(shared.pairs),
+        jump_shift=float(np.mean(shift)) if shared.pairs else 0.0,
+        jump_spread=float(np.sqrt(np.mean(shift**2))) if shared.pairs else 0.0,
         pull_off_force=float(boundary.force.min() - record.force.min()),
         pull_off_penetration=float(boundary.penetration[-1] - record.end_penetration),
         boundary_seconds=float(np.sum(boundary.seconds)),
@@ -171,68 +112,16 @@ def comparison(
     )
 
 
-class States(Protocol):
-    """What tells which states a cycle visited."""
-
-    @property
-    def penetration(self) -> Array:
-        """Penetrations, state by state."""
-
-    @property
-    def direction(self) -> NDArray[np.int64]:
-        """+1 in approach, -1 in retraction."""
-
-
-def shared_states(one: States, other: States) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Indices, in both, of the states that two cycles share, in the order of the first."""
-    known, asked = (
-        [(round(b, 9), d) for b, d in zip(*pair, strict=True)]
-        for pair in (
-            (other.penetration.tolist(), other.direction.tolist()),
-            (one.penetration.tolist(), one.direction.tolist()),
-        )
-    )
-    place = {key: number for number, key in enumerate(known)}
-    pairs = [(number, place[key]) for number, key in enumerate(asked) if key in place]
-    first, second = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
-    return first, second
-
-
-def force_error(found: CycleRecord, exact: CycleRecord) -> float:
-    """Rms difference of two cycles' forces where they share a state (Units: pi w_int R)."""
-    one, other = shared_states(found, exact)
-    return float(np.sqrt(np.mean((found.force[one] - exact.force[other]) ** 2)))
-
-
-def on_rays(radius: Array | None) -> Array:
-    """Fronts at the angles of the boundary elements' perimeters, by their Fourier series.
+def shared_jumps(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> SharedJumps:
+    """Jumps of a quarter of a short cutoff or more, and those at the same place in both models.
 
     Parameters
     ----------
-    radius : (n_step, n_angle) array
-        Fronts. (Units: reduced lateral length)
+    case, boundary, front
+        As in :func:`comparison`.
     """
-    if radius is None:
-        raise ValueError("the cycle holds no fronts; record them")
-    modes = np.fft.rfft(radius, norm="forward")
-    return np.asarray(np.fft.irfft(modes, n=N_ANGLE, norm="forward"))
-
-
-def _comparable(boundary: BoundaryCycle, travel: float) -> NDArray[np.bool_]:
-    """States whose perimeter has, in approach, left that of the jump into contact everywhere."""
-    first = boundary.radius[np.argmax(np.any(boundary.radius, axis=1))]
-    left = np.all(boundary.radius > first + travel, axis=1)
-    return np.asarray(left | (boundary.direction < 0))
-
-
-def _shared_jumps(
-    case: Case,
-    boundary: BoundaryCycle,
-    record: CycleRecord,
-    theirs: NDArray[np.int64],
-    ours: NDArray[np.int64],
-) -> tuple[list[tuple[Jump, Jump]], int, int]:
-    """Pairs of which the front's is large, and numbers of large jumps of both models."""
+    record = front.record
+    theirs, ours = _compared_states(case, boundary, record)
     small, large = case.short_cutoff / 8, case.short_cutoff / 4
     one, other = (
         jumps(model.penetration[kept], model.direction[kept], radius[kept], small)
@@ -243,8 +132,31 @@ def _shared_jumps(
     )
     angle = _SAME_PLACE * case.short_cutoff / float(np.mean(record.mean_radius))
     pairs = matched_jumps(one, other, angle, _SAME_LOAD)
-    return (
-        [pair for pair in pairs if pair[1].distance >= large],
-        sum(jump.distance >= large for jump in one),
-        sum(jump.distance >= large for jump in other),
+    return SharedJumps(
+        pairs=tuple(pair for pair in pairs if pair[1].distance >= large),
+        n_boundary=sum(jump.distance >= large for jump in one),
+        n_front=sum(jump.distance >= large for jump in other),
     )
+
+
+def _compared_states(
+    case: Case, boundary: BoundaryCycle, record: CycleRecord
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """States of both in contact; in approach where the jump into it is left behind everywhere."""
+    theirs, ours = shared_states(boundary, record)
+    touching = np.any(boundary.radius, axis=1)
+    first = boundary.radius[np.argmax(touching)]
+    left = np.all(boundary.radius > first + case.short_cutoff / 8, axis=1)
+    kept = (touching & (left | (boundary.direction < 0)))[theirs]
+    return theirs[kept], ours[kept]
+
+
+def _shown_distance(
+    case: Case, boundary: BoundaryCycle, record: CycleRecord, direction: Direction
+) -> float:
+    """Mean distance of the perimeters at the shown penetration, in short cutoffs."""
+    one, other = (
+        perimeter_at(case.shown_penetration, direction, model, radius)
+        for model, radius in ((boundary, boundary.radius), (record, on_rays(record.radius)))
+    )
+    return float(np.mean(np.abs(one - other))) / case.short_cutoff

@@ -7,29 +7,36 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.records import LATERAL, VERTICAL, variable
+
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Jump:
-    """An arc of the perimeter that moved far in one load step.
+    """An arc of the perimeter that moved far in one load step."""
+
+    penetration: float = variable("penetration at which it had moved", VERTICAL)
+    direction: int = variable("+1 in approach, -1 in retraction", "1")
+    angle: float = variable("where it moved furthest", "rad")
+    distance: float = variable("how far it moved there", LATERAL)
+
+
+@dataclass(frozen=True, slots=True)
+class SharedJumps:
+    """Large jumps of two models.
 
     Attributes
     ----------
-    penetration : float
-        Penetration at which it had moved. (Units: reduced vertical length)
-    direction : int
-        +1 in approach, -1 in retraction.
-    angle : float
-        Where it moved furthest. (Units: rad)
-    distance : float
-        How far it moved there. (Units: reduced lateral length)
+    pairs : tuple of (Jump, Jump)
+        Large ones of the front, the second, with that of the boundary elements.
+    n_boundary, n_front : int
+        Numbers of large ones of both.
     """
 
-    penetration: float
-    direction: int
-    angle: float
-    distance: float
+    pairs: tuple[tuple[Jump, Jump], ...]
+    n_boundary: int
+    n_front: int
 
 
 def jumps(

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.bem.comparison import FrontCycle, on_rays
 from crackfront.bem.cycle import BoundaryCycle
+from crackfront.bem.front import FrontCycle, on_rays, perimeter_at
 from crackfront.bem.parameters import Case
 from crackfront.bem.perimeter import N_ANGLE
 from crackfront.records import FORCE, LATERAL, VERTICAL, variable
@@ -70,7 +70,14 @@ def validation_picture(
         Fronts whose crack turns with the angle, and does not.
     """
     record = front.record
-    shown = _shown(case, boundary.penetration, boundary.direction, boundary.radius)
+    shown, turning, still = (
+        np.stack([perimeter_at(case.shown_penetration, sign, *model) for sign in (1, -1)])
+        for model in (
+            (boundary, boundary.radius),
+            (record, on_rays(record.radius)),
+            (fixed.record, on_rays(fixed.record.radius)),
+        )
+    )
     reach = float(np.max(shown)) + _MARGIN
     position: Array = np.arange(float(case.n_point)) * case.pixel - case.side / 2
     inside = np.flatnonzero(np.abs(position) <= reach)
@@ -93,17 +100,9 @@ def validation_picture(
         shown_penetration=case.shown_penetration,
         angle=2 * np.pi * np.arange(N_ANGLE) / N_ANGLE,
         boundary_radius=shown,
-        front_radius=_shown(case, record.penetration, record.direction, on_rays(record.radius)),
-        fixed_radius=_shown(
-            case, fixed.record.penetration, fixed.record.direction, on_rays(fixed.record.radius)
-        ),
+        front_radius=turning,
+        fixed_radius=still,
         position=position[kept],
         heights=case.heights()[part].astype(np.float32),
         pressure=boundary.shown_pressure[0][part],
     )
-
-
-def _shown(case: Case, penetration: Array, direction: NDArray[np.int64], radius: Array) -> Array:
-    """Perimeters at the shown penetration, approach and retraction."""
-    here = np.isclose(penetration, case.shown_penetration, atol=1e-9)
-    return np.stack([radius[here & (direction == sign)][0] for sign in (1, -1)])

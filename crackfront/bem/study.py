@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from crackfront.bem.comparison import Comparison, FrontCycle, comparison, front_cycle
+from crackfront.bem.comparison import Comparison, comparison, shared_jumps
 from crackfront.bem.cycle import BoundaryCycle
+from crackfront.bem.front import FrontCycle, front_cycle
+from crackfront.bem.jumps import Jump
 from crackfront.bem.parameters import Case, ValidationParameters
 from crackfront.bem.picture import ValidationPicture, validation_picture
 from crackfront.bem.trends import (
@@ -34,12 +36,16 @@ class Validation:
         One for each surface of the statistics; none where none were asked for.
     picture : ValidationPicture or None
         The last rough case.
+    boundary_jumps, front_jumps : tuple of Jump
+        Its large jumps that both models share, in one order.
     """
 
     differences: tuple[Comparison, ...]
     speeds: tuple[Speed, ...]
     effects: tuple[RotationEffect, ...]
     picture: ValidationPicture | None
+    boundary_jumps: tuple[Jump, ...]
+    front_jumps: tuple[Jump, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +95,7 @@ def validation(
         if one.fixed is None
     }
     last = rough[-1] if rough else None
+    pairs = () if last is None else shared_jumps(last.case, last.boundary, last.turning).pairs
     return Validation(
         differences=tuple(row for one in compared for row in one.rows) + _limits(compared),
         speeds=tuple(
@@ -100,6 +107,8 @@ def validation(
         picture=None
         if last is None or last.fixed is None
         else validation_picture(last.case, last.boundary, last.turning, last.fixed),
+        boundary_jumps=tuple(one for one, _ in pairs),
+        front_jumps=tuple(other for _, other in pairs),
     )
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.bem.comparison import FrontCycle, force_error, front_cycle, shared_states
 from crackfront.bem.cycle import BoundaryCycle
+from crackfront.bem.front import FrontCycle, force_error, front_cycle, shared_states
 from crackfront.bem.parameters import Case, ValidationParameters
 from crackfront.cycle import CycleRecord, LoadSchedule
 from crackfront.records import ADHESION, FORCE, LATERAL, VERTICAL, variable

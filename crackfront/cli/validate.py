@@ -42,6 +42,8 @@ def validate(configuration: Path, output: Path | None) -> None:
         ("differences", found.differences, "case"),
         ("speed", found.speeds, "case"),
         ("rotation", found.effects, "surface"),
+        ("jumps-boundary", found.boundary_jumps, "jump"),
+        ("jumps-front", found.front_jumps, "jump"),
     ):
         if rows:
             dataset.write_records(folder / f"{name}.nc", rows, along, origin)

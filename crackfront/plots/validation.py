@@ -149,11 +149,13 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
         vmax=float(tension.max()),
         interpolation="nearest",
     )
-    for line, (_, _, colour) in enumerate(_BRANCHES):
+    # Where both branches have one contact, that of the approach is seen on both sides of the other.
+    for line, ((_, _, colour), width) in enumerate(zip(_BRANCHES, (2.0, 0.8), strict=True)):
         for radius, style in ((picture.front_radius, _DASHES), (picture.fixed_radius, (0.8, 1.6))):
-            axes.plot(
-                *_closed(picture.angle, radius[line]), color=colour, linewidth=1.0, dashes=style
-            )
+            # Dashes are in widths of the line: those of both branches have one length.
+            dashes = [part / width for part in style]
+            curve = _closed(picture.angle, radius[line])
+            axes.plot(*curve, color=colour, linewidth=width, dashes=dashes)
     handles = [
         Line2D([], [], color="#003D2C", linewidth=3, label="tension in approach"),
         Line2D([], [], color=BLACK, dashes=_DASHES, label="front, crack turns"),
