@@ -8,6 +8,8 @@ import pytest
 from click.testing import CliRunner
 from pydantic import ValidationError
 
+from benchmarks.boundary import row as boundary_row
+from benchmarks.rotated import row as rotated_row
 from crackfront import jkr
 from crackfront.bem import (
     BoundaryCycle,
@@ -306,3 +308,15 @@ def test_parameters_are_frozen(configuration):
     assert isinstance(parameters, ValidationParameters)
     with pytest.raises(ValidationError, match=r"frozen"):
         parameters.seed = 2
+
+
+def test_a_load_step_of_numpis_optimiser_ends_in_the_same_state(case):
+    cells = boundary_row(case).strip("| ").split(" | ")
+    assert float(cells[-1]) < 1e-2  # apart, relative to the range
+    assert int(cells[2]) < int(cells[4])  # products
+
+
+def test_a_point_of_a_ray_costs_less_than_the_sum_over_its_modes():
+    cells = rotated_row(256, 0.05).strip("| ").split(" | ")
+    assert int(cells[2]) == round(np.pi * (5.12 / 0.05) ** 2 / 2)
+    assert float(cells[4]) < float(cells[5])
