@@ -128,7 +128,7 @@ def _draw_differences(axes: Axes, picture: ValidationPicture) -> None:
         difference = picture.boundary_force[other][here] - picture.front_force[mine][there]
         axes.plot(shared, difference, color=colour, linewidth=0.8)
     axes.set_xlabel(PENETRATION_LABEL)
-    axes.set_ylabel("difference")
+    axes.set_ylabel("difference /\n$\\pi w_\\mathrm{int} R$", fontsize=7)
     axes.yaxis.set_major_locator(MaxNLocator(3, symmetric=True))
 
 
