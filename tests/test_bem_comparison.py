@@ -1,5 +1,6 @@
 """Jumps, differences, costs and tables of the validation by boundary elements."""
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -34,7 +35,7 @@ from crackfront.bem.perimeter import N_ANGLE
 from crackfront.bem.report import power_of
 from crackfront.cli import main
 from crackfront.config import ConfigurationError, load_validation
-from crackfront.dataset import read_record, read_records
+from crackfront.dataset import read_attributes, read_record, read_records
 from crackfront.plots import validation_figure
 
 CONFIGURATIONS = Path(__file__).parents[1] / "config"
@@ -303,6 +304,20 @@ def test_validations_that_cannot_be_run_are_refused_with_a_sentence(tmp_path, ol
     assert "Traceback" not in run.output
 
 
+@pytest.mark.parametrize("name", ["ContactMechanics", "finufft"])
+def test_a_validation_without_its_extra_is_refused_before_it_computes(
+    monkeypatch, tmp_path, configuration, name
+):
+    monkeypatch.setitem(sys.modules, name, None)
+    run = CliRunner().invoke(
+        main, ["validate", str(configuration), "--output", str(tmp_path / "x")]
+    )
+    assert run.exit_code == 2
+    assert f"need {name}, which is not installed" in run.output
+    assert "pip install 'crackfront[bem]'" in run.output
+    assert not (tmp_path / "x").exists()
+
+
 def test_parameters_are_frozen(configuration):
     parameters = load_validation(configuration)
     assert isinstance(parameters, ValidationParameters)
@@ -320,3 +335,31 @@ def test_a_point_of_a_ray_costs_less_than_the_sum_over_its_modes():
     cells = rotated_row(256, 0.05).strip("| ").split(" | ")
     assert int(cells[2]) == round(np.pi * (5.12 / 0.05) ** 2 / 2)
     assert float(cells[4]) < float(cells[5])
+
+
+REFERENCES = Path(__file__).parents[1] / "docs" / "reference" / "validation"
+
+
+def test_the_kept_validation_says_where_it_comes_from_and_what_it_found():
+    rows = read_records(REFERENCES / "differences-512.nc", Comparison, "case")
+    found, held = (row for row in rows if row.elastic_energy > 0)
+    assert (found.n_point, found.interaction_range) == (512, 0.24)
+    assert found.force_rms < 0.02 * 1.5
+    assert 4 * found.perimeter_approach < held.perimeter_approach
+    assert found.jumps_shared >= 0.95 * found.jumps_front
+    assert held.jumps_shared < 0.7 * held.jumps_front
+    for name in ("differences-512.nc", "picture-512.nc"):
+        told = read_attributes(REFERENCES / name)
+        assert told["command"] == "crackfront validate config/validation-512.yaml"
+        assert "dirty" not in told["git_commit"]
+
+
+def test_the_kept_picture_is_that_of_the_kept_differences():
+    picture = read_record(REFERENCES / "picture-512.nc", ValidationPicture)
+    rows = read_records(REFERENCES / "differences-512.nc", Comparison, "case")
+    found = next(row for row in rows if row.elastic_energy > 0 and row.rotated)
+    lowest = picture.boundary_force.min() - picture.front_force.min()
+    assert lowest == pytest.approx(found.pull_off_force)
+    apart = np.mean(np.abs(picture.boundary_radius - picture.front_radius), axis=1)
+    expected = np.array([found.perimeter_approach, found.perimeter_retraction])
+    np.testing.assert_allclose(apart / picture.short_cutoff, expected, rtol=1e-9)

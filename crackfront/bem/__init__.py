@@ -14,7 +14,7 @@ from crackfront.bem.parameters import Case, ValidationParameters, validation_cas
 from crackfront.bem.perimeter import perimeter
 from crackfront.bem.picture import ValidationPicture, validation_picture
 from crackfront.bem.report import validation_report
-from crackfront.bem.study import Validation, validation
+from crackfront.bem.study import Validation, refuse_missing_libraries, validation
 from crackfront.bem.trends import (
     RotationEffect,
     Speed,
@@ -48,6 +48,7 @@ __all__ = [
     "jumps",
     "matched_jumps",
     "perimeter",
+    "refuse_missing_libraries",
     "rotation_effects",
     "shared_jumps",
     "shared_states",

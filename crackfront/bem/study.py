@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from importlib import import_module
 
 from crackfront.bem.comparison import Comparison, comparison, shared_jumps
 from crackfront.bem.cycle import BoundaryCycle
@@ -18,8 +19,11 @@ from crackfront.bem.trends import (
     rotation_effects,
     speed,
 )
+from crackfront.extras import MissingExtraError
 
 Progress = Callable[[str], None]
+
+_LIBRARIES = ("ContactMechanics", "Adhesion", "SurfaceTopography", "finufft")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +61,21 @@ class _Compared:
     turning: FrontCycle
     fixed: FrontCycle | None
     rows: tuple[Comparison, ...]
+
+
+def refuse_missing_libraries() -> None:
+    """Raise before anything is computed if a library is missing that a validation needs.
+
+    Raises
+    ------
+    MissingExtraError
+        If one is not installed.
+    """
+    for name in _LIBRARIES:
+        try:
+            import_module(name)
+        except ModuleNotFoundError as error:
+            raise MissingExtraError("boundary elements", error, "bem") from error
 
 
 def validation(

@@ -24,12 +24,18 @@ def validate(configuration: Path, output: Path | None) -> None:
     the next one.
     """
     from crackfront import dataset, plots
-    from crackfront.bem import validation, validation_cases, validation_report
+    from crackfront.bem import (
+        refuse_missing_libraries,
+        validation,
+        validation_cases,
+        validation_report,
+    )
     from crackfront.config import load_validation, results_folder
     from crackfront.provenance import provenance
 
     parameters = load_validation(configuration)
     folder = output or results_folder(configuration)
+    refuse_missing_libraries()
     refuse_unwritable(folder)
     origin = provenance(configuration.read_text(encoding="utf-8"))
     announce_compilation()
