@@ -6,6 +6,8 @@
 #   SWEEP=config/default.yaml   the configuration that `make` runs; results in results/<its name>/
 #   CLUSTER="slurm and not slow"   leaves out, of `make test-cluster`, what kills and times
 #   SCALE=quick | paper         coarser lengths, or the paper's, for `make figures`
+#   VALIDATION=config/validation.yaml   sizes of `make validate`; config/validation-512.yaml
+#                               and config/validation-1024.yaml are hours
 #   PYTHON=python3              the interpreter that .venv is made from (3.11 or newer)
 #   MPI=wheel | system          wheel (default): MPICH from the package index, no system MPI needed.
 #                               system: for a cluster. mpi4py is built from its source release against
@@ -16,6 +18,7 @@
 SWEEP  ?= config/default.yaml
 SCALE  ?= quick
 CLUSTER ?= slurm
+VALIDATION ?= config/validation.yaml
 PYTHON ?= python3
 MPI    ?= $(if $(wildcard .venv/.packages-system),system,wheel)
 
@@ -36,7 +39,8 @@ READY    = .venv/.ready-$(MPI)
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test test-cluster nightly accuracy benchmark figures report docs lint lock clean help
+.PHONY: all env test test-cluster nightly accuracy validate benchmark figures report docs lint lock \
+  clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP)
@@ -102,6 +106,10 @@ benchmark: env  ## Solvers against the reference, what requests cost, how sweeps
 accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half an hour on two cores)
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default accuracy
 	@echo "Results: results/accuracy/"
+
+validate: env  ## The model against boundary elements (15 minutes); VALIDATION=config/validation-512.yaml
+	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config validation=$(VALIDATION) -- validation
+	@echo "Results: results/$(basename $(notdir $(VALIDATION)))/validation.md"
 
 figures: env  ## All figures of the paper; SCALE=quick (15 minutes) or SCALE=paper
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config scale=$(SCALE) -- figures

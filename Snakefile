@@ -20,11 +20,12 @@ from crackfront.figures import FIGURES, figure_fingerprint
 from crackfront.provenance import package_fingerprint
 from crackfront.sweep import shard_fingerprint
 
-unknown = set(config) - {"sweep", "ranks", "block", "scale"}
+unknown = set(config) - {"sweep", "ranks", "block", "scale", "validation"}
 if unknown:
     raise WorkflowError(
         f"--config knows no {', '.join(sorted(unknown))}; its keys are sweep "
-        "(a file), ranks, block (realisations of a job), and scale (of the paper's figures)"
+        "(a file), ranks, block (realisations of a job), scale (of the paper's figures), and "
+        "validation (a file)"
     )
 
 SCALE = config.get("scale", "quick")
@@ -76,3 +77,4 @@ include: "workflow/rules/fit.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/accuracy.smk"
 include: "workflow/rules/paper.smk"
+include: "workflow/rules/validation.smk"

@@ -86,6 +86,7 @@ html_sidebars = {
         "equations",
         "model",
         "accuracy",
+        "validation",
         "command-line",
         "surfaces",
         "cluster",

@@ -21,6 +21,7 @@ from crackfront.cli.outlook import plan, status
 from crackfront.cli.predict import predict
 from crackfront.cli.surface import surface
 from crackfront.cli.sweep import aggregate, archive, figures, fit, simulate, summary
+from crackfront.cli.validate import validate
 
 
 class _RefusalError(click.ClickException):
@@ -73,7 +74,7 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
         archive,
     ),
     "Figures of the paper": (figure, draw_figure, check_figures, compare_figures, gallery),
-    "Numerical errors": (accuracy, accuracy_report),
+    "Numerical errors, validation": (accuracy, accuracy_report, validate),
     "The shell": (completion,),
 }
 """All commands, by what they are for."""

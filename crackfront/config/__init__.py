@@ -17,6 +17,7 @@ from crackfront.config.sections import (
     SpectrumSection,
     SurfaceSection,
 )
+from crackfront.config.validation import load_validation
 from crackfront.cycle import LoadSchedule
 from crackfront.laws import numerical_error
 from crackfront.scene import Numerics, resolution
@@ -32,6 +33,7 @@ __all__ = [
     "figure_files",
     "load_configuration",
     "load_figure",
+    "load_validation",
     "results_folder",
 ]
 

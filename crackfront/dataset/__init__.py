@@ -32,7 +32,13 @@ from crackfront.dataset.files import (
 from crackfront.dataset.fit import write_fit
 from crackfront.dataset.loops import jump_dataset, loop_measures
 from crackfront.dataset.quantities import in_reduced_units, in_si_units, refuse_other_units
-from crackfront.dataset.records import largest_differences, read_record, write_record
+from crackfront.dataset.records import (
+    largest_differences,
+    read_record,
+    read_records,
+    write_record,
+    write_records,
+)
 from crackfront.dataset.surfaces import surface_adhesion, surface_array, surface_kind
 from crackfront.dataset.tables import (
     COMPLETE,
@@ -69,6 +75,7 @@ __all__ = [
     "read_errors",
     "read_field",
     "read_record",
+    "read_records",
     "read_samples",
     "read_simulation",
     "read_statuses",
@@ -88,6 +95,7 @@ __all__ = [
     "write_fit",
     "write_hysteresis",
     "write_record",
+    "write_records",
     "write_samples",
     "write_simulation",
     "write_text",

@@ -39,6 +39,27 @@ def write_record(path: Path, record: Any, origin: Provenance, **attributes: str 
     write_dataset(path, xr.Dataset(values, attrs=attributes), origin)
 
 
+def write_records(
+    path: Path, rows: Sequence[Any], along: str, origin: Provenance, **attributes: str | float
+) -> None:
+    """Write records of one kind, along a dimension that counts them.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    rows : sequence of dataclass
+        One record or more.
+    along : str
+        Name of the dimension.
+    origin : Provenance
+        Where they come from.
+    **attributes : str or float
+        What else the file says of itself.
+    """
+    write_dataset(path, xr.Dataset(stacked(rows, along), attrs=attributes), origin)
+
+
 def stacked(rows: Sequence[Any], along: str) -> dict[str, tuple[Any, ...]]:
     """Variables of records of one kind, along a dimension that counts them.
 
@@ -83,6 +104,24 @@ def unstacked(path: Path, dataset: xr.Dataset, kind: type[Any], along: str) -> l
         {name: values[row].item() if values.ndim == 1 else values[row] for name, values in columns}
         for row in range(dataset.sizes[along])
     ]
+
+
+def read_records(path: Path, kind: type[Record], along: str) -> tuple[Record, ...]:
+    """Records that :func:`write_records` wrote.
+
+    Parameters
+    ----------
+    path, along
+        As in :func:`write_records`.
+    kind : type
+        Their dataclass.
+
+    Raises
+    ------
+    UnreadableFileError
+        If the file is missing, truncated, or holds no such records.
+    """
+    return tuple(kind(**row) for row in unstacked(path, read_dataset(path), kind, along))
 
 
 def read_record(path: Path, kind: type[Record]) -> Record:

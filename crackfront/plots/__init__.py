@@ -39,6 +39,7 @@ from crackfront.plots.sweep import (
     factor_figure,
     hysteresis_figure,
 )
+from crackfront.plots.validation import validation_figure
 
 __all__ = [
     "ANIMATION_MAKERS",
@@ -64,6 +65,7 @@ __all__ = [
     "save_figure",
     "save_picture",
     "shown_axes",
+    "validation_figure",
     "work_precision_figure",
 ]
 

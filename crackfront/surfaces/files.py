@@ -8,10 +8,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal, get_args
 
+from crackfront.extras import MissingExtraError
+
 Detrend = Literal["center", "height", "slope", "curvature"]
 """What is taken off: the mean, the plane of least height, that of least slope, the paraboloid."""
-
-_INSTALL = "pip install 'crackfront[surfaces]'"
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,10 +56,8 @@ def surface_library() -> ModuleType:
     """
     try:
         import SurfaceTopography
-    except ImportError as error:
-        raise ValueError(
-            f"measured surfaces need the package SurfaceTopography; install it: {_INSTALL}"
-        ) from error
+    except ModuleNotFoundError as error:
+        raise MissingExtraError("measured surfaces", error, "surfaces") from error
     return SurfaceTopography
 
 

@@ -1,0 +1,65 @@
+"""One load step of the rough sphere by boundary elements: this minimiser against NuMPI's.
+
+    python -m benchmarks.boundary
+
+Both start from the state at b = 0.30 and end at b = 0.31, to the same balance of pressures.
+"""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import click
+import numpy as np
+from NuMPI.Optimization import tr_newton_bounded
+
+from crackfront.bem import Case, equilibrium, half_space_contact, validation_cases
+from crackfront.config import load_validation
+
+_CONFIGURATION = Path("config/validation.yaml")
+_FROM, _TO, _TOLERANCE = 0.30, 0.31, 1e-4
+
+
+def row(case: Case) -> str:
+    """Row of the table for one case."""
+    contact = half_space_contact(
+        case.heights(), case.pixel, case.interaction_range, case.schedule.max_penetration
+    )
+    side = 2 * case.n_point
+    zero = np.zeros((side, side))
+    start = equilibrium(contact, zero, _FROM, tolerance=_TOLERANCE, radius=1.0)
+    began = time.process_time()
+    ours = equilibrium(contact, start.displacement, _TO, tolerance=_TOLERANCE, radius=start.radius)
+    middle = time.process_time()
+    lowest = np.full((side, side), -np.inf)
+    lowest[: case.n_point, : case.n_point] = contact.surface + _TO
+    theirs = tr_newton_bounded(
+        contact.system.objective(_TO, gradient=True),
+        start.displacement.ravel(),
+        contact.system.hessian_product_function(_TO),
+        jac=True,
+        bounds_lo=lowest.ravel(),
+        gtol=_TOLERANCE * contact.largest_tension * contact.pixel**2,
+        maxiter=1000,
+    )
+    end = time.process_time()
+    apart = float(np.max(np.abs(theirs.x.reshape(side, side) - ours.displacement)))
+    return (
+        f"| {case.n_point} | {case.interaction_range:g} | {ours.products} | {middle - began:.2f} | "
+        f"{theirs.nb_hessp} | {end - middle:.2f} | {(end - middle) / (middle - began):.1f} | "
+        f"{apart / case.interaction_range:.1g} |"
+    )
+
+
+def main() -> None:
+    """Print the table."""
+    click.echo("| points | range | products | s | NuMPI's products | s | faster | apart / range |")
+    click.echo("|---|---|---|---|---|---|---|---|")
+    for case in validation_cases(load_validation(_CONFIGURATION)):
+        if case.elastic_energy > 0:
+            click.echo(row(case))
+
+
+if __name__ == "__main__":
+    main()
