@@ -111,10 +111,12 @@ def read_records(path: Path, kind: type[Record], along: str) -> tuple[Record, ..
 
     Parameters
     ----------
-    path, along
-        As in :func:`write_records`.
+    path : Path
+        netCDF file.
     kind : type
         Their dataclass.
+    along : str
+        Dimension along which they stand.
 
     Raises
     ------
