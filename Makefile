@@ -60,7 +60,7 @@ $(PACKAGES): requirements.lock
 	elif command -v virtualenv >/dev/null; then virtualenv --quiet --python "$(PYTHON)" .venv; \
 	elif command -v uv >/dev/null; then uv venv --quiet --seed --python "$(PYTHON)" .venv; \
 	else echo "'$(PYTHON)' cannot create a virtual environment; run 'apt-get install python3-venv' (as root) and repeat" >&2; exit 1; fi
-	@echo "Installing requirements.lock into .venv (about a minute) ..."
+	@echo "Installing requirements.lock into .venv (one to three minutes) ..."
 	@$(call locked,setuptools|cython) > .venv/lock-build.txt
 	@$(call locked,mpi4py|mpich) > .venv/lock-mpi.txt
 	@$(call locked,mpi4py) > .venv/lock-mpi4py.txt
