@@ -26,6 +26,7 @@ from scipy.optimize import least_squares
 from crackfront import jkr
 from crackfront.cycle import LoadSchedule
 from crackfront.scene import Simulation, correlation_length
+from crackfront.spectrum import SelfAffineSpectrum
 from crackfront.steady import SteadySchedule
 
 Array = NDArray[np.float64]
@@ -152,7 +153,7 @@ def features(simulation: Simulation) -> Features:
         n_state = (2 * schedule.max_penetration - lost_at) / schedule.step
     else:
         travel = schedule.travel
-        n_state = _expected_steady(schedule, length, simulation.elastic_energy)
+        n_state = _expected_steady(simulation, schedule, length)
     return Features(
         n_angle=sizes.n_angle,
         n_point=sizes.n_point,
@@ -175,13 +176,31 @@ def predicted_seconds(runs: Sequence[Measured]) -> Array:
     return _seconds(_coefficients(), [run.features for run in runs])
 
 
-def _expected_steady(schedule: SteadySchedule, length: float, elastic_energy: float) -> float:
+def _expected_steady(simulation: Simulation, schedule: SteadySchedule, length: float) -> float:
     """Number of states that the steady parts of both branches are expected to have."""
     step = schedule.travel * length * _slope(schedule.start)
     n_most = 1 + math.floor((schedule.max_penetration - schedule.start) / step)
-    n_independent = 2 * math.pi * jkr.equilibrium_radius(schedule.start) / length
-    variance = _NOISE / (elastic_energy * n_independent)
+    alike = length * _breadth(simulation)
+    n_independent = 2 * math.pi * jkr.equilibrium_radius(schedule.start) / alike
+    variance = _NOISE / (simulation.elastic_energy * n_independent)
     return 2 * min(n_most, max(_FEWEST_STEADY, _LEAD_IN + variance / schedule.error**2))
+
+
+def _breadth(simulation: Simulation) -> float:
+    """Mean of q times mean of 1/q in the variance of w_loc, relative to those of a flat surface.
+
+    The mean of w_loc along a front varies by its longest waves, the mean of 1/q, and the
+    correlation length is that of the mean of q.
+    """
+    spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
+    flat = SelfAffineSpectrum(1.0, 1.0, hurst=1.0)
+    means = [
+        shape.mean_square(order + 0.5)
+        * shape.mean_square(order - 0.5)
+        / shape.mean_square(order) ** 2
+        for shape in (spectrum, flat)
+    ]
+    return means[0] / means[1]
 
 
 def _slope(penetration: float) -> float:

@@ -9,9 +9,13 @@ import numpy as np
 import pytest
 
 from benchmarks import costs as benchmark
+from crackfront.adhesion import rough_adhesion
 from crackfront.config import load_configuration
-from crackfront.costs import expected_cost, features, measured_runs, predicted_seconds
+from crackfront.costs import _breadth, expected_cost, features, measured_runs, predicted_seconds
 from crackfront.cycle import LoadSchedule
+from crackfront.scene import correlation_length
+from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.synthesis import gaussian_field
 
 ROOT = Path(__file__).parents[1]
 SWEEP = load_configuration(ROOT / "config/test.yaml")
@@ -82,3 +86,25 @@ def test_memory_is_predicted_within_a_factor_one_and_a_half():
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=200, check=True
     )
     assert 1 / 1.5 < float(done.stdout) < 1.5
+
+
+def test_means_along_a_line_vary_as_the_breadth_of_the_spectrum_says(rng):
+    # A line of the tile's side holds side / (breadth x correlation length) independent pieces.
+    n_point, side = 128, 6.4
+
+    def spread(spectrum):
+        """Variance of means along lines, relative to that of points, times independent pieces."""
+        length = correlation_length("roughness", spectrum)
+        simulation = replace(ONE, spectrum=spectrum, kind="roughness")
+        parts = []
+        for _ in range(60):
+            heights = gaussian_field(spectrum, n_point, side, rng)
+            field = rough_adhesion(1e-3 * heights / np.std(heights), side / n_point)
+            values = field.work_of_adhesion
+            parts.append(np.var(values.mean(axis=1)) / np.var(values))
+        return np.mean(parts) * side / (length * _breadth(simulation))
+
+    flat = spread(SelfAffineSpectrum(0.1, 0.1, hurst=1.0))
+    broad = SelfAffineSpectrum(0.1, 1.6, hurst=0.3)
+    assert _breadth(replace(ONE, spectrum=broad, kind="roughness")) > 1.5
+    assert spread(broad) == pytest.approx(flat, rel=0.15)
