@@ -69,6 +69,9 @@ def fitted_to() -> Iterator[Simulation]:
             yield _simulation("h03", (cutoff, 20 * cutoff, 0.3), energy, CYCLE)
     for energy in ENERGIES:
         yield _simulation("h08", (0.0025, 0.04, 0.8), energy, STEADY)
+    for energy in (0.01, 0.05):
+        yield _simulation("flat", (0.00125, 0.00125, 1.0), energy, STEADY)
+        yield _simulation("h08", (0.000625, 0.01, 0.8), energy, STEADY)
     for tolerance in (1e-3, 1e-6):
         numerics = replace(NUMERICS, tolerance=tolerance)
         for energy in ENERGIES:
@@ -85,6 +88,8 @@ def held_out() -> Iterator[Simulation]:
         yield _simulation("h08", (0.025, 0.2, 0.8), energy, longer, finer)
         yield _simulation("h08", (0.02, 0.32, 0.8), energy, LoadSchedule(1.0, 0.05))
         yield _simulation("flat", (0.015, 0.015, 1.0), energy, LoadSchedule(0.5, 0.05), finer)
+    for energy in (0.02, 0.1):
+        yield _simulation("h08", (0.0008, 0.0128, 0.8), energy, STEADY)
 
 
 def measured(simulation: Simulation, held: bool) -> Measured:
