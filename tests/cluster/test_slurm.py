@@ -171,8 +171,9 @@ def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)
 def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_path):
-    changes = (("angles: 128", "angles: 2000"), ("step: 0.1", "step: 0.0025"))
+    changes = (("angles: 128", "angles: 2000"), ("step: 0.1", "step: 0.00025"))
     sweep = configuration(tmp_path, *changes, ("realisations: 2", "realisations: 1"))
     results = tmp_path / "results"
     command = f"exec {SRUN} -n 3 {sys.executable} -m mpi4py -m crackfront simulate {sweep} "
