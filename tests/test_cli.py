@@ -518,3 +518,14 @@ def test_an_output_that_cannot_be_written_is_refused_with_its_path(tmp_path):
     sentence = refused("simulate", TEST, "--output", obstacle / "results")
     assert str(obstacle) in sentence
     assert "cannot be used: Not a directory; check the path and its permissions" in sentence
+
+
+def test_an_archive_has_the_whole_name_of_its_folder_and_an_empty_one_is_refused(tmp_path):
+    folder = tmp_path / "of.2026"
+    folder.mkdir()
+    refused = run("archive", folder)
+    assert refused.exit_code == 2
+    assert "holds no hysteresis.nc; run the sweep before it is archived" in refused.output
+    (folder / "hysteresis.nc").write_bytes(b"data")
+    assert run("archive", folder).exit_code == 0
+    assert [path.name for path in tmp_path.glob("*.zip")] == ["of.2026.zip"]

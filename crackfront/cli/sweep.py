@@ -192,7 +192,7 @@ def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
     """Pack the results of a sweep into a ZIP file with checksums, SHA256SUMS."""
     from crackfront.store import write_archive
 
-    path = folder.with_suffix(".zip") if output is None else output
+    path = folder.with_name(f"{folder.name}.zip") if output is None else output
     click.echo(f"archive: {path}, {write_archive(folder, path, curves=not no_curves)} files")
 
 
