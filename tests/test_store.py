@@ -251,6 +251,7 @@ def test_an_archive_holds_what_was_archived_under_checksums_that_fit(store, tmp_
     store.aggregate(SWEEP, provenance("text"))
     (store.folder / "curves/.killed.part").write_text("half")
     (store.folder / "elsewhere").symlink_to(__file__)
+    os.utime(store.folder / "hysteresis.nc", (0, 0))  # written under a clock at 1970
     path = tmp_path / "sweep.zip"
     n_file = write_archive(store.folder, path, curves=curves)
     with zipfile.ZipFile(path) as archive:

@@ -66,7 +66,8 @@ def write_archive(folder: Path, path: Path, *, curves: bool) -> int:
 
 def _added(archive: ZipFile, file: Path, name: str) -> str:
     """Checksum of a file that is added to an archive, of just what is added."""
-    entry = ZipInfo.from_file(file, name)
+    # A clock may have been wrong: ZIP knows no year before 1980.
+    entry = ZipInfo.from_file(file, name, strict_timestamps=False)
     entry.compress_type = ZIP_STORED if file.suffix in _COMPRESSED else ZIP_DEFLATED
     digest = hashlib.sha256()
     with file.open("rb") as source, archive.open(entry, "w") as target:
