@@ -4,7 +4,6 @@
 #
 # Variables
 #   SWEEP=config/default.yaml   the configuration that `make` runs; results in results/<its name>/
-#   CLUSTER="slurm and not slow"   leaves out, of `make test-cluster`, what kills and times
 #   SCALE=quick | paper         coarser lengths, or the paper's, for `make figures`
 #   VALIDATION=config/validation.yaml   sizes of `make validate`; config/validation-512.yaml
 #                               and config/validation-1024.yaml are hours
@@ -17,7 +16,6 @@
 
 SWEEP  ?= config/default.yaml
 SCALE  ?= quick
-CLUSTER ?= slurm
 VALIDATION ?= config/validation.yaml
 PYTHON ?= python3
 MPI    ?= $(if $(wildcard .venv/.packages-system),system,wheel)
@@ -89,8 +87,8 @@ test: env  ## Run the tests that are not slow
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest -m "not slow" --junitxml=$(REPORT)
 
-test-cluster: env  ## Run the tests that need a Slurm, on one started for them (minutes)
-	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m "$(CLUSTER)" tests/cluster
+test-cluster: env  ## Run the tests that need a Slurm, on one started for them (5 minutes)
+	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm tests/cluster
 
 nightly: env  ## Run all tests, the slow ones too
 	@mkdir -p $(dir $(REPORT))

@@ -96,7 +96,7 @@ MpiDefault=pmi2
 ReturnToService=2
 MinJobAge=300
 FirstJobId=$((RANDOM * 1000 + RANDOM))
-KillWait=20
+KillWait=5
 SchedulerParameters=sched_interval=1,bf_interval=1,sched_min_interval=0,batch_sched_delay=0
 SlurmdParameters=config_overrides
 NodeName=$(hostname -s) NodeAddr=127.0.0.1 CPUs=4 RealMemory=8000 State=UNKNOWN
