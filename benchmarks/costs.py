@@ -2,8 +2,9 @@
 
 python -m benchmarks.costs --output results/benchmark
 
-Every row of `costs.csv` is one simulation. Copied to `crackfront/costs.csv`, it is what
-`crackfront plan` predicts from.
+Every row of `costs.csv` is one simulation, run several times unless that takes long: the least
+counts, since the speed of a processor varies by a quarter over minutes. Copied to
+`crackfront/costs.csv`, it is what `crackfront plan` predicts from.
 """
 
 from __future__ import annotations
@@ -29,6 +30,9 @@ NUMERICS = Numerics(None, 2.4, 4, "cubic", 4, 4, 200, 1e-4, 10**8, "newton")
 ENERGIES = (0.002, 0.01, 0.05, 0.15)
 STEADY = SteadySchedule(start=1.0, max_penetration=1.5, travel=1.5, error=0.1)
 CYCLE = LoadSchedule(1.0, 0.1)
+
+_PASSES, _LONG = 4, 20.0
+"""Times that a simulation is run, and seconds from which once is enough."""
 
 
 def _simulation(
@@ -104,6 +108,21 @@ def measured(simulation: Simulation, held: bool) -> Measured:
     )
 
 
+def least_of_passes(simulations: list[Simulation], held: bool) -> list[Measured]:
+    """What simulations cost on this machine, each the least of the passes through all."""
+    least: dict[int, Measured] = {}
+    for _ in range(_PASSES):
+        for place, simulation in enumerate(simulations):
+            known = least.get(place)
+            if known is not None and known.cpu_seconds > _LONG:
+                continue
+            run = measured(simulation, held)
+            click.echo(f"{run.name}: {run.cpu_seconds:.3g} s, {run.n_state} states")
+            if known is None or run.cpu_seconds < known.cpu_seconds:
+                least[place] = run
+    return list(least.values())
+
+
 def table(runs: list[Measured]) -> str:
     """Runs as comma-separated values."""
     names = [item.name for item in fields(Features)]
@@ -112,7 +131,7 @@ def table(runs: list[Measured]) -> str:
     expected = ["expected_n_state" if name == "n_state" else name for name in names]
     writer.writerow(["name", "held_out", *expected, "n_state", "cpu_seconds"])
     for run in runs:
-        values = [f"{getattr(run.features, name):.6g}" for name in names]
+        values = [f"{float(getattr(run.features, name)):.6g}" for name in names]
         last = [run.n_state, f"{run.cpu_seconds:.4g}"]
         writer.writerow([run.name, int(run.held_out), *values, *last])
     return text.getvalue()
@@ -125,11 +144,7 @@ def main() -> None:
     chosen = parser.parse_args()
     compile_solver(NUMERICS.solver)
     click.echo(described_machine())
-    runs = []
-    for held, simulations in ((False, fitted_to()), (True, held_out())):
-        for simulation in simulations:
-            runs.append(run := measured(simulation, held))
-            click.echo(f"{run.name}: {run.cpu_seconds:.3g} s, {run.n_state} states")
+    runs = least_of_passes([*fitted_to()], held=False) + least_of_passes([*held_out()], held=True)
     write_text(chosen.output / "costs.csv", table(runs))
     click.echo(f"Results: {chosen.output / 'costs.csv'}")
 

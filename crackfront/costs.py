@@ -5,9 +5,10 @@ the tile and that of the load steps,
 
 .. math:: t = c_t n_p^2 \log_2 n_p + n_b N\, e^{c_0 + c \cdot x},
 
-with the :math:`n_p^2` points of the tile, the states :math:`n_b`, the sites :math:`N` and the
-logarithms :math:`x` of what the sweeps of a load step depend on. The coefficients are fitted where
-they are asked for, to the rows that are not held out.
+with the :math:`n_p^2` points of the tile, the states :math:`n_b`, the sites :math:`N` and, as
+:math:`x`, logarithms of what the sweeps of a load step depend on and whether the load is a full
+cycle: its steps into and out of contact take longer than those of the steady branches. The
+coefficients are fitted where they are asked for, to the rows that are not held out.
 """
 
 from __future__ import annotations
@@ -59,6 +60,8 @@ class Features:
         Roll-off over short cutoff.
     travel : float
         Way of a smooth front from state to state, in correlation lengths.
+    full_cycle : bool
+        Whether the load goes from first contact to pull-off.
     n_state : float
         States that it is expected to find.
     """
@@ -69,6 +72,7 @@ class Features:
     tolerance: float
     breadth: float
     travel: float
+    full_cycle: bool
     n_state: float
 
 
@@ -161,6 +165,7 @@ def features(simulation: Simulation) -> Features:
         tolerance=simulation.tolerance,
         breadth=spectrum.roll_off / spectrum.short_cutoff,
         travel=travel,
+        full_cycle=isinstance(schedule, LoadSchedule),
         n_state=n_state,
     )
 
@@ -180,17 +185,22 @@ def _expected_steady(simulation: Simulation, schedule: SteadySchedule, length: f
     """Number of states that the steady parts of both branches are expected to have."""
     step = schedule.travel * length * _slope(schedule.start)
     n_most = 1 + math.floor((schedule.max_penetration - schedule.start) / step)
-    alike = length * _breadth(simulation)
+    alike = length * integral_breadth(simulation)
     n_independent = 2 * math.pi * jkr.equilibrium_radius(schedule.start) / alike
     variance = _NOISE / (simulation.elastic_energy * n_independent)
     return 2 * min(n_most, max(_FEWEST_STEADY, _LEAD_IN + variance / schedule.error**2))
 
 
-def _breadth(simulation: Simulation) -> float:
+def integral_breadth(simulation: Simulation) -> float:
     """Mean of q times mean of 1/q in the variance of w_loc, relative to those of a flat surface.
 
     The mean of w_loc along a front varies by its longest waves, the mean of 1/q, and the
     correlation length is that of the mean of q.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        A simulation; what counts is its spectrum and the kind of its field.
     """
     spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
     flat = SelfAffineSpectrum(1.0, 1.0, hurst=1.0)
@@ -222,7 +232,7 @@ def _coefficients() -> tuple[float, ...]:
     return tuple(least_squares(residuals, _START).x.tolist())
 
 
-_START = (-18.0, -12.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0)
+_START = (-18.0, -12.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Logarithm of the time of a point of the tile, c_0, and exponents to begin with."""
 
 
@@ -230,15 +240,17 @@ def _seconds(coefficients: Sequence[float] | Array, items: Sequence[Features]) -
     """Processor times by the law, in seconds."""
     point, constant, *exponents = coefficients
     columns = np.array([astuple(item) for item in items], dtype=float).T
-    n_angle, n_point, energy, tolerance, breadth, travel, n_state = columns
+    n_angle, n_point, energy, tolerance, breadth, travel, full_cycle, n_state = columns
     logarithms = np.array(
         [
             np.log(n_angle / 1e3),
+            np.log(n_angle / 1e3) ** 2,
             np.log(energy / 0.02),
             np.log(energy / 0.02) ** 2,
             np.log(tolerance / 1e-4),
             np.log(breadth),
             np.log(travel),
+            full_cycle,
         ]
     )
     tile = np.exp(point) * n_point**2 * np.log2(n_point)
@@ -257,6 +269,7 @@ def _run(row: dict[str, str]) -> Measured:
             tolerance=float(row["tolerance"]),
             breadth=float(row["breadth"]),
             travel=float(row["travel"]),
+            full_cycle=row["full_cycle"] == "1",
             n_state=float(row["expected_n_state"]),
         ),
         n_state=int(row["n_state"]),

@@ -11,7 +11,13 @@ import pytest
 from benchmarks import costs as benchmark
 from crackfront.adhesion import rough_adhesion
 from crackfront.config import load_configuration
-from crackfront.costs import _breadth, expected_cost, features, measured_runs, predicted_seconds
+from crackfront.costs import (
+    expected_cost,
+    features,
+    integral_breadth,
+    measured_runs,
+    predicted_seconds,
+)
 from crackfront.cycle import LoadSchedule
 from crackfront.scene import correlation_length
 from crackfront.spectrum import SelfAffineSpectrum
@@ -102,9 +108,9 @@ def test_means_along_a_line_vary_as_the_breadth_of_the_spectrum_says(rng):
             field = rough_adhesion(1e-3 * heights / np.std(heights), side / n_point)
             values = field.work_of_adhesion
             parts.append(np.var(values.mean(axis=1)) / np.var(values))
-        return np.mean(parts) * side / (length * _breadth(simulation))
+        return np.mean(parts) * side / (length * integral_breadth(simulation))
 
     flat = spread(SelfAffineSpectrum(0.1, 0.1, hurst=1.0))
     broad = SelfAffineSpectrum(0.1, 1.6, hurst=0.3)
-    assert _breadth(replace(ONE, spectrum=broad, kind="roughness")) > 1.5
+    assert integral_breadth(replace(ONE, spectrum=broad, kind="roughness")) > 1.5
     assert spread(broad) == pytest.approx(flat, rel=0.15)
