@@ -2,6 +2,8 @@
 
 import os
 from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
 
 import hypothesis
 import numpy as np
@@ -19,6 +21,31 @@ def _floating_point_errors_raise() -> Iterator[None]:
     before = np.seterr(all="raise", under="ignore")
     yield
     np.seterr(**before)
+
+
+def _mapped(path: Path) -> bool:
+    """Whether a process of ours has a file in its memory."""
+    for maps in Path("/proc").glob("[0-9]*/maps"):
+        with suppress(OSError):
+            if str(path) in maps.read_text():
+                return True
+    return False
+
+
+def _shared_memory() -> set[Path]:
+    """Our files in MPICH's shared memory."""
+    paths = Path("/dev/shm").glob("mpich_shm_*")
+    return {path for path in paths if path.stat().st_uid == os.getuid()}
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _shared_memory_of_killed_ranks() -> Iterator[None]:
+    """Remove what MPICH leaves in memory when ranks are killed; nobody else does."""
+    before = _shared_memory()
+    yield
+    for path in _shared_memory() - before:
+        if not _mapped(path):
+            path.unlink()
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -19,26 +19,6 @@ from crackfront.store import Store
 ROOT = Path(__file__).parents[1]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
 N_SIMULATION = 12
-
-
-def mapped(path):
-    """Whether a process that may be looked at has a file in its memory."""
-    for maps in Path("/proc").glob("[0-9]*/maps"):
-        with suppress(OSError):
-            if str(path) in maps.read_text():
-                return True
-    return False
-
-
-@pytest.fixture(autouse=True, scope="module")
-def _shared_memory_of_killed_ranks():
-    """Remove what MPICH leaves in memory when ranks are killed; nobody else does."""
-    shared = Path("/dev/shm")
-    before = set(shared.glob("mpich_shm_*"))
-    yield
-    for path in set(shared.glob("mpich_shm_*")) - before:
-        if not mapped(path):
-            path.unlink()
 
 
 def dataset(configuration, folder):

@@ -60,8 +60,8 @@ def profile(folder, **simulate):
     """The profile of the repository as a site would adapt it; resources of a shard may change."""
     content = yaml.safe_load((ROOT / "workflow/profiles/slurm/config.yaml").read_text())
     content["set-resources"]["simulate"] |= {"tasks": 3, "mem_mb_per_cpu": 500} | simulate
-    # Every wait between two looks at a job is 10 s longer than the last: looks at 6 and 22 s.
-    content |= {"slurm-init-seconds-before-status-checks": 6, "latency-wait": 5, "retries": 1}
+    # Every wait between two looks at a job is 10 s longer than the last: looks at 12 and 34 s.
+    content |= {"slurm-init-seconds-before-status-checks": 12, "latency-wait": 5, "retries": 1}
     (folder / "profile").mkdir()
     (folder / "profile/config.yaml").write_text(yaml.safe_dump(content))
     return folder / "profile"
@@ -121,23 +121,57 @@ def stored(folder):
     return {path.name: path.stat().st_mtime_ns for path in (folder / "curves").glob("[!.]*.nc")}
 
 
-@pytest.mark.parametrize(
-    ("resources", "target"),
-    [
-        pytest.param({"tasks": 2}, "hysteresis.nc", id="serial"),
-        pytest.param({"mpi": SRUN}, "shards/flat.json", id="srun"),
-        pytest.param({"mpi": default_launcher()}, "shards/flat.json", id="mpiexec"),
-    ],
-)
-def test_the_profile_runs_a_shard_and_the_sweep_is_the_undisturbed_one(tmp_path, resources, target):
-    sweep, results = configuration(tmp_path), tmp_path / "results/sweep"
-    done = run(snakemake(tmp_path, sweep, target, **resources))
-    assert done.returncode == 0, done.stderr
-    assert "has been submitted with SLURM jobid" in done.stderr
+WAYS = {
+    "serial": ("hysteresis.nc", {"tasks": 2}),
+    "srun": ("shards/flat.json", {"mpi": SRUN}),
+    "mpiexec": ("shards/flat.json", {"mpi": default_launcher()}),
+}
+"""Up to where a sweep runs, and the resources of its shard."""
+
+
+@pytest.fixture(scope="module")
+def started(tmp_path_factory):
+    """Folders, sweeps and processes of all ways at once: they mostly wait between looks at jobs."""
+    runs = {}
+    for way, (target, resources) in WAYS.items():
+        folder = tmp_path_factory.mktemp(way)
+        sweep = configuration(folder)
+        command = snakemake(folder, sweep, target, **resources)
+        process = subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment()
+        )
+        runs[way] = folder, sweep, process
+    yield runs
+    for _, _, process in runs.values():
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_the_profile_runs_a_shard_and_the_sweep_is_the_undisturbed_one(started, way):
+    folder, sweep, process = started[way]
+    target, resources = WAYS[way]
+    results = folder / "results/sweep"
+    told = process.communicate(timeout=280)[1]
+    assert process.returncode == 0, told
+    assert "has been submitted with SLURM jobid" in told
     # One journal a process that has simulated.
     assert len(list((results / "journals").iterdir())) == resources.get("tasks", 3) - 1
     if target != "hysteresis.nc":
         main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
+    assert dataset(results).equals(undisturbed(sweep, folder / "alone"))
+
+
+def test_ranks_on_two_nodes_find_what_one_process_finds(tmp_path):
+    nodes = run(["sinfo", "--noheader", "--Node", "--format=%N"]).stdout.split()
+    if len(set(nodes)) < 2:
+        pytest.skip("this Slurm has one node")
+    sweep, results = configuration(tmp_path), tmp_path / "results"
+    ranks = [*SRUN.split(), "-N2", "-n3", sys.executable, "-m", "mpi4py", "-m", "crackfront"]
+    done = run([*ranks, "simulate", str(sweep), "--ranks", "2", "--output", str(results)])
+    assert done.returncode == 0, done.stderr
+    assert len(list((results / "journals").iterdir())) == 2
+    main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
     assert dataset(results).equals(undisturbed(sweep, tmp_path / "alone"))
 
 

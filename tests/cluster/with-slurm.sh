@@ -4,8 +4,8 @@
 #   tests/cluster/with-slurm.sh COMMAND...
 #
 # Where Slurm runs already, the command uses that. Else this installs Debian's packages, starts
-# Slurm with four pretended CPUs, and afterwards ends and removes what it has started, written and
-# installed. Where that is impossible it says why and runs the command without Slurm.
+# Slurm with two pretended nodes of four CPUs, and afterwards ends and removes what it has started,
+# written and installed. Where that is impossible it says why and runs the command without Slurm.
 set -euo pipefail
 
 packages=(slurmctld slurmd slurm-client munge)
@@ -58,7 +58,7 @@ if ! type slurmctld slurmd munged srun >/dev/null 2>&1; then
   fi
 fi
 
-mkdir "$folder"/{state,spool}
+mkdir "$folder"/{state,spool-n1,spool-n2}
 dd if=/dev/urandom of="$folder/munge.key" bs=1 count=1024 status=none
 chmod 755 "$folder"
 chmod 400 "$folder/munge.key"
@@ -73,18 +73,17 @@ cat >"$folder/slurm.conf" <<END
 ClusterName=test
 SlurmctldHost=$(hostname -s)(127.0.0.1)
 SlurmctldPort=16817
-SlurmdPort=16818
 AuthType=auth/munge
 AuthInfo=socket=$folder/munge.socket
 CredType=cred/munge
 SlurmUser=root
 SlurmdUser=root
 StateSaveLocation=$folder/state
-SlurmdSpoolDir=$folder/spool
+SlurmdSpoolDir=$folder/spool-%n
 SlurmctldPidFile=$folder/slurmctld.pid
-SlurmdPidFile=$folder/slurmd.pid
+SlurmdPidFile=$folder/slurmd-%n.pid
 SlurmctldLogFile=$folder/slurmctld.log
-SlurmdLogFile=$folder/slurmd.log
+SlurmdLogFile=$folder/slurmd-%n.log
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 SwitchType=switch/none
@@ -99,18 +98,21 @@ FirstJobId=$((RANDOM * 1000 + RANDOM))
 KillWait=5
 SchedulerParameters=sched_interval=1,bf_interval=1,sched_min_interval=0,batch_sched_delay=0
 SlurmdParameters=config_overrides
-NodeName=$(hostname -s) NodeAddr=127.0.0.1 CPUs=4 RealMemory=8000 State=UNKNOWN
+NodeName=n[1-2] NodeHostname=$(hostname -s) NodeAddr=127.0.0.1 Port=[16818-16819] CPUs=4 RealMemory=4000 State=UNKNOWN
 PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 END
 mkdir -p "$(dirname "$configuration")"
 cp "$folder/slurm.conf" "$configuration"
 slurmctld -D >/dev/null 2>&1 &
 daemons+=($!)
-slurmd -D >/dev/null 2>&1 &
-daemons+=($!)
+for node in n1 n2; do
+  slurmd -D -N "$node" >/dev/null 2>&1 &
+  daemons+=($!)
+done
+idle() { [ "$(sinfo --noheader --Node --states=idle 2>/dev/null | wc -l)" = 2 ]; }
 for _ in $(seq 60); do
-  sinfo --noheader --states=idle 2>/dev/null | grep -q . && break
+  idle && break
   sleep 0.5
 done
-sinfo --states=idle --noheader | grep -q . || tail -n 5 "$folder"/*.log
+idle || tail -n 5 "$folder"/*.log
 "$@"
