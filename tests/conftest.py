@@ -34,8 +34,12 @@ def _mapped(path: Path) -> bool:
 
 def _shared_memory() -> set[Path]:
     """Our files in MPICH's shared memory."""
-    paths = Path("/dev/shm").glob("mpich_shm_*")
-    return {path for path in paths if path.stat().st_uid == os.getuid()}
+    ours = set()
+    for path in Path("/dev/shm").glob("mpich_shm_*"):
+        with suppress(FileNotFoundError):  # of a rank that has just ended
+            if path.stat().st_uid == os.getuid():
+                ours.add(path)
+    return ours
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -45,7 +49,7 @@ def _shared_memory_of_killed_ranks() -> Iterator[None]:
     yield
     for path in _shared_memory() - before:
         if not _mapped(path):
-            path.unlink()
+            path.unlink(missing_ok=True)
 
 
 @pytest.fixture
