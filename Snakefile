@@ -9,16 +9,15 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from crackfront.config import (
+from crackfront.data.provenance import package_fingerprint
+from crackfront.studies.paper.configuration import (
     SCALES,
     figure_files,
-    load_configuration,
     load_figure,
-    results_folder,
 )
-from crackfront.figures import FIGURES, figure_fingerprint
-from crackfront.provenance import package_fingerprint
-from crackfront.sweep import shard_fingerprint
+from crackfront.studies.paper.figures import FIGURES, figure_fingerprint
+from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.sweep import shard_fingerprint
 
 unknown = set(config) - {"sweep", "ranks", "block", "scale", "validation"}
 if unknown:

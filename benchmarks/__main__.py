@@ -14,9 +14,9 @@ import click
 
 from benchmarks.problems import PROBLEMS
 from benchmarks.solvers import dataset, measure, report, scaling_figure
-from crackfront.dataset.files import write_dataset
-from crackfront.plots import save_figure
-from crackfront.provenance import provenance
+from crackfront.data.files import write_dataset
+from crackfront.data.provenance import provenance
+from crackfront.plots.style import save_figure
 
 
 def main() -> None:

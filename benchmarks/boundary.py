@@ -14,8 +14,10 @@ import click
 import numpy as np
 from NuMPI.Optimization import tr_newton_bounded
 
-from crackfront.bem import Case, equilibrium, half_space_contact, validation_cases
-from crackfront.config import load_validation
+from crackfront.studies.boundary_elements.configuration import load_validation
+from crackfront.studies.boundary_elements.contact import half_space_contact
+from crackfront.studies.boundary_elements.minimise import equilibrium
+from crackfront.studies.boundary_elements.parameters import Case, validation_cases
 
 _CONFIGURATION = Path("config/validation.yaml")
 _FROM, _TO, _TOLERANCE = 0.30, 0.31, 1e-4

@@ -20,12 +20,13 @@ import click
 import numpy as np
 
 from benchmarks.machine import described_machine
-from crackfront.costs import Features, Measured, features, measured_runs, predicted_seconds
-from crackfront.cycle import LoadSchedule
-from crackfront.dataset import write_text
-from crackfront.scene import Numerics, Simulation, compile_solver, resolution, run_simulation
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.steady import SteadySchedule
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.data.files import write_text
+from crackfront.simulate.costs import Features, Measured, features, measured_runs, predicted_seconds
+from crackfront.simulate.run import compile_solver, run_simulation
+from crackfront.simulate.simulation import Numerics, Simulation, resolution
 
 NUMERICS = Numerics(None, 2.4, 4, "cubic", 4, 4, 200, 1e-4, 10**8, "newton")
 ENERGIES = (0.002, 0.01, 0.05, 0.15)

@@ -14,12 +14,14 @@ from __future__ import annotations
 import click
 import numpy as np
 
-from crackfront.adhesion import chemical_adhesion
-from crackfront.cycle import DEFAULT_STEP, CycleRecord, LoadSchedule, run_cycle
-from crackfront.scene import contact_field
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
-from crackfront.units import CONTACT_MODULUS
+from crackfront.core.adhesion import chemical_adhesion
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import CONTACT_MODULUS
+from crackfront.simulate.contact import contact_field
 
 CUTOFF = 0.08
 N_POINT = 128

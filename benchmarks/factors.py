@@ -3,7 +3,7 @@
 make; make SWEEP=config/strong.yaml
 python -m benchmarks.factors config/default.yaml config/strong.yaml --output results/benchmark
 
-Every row of `factors.csv` is a spectrum and an amplitude of :func:`crackfront.factors`. Copied to
+Every row of `factors.csv` is a spectrum and an amplitude of :func:`crackfront.analysis`. Copied to
 `crackfront/factors.csv`, it is what the command predicts from.
 """
 
@@ -19,13 +19,14 @@ from pathlib import Path
 import click
 import numpy as np
 
-from crackfront import jkr
-from crackfront.config import load_configuration, results_folder
-from crackfront.dataset import read_table, write_text
-from crackfront.factors import MeasuredFactors
-from crackfront.fits import SweepTable
-from crackfront.fits.estimate import mean_estimate
-from crackfront.steady import SteadySchedule
+from crackfront.analysis.estimate import mean_estimate
+from crackfront.analysis.measured_factors import MeasuredFactors
+from crackfront.analysis.table import SweepTable
+from crackfront.core import jkr
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.data.files import write_text
+from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.table import read_table
 
 
 def rows(table: SweepTable, contact_radius: float) -> Iterator[MeasuredFactors]:

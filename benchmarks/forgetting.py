@@ -2,8 +2,8 @@
 
 python -m benchmarks.forgetting
 
-Fronts that begin at the circle of :func:`crackfront.steady.forward_circle` are compared, load by
-load, with those that begin as far behind as the field allows.
+Fronts that begin at the circle of `core.cycle.steady.forward_circle` are compared, load by load,
+with those that begin as far behind as the field allows.
 """
 
 from __future__ import annotations
@@ -13,13 +13,16 @@ from dataclasses import replace
 import click
 import numpy as np
 
-from crackfront import jkr
-from crackfront.accuracy import SCENES, Scene
-from crackfront.cycle import CycleRecord, FrontHistory, LoadSchedule
-from crackfront.pinning import TileField, first_radius, last_radius, n_angle
-from crackfront.relax import Direction
-from crackfront.scene import correlation_length, simulation_field
-from crackfront.steady import forward_circle
+from crackfront.core import jkr
+from crackfront.core.cycle.history import FrontHistory
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import forward_circle
+from crackfront.core.field.kinds import TileField, first_radius, last_radius, n_angle
+from crackfront.core.solver.relax import Direction
+from crackfront.simulate.contact import simulation_field
+from crackfront.simulate.simulation import correlation_length
+from crackfront.studies.accuracy.scenes import SCENES, Scene
 
 _CHEMICAL, _H03, _H08 = (SCENES[f"{shape}-0.04"] for shape in ("chemical", "h03", "h08"))
 NUMERICS = replace(

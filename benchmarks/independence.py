@@ -5,7 +5,7 @@ python -m benchmarks.independence
 The autocorrelation of w along a branch, in mean radius, pooled over surfaces and summed up to where
 it first falls below a twentieth, gives the distance of independent states; beside it stand the
 correlation length of w_loc and the rms deviation of the fronts from their mean radius, of which
-:func:`crackfront.steady.standard_error` makes it.
+:func:`crackfront.core.cycle.steady.standard_error` makes it.
 """
 
 from __future__ import annotations
@@ -16,12 +16,13 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.accuracy import SCENES, Scene
-from crackfront.cycle import CycleRecord
-from crackfront.laws import chosen_numerics
-from crackfront.relax import Direction
-from crackfront.scene import correlation_length, run_simulation
-from crackfront.steady import SteadySchedule
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.solver.relax import Direction
+from crackfront.simulate.laws import chosen_numerics
+from crackfront.simulate.run import run_simulation
+from crackfront.simulate.simulation import correlation_length
+from crackfront.studies.accuracy.scenes import SCENES, Scene
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import platform
 import resource
 from pathlib import Path
 
-from crackfront.provenance import provenance
+from crackfront.data.provenance import provenance
 
 
 def described_machine() -> str:

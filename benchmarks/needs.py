@@ -23,24 +23,21 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.machine import described_machine, peak_memory, restart_peak
-from crackfront.cycle import CycleRecord, LoadSchedule, run_cycle
-from crackfront.dataset import write_cycle, write_simulation
-from crackfront.dataset.files import write_dataset
-from crackfront.pinning import Field, first_radius, make_memory, n_angle, polar_field
-from crackfront.provenance import provenance
-from crackfront.relax import Status
-from crackfront.scene import (
-    Numerics,
-    Simulation,
-    compile_solver,
-    contact_field,
-    resolution,
-    run_simulation,
-    simulation_adhesion,
-)
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.steady import SteadySchedule
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.field.kinds import Field, first_radius, n_angle, polar_field
+from crackfront.core.field.samples import make_memory
+from crackfront.core.solver.relax import Status
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.data.files import write_dataset
+from crackfront.data.provenance import provenance
+from crackfront.simulate.contact import contact_field, simulation_adhesion
+from crackfront.simulate.files import write_cycle, write_simulation
+from crackfront.simulate.run import compile_solver, run_simulation
+from crackfront.simulate.simulation import Numerics, Simulation, resolution
 
 TOLERANCE = 1e-5
 RING_AMPLITUDE = 0.2

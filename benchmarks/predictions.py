@@ -18,19 +18,14 @@ import click
 import numpy as np
 
 from benchmarks.scans import al3d
-from crackfront.factors import Factors
-from crackfront.prediction import (
-    Prediction,
-    Simulated,
-    predicted,
-    prediction_simulations,
-    simulated,
-    surface_factors,
-)
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.surfaces import measured_surface, read_measurements
-from crackfront.synthesis import gaussian_field
-from crackfront.units import Scales
+from crackfront.analysis.factors import Factors
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import Scales
+from crackfront.topography.measures import measured_surface
+from crackfront.topography.prediction import Prediction, predicted, surface_factors
+from crackfront.topography.reading import read_measurements
+from crackfront.topography.simulated import Simulated, prediction_simulations, simulated
 
 SCENE = Scales(radius=1e-3, work_of_adhesion=60e-3, contact_modulus=0.7e6 / 0.75)
 REALISATIONS, SEED, N_POINT = 3, 20240229, 128

@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crackfront.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
-from crackfront.cycle import LoadSchedule
-from crackfront.pinning import Interpolation, PolarField, TileField, sampled_on_rays, tile_field
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
+from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.kinds import Interpolation, PolarField, TileField, tile_field
+from crackfront.core.field.rays import sampled_on_rays
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
 
 LARGEST_RADIUS = 2.6
 """Where the fields end. (Units: reduced lateral length)"""

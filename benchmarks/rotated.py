@@ -12,9 +12,9 @@ import time
 import click
 import numpy as np
 
-from crackfront.rotated import adhesion_on_rays
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
+from crackfront.core.rotated import adhesion_on_rays
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
 
 _SIDE, _SAMPLES_PER_CUTOFF = 5.12, 8
 _TILES = ((256, 0.2), (512, 0.02), (1024, 0.01))

@@ -24,14 +24,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.machine import described_machine, peak_memory, restart_peak
-from crackfront.config import load_configuration
-from crackfront.costs import expected_cost, measured_runs, predicted_seconds
-from crackfront.dataset import failed_row, row_fingerprint, write_text
-from crackfront.parallel import default_launcher
-from crackfront.provenance import provenance
-from crackfront.store import Store
-from crackfront.store.journal import Entry, Journal
-from crackfront.sweep import Sweep
+from crackfront.data.files import write_text
+from crackfront.data.provenance import provenance
+from crackfront.simulate.costs import expected_cost, measured_runs, predicted_seconds
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.journal import Entry, Journal
+from crackfront.sweep.parallel import default_launcher
+from crackfront.sweep.store import Store
+from crackfront.sweep.sweep import Sweep
+from crackfront.sweep.table import failed_row, row_fingerprint
 
 Array = NDArray[np.float64]
 
@@ -155,7 +156,7 @@ def dispatch_efficiency(n_worker: int, n_round: int, seconds: float = 0.5) -> fl
     """
     script = (
         "import time\n"
-        "from crackfront import parallel\n"
+        "from crackfront.sweep import parallel\n"
         f"n_worker, tasks = {n_worker}, [{seconds}] * {n_worker * n_round}\n"
         "if parallel.is_manager(n_worker):\n"
         "    list(parallel.run_tasks(time.sleep, [0.0] * n_worker))\n"

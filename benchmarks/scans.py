@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
 
 SEED = 20240229
 ROLL_OFF, HURST, PLATEAU = 2.1e-6, 1.0, 8.4e-27

@@ -13,8 +13,10 @@ from matplotlib.figure import Figure
 
 from benchmarks.machine import described_machine
 from benchmarks.problems import Problem
-from crackfront.cycle import CycleRecord, LoadSchedule, run_cycle
-from crackfront.pinning import PolarField, TileField
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.kinds import PolarField, TileField
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
 
 TOLERANCE = 1e-8

@@ -8,25 +8,19 @@ import pytest
 from click.testing import CliRunner
 from scipy import stats
 
-from crackfront.accuracy import (
-    SCENES,
-    Errors,
-    SceneErrors,
-    fit_laws,
-    front_difference,
-    held_out_coverage,
-    hysteresis_errors,
-    measured_branches,
-    numerical_interval,
-    pareto_front,
-    sampling_errors,
-    scene_errors,
-    total_interval,
-    with_knob,
-)
 from crackfront.cli import main
-from crackfront.cycle import LoadSchedule, run_cycle
-from crackfront.dataset import (
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.data.provenance import provenance
+from crackfront.simulate.contact import simulation_field
+from crackfront.simulate.laws import LAW_SIZE, chosen_numerics, read_laws
+from crackfront.studies.accuracy.coverage import (
+    held_out_coverage,
+    numerical_interval,
+    total_interval,
+)
+from crackfront.studies.accuracy.files import (
     laws_text,
     read_coverage,
     read_errors,
@@ -35,10 +29,17 @@ from crackfront.dataset import (
     write_errors,
     write_samples,
 )
-from crackfront.laws import LAW_SIZE, chosen_numerics, read_laws
-from crackfront.provenance import provenance
-from crackfront.scene import simulation_field
-from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.studies.accuracy.fitting import fit_laws
+from crackfront.studies.accuracy.report import hysteresis_errors, pareto_front
+from crackfront.studies.accuracy.sampling import sampling_errors
+from crackfront.studies.accuracy.scenes import SCENES, with_knob
+from crackfront.studies.accuracy.study import (
+    Errors,
+    SceneErrors,
+    front_difference,
+    measured_branches,
+    scene_errors,
+)
 
 MODERATE, SMALL = SCENES["chemical-0.04"], SCENES["small-0.04"]
 

@@ -4,15 +4,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import struve
 
-from crackfront.adhesion import (
+from crackfront.core.adhesion import (
     chemical_adhesion,
     front_stress_intensity,
     half_derivative_mean_square,
     rough_adhesion,
 )
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
-from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
 
 SPECTRA = [
     SelfAffineSpectrum(0.05, 0.05, 0.8),

@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 from NuMPI.Optimization import tr_newton_bounded
 
-from crackfront import jkr
-from crackfront.bem import boundary_cycle, contact_loads, equilibrium, half_space_contact, perimeter
-from crackfront.bem.cycle import LOST_CONTACT
-from crackfront.bem.perimeter import EDGE
-from crackfront.cycle import LoadSchedule
-from crackfront.dataset import read_record, write_record
-from crackfront.provenance import provenance
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
+from crackfront.core import jkr
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.studies.boundary_elements.contact import half_space_contact
+from crackfront.studies.boundary_elements.cycle import LOST_CONTACT, boundary_cycle, contact_loads
+from crackfront.studies.boundary_elements.minimise import equilibrium
+from crackfront.studies.boundary_elements.perimeter import EDGE, perimeter
 
 SIDE, RANGE = 5.12, 0.61
 """Domain, and the range of attraction that 64 points resolve."""
@@ -199,7 +200,7 @@ def test_a_missing_extra_is_refused_with_the_command_that_installs_it(monkeypatc
 
 def test_nobody_who_runs_a_sweep_imports_the_boundary_elements():
     program = (
-        "import sys, crackfront.cli, crackfront.config, crackfront.sweep, crackfront.parallel\n"
+        "import sys, crackfront.cli, crackfront.sweep.configuration, crackfront.sweep.parallel\n"
         "print({'ContactMechanics', 'Adhesion', 'NuMPI', 'finufft'} & set(sys.modules))"
     )
     run = subprocess.run(

@@ -11,32 +11,27 @@ from pydantic import ValidationError
 
 from benchmarks.boundary import row as boundary_row
 from benchmarks.rotated import row as rotated_row
-from crackfront import jkr
-from crackfront.bem import (
-    BoundaryCycle,
-    Comparison,
-    Jump,
-    RotationEffect,
-    Speed,
-    ValidationParameters,
-    ValidationPicture,
-    comparison,
-    extrapolated,
+from crackfront.cli import main
+from crackfront.core import jkr
+from crackfront.data.files import read_attributes
+from crackfront.data.records import read_record, read_records
+from crackfront.data.yaml import ConfigurationError
+from crackfront.studies.boundary_elements.comparison import Comparison, comparison
+from crackfront.studies.boundary_elements.configuration import load_validation
+from crackfront.studies.boundary_elements.cycle import BoundaryCycle
+from crackfront.studies.boundary_elements.drawing import validation_figure
+from crackfront.studies.boundary_elements.front import (
     force_error,
     front_cycle,
-    jumps,
-    matched_jumps,
+    perimeter_at,
     shared_states,
-    validation_cases,
-    validation_report,
 )
-from crackfront.bem.front import perimeter_at
-from crackfront.bem.perimeter import N_ANGLE
-from crackfront.bem.report import power_of
-from crackfront.cli import main
-from crackfront.config import ConfigurationError, load_validation
-from crackfront.dataset import read_attributes, read_record, read_records
-from crackfront.plots import validation_figure
+from crackfront.studies.boundary_elements.jumps import Jump, jumps, matched_jumps
+from crackfront.studies.boundary_elements.parameters import ValidationParameters, validation_cases
+from crackfront.studies.boundary_elements.perimeter import N_ANGLE
+from crackfront.studies.boundary_elements.picture import ValidationPicture
+from crackfront.studies.boundary_elements.report import power_of, validation_report
+from crackfront.studies.boundary_elements.trends import RotationEffect, Speed, extrapolated
 
 CONFIGURATIONS = Path(__file__).parents[1] / "config"
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from benchmarks import energy_balance, needs
 from benchmarks.machine import peak_memory, restart_peak
-from crackfront.cycle import DEFAULT_STEP
+from crackfront.core.cycle.schedule import DEFAULT_STEP
 
 
 def test_the_smoke_benchmark_reports_equal_fronts(tmp_path):

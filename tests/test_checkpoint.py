@@ -6,12 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crackfront.config import load_configuration
-from crackfront.cycle import CycleRecord, LoadSchedule
-from crackfront.dataset import UnreadableFileError, read_checkpoint, write_checkpoint
-from crackfront.provenance import provenance
-from crackfront.scene import run_simulation
-from crackfront.steady import SteadySchedule
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.data.files import UnreadableFileError
+from crackfront.data.provenance import provenance
+from crackfront.simulate.files import read_checkpoint, write_checkpoint
+from crackfront.simulate.run import run_simulation
+from crackfront.sweep.configuration import load_configuration
 
 TEST = Path(__file__).parents[1] / "config/test.yaml"
 SWEEP = load_configuration(TEST)

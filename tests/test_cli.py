@@ -14,14 +14,15 @@ import xarray as xr
 from click.testing import CliRunner
 
 import crackfront as cf
-from crackfront import __version__, jkr
+from crackfront import __version__
 from crackfront.cli import main
 from crackfront.cli.report import TRY_AGAIN
-from crackfront.config import load_configuration
-from crackfront.dataset import failed_row, row_fingerprint
-from crackfront.relax import Status
-from crackfront.store.journal import Entry, Journal
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.core import jkr
+from crackfront.core.solver.relax import Status
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.journal import Entry, Journal
+from crackfront.sweep.table import failed_row, row_fingerprint
 
 TEST = Path(__file__).parents[1] / "config/test.yaml"
 
@@ -350,7 +351,7 @@ def test_a_simulation_that_cannot_be_stored_ends_the_run_with_exit_code_one(tmp_
     def full(*_):
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("crackfront.store.tasks.write_simulation", full)
+    monkeypatch.setattr("crackfront.sweep.tasks.write_simulation", full)
     result = run("simulate", TEST, "--output", tmp_path)
     assert result.exit_code == 1
     assert "nothing can be stored (no space left on device); make room" in result.stderr

@@ -7,10 +7,12 @@ from pathlib import Path
 import pytest
 import yaml
 
-from crackfront.config import ConfigurationError, load_configuration
-from crackfront.steady import SteadySchedule
-from crackfront.surfaces import measured_surface, read_measurements
-from crackfront.units import Scales
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.units import Scales
+from crackfront.data.yaml import ConfigurationError
+from crackfront.sweep.configuration import load_configuration
+from crackfront.topography.measures import measured_surface
+from crackfront.topography.reading import read_measurements
 
 ROOT = Path(__file__).parents[1]
 
@@ -427,7 +429,8 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
 
 def test_no_scan_is_read_for_spectra_that_are_given(tmp_path):
     code = (
-        "import sys; from pathlib import Path; from crackfront.config import load_configuration; "
+        "import sys; from pathlib import Path; "
+        "from crackfront.sweep.configuration import load_configuration; "
         f"load_configuration(Path({str(written(tmp_path, GOOD))!r})); "
         "assert 'SurfaceTopography' not in sys.modules"
     )

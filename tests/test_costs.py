@@ -9,18 +9,13 @@ import numpy as np
 import pytest
 
 from benchmarks import costs as benchmark
-from crackfront.adhesion import rough_adhesion
-from crackfront.config import load_configuration
-from crackfront.costs import (
-    expected_cost,
-    features,
-    integral_breadth,
-    measured_runs,
-)
-from crackfront.cycle import LoadSchedule
-from crackfront.scene import correlation_length
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
+from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.simulate.costs import expected_cost, features, integral_breadth, measured_runs
+from crackfront.simulate.simulation import correlation_length
+from crackfront.sweep.configuration import load_configuration
 
 ROOT = Path(__file__).parents[1]
 SWEEP = load_configuration(ROOT / "config/test.yaml")
@@ -76,10 +71,10 @@ def test_memory_is_predicted_within_a_factor_one_and_a_half():
     code = (
         "from pathlib import Path\n"
         "from dataclasses import replace\n"
-        "import crackfront.dataset\n"
-        "from crackfront.config import load_configuration\n"
-        "from crackfront.costs import expected_cost\n"
-        "from crackfront.scene import run_simulation\n"
+        "import crackfront.data\n"
+        "from crackfront.sweep.configuration import load_configuration\n"
+        "from crackfront.simulate.costs import expected_cost\n"
+        "from crackfront.simulate import run_simulation\n"
         f"sweep = load_configuration(Path({str(ROOT / 'config/test.yaml')!r}))\n"
         "one = sweep.simulation(sweep.spectra[0], 0.1, 0)\n"
         "one = replace(one, resolution=replace(one.resolution, n_point=2500))\n"

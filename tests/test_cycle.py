@@ -6,15 +6,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from crackfront import jkr, pinning
-from crackfront.adhesion import AdhesionMap, rough_adhesion
-from crackfront.cycle import LoadSchedule, dissipated_energy, run_cycle
-from crackfront.line import line_energy
-from crackfront.pinning import polar_field, swept_adhesion, tile_field
-from crackfront.relax import SOLVERS, Status, front_force, relax
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
-from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION
+from crackfront.core import jkr
+from crackfront.core.adhesion import AdhesionMap, rough_adhesion
+from crackfront.core.cycle.energy import dissipated_energy
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.elasticity import line_energy
+from crackfront.core.field.kinds import first_radius, polar_field, tile_field
+from crackfront.core.field.rays import front_adhesion, swept_adhesion
+from crackfront.core.solver.relax import SOLVERS, Status, front_force, relax
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 
@@ -240,7 +243,7 @@ def test_least_travel_counts_from_the_start_of_its_own_branch(solver):
     field = noisy_field(2)
     record = run_cycle(field, LoadSchedule(0.8, 0.1), solver=solver, record_fronts=True)
     up, down = branch(record, 1), branch(record, -1)
-    start, turn = pinning.first_radius(field), record.radius[up][-1]
+    start, turn = first_radius(field), record.radius[up][-1]
     assert np.allclose(record.least_travel[up], record.min_radius[up] - start, rtol=1e-13)
     travel = (turn - record.radius[down]).min(axis=1)
     assert np.allclose(record.least_travel[down], travel, rtol=1e-13, atol=1e-15)
@@ -255,7 +258,7 @@ def test_apparent_adhesion_is_the_mean_adhesion_along_the_front(solver, seed, n_
         field, LoadSchedule(0.6, 0.2), tolerance=1e-12, solver=solver, record_fronts=True
     )
     for front, apparent in zip(record.radius, record.apparent_work_of_adhesion, strict=True):
-        held = front * pinning.front_adhesion(front, field) / WORK_OF_ADHESION
+        held = front * front_adhesion(front, field) / WORK_OF_ADHESION
         assert held.mean() / front.mean() == pytest.approx(apparent, abs=1e-10)
 
 
@@ -394,7 +397,7 @@ def energy(front, penetration, field, origin):
 
 def test_dissipated_energy_is_the_fall_of_the_total_energy(rng):
     field = noisy_field(8)
-    origin = np.full(24, pinning.first_radius(field))
+    origin = np.full(24, first_radius(field))
     before, after = rng.uniform(0.8, 1.3, 24), rng.uniform(1.3, 2.2, 24)
     for one, other in ((before, after), (after, before)):
         fall = energy(one, 0.4, field, origin) - energy(other, 0.4, field, origin)
@@ -637,7 +640,7 @@ def repulsion_within(before, penetration, field):
     after = np.maximum(before, np.sqrt(max(penetration, 0.0)))
     share = (np.arange(4000) + 0.5) / 4000
     front = before + share[:, None] * (after - before)
-    repels = [np.maximum(-pinning.front_adhesion(a, field), 0.0) for a in front]
+    repels = [np.maximum(-front_adhesion(a, field), 0.0) for a in front]
     return 2 * np.pi * np.mean(np.mean(front * repels, axis=0) * (after - before))
 
 

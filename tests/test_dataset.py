@@ -10,31 +10,22 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crackfront.adhesion import AdhesionMap
-from crackfront.config import load_configuration
-from crackfront.cycle import CycleRecord
-from crackfront.dataset import (
-    PolarSamples,
-    UnreadableFileError,
-    read_cycle,
-    read_field,
-    read_simulation,
-    read_table,
-    sweep_row,
-    write_cycle,
-    write_field,
-    write_fit,
-    write_hysteresis,
-    write_simulation,
-    write_text,
-)
-from crackfront.dataset.schema import COORDINATES, CURVES, HYSTERESIS
-from crackfront.fits import STEADY_DEFINITION, fit_sweep
-from crackfront.laws import numerical_error
-from crackfront.provenance import Provenance, provenance
-from crackfront.relax import Status
-from crackfront.scene import SimulationResult, run_simulation
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.analysis.steady import STEADY_DEFINITION
+from crackfront.analysis.sweep import fit_sweep
+from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.solver.relax import Status
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.data.files import UnreadableFileError, write_text
+from crackfront.data.provenance import Provenance, provenance
+from crackfront.data.schema import COORDINATES, CURVES, HYSTERESIS
+from crackfront.simulate.field_files import PolarSamples, read_field, write_field
+from crackfront.simulate.files import read_cycle, read_simulation, write_cycle, write_simulation
+from crackfront.simulate.laws import numerical_error
+from crackfront.simulate.run import SimulationResult, run_simulation
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.fit_files import write_fit
+from crackfront.sweep.table import read_table, sweep_row, write_hysteresis
 
 SWEEP = load_configuration(Path(__file__).parents[1] / "config/test.yaml")
 ORIGIN = Provenance("1.2.3", "abc", "f00", "crackfront test", "nowhere", "seed: 1\n")

@@ -7,15 +7,11 @@ import numpy as np
 import pytest
 
 from benchmarks.factors import factors_text, rows
-from crackfront.config import load_configuration
-from crackfront.factors import (
-    BRANCHES,
-    expected_factors,
-    leave_one_out_error,
-    measured_factors,
-)
-from crackfront.fits import SweepTable
-from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.analysis.factors import BRANCHES, expected_factors, leave_one_out_error
+from crackfront.analysis.measured_factors import measured_factors
+from crackfront.analysis.table import SweepTable
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.sweep.configuration import load_configuration
 
 CONFIG = Path(__file__).parents[1] / "config"
 RADIUS = 1.8656

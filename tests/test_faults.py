@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from crackfront.config import load_configuration
-from crackfront.provenance import provenance
-from crackfront.store import Store
+from crackfront.data.provenance import provenance
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.store import Store
 
 ROOT = Path(__file__).parents[1]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}

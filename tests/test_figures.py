@@ -10,18 +10,16 @@ from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 from crackfront.cli import main
-from crackfront.config import SCALES, ConfigurationError, load_figure
-from crackfront.dataset import (
-    UnreadableFileError,
-    largest_differences,
-    read_attributes,
-    read_record,
-    write_record,
-)
-from crackfront.figures import FIGURES, Check, SmoothLoop, checks_table, close_to
-from crackfront.plots import FIGURE_MAKERS
-from crackfront.provenance import provenance
-from crackfront.records import variable
+from crackfront.core.records import variable
+from crackfront.data.files import UnreadableFileError, read_attributes
+from crackfront.data.provenance import provenance
+from crackfront.data.records import largest_differences, read_record, write_record
+from crackfront.data.yaml import ConfigurationError
+from crackfront.studies.paper.checks import Check, checks_table, close_to
+from crackfront.studies.paper.configuration import SCALES, load_figure
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.smooth import SmoothLoop
 
 REFERENCES = Path(__file__).parents[1] / "docs" / "reference"
 CONFIGURATIONS = Path(__file__).parents[1] / "config" / "figures"

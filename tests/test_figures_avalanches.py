@@ -8,11 +8,11 @@ import pytest
 from matplotlib.figure import Figure
 from pydantic import ValidationError
 
-from crackfront.config import load_figure
-from crackfront.figures import FIGURES, AvalancheRecord
-from crackfront.figures.avalanches import size_law
-from crackfront.figures.contact import STRONG
-from crackfront.plots import FIGURE_MAKERS
+from crackfront.studies.paper.avalanches import AvalancheRecord, size_law
+from crackfront.studies.paper.configuration import load_figure
+from crackfront.studies.paper.contact import STRONG
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.makers import FIGURE_MAKERS
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "beyond-avalanches.yaml"
 SCENE = FIGURES["beyond-avalanches"]

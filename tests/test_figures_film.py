@@ -6,21 +6,22 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from crackfront.config import ConfigurationError, load_figure
-from crackfront.dataset import read_record, write_record
-from crackfront.figures import FIGURES
-from crackfront.figures.film_scales import FilmScalesParameters, film_scales
-from crackfront.figures.measured import MeasuredFileError
-from crackfront.figures.profile_densities import conformity_energy, read_profile_density
-from crackfront.figures.synthetic_film import (
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.data.yaml import ConfigurationError
+from crackfront.studies.paper.configuration import load_figure
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.film_scales import FilmScalesParameters, film_scales
+from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.measured import MeasuredFileError
+from crackfront.studies.paper.profile_densities import conformity_energy, read_profile_density
+from crackfront.studies.paper.synthetic_film import (
     SyntheticFilmParameters,
     profile_periodogram,
     synthetic_film,
 )
-from crackfront.plots import FIGURE_MAKERS
-from crackfront.provenance import provenance
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
 
 FILM = {
     "young_modulus": 0.7e6,

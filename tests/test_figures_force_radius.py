@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from crackfront import jkr
-from crackfront.figures.force_radius import ForceRadius, fitted_adhesion, read_force_radius
-from crackfront.figures.measured import MeasuredFileError
-from crackfront.fits import adhesion_from_forces
-from crackfront.units import Scales
+from crackfront.analysis.force import adhesion_from_forces
+from crackfront.core import jkr
+from crackfront.core.units import Scales
+from crackfront.studies.paper.force_radius import ForceRadius, fitted_adhesion, read_force_radius
+from crackfront.studies.paper.measured import MeasuredFileError
 
 RUBBER = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
 

@@ -8,9 +8,9 @@ import pytest
 from matplotlib.figure import Figure
 from pydantic import ValidationError
 
-from crackfront.config import load_figure
-from crackfront.figures import FIGURES
-from crackfront.plots import FIGURE_MAKERS
+from crackfront.studies.paper.configuration import load_figure
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.makers import FIGURE_MAKERS
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "main-3ab.yaml"
 SCENE = FIGURES["main-3ab"]

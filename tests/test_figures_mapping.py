@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from crackfront.dataset import read_record, write_record
-from crackfront.figures import FIGURES
-from crackfront.figures.mapping import Mapping, MappingParameters, mapping
-from crackfront.plots import FIGURE_MAKERS
-from crackfront.provenance import provenance
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.mapping import Mapping, MappingParameters, mapping
 
 GIVEN = {
     "seed": 1,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crackfront.figures.measured import MeasuredFileError, Quantity, read_measured
+from crackfront.studies.paper.measured import MeasuredFileError, Quantity, read_measured
 
 LENGTH = Quantity("length", {"m": 1.0, "um": 1e-6}, positive=True)
 LOAD = Quantity("load", {"N": 1.0, "mN": 1e-3})

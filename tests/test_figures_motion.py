@@ -7,11 +7,12 @@ from click.testing import CliRunner
 from PIL import Image
 
 from crackfront.cli import main
-from crackfront.dataset import write_record
-from crackfront.figures import FIGURES
-from crackfront.figures.motion import MotionParameters
-from crackfront.plots import ANIMATION_MAKERS, save_animation
-from crackfront.provenance import provenance
+from crackfront.data.provenance import provenance
+from crackfront.data.records import write_record
+from crackfront.plots.animation import save_animation
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.makers import ANIMATION_MAKERS
+from crackfront.studies.paper.motion import MotionParameters
 
 
 def ignore(line):

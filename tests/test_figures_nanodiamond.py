@@ -6,13 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crackfront.config import ConfigurationError, figure_files, load_figure
-from crackfront.dataset import read_record, write_record
-from crackfront.figures import FIGURES
-from crackfront.figures.advances import AdvanceWatch, advances
-from crackfront.figures.nanodiamond_parameters import NanodiamondParameters
-from crackfront.plots import FIGURE_MAKERS
-from crackfront.provenance import provenance
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.data.yaml import ConfigurationError
+from crackfront.studies.paper.advances import AdvanceWatch, advances
+from crackfront.studies.paper.configuration import figure_files, load_figure
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.nanodiamond_parameters import NanodiamondParameters
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "main-5bc.yaml"
 

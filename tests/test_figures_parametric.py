@@ -3,11 +3,17 @@
 import numpy as np
 import pytest
 
-from crackfront.dataset import read_record, write_record
-from crackfront.figures import FIGURES, ParametricStudy, ParametricStudyParameters, study_fit
-from crackfront.fits import SweepTable, fit_sweep
-from crackfront.plots import FIGURE_MAKERS
-from crackfront.provenance import provenance
+from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.table import SweepTable
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.parametric import (
+    ParametricStudy,
+    ParametricStudyParameters,
+    study_fit,
+)
 
 SCENE = FIGURES["si-5"]
 AMPLITUDES = np.array([0.002, 0.01, 0.05, 0.15])

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crackfront.dataset import read_record, write_record
-from crackfront.figures import FIGURES
-from crackfront.figures.pinned_loop import PinnedLoopParameters
-from crackfront.figures.rough import patch_of
-from crackfront.pinning import front_adhesion
-from crackfront.plots import FIGURE_MAKERS
-from crackfront.provenance import provenance
-from crackfront.scene import simulation_field
+from crackfront.core.field.rays import front_adhesion
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.simulate.contact import simulation_field
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.pinned_loop import PinnedLoopParameters
+from crackfront.studies.paper.rough import patch_of
 
 
 def ignore(line):

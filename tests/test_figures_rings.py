@@ -6,18 +6,13 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from crackfront.dataset import read_record, write_record
-from crackfront.figures import FIGURES
-from crackfront.figures.rings import (
-    RingLoops,
-    RingsParameters,
-    ring_loops,
-    ring_penetration,
-)
-from crackfront.figures.rings_checks import first_stops
-from crackfront.figures.smooth import INNERMOST
-from crackfront.plots import FIGURE_MAKERS
-from crackfront.provenance import provenance
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.rings import RingLoops, RingsParameters, ring_loops, ring_penetration
+from crackfront.studies.paper.rings_checks import first_stops
+from crackfront.studies.paper.smooth import INNERMOST
 
 GIVEN = {
     "amplitude": 0.4,

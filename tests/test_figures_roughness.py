@@ -8,11 +8,12 @@ import pytest
 from matplotlib.figure import Figure
 from pydantic import ValidationError
 
-from crackfront.config import load_figure
-from crackfront.figures import FIGURES, RoughnessRecord
-from crackfront.figures.contact import STRONG, WEAK
-from crackfront.figures.roughness_checks import fitted_roughness, stiffness_wavevector
-from crackfront.plots import FIGURE_MAKERS
+from crackfront.studies.paper.configuration import load_figure
+from crackfront.studies.paper.contact import STRONG, WEAK
+from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.roughness import RoughnessRecord
+from crackfront.studies.paper.roughness_checks import fitted_roughness, stiffness_wavevector
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "beyond-roughness.yaml"
 SCENE = FIGURES["beyond-roughness"]

@@ -5,14 +5,26 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crackfront import fits, jkr
-from crackfront.cycle import CycleRecord, LoadSchedule, run_cycle
-from crackfront.fits import Estimate, SweepFit, SweepTable, fit_sweep, steady_adhesion
-from crackfront.fits.estimate import combination, mean_estimate, resample_counts, student_estimate
-from crackfront.fits.table import CELL_COLUMNS
-from crackfront.pinning import polar_field
-from crackfront.relax import Status
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.analysis.estimate import (
+    Estimate,
+    combination,
+    mean_estimate,
+    resample_counts,
+    student_estimate,
+)
+from crackfront.analysis.notes import fit_notes, trend_sentence
+from crackfront.analysis.report import fit_table
+from crackfront.analysis.result import SweepFit, fit_columns
+from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.table import CELL_COLUMNS, SweepTable
+from crackfront.core import jkr
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.kinds import polar_field
+from crackfront.core.solver.relax import Status
+from crackfront.core.units import WORK_OF_ADHESION
 
 AMPLITUDES = np.array([0.005, 0.01, 0.02, 0.05, 0.1])
 LENGTHS = np.array([0.02, 0.04, 0.08])
@@ -226,7 +238,7 @@ def test_the_notes_tell_the_largest_numerical_error_of_k(rng):
         note.startswith(
             f"Numerical errors: up to 0.035 of k ({table.spectrum[1]} at e_el = {energy:.4g} w_int)"
         )
-        for note in fits.fit_notes(fit)
+        for note in fit_notes(fit)
     )
 
 
@@ -269,7 +281,7 @@ def test_a_chemical_field_leaves_the_midpoint_at_w_int():
     assert covered(fit.pooled.midpoint_slope, 0.0)
     assert fit.midpoint_probability > 0.01
     assert fit_all(chemical).midpoint_probability < 1e-4
-    assert "| paper |  |  | 3 | 3 | 2 | 0 | 0 |" in fits.fit_table(fit)
+    assert "| paper |  |  | 3 | 3 | 2 | 0 | 0 |" in fit_table(fit)
 
 
 def test_failed_simulations_are_left_out_and_told(rng):
@@ -282,7 +294,7 @@ def test_failed_simulations_are_left_out_and_told(rng):
     np.testing.assert_array_equal(fit.n_failed, [3, 4, 20])
     np.testing.assert_array_equal(fit.n_realisation, [4, 4, 0])
     np.testing.assert_array_equal(fit.cells.count[0], [4, 4, 4, 4, 1])
-    notes = "\n".join(fits.fit_notes(fit))
+    notes = "\n".join(fit_notes(fit))
     assert "flat-0.02: simulations in the range without a value: 3" in notes
     assert "flat-0.04: no value at e_el = 0.005 w_int" in notes
     assert "flat-0.08: no simulation in the range has a value" in notes
@@ -296,8 +308,8 @@ def test_one_realisation_gives_values_but_no_intervals_and_says_so(rng):
             estimate = getattr(law, name)
             assert np.isnan([estimate.low, estimate.high, estimate.standard_error]).all()
     assert np.isnan(fit.midpoint_largest)
-    assert any("one realisation gives no interval" in note for note in fits.fit_notes(fit))
-    assert "(no interval)" in fits.fit_table(fit)
+    assert any("one realisation gives no interval" in note for note in fit_notes(fit))
+    assert "(no interval)" in fit_table(fit)
 
 
 def test_a_single_amplitude_and_a_single_spectrum_give_k_but_no_trend(rng):
@@ -307,7 +319,7 @@ def test_a_single_amplitude_and_a_single_spectrum_give_k_but_no_trend(rng):
     assert np.isnan(fit.pooled.exponent.value)
     assert np.isnan(fit.pooled.disorder_slope.value)
     assert np.isnan(fit.pooled_size_slope.value)
-    sentence = fits.trend_sentence(fit)
+    sentence = trend_sentence(fit)
     assert "its trend with w_rms needs two amplitudes" in sentence
     assert "its trend with size needs two spectra of one shape" in sentence
 
@@ -325,24 +337,24 @@ def test_size_is_compared_only_among_spectra_of_one_shape(rng):
 
 def test_a_k_that_depends_on_disorder_is_called_no_constant(rng):
     falling = synthetic_table(rng, lambda energy, _: 3 - 0.5 * np.log2(energy / 0.005))
-    sentence = fits.trend_sentence(fit_all(falling))
+    sentence = trend_sentence(fit_all(falling))
     assert "not a constant" in sentence
     assert "changes by -" in sentence
-    level = fits.trend_sentence(fit_all(synthetic_table(np.random.default_rng(1), constant)))
+    level = trend_sentence(fit_all(synthetic_table(np.random.default_rng(1), constant)))
     assert "not a constant" in level
 
 
 def test_a_range_below_the_onset_of_hysteresis_is_pointed_out(rng):
     table = synthetic_table(rng, lambda energy, _: np.where(energy > 0.01, 3.0, -0.3), noise=0.0)
     fit = fit_all(table)
-    notes = "\n".join(fits.fit_notes(fit))
+    notes = "\n".join(fit_notes(fit))
     assert "reaches below the onset" in notes
     assert "mean hysteresis at e_el = 0.005, 0.01 w_int is not positive" in notes
     assert np.isfinite(fit.pooled.exponent.value)
 
 
 def test_the_table_shows_theory_range_and_every_estimate(rng):
-    text = fits.fit_table(fit_all(synthetic_table(rng, constant)))
+    text = fit_table(fit_all(synthetic_table(rng, constant)))
     for words in (
         "e_el/w_int from 0.005 to 0.1 (5 of 5 amplitudes); 60 simulations, 0 without",
         "| paper |  |  | 3 | 3 | 2 | 1 | 0 |",
@@ -360,7 +372,7 @@ def test_the_table_shows_theory_range_and_every_estimate(rng):
 def test_every_array_of_a_fit_comes_out_with_its_dimensions(rng):
     fit = fit_all(synthetic_table(rng, constant))
     size = {"spectrum": 3, "amplitude": 5}
-    columns = {column.name: column for column in fits.fit_columns(fit)}
+    columns = {column.name: column for column in fit_columns(fit)}
     for column in columns.values():
         assert column.values.shape == tuple(size[dim] for dim in column.dims), column.name
         assert column.long_name

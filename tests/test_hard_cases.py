@@ -6,17 +6,20 @@ import numpy as np
 import pytest
 import yaml
 
-from crackfront import jkr
-from crackfront.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
-from crackfront.config import load_configuration
-from crackfront.cycle import LoadSchedule, run_cycle
-from crackfront.line import half_laplacian
-from crackfront.pinning import front_adhesion, polar_field, tile_field
-from crackfront.relax import SOLVERS, Status, front_force, relax
-from crackfront.scene import contact_field, run_simulation
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
-from crackfront.units import WORK_OF_ADHESION, Scales
+from crackfront.core import jkr
+from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.elasticity import half_laplacian
+from crackfront.core.field.kinds import polar_field, tile_field
+from crackfront.core.field.rays import front_adhesion
+from crackfront.core.solver.relax import SOLVERS, Status, front_force, relax
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import WORK_OF_ADHESION, Scales
+from crackfront.simulate.contact import contact_field
+from crackfront.simulate.run import run_simulation
+from crackfront.sweep.configuration import load_configuration
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 

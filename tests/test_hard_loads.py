@@ -11,12 +11,14 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from crackfront import jkr
-from crackfront.adhesion import AdhesionMap
-from crackfront.cycle import FrontHistory, LoadSchedule, run_cycle
-from crackfront.pinning import first_radius, last_radius, n_angle, polar_field, tile_field
-from crackfront.relax import SOLVERS, Status, front_force, relax
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.core import jkr
+from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.cycle.history import FrontHistory
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.kinds import first_radius, last_radius, n_angle, polar_field, tile_field
+from crackfront.core.solver.relax import SOLVERS, Status, front_force, relax
+from crackfront.core.units import WORK_OF_ADHESION
 
 TIGHT = 1e-12
 """Tolerance at which fronts are compared; they then agree to SAME."""

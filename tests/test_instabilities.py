@@ -5,13 +5,13 @@ import itertools
 import numpy as np
 import pytest
 
-from crackfront.cycle import dissipated_energy
-from crackfront.instabilities import larkin_length, resolved_motion, swept_clusters
-from crackfront.pinning import polar_field
-from crackfront.relax import relax
-from crackfront.scene import correlation_length
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.core.cycle.energy import dissipated_energy
+from crackfront.core.cycle.instabilities import larkin_length, resolved_motion, swept_clusters
+from crackfront.core.field.kinds import polar_field
+from crackfront.core.solver.relax import relax
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.simulation import correlation_length
 
 TRAVEL = 0.004
 

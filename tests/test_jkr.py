@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crackfront import jkr
-from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION
+from crackfront.core import jkr
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 # facts.md: radius, penetration and force of the smooth sphere at w = w_int.
 STATES = {

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from crackfront.config import load_configuration
-from crackfront.dataset import failed_row
-from crackfront.store.journal import Entry, Journal, journal_paths, read_journal
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.journal import Entry, Journal, journal_paths, read_journal
+from crackfront.sweep.table import failed_row
 
 SWEEP = load_configuration(Path(__file__).parents[1] / "config/test.yaml")
 ONE = SWEEP.shard(SWEEP.spectra[0])[0]
@@ -91,7 +91,7 @@ def test_a_line_that_the_disk_does_not_take_leaves_nothing(tmp_path, monkeypatch
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patched:
-        patched.setattr("crackfront.store.journal.os.fsync", full)
+        patched.setattr("crackfront.sweep.journal.os.fsync", full)
         with pytest.raises(OSError, match="No space left"):
             journal.append(ENDED)
     assert path.read_bytes() == before

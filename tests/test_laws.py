@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crackfront.accuracy import SCENES, with_knob
-from crackfront.laws import (
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.simulate.laws import (
     KNOBS,
     LAW_SIZE,
     chosen_numerics,
@@ -16,7 +16,7 @@ from crackfront.laws import (
     read_laws,
     spectral_shape,
 )
-from crackfront.spectrum import SelfAffineSpectrum
+from crackfront.studies.accuracy.scenes import SCENES, with_knob
 
 ENERGIES = (0.0025, 0.01, 0.04, 0.16)
 FINER = {"sites": 1.3, "cubic": 1.3, "linear": 1.3, "pixels": 1.3, "tolerance": 0.3}

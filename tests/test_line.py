@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crackfront.line import half_laplacian, line_energy, self_stiffness
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.core.elasticity import half_laplacian, line_energy, self_stiffness
+from crackfront.core.units import WORK_OF_ADHESION
 
 COUNTS = [1, 4, 5, 7, 8, 13, 16, 30, 31, 64]
 

@@ -10,12 +10,12 @@ import pytest
 import xarray as xr
 from click.testing import CliRunner
 
-from crackfront import parallel
 from crackfront.cli import main
-from crackfront.config import load_configuration
-from crackfront.parallel import default_launcher, launch_ranks, run_tasks
-from crackfront.provenance import provenance
-from crackfront.store import Store
+from crackfront.data.provenance import provenance
+from crackfront.sweep import parallel
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parallel import default_launcher, launch_ranks, run_tasks
+from crackfront.sweep.store import Store
 
 ROOT = Path(__file__).parents[1]
 TEST = str(ROOT / "config/test.yaml")
@@ -133,7 +133,7 @@ def test_a_launcher_of_another_mpi_is_no_silent_serial_run(tmp_path):
 def test_an_exception_in_a_task_ends_the_job_at_once(tmp_path):
     script = tmp_path / "failing.py"
     script.write_text(
-        "from crackfront import parallel\n"
+        "from crackfront.sweep import parallel\n"
         "if parallel.is_manager(2):\n"
         "    list(parallel.run_tasks((1).__truediv__, [1, 0, 1, 1]))\n"
         "else:\n"

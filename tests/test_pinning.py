@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crackfront import pinning
-from crackfront.adhesion import AdhesionMap, chemical_adhesion
-from crackfront.pinning import front_adhesion, polar_field, swept_adhesion, tile_field
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.core.adhesion import AdhesionMap, chemical_adhesion
+from crackfront.core.field.kinds import first_radius, last_radius, n_angle, polar_field, tile_field
+from crackfront.core.field.rays import front_adhesion, sampled_on_rays, swept_adhesion
+from crackfront.core.field.samples import evaluate, sample_count, sample_product, sample_radius
+from crackfront.core.units import WORK_OF_ADHESION
 
 
 def tile(values, pixel=0.1):
@@ -76,12 +77,12 @@ def test_a_field_keeps_its_values_when_the_arrays_it_was_made_of_change():
 def test_a_polar_field_states_its_rays_and_its_range():
     radii, adhesion = noisy_polar()
     field = polar_field(radii, adhesion)
-    assert pinning.n_angle(field) == 8
-    assert pinning.first_radius(field) == radii[0]
-    assert pinning.last_radius(field) == radii[-1]
-    assert pinning.sample_count(field) == radii.size
-    assert pinning.sample_radius(field, 3) == radii[3]
-    assert pinning.sample_product(field, 5, 3) == pytest.approx(radii[3] * adhesion[3, 5])
+    assert n_angle(field) == 8
+    assert first_radius(field) == radii[0]
+    assert last_radius(field) == radii[-1]
+    assert sample_count(field) == radii.size
+    assert sample_radius(field, 3) == radii[3]
+    assert sample_product(field, 5, 3) == pytest.approx(radii[3] * adhesion[3, 5])
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
@@ -115,7 +116,7 @@ def test_rings_are_one_ray_of_the_same_samples_and_slopes(interpolation, innermo
     rings = WORK_OF_ADHESION * rng.uniform(0.5, 1.5, 20)
     one = polar_field(radii, rings, interpolation)
     many = polar_field(radii, np.repeat(rings[:, None], 8, axis=1), interpolation)
-    assert pinning.n_angle(one) == 1
+    assert n_angle(one) == 1
     assert np.array_equal(one.radii, many.radii)
     for found, expected in ((one.products, many.products), (one.slopes, many.slopes)):
         assert np.array_equal(found, expected[:1])
@@ -160,7 +161,7 @@ def test_a_tile_is_met_at_its_own_points_along_both_axes(rng):
     for sample in range(12):
         ahead, behind = (5 + sample + 1) % 10, (5 - sample - 1) % 10
         met = [values[ahead, 5], values[5, ahead], values[behind, 5], values[5, behind]]
-        found = [pinning.sample_product(field, ray, sample) for ray in range(4)]
+        found = [sample_product(field, ray, sample) for ray in range(4)]
         assert np.allclose(found, 0.1 * (sample + 1) * np.array(met), rtol=1e-12)
 
 
@@ -171,10 +172,8 @@ def test_the_apex_is_half_a_side_from_the_first_point_on_even_and_odd_tiles():
         values = 1 + 0.3 * np.cos(2 * np.pi * (x - period / 2) / period)[:, None] * np.ones(n_point)
         field = tile_field(tile(values), 4, spacing=0.01, largest_radius=0.2)
         # The field is symmetric about the apex, and highest there.
-        assert pinning.sample_product(field, 0, 9) == pytest.approx(
-            pinning.sample_product(field, 2, 9), rel=1e-13
-        )
-        assert pinning.sample_product(field, 0, 0) / 0.01 == pytest.approx(1.3, abs=1e-3)
+        assert sample_product(field, 0, 9) == pytest.approx(sample_product(field, 2, 9), rel=1e-13)
+        assert sample_product(field, 0, 0) / 0.01 == pytest.approx(1.3, abs=1e-3)
 
 
 def test_interpolation_of_a_tile_converges_with_fourth_order():
@@ -186,9 +185,9 @@ def test_interpolation_of_a_tile_converges_with_fourth_order():
         angle = 2 * np.pi * np.arange(32) / 32
         error = 0.0
         for sample in range(0, 90, 3):
-            radius = pinning.sample_radius(field, sample)
+            radius = sample_radius(field, sample)
             exact = wavy(radius * np.cos(angle), radius * np.sin(angle), 1.0)
-            found = [pinning.sample_product(field, ray, sample) / radius for ray in range(32)]
+            found = [sample_product(field, ray, sample) / radius for ray in range(32)]
             error = max(error, np.abs(found - exact).max())
         errors.append(error)
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
@@ -213,8 +212,8 @@ def test_a_tile_may_have_sides_of_different_length(rng):
         radius = 0.1 * (step + 1)
         along_x = values[(4 + step + 1) % 8, 6]
         along_y = values[4, (6 + step + 1) % 12]
-        assert pinning.sample_product(field, 0, step) == pytest.approx(radius * along_x)
-        assert pinning.sample_product(field, 1, step) == pytest.approx(radius * along_y)
+        assert sample_product(field, 0, step) == pytest.approx(radius * along_x)
+        assert sample_product(field, 1, step) == pytest.approx(radius * along_y)
 
 
 def test_a_constant_tile_is_constant_everywhere():
@@ -227,11 +226,11 @@ def test_a_constant_tile_is_constant_everywhere():
 def test_the_rays_of_a_tile_sampled_beforehand_are_the_same_field(rng, interpolation):
     values = 1 + 0.3 * rng.standard_normal((16, 16))
     field = tile_field(tile(values), 12, 0.04, 1.5, interpolation)
-    polar = pinning.sampled_on_rays(field)
+    polar = sampled_on_rays(field)
     front = rng.uniform(0.05, 1.45, 12)
     assert np.allclose(front_adhesion(front, polar), front_adhesion(front, field), rtol=1e-13)
-    assert pinning.last_radius(polar) == pinning.last_radius(field) >= 1.5
-    assert pinning.first_radius(polar) == pinning.first_radius(field) == 0.04
+    assert last_radius(polar) == last_radius(field) >= 1.5
+    assert first_radius(polar) == first_radius(field) == 0.04
 
 
 def test_straight_pieces_of_a_tile_join_its_samples(rng):
@@ -240,7 +239,7 @@ def test_straight_pieces_of_a_tile_join_its_samples(rng):
     radii = 0.04 * np.arange(1, 39)
     front = rng.uniform(0.05, 1.45, 12)
     for ray in range(12):
-        samples = [pinning.sample_product(field, ray, k) for k in range(38)]
+        samples = [sample_product(field, ray, k) for k in range(38)]
         expected = np.interp(front[ray], radii, samples)
         found = front[ray] * front_adhesion(front, field)[ray]
         assert found == pytest.approx(expected, rel=1e-13)
@@ -281,13 +280,13 @@ def test_cubic_pieces_have_one_slope_where_they_meet(rng, kind):
         radii = 0.05 * np.arange(1, 31)
         field = polar_field(radii, 1 + 0.3 * rng.standard_normal((30, 8)), "cubic")
     for sample in (3, 11, 20):
-        radius, step = pinning.sample_radius(field, sample), 1e-7
+        radius, step = sample_radius(field, sample), 1e-7
         inner, at, outer = (
             (radius + way) * front_adhesion(np.full(8, radius + way), field)
             for way in (-step, 0.0, step)
         )
         assert np.allclose((outer - at) / step, (at - inner) / step, rtol=0, atol=1e-3)
-        slopes = [pinning.evaluate(field, ray, sample)[1] for ray in range(8)]
+        slopes = [evaluate(field, ray, sample)[1] for ray in range(8)]
         assert np.allclose((outer - inner) / (2 * step), slopes, rtol=0, atol=1e-3)
 
 
@@ -301,7 +300,7 @@ def test_an_unknown_interpolation_is_refused():
 def test_a_chemical_map_serves_as_a_field(rng):
     adhesion = chemical_adhesion(0.1 * rng.standard_normal((8, 8)), 0.1)
     field = tile_field(adhesion, 8, 0.05, 1.0)
-    assert pinning.n_angle(field) == 8
+    assert n_angle(field) == 8
     assert np.all(np.isfinite(front_adhesion(np.full(8, 0.5), field)))
 
 
@@ -389,8 +388,8 @@ def test_splines_of_a_band_limited_tile_keep_the_amplitudes_of_its_modes():
     amplitudes = {}
     for band_limited in (False, True):
         field = tile_field(wave, 4, 0.001, 3.2, band_limited=band_limited)
-        radii = np.array([pinning.sample_radius(field, k) for k in range(3200)])
-        values = np.array([pinning.sample_product(field, 0, k) for k in range(3200)]) / radii
+        radii = np.array([sample_radius(field, k) for k in range(3200)])
+        values = np.array([sample_product(field, 0, k) for k in range(3200)]) / radii
         # The apex is 16 points, four waves, from the first point.
         amplitudes[band_limited] = 2 * np.mean((values - 1) * np.cos(q * radii)) / 0.5
     assert amplitudes[True] == pytest.approx(1, abs=1e-5)

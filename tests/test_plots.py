@@ -7,14 +7,18 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
-from crackfront import jkr
-from crackfront.cycle import LoadSchedule, run_cycle
-from crackfront.fits import SweepTable, fit_sweep, steady_adhesion
-from crackfront.pinning import polar_field
-from crackfront.plots import factor_figure, hysteresis_figure, loop_figure, save_figure
-from crackfront.plots.style import COLOURS, MARKERS
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.table import SweepTable
+from crackfront.core import jkr
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.kinds import polar_field
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.plots.loop import loop_figure
+from crackfront.plots.style import COLOURS, MARKERS, save_figure
+from crackfront.plots.sweep import factor_figure, hysteresis_figure
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from crackfront.fits import PowerLaw, truncated_power_law
+from crackfront.analysis.power_law import PowerLaw, truncated_power_law
 
 
 def drawn(rng, exponent, cutoff, count):

@@ -11,23 +11,25 @@ from click.testing import CliRunner
 
 from benchmarks import predictions
 from benchmarks.predictions import TABLE_HEAD, comparison_row
-from crackfront import plots
+from crackfront.analysis.factors import BRANCHES, expected_factors, leave_one_out_error
+from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.cli import main
-from crackfront.dataset import read_cycle, read_field
-from crackfront.factors import BRANCHES, expected_factors, leave_one_out_error
-from crackfront.fits import PAPER_FACTOR
-from crackfront.plots.prediction import prediction_figure
-from crackfront.prediction import (
+from crackfront.core.records import variables
+from crackfront.core.units import Scales
+from crackfront.simulate.field_files import read_field
+from crackfront.simulate.files import read_cycle
+from crackfront.topography.drawing import prediction_figure
+from crackfront.topography.files import Treatment
+from crackfront.topography.limits import prediction_notes, theory_limits
+from crackfront.topography.measures import measured_surface
+from crackfront.topography.prediction import (
     Prediction,
     predicted,
-    prediction_notes,
     reduced_spectrum,
     surface_factors,
-    theory_limits,
 )
-from crackfront.records import variables
-from crackfront.surfaces import Treatment, measured_surface, read_measurements, zero_load_radius
-from crackfront.units import Scales
+from crackfront.topography.reading import read_measurements
+from crackfront.topography.tile import zero_load_radius
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "examples/scans"
@@ -88,7 +90,7 @@ def predict(tmp_path, monkeypatch):
 
     def command(*more, scans=(DETAIL, OVERVIEW), drawn=False, **changes):
         if not drawn:
-            monkeypatch.setattr(plots, "save_figure", lambda figure, stem: ())
+            monkeypatch.setattr("crackfront.plots.style.save_figure", lambda figure, stem: ())
         return run("predict", *scans, *sphere(**changes), "--figure", tmp_path / "figure", *more)
 
     return command

@@ -6,9 +6,9 @@ import sys
 import pytest
 
 from crackfront import __version__
-from crackfront import provenance as module
-from crackfront.compiled import solver_fingerprint
-from crackfront.provenance import git_commit, package_fingerprint, provenance
+from crackfront.core.compiled import solver_fingerprint
+from crackfront.data import provenance as module
+from crackfront.data.provenance import git_commit, provenance
 
 
 @pytest.fixture(autouse=True)
@@ -62,15 +62,3 @@ def test_a_commit_is_named_in_full_and_changes_are_told(monkeypatch, tmp_path):
     subprocess.run([*git, "tag", "-a", "-m", "first", "v1.0"], check=True, capture_output=True)
     git_commit.cache_clear()
     assert git_commit() == f"{clean}-dirty"
-
-
-def test_the_fingerprint_of_the_package_changes_with_any_source(monkeypatch, tmp_path):
-    (tmp_path / "folder").mkdir()
-    (tmp_path / "folder/a.py").write_text("1\n")
-    monkeypatch.setattr(module, "PACKAGE", tmp_path)
-    package_fingerprint.cache_clear()
-    before = package_fingerprint()
-    (tmp_path / "folder/a.py").write_text("2\n")
-    package_fingerprint.cache_clear()
-    assert package_fingerprint() != before
-    package_fingerprint.cache_clear()

@@ -2,7 +2,7 @@
 
 import pytest
 
-from crackfront.quantities import si_value
+from crackfront.data.quantities import si_value
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import gaussian_filter
 
-from crackfront import jkr, pinning
-from crackfront.adhesion import AdhesionMap
-from crackfront.pinning import polar_field, tile_field
-from crackfront.relax import SOLVERS, Status, front_force, relax
-from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
+from crackfront.core import jkr
+from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.field.kinds import polar_field, tile_field
+from crackfront.core.field.rays import front_adhesion, sampled_on_rays
+from crackfront.core.solver.relax import SOLVERS, Status, front_force, relax
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
 
 TIGHT = 1e-13
 """Tolerance at which two fronts are compared; the fronts then agree to SAME."""
@@ -382,7 +383,7 @@ def test_mean_adhesion_under_the_front_is_the_mean_release_rate(solver, case, pe
         # Only where no site is held by another condition: its first circle, or compression.
         lowest = max(case.radii[0], np.sqrt(max(load, 0.0)))
         if state.status is Status.CONVERGED and state.radius.min() > lowest + 1e-9:
-            held = state.radius * pinning.front_adhesion(state.radius, case.field)
+            held = state.radius * front_adhesion(state.radius, case.field)
             released = state.radius * jkr.energy_release_rate(state.radius, load)
             assert held.mean() == pytest.approx(released.mean(), abs=1e-11)
 
@@ -486,7 +487,7 @@ def test_mirroring_the_tile_mirrors_the_front(solver):
 @every_solver
 def test_a_tile_and_its_samples_on_the_rays_give_the_same_front(solver):
     field = tile_field(noisy_tile(5), 20, 0.04, 2.6)
-    polar = pinning.sampled_on_rays(field)
+    polar = sampled_on_rays(field)
     front = other = np.full(20, 0.04)
     for penetration, direction in [(0.2, 1), (0.8, 1), (0.5, -1), (-0.2, -1), (0.4, 1)]:
         one = tight(front, penetration, direction, field, solver)
@@ -541,7 +542,7 @@ def test_a_front_solves_the_equation_of_equilibrium_in_si(solver):
     outcome = tight(case.circle(), 0.5, 1, case.field, solver)
     front = unit.lateral * outcome.radius
     penetration = unit.vertical * 0.5
-    adhesion = unit.energy_per_area * pinning.front_adhesion(outcome.radius, case.field)
+    adhesion = unit.energy_per_area * front_adhesion(outcome.radius, case.field)
     stress = (front**2 / unit.radius - penetration) * unit.contact_modulus
     release = stress**2 / (np.pi * front) / (2 * unit.contact_modulus)
     modes = np.fft.rfft(front)

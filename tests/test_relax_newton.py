@@ -10,21 +10,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crackfront.adhesion import AdhesionMap, rough_adhesion
-from crackfront.cycle import LoadSchedule, run_cycle
-from crackfront.jkr import energy_release_rate
-from crackfront.pinning import (
-    front_products,
-    last_radius,
-    make_memory,
-    polar_field,
-    segment_below,
-    tile_field,
-)
-from crackfront.relax import Status, relax
-from crackfront.relax.forces import hardening
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
+from crackfront.core.adhesion import AdhesionMap, rough_adhesion
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.kinds import last_radius, polar_field, tile_field
+from crackfront.core.field.rays import front_products, segment_below
+from crackfront.core.field.samples import make_memory
+from crackfront.core.jkr import energy_release_rate
+from crackfront.core.solver.forces import hardening
+from crackfront.core.solver.relax import Status, relax
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
 
 
 def rough_tile(
@@ -197,8 +193,8 @@ def test_the_number_of_threads_has_no_say():
     # Libraries of linear algebra share vectors of more than 10000 numbers among threads.
     program = (
         "import hashlib, numpy as np\n"
-        "from crackfront.pinning import polar_field\n"
-        "from crackfront.relax import relax\n"
+        "from crackfront.core.field.kinds import polar_field\n"
+        "from crackfront.core.solver.relax import relax\n"
         "rng = np.random.default_rng(1)\n"
         "field = polar_field(np.arange(1.0, 2.6, 0.1),"
         " (1 + 0.02 * rng.standard_normal((16, 10400))) / np.pi)\n"

@@ -6,12 +6,12 @@ import sys
 import numpy as np
 import pytest
 
-from crackfront.adhesion import rough_adhesion
-from crackfront.pinning import polar_field
-from crackfront.rotated import adhesion_on_rays, rotated_field
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
-from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION
+from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.field.kinds import polar_field
+from crackfront.core.rotated import adhesion_on_rays, rotated_field
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 PIXEL = 0.3
 

@@ -7,25 +7,23 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from crackfront import jkr
-from crackfront.adhesion import AdhesionMap
-from crackfront.cycle import LoadSchedule, run_cycle
-from crackfront.pinning import last_radius
-from crackfront.relax import Status
-from crackfront.scene import (
+from crackfront.core import jkr
+from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.kinds import last_radius
+from crackfront.core.solver.relax import Status
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.contact import contact_field, simulation_adhesion, tile_contact
+from crackfront.simulate.run import compile_solver, run_simulation
+from crackfront.simulate.simulation import (
     Numerics,
     Resolution,
     Simulation,
-    compile_solver,
-    contact_field,
     correlation_length,
     resolution,
-    run_simulation,
-    simulation_adhesion,
-    tile_contact,
 )
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.units import WORK_OF_ADHESION
 
 NUMERICS = Numerics(
     angles=None,
@@ -122,7 +120,7 @@ def test_the_plateau_of_a_spectrum_is_not_in_the_key():
 
 def test_the_key_changes_with_the_sources_of_the_solver(monkeypatch):
     before = SIMULATION.key
-    monkeypatch.setattr("crackfront.scene.parameters.scene_fingerprint", lambda: "other")
+    monkeypatch.setattr("crackfront.simulate.simulation.scene_fingerprint", lambda: "other")
     assert SIMULATION.key != before
 
 
@@ -261,7 +259,7 @@ def test_a_run_holds_no_tile_beside_its_splines(monkeypatch):
         return run_cycle(*arguments, **options)
 
     compile_solver(SIMULATION.solver)
-    monkeypatch.setattr("crackfront.scene.run.simulation_adhesion", remembered)
-    monkeypatch.setattr("crackfront.scene.run.run_cycle", looked_at)
+    monkeypatch.setattr("crackfront.simulate.run.simulation_adhesion", remembered)
+    monkeypatch.setattr("crackfront.simulate.run.run_cycle", looked_at)
     run_simulation(SIMULATION)
     assert tiles[1] is None

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
 
 # SI Fig. S-5, reduced units: shortest wavelength, roll-off, Hurst exponent.
 PAPER = [(0.005, 0.005, 0.8), (0.000625, 0.01, 0.8), (0.000625, 0.1, 0.3), (0.005, 0.1, 0.3)]

@@ -6,22 +6,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crackfront import jkr
-from crackfront.cycle import CycleState, FrontHistory, LoadSchedule
-from crackfront.fits import steady_adhesion
-from crackfront.pinning import first_radius, front_adhesion, polar_field
-from crackfront.relax import Status
-from crackfront.scene import (
-    Resolution,
-    Simulation,
-    contact_field,
-    correlation_length,
-    run_simulation,
-    simulation_adhesion,
-)
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.steady import SteadySchedule, forward_circle, run_steady, standard_error
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.analysis.steady import steady_adhesion
+from crackfront.core import jkr
+from crackfront.core.cycle.history import FrontHistory
+from crackfront.core.cycle.record import CycleState
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import SteadySchedule, forward_circle, run_steady, standard_error
+from crackfront.core.field.kinds import first_radius, polar_field
+from crackfront.core.field.rays import front_adhesion
+from crackfront.core.solver.relax import Status
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.contact import contact_field, simulation_adhesion
+from crackfront.simulate.run import run_simulation
+from crackfront.simulate.simulation import Resolution, Simulation, correlation_length
 
 SPECTRUM = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
 LENGTH = correlation_length("roughness", SPECTRUM)

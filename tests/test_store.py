@@ -10,15 +10,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crackfront.config import load_configuration
-from crackfront.costs import expected_cost
-from crackfront.dataset import read_simulation, read_table, tables
-from crackfront.dataset.files import read_dataset
-from crackfront.provenance import provenance
-from crackfront.scene import run_simulation
-from crackfront.store import NOT_STORED, Store, ledger, tasks, write_archive
-from crackfront.store.inventory import holdings
-from crackfront.store.journal import Entry, Journal
+from crackfront.data.files import read_dataset
+from crackfront.data.provenance import provenance
+from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.files import read_simulation
+from crackfront.simulate.run import run_simulation
+from crackfront.sweep import ledger, tasks
+from crackfront.sweep import table as tables
+from crackfront.sweep.archive import write_archive
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.inventory import holdings
+from crackfront.sweep.journal import Entry, Journal
+from crackfront.sweep.store import Store
+from crackfront.sweep.table import read_table
+from crackfront.sweep.tasks import NOT_STORED
 
 SWEEP = load_configuration(Path(__file__).parents[1] / "config/test.yaml")
 FLAT = SWEEP.shard(SWEEP.spectra[0])
@@ -95,7 +100,7 @@ def test_a_truncated_file_is_named_and_computed_anew_and_the_others_are_not(stor
 
 def test_a_file_of_an_older_solver_is_not_found(store, monkeypatch):
     fill(store, FLAT[:1])
-    monkeypatch.setattr("crackfront.scene.parameters.scene_fingerprint", lambda: "newer")
+    monkeypatch.setattr("crackfront.simulate.simulation.scene_fingerprint", lambda: "newer")
     assert store.inventory(FLAT[:1]).missing == FLAT[:1]
 
 
@@ -117,7 +122,7 @@ def test_what_is_stale_is_told_with_what_has_changed(store, change, part):
 
 def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
     fill(store, FLAT[:2])
-    monkeypatch.setattr("crackfront.scene.parameters.scene_fingerprint", lambda: "newer")
+    monkeypatch.setattr("crackfront.simulate.simulation.scene_fingerprint", lambda: "newer")
     inventory = store.inventory(FLAT)
     assert len(inventory.missing) == 4
     assert inventory.stale_sentence() == "2 stored simulations are stale: 2 as sources changed"

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from SurfaceTopography import Topography
 
-from crackfront.adhesion import half_derivative_mean_square, rough_adhesion
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field
-from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION
+from crackfront.core.adhesion import half_derivative_mean_square, rough_adhesion
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 SIDE, N_POINT = 2.56, 128
 

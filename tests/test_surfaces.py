@@ -8,24 +8,16 @@ import numpy as np
 import pytest
 
 from benchmarks import scans
-from crackfront.adhesion import half_derivative_mean_square, rough_adhesion
-from crackfront.figures.synthetic_film import profile_periodogram
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.surfaces import (
-    Measurement,
-    Treatment,
-    isotropic_density,
-    measured_adhesion,
-    measured_mean_square,
-    measured_surface,
-    profile_density,
-    read_measurements,
-    zero_load_radius,
-)
-from crackfront.surfaces.densities import topography
-from crackfront.surfaces.files import surface_library
-from crackfront.synthesis import gaussian_field
-from crackfront.units import WORK_OF_ADHESION, Scales
+from crackfront.core.adhesion import half_derivative_mean_square, rough_adhesion
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import WORK_OF_ADHESION, Scales
+from crackfront.studies.paper.synthetic_film import profile_periodogram
+from crackfront.topography.densities import isotropic_density, profile_density, topography
+from crackfront.topography.files import Treatment, surface_library
+from crackfront.topography.measures import measured_mean_square, measured_surface
+from crackfront.topography.reading import Measurement, read_measurements
+from crackfront.topography.tile import measured_adhesion, zero_load_radius
 
 SHIPPED = tuple(sorted((Path(__file__).parents[1] / "examples/scans").glob("*.al3d")))
 

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from crackfront.config import load_configuration
-from crackfront.scene import run_simulation
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.sweep import NamedSpectrum, shard_fingerprint
-from crackfront.units import Scales
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import Scales
+from crackfront.simulate.run import run_simulation
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.sweep import NamedSpectrum, shard_fingerprint
 
 SWEEP = load_configuration(Path(__file__).parents[1] / "config/test.yaml")
 

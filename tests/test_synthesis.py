@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crackfront.adhesion import half_derivative_mean_square
-from crackfront.spectrum import SelfAffineSpectrum
-from crackfront.synthesis import gaussian_field, tile_mean_square
+from crackfront.core.adhesion import half_derivative_mean_square
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field, tile_mean_square
 
 # Shapes of SI Fig. S-5 on a small tile: flat, H below, at and above one half.
 SHAPES = [

@@ -1,6 +1,6 @@
 import pytest
 
-from crackfront.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
 
 NANODIAMOND = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / (1 - 0.5**2))
 

@@ -18,9 +18,11 @@ from click.testing import CliRunner
 
 from crackfront.cli import main
 from crackfront.cli.watch import Canvas, Watch, frame, state_line
-from crackfront.cycle import Checkpoint, LoadSchedule, run_cycle
-from crackfront.pinning import polar_field
-from crackfront.units import WORK_OF_ADHESION
+from crackfront.core.cycle.record import Checkpoint
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.kinds import polar_field
+from crackfront.core.units import WORK_OF_ADHESION
 
 
 @pytest.fixture(scope="module")

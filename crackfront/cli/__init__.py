@@ -10,13 +10,7 @@ from crackfront import __version__
 from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.completion import completion
 from crackfront.cli.cycle import cycle
-from crackfront.cli.figure import (
-    check_figures,
-    compare_figures,
-    draw_figure,
-    figure,
-    gallery,
-)
+from crackfront.cli.figure import check_figures, compare_figures, draw_figure, figure, gallery
 from crackfront.cli.outlook import plan, status
 from crackfront.cli.predict import predict
 from crackfront.cli.surface import surface

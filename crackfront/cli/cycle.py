@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from crackfront.cycle import CycleState
-    from crackfront.pinning import Field, Interpolation
+    from crackfront.core.cycle.record import CycleState
+    from crackfront.core.field.kinds import Field, Interpolation
 
 
 @click.command(
@@ -109,11 +109,12 @@ def cycle(
     import numpy as np
 
     from crackfront.cli.watch import Watch
-    from crackfront.cycle import DEFAULT_STEP, LoadSchedule, run_cycle
-    from crackfront.dataset import write_cycle
-    from crackfront.pinning import n_angle
-    from crackfront.provenance import provenance
-    from crackfront.relax import Status
+    from crackfront.core.cycle.run import run_cycle
+    from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
+    from crackfront.core.field.kinds import n_angle
+    from crackfront.core.solver.relax import Status
+    from crackfront.data.provenance import provenance
+    from crackfront.simulate.files import write_cycle
 
     schedule = LoadSchedule(max_penetration, DEFAULT_STEP if step is None else step)
     field, directions = _contact(
@@ -168,9 +169,9 @@ def _contact(
     interpolation: Interpolation | None,
 ) -> tuple[Field, NDArray[np.float64] | None]:
     """Field of a file, and the angles of its rays; a tile is kept as its splines alone."""
-    from crackfront.adhesion import AdhesionMap
-    from crackfront.dataset import read_field
-    from crackfront.scene import tile_contact
+    from crackfront.core.adhesion import AdhesionMap
+    from crackfront.simulate.contact import tile_contact
+    from crackfront.simulate.field_files import read_field
 
     given = read_field(path, interpolation or "linear")
     if isinstance(given, AdhesionMap):

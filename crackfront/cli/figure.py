@@ -48,10 +48,11 @@ _GALLERY = (
 )
 def figure(configuration: Path, scale: str, output: Path) -> None:
     """Compute the data of one figure, named as its file in config/figures."""
-    from crackfront.config import load_figure
-    from crackfront.dataset import write_record
-    from crackfront.figures import FIGURES, ParametricStudyParameters
-    from crackfront.provenance import provenance
+    from crackfront.data.provenance import provenance
+    from crackfront.data.records import write_record
+    from crackfront.studies.paper.configuration import load_figure
+    from crackfront.studies.paper.figures import FIGURES
+    from crackfront.studies.paper.parametric import ParametricStudyParameters
 
     started = time.perf_counter(), time.process_time()
     parameters = load_figure(configuration, scale)
@@ -86,15 +87,17 @@ def figure(configuration: Path, scale: str, output: Path) -> None:
 @click.argument("data", type=FILE)
 def draw_figure(data: Path) -> None:
     """Draw a figure from its data, beside them, and its animation where it has one."""
-    from crackfront import plots
+    from crackfront.plots.animation import save_animation
+    from crackfront.plots.style import save_figure
+    from crackfront.studies.paper.makers import ANIMATION_MAKERS, FIGURE_MAKERS
 
     record = _record(data)
-    drawn = plots.FIGURE_MAKERS[data.stem](record)
-    for path in plots.save_figure(drawn, data.with_suffix("")):
+    drawn = FIGURE_MAKERS[data.stem](record)
+    for path in save_figure(drawn, data.with_suffix("")):
         click.echo(f"figure: {path}")
-    if data.stem in plots.ANIMATION_MAKERS:
-        animation = plots.ANIMATION_MAKERS[data.stem](record)
-        click.echo(f"animation: {plots.save_animation(animation, data.with_suffix(''))}")
+    if data.stem in ANIMATION_MAKERS:
+        animation = ANIMATION_MAKERS[data.stem](record)
+        click.echo(f"animation: {save_animation(animation, data.with_suffix(''))}")
 
 
 @click.command(
@@ -110,9 +113,10 @@ def draw_figure(data: Path) -> None:
 @as_json
 def check_figures(output: Path, as_json: bool) -> None:
     """Compare the data of all figures with what the paper states, in checks.md."""
-    from crackfront.config import SCALES
-    from crackfront.dataset import write_text
-    from crackfront.figures import FIGURES, checks_table
+    from crackfront.data.files import write_text
+    from crackfront.studies.paper.checks import checks_table
+    from crackfront.studies.paper.configuration import SCALES
+    from crackfront.studies.paper.figures import FIGURES
 
     lines, found = ["# Checks of the figures"], []
     for scale in SCALES:
@@ -148,7 +152,7 @@ def compare_figures(data: Path, reference: Path, as_json: bool) -> None:
 
     The numbers are largest differences relative to the largest magnitude, a variable each.
     """
-    from crackfront.dataset import largest_differences
+    from crackfront.data.records import largest_differences
 
     differences = largest_differences(data, reference)
     if as_json:
@@ -176,9 +180,11 @@ def gallery(output: Path, page: Path) -> None:
     The pictures, for a screen, stand in `figures/` beside the page; an animation is that of the
     results.
     """
-    from crackfront import plots
-    from crackfront.dataset import read_attributes, write_text
-    from crackfront.figures import FIGURES, checks_table
+    from crackfront.data.files import read_attributes, write_text
+    from crackfront.plots.style import save_picture
+    from crackfront.studies.paper.checks import checks_table
+    from crackfront.studies.paper.figures import FIGURES
+    from crackfront.studies.paper.makers import FIGURE_MAKERS
 
     parts = []
     for name, scene in FIGURES.items():
@@ -192,7 +198,7 @@ def gallery(output: Path, page: Path) -> None:
         if scene.animated:
             shutil.copyfile(data.with_suffix(".gif"), picture)
         else:
-            plots.save_picture(plots.FIGURE_MAKERS[name](record), picture)
+            save_picture(FIGURE_MAKERS[name](record), picture)
         told = read_attributes(data)
         parts += [
             f"## {scene.title}",
@@ -213,8 +219,8 @@ def gallery(output: Path, page: Path) -> None:
 
 def _record(path: Path) -> object:
     """Data of a figure."""
-    from crackfront.dataset import read_record
-    from crackfront.figures import FIGURES
+    from crackfront.data.records import read_record
+    from crackfront.studies.paper.figures import FIGURES
 
     if path.stem not in FIGURES:
         raise ValueError(

@@ -12,8 +12,8 @@ import click
 from crackfront.cli.report import FILE, as_json, echo_json, examples
 
 if TYPE_CHECKING:
-    from crackfront.scene import Simulation
-    from crackfront.sweep import NamedSpectrum, Shard, Sweep
+    from crackfront.simulate.simulation import Simulation
+    from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
 
 
 @click.command(
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
-    from crackfront.config import load_configuration, results_folder
-    from crackfront.store import Store
+    from crackfront.sweep.configuration import load_configuration, results_folder
+    from crackfront.sweep.store import Store
 
     sweep = load_configuration(configuration)
     store = Store(results_folder(configuration) if output is None else output)
@@ -72,8 +72,9 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
 @as_json
 def status(folder: Path, as_json: bool) -> None:
     """Tell how far the sweep in a folder is; also while it runs, here or elsewhere."""
-    from crackfront.config import load_configuration
-    from crackfront.store import Store, sweep_progress
+    from crackfront.sweep.configuration import load_configuration
+    from crackfront.sweep.progress import sweep_progress
+    from crackfront.sweep.store import Store
 
     configuration = Store(folder).configuration
     if not configuration.is_file():
@@ -103,7 +104,7 @@ def _plan(
     sweep: Sweep, folder: Path, shards: Sequence[Shard], missing: Sequence[Simulation]
 ) -> dict[str, object]:
     """What a machine wants to know of a plan; costs are those of what is missing."""
-    from crackfront.costs import expected_cost
+    from crackfront.simulate.costs import expected_cost
 
     costs = [expected_cost(one) for one in missing]
     return {
@@ -133,7 +134,7 @@ def _sizes(item: NamedSpectrum, simulations: Sequence[Simulation]) -> str:
 
 def _costs(name: str, n_shard: int, missing: Sequence[Simulation]) -> str:
     """What the missing simulations of a spectrum, or of all, are expected to cost."""
-    from crackfront.costs import expected_cost
+    from crackfront.simulate.costs import expected_cost
 
     costs = [expected_cost(one) for one in missing]
     seconds = [cost.seconds for cost in costs]

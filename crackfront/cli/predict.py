@@ -26,9 +26,9 @@ from crackfront.cli.scans import (
 )
 
 if TYPE_CHECKING:
-    from crackfront.prediction import Simulated
-    from crackfront.surfaces import Surface
-    from crackfront.units import Scales
+    from crackfront.core.units import Scales
+    from crackfront.topography.measures import Surface
+    from crackfront.topography.simulated import Simulated
 
 _RESULTS = Path("results/predict")
 
@@ -75,17 +75,12 @@ def predict(
     the surface or several. w = w_int - e_el -+ k e_el with k by the simulations of this project
     (crackfront/factors.csv).
     """
-    from crackfront import plots
-    from crackfront.prediction import (
-        machine_readable,
-        predicted,
-        prediction_notes,
-        prediction_text,
-        simulation_text,
-        surface_factors,
-        surface_text,
-        theory_limits,
-    )
+    from crackfront.plots.style import save_figure
+    from crackfront.topography.drawing import prediction_figure
+    from crackfront.topography.limits import prediction_notes, theory_limits
+    from crackfront.topography.machine import machine_readable
+    from crackfront.topography.prediction import predicted, surface_factors
+    from crackfront.topography.report import prediction_text, simulation_text, surface_text
 
     scene = scene_of(sphere)
     stem = _RESULTS / reading.scans[0].stem if figure is None else figure
@@ -100,7 +95,7 @@ def predict(
     if not as_json:
         click.echo(prediction_text(prediction, limits))
         echo_notes(notes)
-    paths = plots.save_figure(plots.prediction_figure(found, prediction), stem)
+    paths = save_figure(prediction_figure(found, prediction), stem)
     outcome = _simulated(found, scene, realisations, seed, as_json) if simulate else None
     if as_json:
         content = machine_readable(found, scene, prediction, factors, limits, notes, outcome)
@@ -116,7 +111,7 @@ def _simulated(
     surface: Surface, scene: Scales, realisations: int, seed: int, quiet: bool
 ) -> Simulated:
     """Run the simulations behind a prediction."""
-    from crackfront.prediction import expected_seconds, prediction_simulations, simulated
+    from crackfront.topography.simulated import expected_seconds, prediction_simulations, simulated
 
     simulations = prediction_simulations(surface, scene, realisations, seed)
     if not quiet:

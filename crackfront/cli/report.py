@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from crackfront.scene import Simulation
-    from crackfront.store import Finished, Store
+    from crackfront.simulate.simulation import Simulation
+    from crackfront.sweep.store import Store
+    from crackfront.sweep.tasks import Finished
 
 FILE = click.Path(path_type=Path)
 """Type of a parameter that names a file or folder."""
@@ -57,7 +58,7 @@ def block(context: click.Context, parameter: click.Parameter, value: str | None)
 
 def announce_compilation(*, err: bool = False) -> None:
     """Tell why nothing seems to happen, beside the output where that is for machines."""
-    from crackfront.compiled import kernels_are_cached
+    from crackfront.core.compiled import kernels_are_cached
 
     if not kernels_are_cached():
         click.echo("compiling the solver (once)", err=err)
@@ -78,7 +79,7 @@ def refuse_unwritable(folder: Path) -> None:
 
 def launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path) -> None:
     """Run a command on ranks, and end where they failed."""
-    from crackfront import parallel
+    from crackfront.sweep import parallel
 
     folder.mkdir(parents=True, exist_ok=True)
     code = parallel.launch_ranks(arguments, ranks, launcher, folder)
@@ -98,9 +99,9 @@ def fill_store(
     checkpoint_seconds: float,
 ) -> None:
     """Run what is missing and report every simulation as it ends."""
-    from crackfront import notice
-    from crackfront.provenance import provenance
-    from crackfront.store import NOT_STORED, STOPPED
+    from crackfront.data.provenance import provenance
+    from crackfront.sweep import notice
+    from crackfront.sweep.tasks import NOT_STORED, STOPPED
 
     if missing:
         announce_compilation()
@@ -133,7 +134,7 @@ def _reported(
     """Outcomes with their lines: a bar on a terminal, else a line each."""
     from tqdm import tqdm
 
-    from crackfront.dataset import COMPLETE
+    from crackfront.sweep.table import COMPLETE
 
     terminal = sys.stderr.isatty()
     with tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar:

@@ -13,8 +13,9 @@ import click
 from crackfront.cli.report import FILE
 
 if TYPE_CHECKING:
-    from crackfront.surfaces import Detrend, Surface
-    from crackfront.units import Scales
+    from crackfront.core.units import Scales
+    from crackfront.topography.files import Detrend
+    from crackfront.topography.measures import Surface
 
 Command = Callable[..., None]
 
@@ -88,8 +89,10 @@ def sphere_options(*, required: bool) -> Callable[[Command], Command]:
 
 def surface_of(reading: Reading) -> Surface:
     """Surface of the files that a command names."""
-    from crackfront.quantities import si_value
-    from crackfront.surfaces import Treatment, measured_surface, read_measurements
+    from crackfront.data.quantities import si_value
+    from crackfront.topography.files import Treatment
+    from crackfront.topography.measures import measured_surface
+    from crackfront.topography.reading import read_measurements
 
     limit, size = reading.shortest, reading.size
     treatment = Treatment(
@@ -109,8 +112,8 @@ def scene_of(sphere: Sphere) -> Scales:
     ValueError
         If part of it is missing or cannot be read.
     """
-    from crackfront.quantities import si_value
-    from crackfront.units import Scales
+    from crackfront.core.units import Scales
+    from crackfront.data.quantities import si_value
 
     modulus, poisson, radius = sphere.modulus, sphere.poisson, sphere.radius
     adhesion = sphere.work_of_adhesion

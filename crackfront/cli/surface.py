@@ -19,8 +19,9 @@ from crackfront.cli.scans import (
 )
 
 if TYPE_CHECKING:
-    from crackfront.surfaces import Placement, Surface
-    from crackfront.units import Scales
+    from crackfront.core.units import Scales
+    from crackfront.topography.measures import Surface
+    from crackfront.topography.tile import Placement
 
 
 @click.command(
@@ -53,12 +54,9 @@ def surface(
     SCANS are files of instruments in any format that SurfaceTopography reads. With the sphere,
     e_el and w_rms too.
     """
-    from crackfront.prediction import (
-        conformity_text,
-        machine_readable,
-        surface_notes,
-        surface_text,
-    )
+    from crackfront.topography.limits import surface_notes
+    from crackfront.topography.machine import machine_readable
+    from crackfront.topography.report import conformity_text, surface_text
 
     named = sphere != Sphere(None, None, None, None)
     scene = scene_of(sphere) if named or field is not None else None
@@ -83,9 +81,9 @@ def _write_field(
     surface: Surface, scene: Scales, place: Placement, path: Path, quiet: bool
 ) -> None:
     """Write the map of a surface as a field."""
-    from crackfront.dataset import write_field
-    from crackfront.provenance import provenance
-    from crackfront.surfaces import measured_adhesion
+    from crackfront.data.provenance import provenance
+    from crackfront.simulate.field_files import write_field
+    from crackfront.topography.tile import measured_adhesion
 
     [measurement] = surface.measurements
     adhesion = measured_adhesion(measurement, scene, place)

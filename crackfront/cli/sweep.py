@@ -11,10 +11,10 @@ from crackfront.cli.report import FILE, as_json, block, examples, fill_store, la
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
-    from crackfront.fits import SweepFit
-    from crackfront.scene import Simulation
-    from crackfront.store import Store
-    from crackfront.sweep import NamedSpectrum, Sweep
+    from crackfront.analysis.result import SweepFit
+    from crackfront.simulate.simulation import Simulation
+    from crackfront.sweep.store import Store
+    from crackfront.sweep.sweep import NamedSpectrum, Sweep
 
 _configuration = click.argument("configuration", type=FILE)
 _output = click.option(
@@ -70,11 +70,11 @@ def simulate(
     SIGTERM is taken as notice: running simulations are kept as far as they are, and the exit code
     is 75. The same command then goes on from there.
     """
-    from crackfront import notice, parallel
+    from crackfront.sweep import notice, parallel
 
     if not parallel.is_manager(ranks):
         with notice.heeded():
-            parallel.serve_tasks("crackfront.store.tasks")
+            parallel.serve_tasks("crackfront.sweep.tasks")
         return
     sweep, store = _sweep_and_store(configuration, output)
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
@@ -113,8 +113,8 @@ def simulate(
 @_output
 def aggregate(configuration: Path, output: Path | None) -> None:
     """Collect the stored simulations of a sweep in hysteresis.nc."""
-    from crackfront.dataset import COMPLETE
-    from crackfront.provenance import provenance
+    from crackfront.data.provenance import provenance
+    from crackfront.sweep.table import COMPLETE
 
     sweep, store = _sweep_and_store(configuration, output)
     path, statuses = store.aggregate(sweep, provenance(configuration.read_text(encoding="utf-8")))
@@ -143,8 +143,8 @@ def aggregate(configuration: Path, output: Path | None) -> None:
 @as_json
 def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the last."""
-    from crackfront.dataset import write_fit
-    from crackfront.provenance import provenance
+    from crackfront.data.provenance import provenance
+    from crackfront.sweep.fit_files import write_fit
 
     sweep, store = _sweep_and_store(configuration, output)
     fitted = _fitted(sweep, store)
@@ -161,8 +161,9 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
 @_output
 def summary(configuration: Path, output: Path | None) -> None:
     """Write summary.html: the fit, how the simulations ended, the configuration, the origin."""
-    from crackfront.dataset import read_attributes, read_statuses, write_text
-    from crackfront.summary import summary_page
+    from crackfront.data.files import read_attributes, write_text
+    from crackfront.sweep.summary import summary_page
+    from crackfront.sweep.table import read_statuses
 
     sweep, store = _sweep_and_store(configuration, output)
     table = store.folder / "hysteresis.nc"
@@ -190,7 +191,7 @@ def summary(configuration: Path, output: Path | None) -> None:
 @click.option("--no-curves", is_flag=True, help="Without the files of the single simulations.")
 def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
     """Pack the results of a sweep into a ZIP file with checksums, SHA256SUMS."""
-    from crackfront.store import write_archive
+    from crackfront.sweep.archive import write_archive
 
     path = folder.with_name(f"{folder.name}.zip") if output is None else output
     click.echo(f"archive: {path}, {write_archive(folder, path, curves=not no_curves)} files")
@@ -201,16 +202,18 @@ def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
 @_output
 def figures(configuration: Path, output: Path | None) -> None:
     """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
-    from crackfront import plots
-    from crackfront.dataset import read_simulation
-    from crackfront.fits import steady_adhesion
+    from crackfront.analysis.steady import steady_adhesion
+    from crackfront.plots.loop import loop_figure
+    from crackfront.plots.style import save_figure
+    from crackfront.plots.sweep import factor_figure, hysteresis_figure
+    from crackfront.simulate.files import read_simulation
 
     sweep, store = _sweep_and_store(configuration, output)
     fitted = _fitted(sweep, store)
     item, simulation = _loop_example(sweep)
     result = read_simulation(store.path(simulation), simulation)
     steady = steady_adhesion(result.record, sweep.correlation_length(item))
-    loop = plots.loop_figure(
+    loop = loop_figure(
         result.record,
         steady,
         elastic_energy=result.elastic_energy,
@@ -218,19 +221,19 @@ def figures(configuration: Path, output: Path | None) -> None:
         title=simulation.label,
     )
     drawn = {
-        "hysteresis": plots.hysteresis_figure(fitted.table, fitted),
+        "hysteresis": hysteresis_figure(fitted.table, fitted),
         "loop": loop,
-        "factor": plots.factor_figure(fitted.table, fitted),
+        "factor": factor_figure(fitted.table, fitted),
     }
     for name, figure in drawn.items():
-        for path in plots.save_figure(figure, store.folder / "figures" / name):
+        for path in save_figure(figure, store.folder / "figures" / name):
             click.echo(f"figure: {path}")
 
 
 def _sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, Store]:
     """Sweep of a configuration file, and its store."""
-    from crackfront.config import load_configuration, results_folder
-    from crackfront.store import Store
+    from crackfront.sweep.configuration import load_configuration, results_folder
+    from crackfront.sweep.store import Store
 
     sweep = load_configuration(configuration)
     return sweep, Store(results_folder(configuration) if output is None else output)
@@ -255,8 +258,8 @@ def fit_of_sweep(configuration: Path) -> SweepFit:
 
 def _fitted(sweep: Sweep, store: Store) -> SweepFit:
     """Fit of a sweep, always the same for the same table."""
-    from crackfront.dataset import read_table
-    from crackfront.fits import fit_sweep
+    from crackfront.analysis.sweep import fit_sweep
+    from crackfront.sweep.table import read_table
 
     return fit_sweep(
         read_table(store.folder / "hysteresis.nc"),

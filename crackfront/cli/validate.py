@@ -10,8 +10,9 @@ import click
 from crackfront.cli.report import FILE, announce_compilation, examples, refuse_unwritable
 
 if TYPE_CHECKING:
-    from crackfront.bem import BoundaryCycle, Case
-    from crackfront.provenance import Provenance
+    from crackfront.data.provenance import Provenance
+    from crackfront.studies.boundary_elements.cycle import BoundaryCycle
+    from crackfront.studies.boundary_elements.parameters import Case
 
 
 @click.command(
@@ -28,15 +29,16 @@ def validate(configuration: Path, output: Path | None) -> None:
     Every load step of the boundary elements is on disk at once: a run that is killed goes on with
     the next one.
     """
-    from crackfront import dataset, plots
-    from crackfront.bem import (
-        refuse_missing_libraries,
-        validation,
-        validation_cases,
-        validation_report,
-    )
-    from crackfront.config import load_validation, results_folder
-    from crackfront.provenance import provenance
+    from crackfront.data.files import write_text
+    from crackfront.data.provenance import provenance
+    from crackfront.data.records import write_record, write_records
+    from crackfront.plots.style import save_figure
+    from crackfront.studies.boundary_elements.configuration import load_validation
+    from crackfront.studies.boundary_elements.drawing import validation_figure
+    from crackfront.studies.boundary_elements.parameters import validation_cases
+    from crackfront.studies.boundary_elements.report import validation_report
+    from crackfront.studies.boundary_elements.study import refuse_missing_libraries, validation
+    from crackfront.sweep.configuration import results_folder
 
     parameters = load_validation(configuration)
     folder = output or results_folder(configuration)
@@ -57,21 +59,22 @@ def validate(configuration: Path, output: Path | None) -> None:
         ("jumps-front", found.front_jumps, "jump"),
     ):
         if rows:
-            dataset.write_records(folder / f"{name}.nc", rows, along, origin)
+            write_records(folder / f"{name}.nc", rows, along, origin)
     if found.picture is not None:
-        dataset.write_record(folder / "picture.nc", found.picture, origin)
-        drawn = plots.validation_figure(found.picture)
-        for path in plots.save_figure(drawn, folder / "validation"):
+        write_record(folder / "picture.nc", found.picture, origin)
+        drawn = validation_figure(found.picture)
+        for path in save_figure(drawn, folder / "validation"):
             click.echo(f"figure: {path}")
     report = validation_report(found.differences, found.speeds, found.effects)
-    dataset.write_text(folder / "validation.md", report)
+    write_text(folder / "validation.md", report)
     click.echo(f"tables: {folder / 'validation.md'}")
 
 
 def _boundary_cycle(case: Case, path: Path, origin: Provenance) -> BoundaryCycle:
     """Cycle of a case: read, continued or computed."""
-    from crackfront.bem import RUNNING, BoundaryCycle, boundary_cycle, half_space_contact
-    from crackfront.dataset import read_record, write_record
+    from crackfront.data.records import read_record, write_record
+    from crackfront.studies.boundary_elements.contact import half_space_contact
+    from crackfront.studies.boundary_elements.cycle import RUNNING, BoundaryCycle, boundary_cycle
 
     def keep(cycle: BoundaryCycle) -> None:
         write_record(path, cycle, origin, case=case.label)

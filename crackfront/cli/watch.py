@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from crackfront.cycle import Checkpoint, CycleRecord
+    from crackfront.core.cycle.record import Checkpoint, CycleRecord
 
     Array = NDArray[np.float64]
 
@@ -83,7 +83,7 @@ class Watch:
     """
 
     def __init__(self, max_penetration: float) -> None:
-        from crackfront import jkr
+        from crackfront.core import jkr
 
         # Room for a contact that sticks more than a smooth one, or less.
         smooth = jkr.equilibrium_radius(max_penetration)

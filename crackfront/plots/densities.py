@@ -11,9 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 from numpy.typing import ArrayLike, NDArray
 
-from crackfront.figures import FilmScales, SyntheticFilm
 from crackfront.plots.parts import LATERAL_UNIT
 from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
+from crackfront.studies.paper.film_scales import FilmScales
+from crackfront.studies.paper.synthetic_film import SyntheticFilm
 
 Array = NDArray[np.float64]
 

@@ -11,13 +11,13 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.signal import resample
 
-from crackfront import jkr
-from crackfront.figures import InstabilityRecord
-from crackfront.figures.contact import STRONG, WEAK
-from crackfront.figures.instability_checks import radii_at_zero
+from crackfront.core import jkr
 from crackfront.plots.fronts import frame_plane
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLUE, PAGE, PURPLE, VERMILION, blank_figure, house_style
+from crackfront.studies.paper.contact import STRONG, WEAK
+from crackfront.studies.paper.instabilities import InstabilityRecord
+from crackfront.studies.paper.instability_checks import radii_at_zero
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crackfront import jkr
-from crackfront.fits import PAPER_FACTOR, FieldKind
+from crackfront.analysis.report import PAPER_FACTOR
+from crackfront.analysis.result import FieldKind
+from crackfront.core import jkr
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
 
 Array = NDArray[np.float64]
@@ -71,7 +72,7 @@ def loop_figure(
     Parameters
     ----------
     record : LoopStates
-        The cycle, for instance a :class:`crackfront.cycle.CycleRecord`.
+        The cycle, for instance a :class:`crackfront.core.cycle.record.CycleRecord`.
     steady : LoopAdhesion
         Its apparent works of adhesion; without values no curves are drawn.
     elastic_energy : float, optional
@@ -109,7 +110,7 @@ def draw_loop(
     axes : Axes
         Where to draw.
     record : LoopStates
-        The cycle, for instance a :class:`crackfront.cycle.CycleRecord`.
+        The cycle, for instance a :class:`crackfront.core.cycle.record.CycleRecord`.
     steady : LoopAdhesion
         Its apparent works of adhesion.
     elastic_energy : float, optional

@@ -12,7 +12,10 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
-from crackfront.fits import PAPER_FACTOR, PERTURBATION_FACTOR, Estimate, SweepFit, SweepTable
+from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
+from crackfront.analysis.result import SweepFit
+from crackfront.analysis.table import SweepTable
 from crackfront.plots.style import BLACK, COLOURS, MARKERS
 
 Array = NDArray[np.float64]

@@ -11,14 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from crackfront.fits import (
-    PAPER_FACTOR,
-    PERTURBATION_FACTOR,
-    Estimate,
-    FieldKind,
-    SweepFit,
-    SweepTable,
-)
+from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
+from crackfront.analysis.result import FieldKind, SweepFit
+from crackfront.analysis.table import SweepTable
+from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.plots.parts import (
     arrays,
     draw_below,
@@ -32,7 +29,6 @@ from crackfront.plots.parts import (
     spectrum_row,
 )
 from crackfront.plots.style import COLUMN, PAGE, blank_figure, house_style
-from crackfront.spectrum import SelfAffineSpectrum
 
 
 def hysteresis_figure(table: SweepTable, fit: SweepFit) -> Figure:

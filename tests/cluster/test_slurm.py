@@ -16,7 +16,7 @@ import xarray as xr
 import yaml
 
 from crackfront.cli import main
-from crackfront.parallel import default_launcher
+from crackfront.sweep.parallel import default_launcher
 
 ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}

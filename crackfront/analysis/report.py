@@ -1,0 +1,210 @@
+"""The fit as a person reads it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.notes import fit_notes
+from crackfront.analysis.result import LawEstimates, SweepFit
+
+MISSING = "-"
+"""What stands where the data give no number."""
+
+PAPER_FACTOR, PERTURBATION_FACTOR = 3.0, 4.0
+"""k of the paper's fit, and of second-order perturbation theory in the limit of weak disorder."""
+
+
+def fit_table(fit: SweepFit) -> str:
+    """Markdown tables of a fit beside the theory.
+
+    Parameters
+    ----------
+    fit : SweepFit
+        A fit.
+
+    Returns
+    -------
+    str
+        The law, k at every amplitude, the trend with size, the experimenter's estimate, notes.
+    """
+    in_range = int(np.count_nonzero(fit.in_range))
+    n_simulation = in_range * fit.table.spectrum.size * fit.table.e_el.shape[-1]
+    return "\n".join(
+        [
+            f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el",
+            "",
+            f"Range: e_el/w_int from {fit.lowest_elastic_energy:g} to "
+            f"{fit.highest_elastic_energy:g} ({in_range} of {fit.in_range.size} amplitudes); "
+            f"{n_simulation} simulations, {int(np.sum(fit.n_failed))} without a value. "
+            "Values with 95% intervals (Student's t with the bootstrap's standard error, "
+            f"{fit.n_bootstrap} samples of realisations). k is the mean over the amplitudes with "
+            "equal weights.",
+            "",
+            *_law_rows(fit),
+            "",
+            _midpoint_sentence(fit),
+            "",
+            "## k at every amplitude",
+            "",
+            "Mean and standard error over the realisations (their number); amplitudes outside the "
+            "range of the fit in parentheses.",
+            "",
+            *_cell_rows(fit),
+            "",
+            "## What an experimenter would find",
+            "",
+            "Work of adhesion from a JKR fit of force against mean radius, less that of the front "
+            "(in w_int): mean, and largest magnitude in one simulation.",
+            "",
+            *_force_rows(fit),
+            "",
+            "## Notes",
+            "",
+            *(f"- {sentence}" for sentence in fit_notes(fit)),
+            "",
+        ]
+    )
+
+
+def _law_rows(fit: SweepFit) -> list[str]:
+    """The law of every spectrum, pooled, and in theory."""
+    header = (
+        "spectrum",
+        "correlation length",
+        "realisations",
+        "k",
+        "k, ratio of sums",
+        "exponent of w_rms",
+        "midpoint slope m",
+        "change of k per doubling of w_rms",
+    )
+    rows = [
+        (
+            str(name),
+            f"{fit.table.correlation_length[index]:.3g}",
+            str(fit.n_realisation[index]),
+            *_law_entries(fit.spectra, (index,)),
+        )
+        for index, name in enumerate(fit.table.spectrum)
+    ]
+    law = "2", "1" if fit.kind == "roughness" else "0", "0"
+    rows += [
+        ("**pooled**", "", str(np.sum(fit.n_realisation)), *_law_entries(fit.pooled, ())),
+        ("paper", "", "", *[f"{PAPER_FACTOR:g}"] * 2, *law),
+        ("2nd-order perturbation theory", "", "", *[f"{PERTURBATION_FACTOR:g}"] * 2, *law),
+    ]
+    return _markdown(header, rows)
+
+
+def _law_entries(law: LawEstimates, index: tuple[int, ...]) -> tuple[str, ...]:
+    """The fitted numbers of one row."""
+    columns = (
+        law.factor,
+        law.factor_by_sums,
+        law.exponent,
+        law.midpoint_slope,
+        law.disorder_slope,
+    )
+    return tuple(_with_interval(column, index) for column in columns)
+
+
+def _cell_rows(fit: SweepFit) -> list[str]:
+    """Rows of k at every amplitude, and of its change with size where there is one."""
+    header = ["e_el/w_int", *(str(name) for name in fit.table.spectrum)]
+    sized = bool(np.any(np.isfinite(fit.size_slope.value)))
+    if sized:
+        header.append("change of k per doubling of the correlation length")
+    rows = []
+    for index, energy in enumerate(fit.table.e_el_requested):
+        row = [f"{energy:.4g}" if fit.in_range[index] else f"({energy:.4g})"]
+        row += [_cell(fit, spectrum, index) for spectrum in range(fit.table.spectrum.size)]
+        if sized:
+            row.append(_with_interval(fit.size_slope, (index,)))
+        rows.append(row)
+    if sized:
+        blank = [""] * fit.table.spectrum.size
+        rows.append(["mean over the range", *blank, _with_interval(fit.pooled_size_slope, ())])
+    return _markdown(header, rows)
+
+
+def _cell(fit: SweepFit, spectrum: int, amplitude: int) -> str:
+    """Mean k, standard error and number of realisations of one cell."""
+    count = fit.cells.count[spectrum, amplitude]
+    if count == 0:
+        return MISSING
+    value = fit.cells.factor.value[spectrum, amplitude]
+    error = fit.cells.factor.standard_error[spectrum, amplitude]
+    return f"{value:.2f} ± {error:.2f} ({count})" if count > 1 else f"{value:.2f} (1)"
+
+
+def _midpoint_sentence(fit: SweepFit) -> str:
+    """Whether any midpoint contradicts w_int - e_el."""
+    if not np.isfinite(fit.midpoint_largest):
+        return "No midpoint has a standard error, so none can be tested against the mean of w_loc."
+    return (
+        f"The midpoint (w_retr + w_appr)/2 deviates from {_mean_adhesion(fit)} by at most "
+        f"{fit.midpoint_largest:.2g} standard errors at any spectrum and amplitude in the range; "
+        "one as large or larger somewhere has a probability of "
+        f"{_probability(float(fit.midpoint_probability))} if the law holds."
+    )
+
+
+def _mean_adhesion(fit: SweepFit) -> str:
+    """Mean of w_loc in words."""
+    return "w_int - e_el" if fit.kind == "roughness" else "w_int"
+
+
+def _probability(value: float) -> str:
+    """A probability in words that claim no false accuracy."""
+    return "less than 0.001" if value < 0.001 else f"about {value:.2g}"
+
+
+def _force_rows(fit: SweepFit) -> list[str]:
+    """Differences of the experimenter's estimates."""
+    header = (
+        "spectrum",
+        "w_appr, mean",
+        "w_appr, largest",
+        "w_retr, mean",
+        "w_retr, largest",
+        "k from force",
+    )
+    force = fit.from_force
+    rows = [
+        (
+            str(name),
+            _difference(force.approach[index]),
+            _difference(force.approach_largest[index]),
+            _difference(force.retraction[index]),
+            _difference(force.retraction_largest[index]),
+            _with_interval(fit.spectra.factor_from_force, (index,)),
+        )
+        for index, name in enumerate(fit.table.spectrum)
+    ]
+    pooled = _with_interval(fit.pooled.factor_from_force, ())
+    return _markdown(header, [*rows, ("**pooled**", "", "", "", "", pooled)])
+
+
+def _difference(value: float) -> str:
+    """A difference of works of adhesion."""
+    return f"{value:.4f}" if np.isfinite(value) else MISSING
+
+
+def _with_interval(estimate: Estimate, index: tuple[int, ...]) -> str:
+    """Value and interval, as far as there are any."""
+    value, low, high = (
+        float(numbers[index]) for numbers in (estimate.value, estimate.low, estimate.high)
+    )
+    if not np.isfinite(value):
+        return MISSING
+    if not np.isfinite(low):
+        return f"{value:.2f} (no interval)"
+    return f"{value:.2f} ({low:.2f} to {high:.2f})"
+
+
+def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
+    """Lines of a Markdown table."""
+    return [f"| {' | '.join(row)} |" for row in (header, ["---"] * len(header), *rows)]

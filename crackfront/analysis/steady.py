@@ -1,0 +1,157 @@
+"""The apparent work of adhesion of approach and of retraction, defined once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core import jkr
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.steady import standard_error
+
+Array = NDArray[np.float64]
+
+FEWEST_STATES = 3
+"""Steady states that each branch must have in the common window."""
+
+STEADY_DEFINITION = (
+    "w_appr and w_retr are means of the apparent work of adhesion, <a G> / <a> with the mean over "
+    "the front, over the steady states of a branch. A state is steady once every site of the "
+    "front has travelled at least one correlation length of w_loc since its branch began, so that "
+    "the start and the transient after reversal are left out. Both branches are averaged over the "
+    "same window of mean radii, the overlap of the ranges of their steady states, one state of "
+    f"the load schedule one vote, at least {FEWEST_STATES} states each. An experimenter's "
+    "estimate is the work of adhesion of the JKR curve F = a^3 - sqrt(6 w a^3) (reduced units) "
+    "that fits force against mean radius best, by least squares of the force over the same states. "
+    "The standard errors are those of the means over the states of one realisation; states closer "
+    "than a correlation length, or three times the rms deviation of the front from its mean radius "
+    "where that is larger, count as one."
+)
+"""What `w_appr` and `w_retr` mean; stored in every file that holds them."""
+
+
+@dataclass(frozen=True, slots=True)
+class SteadyAdhesion:
+    """Apparent work of adhesion of the two branches, as :data:`STEADY_DEFINITION` says.
+
+    Attributes
+    ----------
+    approach, retraction : float
+        w_appr and w_retr; NaN where the record holds no steady window. (Units: w_int)
+    approach_error, retraction_error : float
+        Standard errors of the two, by `standard_error`. (Units: w_int)
+    hysteresis, midpoint : float
+        w_retr - w_appr and their mean. (Units: w_int)
+    approach_from_force, retraction_from_force : float
+        Work of adhesion of the JKR curve that fits force against mean radius. (Units: w_int)
+    lowest_radius, highest_radius : float
+        Window of mean radii. (Units: reduced lateral length)
+    n_approach, n_retraction : int
+        States averaged.
+    sentence : str
+        Why there is no value; empty where there is one.
+    """
+
+    approach: float
+    retraction: float
+    approach_error: float
+    retraction_error: float
+    hysteresis: float
+    midpoint: float
+    approach_from_force: float
+    retraction_from_force: float
+    lowest_radius: float
+    highest_radius: float
+    n_approach: int
+    n_retraction: int
+    sentence: str
+
+
+def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdhesion:
+    """Mean apparent work of adhesion over the steady part of each branch.
+
+    Parameters
+    ----------
+    record : CycleRecord
+        States of an approach and a retraction.
+    correlation_length : float
+        Distance that every site must travel before a branch counts as steady; that of w_loc.
+        (Units: reduced lateral length)
+
+    Returns
+    -------
+    SteadyAdhesion
+        The two values, or NaN with the reason in `sentence`.
+
+    Raises
+    ------
+    ValueError
+        If the correlation length is not positive and finite.
+    """
+    if not (math.isfinite(correlation_length) and correlation_length > 0):
+        raise ValueError(
+            f"correlation length is {correlation_length}; it must be positive and finite"
+        )
+    steady = record.least_travel >= correlation_length
+    approach = steady & (record.direction > 0)
+    retraction = steady & (record.direction < 0)
+    counts = int(np.count_nonzero(approach)), int(np.count_nonzero(retraction))
+    if min(counts) < FEWEST_STATES:
+        return _no_value(
+            counts,
+            f"{counts[0]} steady states in approach and {counts[1]} in retraction; "
+            f"{FEWEST_STATES} each are needed, so penetrate deeper or use a smaller load step",
+        )
+    radius = record.mean_radius
+    lowest = float(max(radius[approach].min(), radius[retraction].min()))
+    highest = float(min(radius[approach].max(), radius[retraction].max()))
+    inside = (radius >= lowest) & (radius <= highest)
+    approach, retraction = approach & inside, retraction & inside
+    counts = int(np.count_nonzero(approach)), int(np.count_nonzero(retraction))
+    if min(counts) < FEWEST_STATES:
+        return _no_value(
+            counts,
+            f"the steady branches share {counts[0]} states of approach and {counts[1]} of "
+            f"retraction at equal mean radii; {FEWEST_STATES} each are needed, so penetrate "
+            "deeper or use a smaller load step",
+        )
+    values = record.apparent_work_of_adhesion
+    errors = [
+        standard_error(
+            values[branch], radius[branch], record.rms_radius[branch], correlation_length
+        )
+        for branch in (approach, retraction)
+    ]
+    w_appr, w_retr = float(np.mean(values[approach])), float(np.mean(values[retraction]))
+    return SteadyAdhesion(
+        approach=w_appr,
+        retraction=w_retr,
+        approach_error=errors[0],
+        retraction_error=errors[1],
+        hysteresis=w_retr - w_appr,
+        midpoint=(w_retr + w_appr) / 2,
+        approach_from_force=_adhesion_from_force(radius[approach], record.force[approach]),
+        retraction_from_force=_adhesion_from_force(radius[retraction], record.force[retraction]),
+        lowest_radius=lowest,
+        highest_radius=highest,
+        n_approach=counts[0],
+        n_retraction=counts[1],
+        sentence="",
+    )
+
+
+def _adhesion_from_force(radius: Array, force: Array) -> float:
+    """Work of adhesion of the JKR curve that fits best; the force is linear in its root."""
+    repulsion = jkr.equilibrium_force(radius, 0.0)
+    attraction = repulsion - jkr.equilibrium_force(radius, 1.0)
+    root = np.sum((repulsion - force) * attraction) / np.sum(attraction**2)
+    return float(root**2)
+
+
+def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
+    """A result without values, and why."""
+    nan = math.nan
+    return SteadyAdhesion(*(nan,) * 10, *counts, sentence)

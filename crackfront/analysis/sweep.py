@@ -1,0 +1,320 @@
+"""The fit of k, of the exponent, of the midpoint and of the trends of k to a sweep."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import stdtr
+
+from crackfront.analysis.estimate import (
+    Estimate,
+    combination,
+    mean_estimate,
+    ratio,
+    resample_counts,
+    scatter,
+    slope,
+    student_estimate,
+)
+from crackfront.analysis.result import (
+    CellEstimates,
+    FieldKind,
+    ForceDifference,
+    LawEstimates,
+    SweepFit,
+)
+from crackfront.analysis.table import SweepTable
+
+Array = NDArray[np.float64]
+
+FEWEST_BOOTSTRAP = 100
+"""Bootstrap samples below which a standard error is itself mostly noise."""
+
+FIT_DEFINITION = (
+    "k of one simulation is (w_retr - w_appr) / (2 e_el) with e_el measured on its tile. k of a "
+    "spectrum is the mean over the amplitudes in the range, each the mean over its realisations, "
+    "with one weight for every amplitude: k depends on disorder and size, so that an average over "
+    "a range is a definition, and equal weights make it the same one for every spectrum, whatever "
+    "the noise; weights from the scatter of few realisations would not. The pooled k is the mean "
+    "of the spectra's. The ratio of sums, sum of hysteresis over sum of 2 e_el, weighs each "
+    "amplitude by its e_el; where the two differ, k is no constant. The exponent is the slope of "
+    "log mean hysteresis in log w_rms (measured), the disorder slope that of mean k in log2 w_rms, "
+    "both by least squares with equal weights, pooled with one intercept a spectrum. The midpoint "
+    "slope m in w_int - (w_retr + w_appr)/2 = m e_el (by the law 1 for roughness, 0 for a chemical "
+    "field) is a ratio of sums, the best estimator for noise whose variance grows with w_rms^2. "
+    "The size slope is that of k in log2 of the correlation "
+    "length among spectra of one shape (equal roll_off / short_cutoff and Hurst exponent), with "
+    "one intercept a shape. Intervals are 95%, of Student's t with the bootstrap's standard error: "
+    "realisations of a spectrum are resampled, each with all its amplitudes because these share "
+    "their noise, spectra independently of each other; percentiles of the bootstrap would be far "
+    "too narrow for the few realisations there are. They cover the scatter between realisations, "
+    "not the differences between spectra."
+)
+"""What the numbers of a fit mean; stored in every file that holds them."""
+
+
+class _Samples(NamedTuple):
+    """What one simulation contributes, (..., n_amplitude, n_realisation); or means of it."""
+
+    energy: Array
+    rms: Array
+    hysteresis: Array
+    depression: Array
+    factor: Array
+    factor_from_force: Array
+
+
+_STATISTICS = tuple(item.name for item in fields(LawEstimates))
+"""What is fitted to one spectrum, in the order of :func:`_statistics`."""
+
+
+def fit_sweep(
+    table: SweepTable,
+    *,
+    lowest_elastic_energy: float,
+    highest_elastic_energy: float,
+    n_bootstrap: int = 4000,
+    seed: int = 0,
+    kind: FieldKind = "roughness",
+) -> SweepFit:
+    """Fit k, the exponent, the midpoint and the trends of k, with intervals.
+
+    Parameters
+    ----------
+    table : SweepTable
+        Apparent works of adhesion of a sweep.
+    lowest_elastic_energy, highest_elastic_energy : float
+        Range of requested e_el that the fit uses, ends included. (Units: w_int)
+    n_bootstrap : int, optional
+        Bootstrap samples.
+    seed : int, optional
+        Seed of their draws; the point estimates do not depend on it.
+    kind : {"roughness", "chemical"}, optional
+        What the fields are: the midpoint should be w_int - e_el for roughness, w_int for a
+        chemical field.
+
+    Returns
+    -------
+    SweepFit
+        Estimates as :data:`FIT_DEFINITION` says. What the data do not give is NaN and has a
+        sentence in :func:`crackfront.analysis.notes.fit_notes`.
+
+    Raises
+    ------
+    ValueError
+        If the range is empty, holds no amplitude or no simulation with a value, or there are too
+        few bootstrap samples.
+    """
+    in_range = _amplitudes_in_range(table, lowest_elastic_energy, highest_elastic_energy)
+    if n_bootstrap < FEWEST_BOOTSTRAP:
+        raise ValueError(f"n_bootstrap is {n_bootstrap}; ask for {FEWEST_BOOTSTRAP} or more")
+    samples = _samples(table)
+    chosen = _Samples(*(values[:, in_range] for values in samples))
+    n_realisation = np.count_nonzero(np.any(np.isfinite(chosen.factor), axis=1), axis=-1)
+    parts, shares = _fit_spectra(chosen, n_realisation - 1, n_bootstrap, seed)
+    spectra = LawEstimates(**dict(zip(_STATISTICS, parts, strict=True)))
+    cells = _cell_estimates(samples, 1.0 if kind == "roughness" else 0.0)
+    largest, probability = _largest_deviation(cells, in_range)
+    return SweepFit(
+        table=table,
+        kind=kind,
+        lowest_elastic_energy=lowest_elastic_energy,
+        highest_elastic_energy=highest_elastic_energy,
+        n_bootstrap=n_bootstrap,
+        seed=seed,
+        in_range=in_range,
+        n_realisation=n_realisation,
+        n_failed=np.count_nonzero(~np.isfinite(chosen.factor), axis=(1, 2)),
+        cells=cells,
+        spectra=spectra,
+        pooled=_pooled(parts, shares, n_realisation - 1),
+        size_slope=_size_slopes(table, cells),
+        pooled_size_slope=_size_slope(table, spectra.factor, n_realisation - 1),
+        midpoint_largest=largest,
+        midpoint_probability=probability,
+        from_force=_force_difference(table, in_range),
+    )
+
+
+def _amplitudes_in_range(table: SweepTable, lowest: float, highest: float) -> NDArray[np.bool_]:
+    """Amplitudes within the range, which must hold at least one value."""
+    if not 0 < lowest <= highest:
+        raise ValueError(
+            f"range of e_el is {lowest} to {highest} w_int; give two positive ends, the lower first"
+        )
+    requested = table.e_el_requested
+    in_range = (requested >= lowest * (1 - 1e-9)) & (requested <= highest * (1 + 1e-9))
+    if not np.any(in_range):
+        raise ValueError(
+            f"no amplitude lies in the range {lowest} to {highest} w_int; the sweep has e_el = "
+            f"{', '.join(f'{value:.4g}' for value in requested)}, so widen the range"
+        )
+    if not np.any(table.finite[:, in_range]):
+        raise ValueError(
+            f"none of the {table.finite[:, in_range].size} simulations with e_el from {lowest} to "
+            f"{highest} w_int has a value; see their status in the dataset"
+        )
+    return in_range
+
+
+def _samples(table: SweepTable) -> _Samples:
+    """What every simulation contributes, NaN where it failed."""
+    finite = table.finite
+    energy = np.where(finite, table.e_el, np.nan)
+    w_appr, w_retr = np.where(finite, (table.w_appr, table.w_retr), np.nan)
+    return _Samples(
+        energy=energy,
+        rms=np.where(finite, table.w_rms, np.nan),
+        hysteresis=w_retr - w_appr,
+        depression=1 - (w_retr + w_appr) / 2,
+        factor=(w_retr - w_appr) / (2 * energy),
+        factor_from_force=(table.w_retr_from_force - table.w_appr_from_force) / (2 * energy),
+    )
+
+
+def _cell_estimates(samples: _Samples, lowering: float) -> CellEstimates:
+    """Means over the realisations where e_el lowers the mean of w_loc, as a multiple of e_el."""
+    factor, count = mean_estimate(samples.factor)
+    return CellEstimates(
+        count=count,
+        e_el=mean_estimate(samples.energy)[0].value,
+        w_rms=mean_estimate(samples.rms)[0].value,
+        hysteresis=mean_estimate(samples.hysteresis)[0],
+        factor=factor,
+        midpoint_deviation=mean_estimate(lowering * samples.energy - samples.depression)[0],
+    )
+
+
+def _fit_spectra(
+    samples: _Samples, freedom: NDArray[np.int64], n_bootstrap: int, seed: int
+) -> tuple[list[Estimate], Array]:
+    """Estimates of every statistic for the spectra, and their (statistic, spectrum) weights."""
+    shape = len(_STATISTICS), freedom.size
+    values, errors, weights = np.empty(shape), np.full(shape, np.nan), np.empty(shape)
+    streams = np.random.SeedSequence(seed).spawn(freedom.size)
+    for index, stream in enumerate(streams):
+        own = _Samples(*(quantity[index] for quantity in samples))
+        present = np.any(np.isfinite(own.factor), axis=0)
+        own = _Samples(*(quantity[:, present] for quantity in own))
+        whole = np.ones((1, np.count_nonzero(present)))
+        value, weight = _statistics(_means(own, whole))
+        values[:, index], weights[:, index] = value[:, 0], weight[:, 0]
+        if freedom[index] > 0:
+            rng = np.random.default_rng(stream)
+            drawn, _ = _statistics(_means(own, resample_counts(n_bootstrap, whole.size, rng)))
+            errors[:, index] = scatter(drawn)
+    estimates = [student_estimate(*row, freedom) for row in zip(values, errors, strict=True)]
+    return estimates, weights
+
+
+def _means(samples: _Samples, counts: Array) -> _Samples:
+    """Means over realisations for every bootstrap sample, (n_sample, n_amplitude).
+
+    An amplitude of which a sample holds no value is NaN there and left out of what is fitted.
+    """
+    means = []
+    for quantity in samples:
+        finite = np.isfinite(quantity)
+        known = np.where(finite, quantity, 0.0)
+        means.append(ratio(counts @ known.T, counts @ finite.T))
+    return _Samples(*means)
+
+
+def _statistics(means: _Samples) -> tuple[Array, Array]:
+    """Statistics of every bootstrap sample and their weights, (n_statistic, n_sample)."""
+    doublings = np.log2(means.rms)
+    positive = means.hysteresis > 0
+    logarithm = np.log2(means.hysteresis, where=positive, out=np.full(positive.shape, np.nan))
+    energy, one = _sum(means.energy), np.ones(positive.shape[0])
+    exponent, spread = slope(doublings, logarithm)
+    disorder_slope, spread_of_factors = slope(doublings, means.factor)
+    values = (
+        _mean(means.factor),
+        ratio(_sum(means.hysteresis), 2 * energy),
+        _mean(means.factor_from_force),
+        exponent,
+        ratio(_sum(means.depression), energy),
+        disorder_slope,
+    )
+    weights = (one, energy, one, spread, energy, spread_of_factors)
+    return np.array(values), np.where(np.isfinite(values), weights, 0.0)
+
+
+def _pooled(parts: list[Estimate], shares: Array, freedom: NDArray[np.int64]) -> LawEstimates:
+    """Weighted means of the spectra's estimates."""
+    pooled = (
+        combination(estimate, freedom, ratio(share, np.sum(share)))
+        for estimate, share in zip(parts, shares, strict=True)
+    )
+    return LawEstimates(**dict(zip(_STATISTICS, pooled, strict=True)))
+
+
+def _largest_deviation(cells: CellEstimates, in_range: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Largest deviation of a midpoint in standard errors, and its probability by chance."""
+    deviation, freedom = cells.midpoint_deviation, cells.count - 1
+    tested = (deviation.standard_error > 0) & in_range
+    if not np.any(tested):
+        return np.array(np.nan), np.array(np.nan)
+    scores = np.abs(deviation.value[tested] / deviation.standard_error[tested])
+    chances = 2 * stdtr(freedom[tested], -scores)
+    most = np.argmax(scores)
+    return np.asarray(scores[most]), np.asarray(min(chances[most] * scores.size, 1.0))
+
+
+def _size_slopes(table: SweepTable, cells: CellEstimates) -> Estimate:
+    """Change of k per doubling of the correlation length at every amplitude."""
+    slopes = []
+    for index in range(table.e_el_requested.size):
+        parts = Estimate(*(getattr(cells.factor, item.name)[:, index] for item in fields(Estimate)))
+        slopes.append(_size_slope(table, parts, cells.count[:, index] - 1))
+    return Estimate(
+        *(np.array([getattr(one, item.name) for one in slopes]) for item in fields(Estimate))
+    )
+
+
+def _size_slope(table: SweepTable, factor: Estimate, freedom: NDArray[np.int64]) -> Estimate:
+    """Change of k per doubling of the correlation length among spectra of one shape."""
+    doublings = np.log2(table.correlation_length)
+    deviation = np.zeros(doublings.size)
+    for shape in np.unique(table.shape):
+        family = (table.shape == shape) & np.isfinite(factor.value)
+        if np.count_nonzero(family) > 1:
+            deviation[family] = doublings[family] - np.mean(doublings[family])
+    spread = np.sum(deviation**2)
+    return combination(factor, freedom, deviation / spread if spread > 0 else np.zeros(1))
+
+
+def _force_difference(table: SweepTable, in_range: NDArray[np.bool_]) -> ForceDifference:
+    """Differences of the experimenter's estimates over the simulations in the range."""
+    approach, retraction = (
+        difference[:, in_range].reshape(table.spectrum.size, -1)
+        for difference in (
+            table.w_appr_from_force - table.w_appr,
+            table.w_retr_from_force - table.w_retr,
+        )
+    )
+    return ForceDifference(
+        approach=_mean(approach),
+        approach_largest=_largest(approach),
+        retraction=_mean(retraction),
+        retraction_largest=_largest(retraction),
+    )
+
+
+def _sum(values: Array) -> Array:
+    """Sum over the last axis, NaN left out."""
+    return np.asarray(np.sum(values, axis=-1, where=np.isfinite(values)))
+
+
+def _mean(values: Array) -> Array:
+    """Mean over the last axis, NaN left out."""
+    return ratio(_sum(values), np.count_nonzero(np.isfinite(values), axis=-1))
+
+
+def _largest(values: Array) -> Array:
+    """Largest magnitude over the last axis, NaN left out and alone if there is nothing else."""
+    largest = np.max(np.abs(values), axis=-1, where=np.isfinite(values), initial=-1.0)
+    return np.where(largest < 0, np.nan, largest)

@@ -1,0 +1,1 @@
+"""The physics of a crack front; imports nothing else of the package."""

@@ -1,0 +1,1 @@
+"""Loads, the fronts that follow them, and what is recorded of each."""

@@ -1,0 +1,209 @@
+"""The single elastic instabilities of a branch, told apart from the smooth motion between them.
+
+A load step is halved until the front moves little, which is smooth motion, or until the step is
+too small to matter, which is an instability. No passing makes this exact: the front at a
+penetration does not depend on the steps that led there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core.field.kinds import Field
+from crackfront.core.field.samples import make_memory
+from crackfront.core.solver.relax import Direction, Status, relax
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """One step between two metastable fronts.
+
+    Attributes
+    ----------
+    start, end : float
+        Penetrations of the two. (Units: reduced vertical length)
+    before, after : (n_angle,) array
+        The fronts. (Units: reduced lateral length)
+    unstable : bool
+        Whether the front jumped, however small the step.
+    """
+
+    start: float
+    end: float
+    before: Array
+    after: Array
+    unstable: bool
+
+
+def resolved_motion(
+    field: Field,
+    front: Array,
+    start: float,
+    loads: Iterable[float],
+    direction: Direction,
+    *,
+    travel: float,
+    precision: float,
+    tolerance: float = 1e-8,
+) -> Iterator[Motion]:
+    """Motion of a front from load to load, resolved into smooth steps and single instabilities.
+
+    Instabilities that are closer in penetration than the precision come out as one; those that
+    move no site further than `travel` count as smooth.
+
+    Parameters
+    ----------
+    field : Field
+        Work of adhesion along the rays.
+    front : (n_angle,) array
+        Metastable front. (Units: reduced lateral length)
+    start : float
+        Its penetration. (Units: reduced vertical length)
+    loads : iterable of float
+        Penetrations to visit, in the direction of motion. (Units: reduced vertical length)
+    direction : {1, -1}
+        +1 in approach, -1 in retraction.
+    travel : float
+        Largest motion of a site in a smooth step. (Units: reduced lateral length)
+    precision : float
+        Step in which a larger motion is an instability. (Units: reduced vertical length)
+    tolerance : float, optional
+        As in :func:`crackfront.core.solver.relax.relax`; a front rests until its drive exceeds it,
+        so that a tolerance above the precision delays the instabilities.
+
+    Yields
+    ------
+    Motion
+        Steps that follow each other; they end where contact is lost.
+
+    Raises
+    ------
+    ValueError
+        If travel or precision are not positive, or a relaxation fails.
+    """
+    for name, value in (("travel", travel), ("precision", precision)):
+        if not 0 < value < math.inf:
+            raise ValueError(f"{name} is {value}; it must be positive and finite")
+    memory = make_memory(field)
+
+    def front_at(penetration: float) -> Array | None:
+        found = relax(front, penetration, direction, field, tolerance=tolerance, memory=memory)
+        if found.status is Status.LOST_CONTACT:
+            return None
+        if found.status is not Status.CONVERGED:
+            raise ValueError(f"at penetration {penetration:.6g}: {found.status.value}")
+        return found.radius
+
+    for load in loads:
+        # Fronts that were found from further behind are those that a halved step arrives at.
+        ahead = [(load, front_at(load))]
+        while ahead:
+            end, after = ahead[-1]
+            moved = math.inf if after is None else float(np.max(np.abs(after - front)))
+            if moved > travel and abs(end - start) > precision:
+                middle = (start + end) / 2
+                ahead.append((middle, front_at(middle)))
+                continue
+            if after is None:
+                return
+            yield Motion(start, end, front, after, moved > travel)
+            start, front = end, after
+            ahead.pop()
+
+
+@dataclass(frozen=True, slots=True)
+class Cluster:
+    """A contiguous part of the perimeter that moved in one instability.
+
+    Attributes
+    ----------
+    area : float
+        Area between the fronts. (Units: reduced lateral length**2)
+    depth : float
+        Largest motion of a site. (Units: reduced lateral length)
+    extent : float
+        Area over depth: the width along the perimeter of a patch that has that depth everywhere.
+        (Units: reduced lateral length)
+    """
+
+    area: float
+    depth: float
+    extent: float
+
+
+def swept_clusters(before: Array, after: Array, threshold: float) -> list[Cluster]:
+    """Contiguous parts of the perimeter that moved by more than a threshold, the largest first.
+
+    The front is elastic over long distances, so that an instability may move parts that do not
+    touch each other.
+
+    Parameters
+    ----------
+    before, after : (n_angle,) array
+        Fronts before and after. (Units: reduced lateral length)
+    threshold : float
+        Smallest motion that counts. (Units: reduced lateral length)
+
+    References
+    ----------
+    .. [1] Laurson, Santucci, Zapperi, Phys. Rev. E 81, 046116 (2010).
+
+    Examples
+    --------
+    >>> before, after = np.full(8, 2.0), np.array([1.5, 2, 2, 1.5, 1.5, 2, 2, 1.5])
+    >>> [round(item.extent / (np.pi / 4), 6) for item in swept_clusters(before, after, 0.1)]
+    [3.5, 3.5]
+    """
+    moved = np.abs(after - before)
+    area = np.abs(after**2 - before**2) * np.pi / moved.size
+    inside = moved > threshold
+    if not np.any(inside):
+        return []
+    # Begin on a site that rests, so that no part spans the ends of the array.
+    turn = -int(np.argmin(inside))
+    moved, area, inside = np.roll(moved, turn), np.roll(area, turn), np.roll(inside, turn)
+    edges = np.diff(inside.astype(int), prepend=0, append=0)
+    clusters = []
+    for first, last in zip(np.flatnonzero(edges > 0), np.flatnonzero(edges < 0), strict=True):
+        total, depth = float(np.sum(area[first:last])), float(np.max(moved[first:last]))
+        clusters.append(Cluster(total, depth, total / depth))
+    return sorted(clusters, key=lambda cluster: cluster.area, reverse=True)
+
+
+def larkin_length(correlation_length: float, rms: float) -> float:
+    r"""Length over which weak disorder bends the front by about its own correlation length.
+
+    Over it the slope of w_loc, summed along the front, is as stiff as the line:
+
+    .. math:: \ell^{-1} = w_{int}^{-2} \int \frac{dq}{2\pi}\, q^2 C_w(q, 0)
+              = \frac{4\pi}{\xi} \left(\frac{w_{rms}}{w_{int}}\right)^2
+
+    for an isotropic spectrum C_w whose mean wavevector, weighted by variance, is 2 pi / xi.
+
+    Parameters
+    ----------
+    correlation_length : float
+        That of w_loc, as `correlation_length` has it. (Units: length)
+    rms : float
+        w_rms / w_int.
+
+    Returns
+    -------
+    float
+        Larkin length; its factor is a convention. (Units: length)
+
+    Examples
+    --------
+    A flat spectrum of heights up to the wavelength 1 has a correlation length of 4/3:
+
+    >>> round(larkin_length(4 / 3, 1.0), 3)
+    0.106
+    """
+    return correlation_length / (4 * math.pi * rms**2)

@@ -1,0 +1,253 @@
+"""The steady parts of both branches alone, without the cycle around them.
+
+A branch begins at a circle that moves forward, not at first contact or far outside. By no passing,
+a front that starts at a circle is the same as one that comes from further behind as soon as that
+one has passed the circle everywhere: the start is forgotten exactly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core import jkr
+from crackfront.core.cycle.history import FrontHistory
+from crackfront.core.cycle.record import Checkpoint, CycleRecord, CycleState, Keep
+from crackfront.core.cycle.run import refuse_outgrown
+from crackfront.core.field.kinds import Field, first_radius, last_radius, n_angle
+from crackfront.core.field.rays import front_adhesion
+from crackfront.core.solver.relax import Direction, Status
+from crackfront.core.units import WORK_OF_ADHESION
+
+Array = NDArray[np.float64]
+
+FEWEST_STATES = 3
+"""Steady states from which a standard error is told."""
+
+_FEWEST_TO_STOP = 8
+"""Steady states before the approach may turn."""
+
+_DEPTH = 3.0
+"""Rms deviations of a front from its mean after which it forgets; docs/model.md has the measure."""
+
+_N_CIRCLE = 64
+"""Circles that are tried as a start."""
+
+_MARGIN = 1.5
+"""How many times the rms of w_loc a circle must be from rest to be a start.
+
+docs/model.md says how often fronts then differ from those that come from far behind. That every
+single site moves forward is not asked: where some repel, no circle with an open edge fulfils it.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class SteadySchedule:
+    """Approach from a penetration until w_appr is known well enough, and back over the same radii.
+
+    Parameters
+    ----------
+    start : float
+        Penetration at which the approach begins. (Units: reduced vertical length)
+    max_penetration : float
+        Largest penetration. (Units: reduced vertical length)
+    travel : float
+        Way of a smooth front from state to state, in correlation lengths of w_loc.
+    error : float
+        Standard error of w_appr at which the approach turns, in units of e_el: that of its k.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive, or there is no way from the start to the largest penetration.
+    """
+
+    start: float
+    max_penetration: float
+    travel: float
+    error: float
+
+    def __post_init__(self) -> None:
+        for name in ("travel", "error"):
+            if not 0 < getattr(self, name) < math.inf:
+                raise ValueError(f"steady {name} is {getattr(self, name)}; it must be positive")
+        if not 0 <= self.start < self.max_penetration < math.inf:
+            raise ValueError(
+                f"steady start {self.start} must be 0 or more and below the largest penetration "
+                f"{self.max_penetration}"
+            )
+
+
+def run_steady(
+    field: Field,
+    schedule: SteadySchedule,
+    *,
+    correlation_length: float,
+    elastic_energy: float,
+    tolerance: float = 1e-8,
+    max_sweeps: int = 10_000_000,
+    solver: str = "newton",
+    record_fronts: bool = False,
+    record_energy: bool = False,
+    progress: Callable[[CycleState], None] | None = None,
+    resume: Checkpoint | None = None,
+    keep: Keep | None = None,
+) -> CycleRecord:
+    """Approach and retraction over the radii that an estimate of the hysteresis needs.
+
+    Each branch begins at the circle of `forward_circle`. The approach goes on until w_appr has the
+    requested standard error or the largest penetration is reached; the retraction from about its
+    largest radius until it has left the radii over which the approach was steady.
+
+    Parameters
+    ----------
+    field : Field
+        Work of adhesion along the rays.
+    schedule : SteadySchedule
+        Where to begin and when to stop.
+    correlation_length : float
+        Distance that every site must travel before a branch counts as steady.
+        (Units: reduced lateral length)
+    elastic_energy : float
+        Unit of the requested error. (Units: w_int)
+    tolerance, max_sweeps, solver, record_fronts, record_energy, progress, resume, keep
+        As in :func:`crackfront.core.cycle.run.run_cycle`.
+
+    Returns
+    -------
+    CycleRecord
+        The states; its status is `STEADY` where both branches were measured. The energy that the
+        first step of a branch dissipates has no meaning and is NaN.
+
+    Raises
+    ------
+    ValueError
+        If a smooth sphere would outgrow the field, or the solver is unknown.
+    """
+    refuse_outgrown(field, schedule.max_penetration)
+    history = FrontHistory(
+        field,
+        np.full(n_angle(field), first_radius(field)),
+        tolerance=tolerance,
+        max_sweeps=max_sweeps,
+        solver=solver,
+        record_fronts=record_fronts,
+        record_energy=record_energy,
+        progress=progress,
+        resume=resume,
+        keep=keep,
+    )
+    step = schedule.travel * correlation_length * _penetration_slope(schedule.start)
+    n_step = math.floor((schedule.max_penetration - schedule.start) / step)
+    near = jkr.equilibrium_radius(schedule.start) - correlation_length
+    history.begin(forward_circle(field, schedule.start, 1, near))
+    for k in range(n_step + 1):
+        if history.follow(schedule.start + k * step, 1) is not Status.CONVERGED:
+            return history.record()
+        steady = [item for item in history.states if item.least_travel >= correlation_length]
+        radius, values, roughness = (
+            np.array([getattr(item, name) for item in steady])
+            for name in ("mean_radius", "apparent_work_of_adhesion", "rms_radius")
+        )
+        error = standard_error(values, radius, roughness, correlation_length) / elastic_energy
+        if values.size >= _FEWEST_TO_STOP and error <= schedule.error:
+            break
+    lowest = np.min(radius, initial=math.inf)
+    last = history.states[-1]
+    penetration = _retraction_start(field, last)
+    near = last.mean_radius + correlation_length
+    history.begin(forward_circle(field, penetration, -1, near))
+    while history.follow(penetration, -1) is Status.CONVERGED:
+        if history.states[-1].mean_radius < lowest:
+            return history.record(Status.STEADY)
+        penetration -= step
+    return history.record()
+
+
+def _retraction_start(field: Field, last: CycleState) -> float:
+    """Penetration at which a retraction comes to the radius of the last state of the approach.
+
+    The mean of w_loc is taken to lie in the middle between the branches, so that the retraction
+    begins outside rather than inside where it is in the upper half.
+    """
+    circle = np.full(n_angle(field), last.mean_radius)
+    mean = float(np.mean(front_adhesion(circle, field))) / WORK_OF_ADHESION
+    expected = max(mean + 0.8 * (mean - last.apparent_work_of_adhesion), 0.0)
+    return min(float(jkr.equilibrium_penetration(last.mean_radius, expected)), last.penetration)
+
+
+def forward_circle(field: Field, penetration: float, direction: Direction, near: float) -> Array:
+    """The first circle behind a radius that moves forward even against 1.5 times the rms of w_loc.
+
+    Parameters
+    ----------
+    field : Field
+        Work of adhesion along the rays.
+    penetration : float
+        Rigid body penetration. (Units: reduced vertical length)
+    direction : {1, -1}
+        +1 in approach, where behind is inside, -1 in retraction.
+    near : float
+        Radius from which to look. (Units: reduced lateral length)
+
+    Returns
+    -------
+    (n_angle,) array
+        Front. Where no such circle is found it is, in approach, that within which the edge is in
+        compression, so that no front can rest inside; in retraction the end of the field.
+        (Units: reduced lateral length)
+    """
+    furthest = last_radius(field)
+    if direction > 0:
+        furthest = max(math.sqrt(max(penetration, 0.0)), first_radius(field))
+    if direction * (furthest - near) > 0:
+        return np.full(n_angle(field), furthest)
+    for radius in np.linspace(near, furthest, _N_CIRCLE):
+        circle = np.full(n_angle(field), radius)
+        adhesion = front_adhesion(circle, field)
+        drive = direction * (np.mean(adhesion) - jkr.energy_release_rate(radius, penetration))
+        if drive > _MARGIN * np.std(adhesion):
+            return circle
+    return np.full(n_angle(field), furthest)
+
+
+def standard_error(
+    values: Array, radius: Array, roughness: Array, correlation_length: float
+) -> float:
+    """Standard error of the mean apparent work of adhesion over steady states of one branch.
+
+    States count as one that are closer to each other than the correlation length of w_loc, or
+    than three times the rms deviation of the front from its mean where that is larger: a rough
+    front has to pass its own depth before it has left what pinned it (docs/model.md).
+
+    Parameters
+    ----------
+    values : (n_state,) array
+        Apparent work of adhesion. (Units: w_int)
+    radius : (n_state,) array
+        Mean radius. (Units: reduced lateral length)
+    roughness : (n_state,) array
+        Rms deviation of the front from its mean radius. (Units: reduced lateral length)
+    correlation_length : float
+        That of w_loc. (Units: reduced lateral length)
+
+    Returns
+    -------
+    float
+        Standard error, infinite for fewer than :data:`FEWEST_STATES` states. (Units: w_int)
+    """
+    if values.size < FEWEST_STATES:
+        return math.inf
+    distance = max(correlation_length, _DEPTH * float(np.mean(roughness)))
+    independent = min(values.size, 1 + np.ptp(radius) / distance)
+    return float(np.std(values, ddof=1) / math.sqrt(independent))
+
+
+def _penetration_slope(penetration: float) -> float:
+    """Penetration per radius of a smooth contact, d(a^2 - sqrt(8a/3)) / da."""
+    radius = jkr.equilibrium_radius(penetration)
+    return 2 * radius - math.sqrt(2 / (3 * radius))

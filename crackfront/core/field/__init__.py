@@ -1,0 +1,1 @@
+"""The work of adhesion along the rays of the front, sampled where the front is."""

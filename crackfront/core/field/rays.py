@@ -1,0 +1,132 @@
+"""The field under and between fronts."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core.compiled import jit
+from crackfront.core.field.kinds import Field, PolarField, TileField
+from crackfront.core.field.pieces import blend, evaluate_piece, ordinates
+from crackfront.core.field.samples import evaluate, sample_count, sample_radius
+
+Array = NDArray[np.float64]
+
+
+@jit
+def segment_below(field, radius, direction):
+    """Index of the sample below a radius; a radius on a sample belongs to the segment ahead."""
+    low, high = 0, sample_count(field) - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        inside = sample_radius(field, middle)
+        if inside < radius or (direction > 0 and inside == radius):
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@jit
+def front_products(radius, field):
+    """Radius times work of adhesion under a front, (n_angle,) array."""
+    products = np.empty(radius.size)
+    for i in range(radius.size):
+        low = segment_below(field, radius[i], 1)
+        inner, outer = sample_radius(field, low), sample_radius(field, low + 1)
+        products[i] = blend(evaluate_piece(field, i, low), (radius[i] - inner) / (outer - inner))
+    return products
+
+
+def front_adhesion(radius: Array, field: Field) -> Array:
+    """Work of adhesion under a front, w_loc(a(theta), theta).
+
+    Parameters
+    ----------
+    radius : (n_angle,) array
+        Front inside the field. (Units: reduced lateral length)
+    field : Field
+        Work of adhesion along the rays.
+
+    Returns
+    -------
+    (n_angle,) array
+        Work of adhesion. (Units: reduced energy / area)
+    """
+    return np.asarray(front_products(radius, field) / radius)
+
+
+@jit
+def _ray_adhesion(field, ray, inner, outer):
+    """Integral of the product along a ray, by Simpson's rule, which is exact for its pieces."""
+    if inner >= outer:
+        return 0.0
+    total, low, position = 0.0, segment_below(field, inner, 1), inner
+    start = evaluate(field, ray, low)
+    while position < outer:
+        left, right = sample_radius(field, low), sample_radius(field, low + 1)
+        end = evaluate(field, ray, low + 1)
+        piece = ordinates(field, low, start, end)
+        stop = min(right, outer)
+        first, last = (position - left) / (right - left), (stop - left) / (right - left)
+        values = blend(piece, first) + 4 * blend(piece, 0.5 * (first + last)) + blend(piece, last)
+        total += values / 6 * (stop - position)
+        position, low, start = stop, low + 1, end
+    return total
+
+
+@jit
+def _swept_adhesion(before, after, field):
+    """Adhesion energy between two fronts, positive where the second lies outside."""
+    total = 0.0
+    for i in range(before.size):
+        low, high = min(before[i], after[i]), max(before[i], after[i])
+        total += np.sign(after[i] - before[i]) * _ray_adhesion(field, i, low, high)
+    return 2 * np.pi * total / before.size
+
+
+def swept_adhesion(before: Array, after: Array, field: Field) -> float:
+    """Adhesion energy gained when one front turns into another.
+
+    Parameters
+    ----------
+    before, after : (n_angle,) array
+        Fronts inside the field. (Units: reduced lateral length)
+    field : Field
+        Work of adhesion along the rays.
+
+    Returns
+    -------
+    float
+        Integral of w_loc over the area between them, negative where contact is given up.
+        (Units: reduced energy)
+    """
+    return float(_swept_adhesion(before, after, field))
+
+
+@jit
+def _sample_rays(field):
+    """Products and slopes at all samples of all rays."""
+    samples = np.empty((2, field.cosine.size, field.n_sample))
+    for ray in range(samples.shape[1]):
+        for sample in range(samples.shape[2]):
+            samples[0, ray, sample], samples[1, ray, sample] = evaluate(field, ray, sample)
+    return samples
+
+
+def sampled_on_rays(field: TileField) -> PolarField:
+    """The same field with all samples evaluated beforehand, as the paper's code has it.
+
+    Parameters
+    ----------
+    field : TileField
+        Field on a tile.
+
+    Returns
+    -------
+    PolarField
+        Field with identical samples; it takes n_angle * n_sample numbers of memory.
+    """
+    radii = field.spacing * np.arange(1, field.n_sample + 1, dtype=np.float64)
+    products, slopes = _sample_rays(field)
+    return PolarField(radii, products, slopes if field.cubic else np.empty((0, 0)))

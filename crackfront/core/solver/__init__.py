@@ -1,0 +1,1 @@
+"""The first metastable front in the direction of motion."""

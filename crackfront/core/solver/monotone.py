@@ -1,0 +1,201 @@
+r"""The fast solver: safe steps that never pass a barrier, on windows and on the whole front.
+
+Let K be the line stiffness (no positive off-diagonal entry) and f_i the own drive of site i, so
+that its drive is r_i = f_i - (K u)_i for a front u along the motion. If a step s >= 0 satisfies
+
+.. math:: (K + D) s \le r, \qquad f_i(u_i + t s_i) \ge f_i(u_i) - D_i t s_i, \quad 0 \le t \le 1,
+
+at every site that moves, then r(u + t s) >= (1 - t) r >= 0 there on the whole way: no site passes
+a position where it would rest, so that the front stays behind the first metastable state. The
+iteration increases, stays below that state and stops only where no drive is left: it ends in it.
+Leaving out couplings (windows) or lowering the right-hand side (inexact solves) only shortens s.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crackfront.core.compiled import jit
+from crackfront.core.field.rays import front_products
+from crackfront.core.field.samples import sample_radius, samples_ahead
+from crackfront.core.solver.forces import (
+    BLOCKED,
+    CONVERGED,
+    LIMIT,
+    STILL,
+    TURNED,
+    drive_sites,
+    hardening,
+    line_force,
+    place_front,
+)
+from crackfront.core.solver.newton import make_newton, newton_step
+from crackfront.core.solver.reference import rosso_krauth
+from crackfront.core.solver.window import HALF_BAND, LONGEST, make_window, relax_window
+from crackfront.core.units import WORK_OF_ADHESION
+
+_CALM = 2e-3
+"""Drive, relative to w_int, below which only Newton steps of the whole front are taken."""
+
+_LEVEL = 0.1
+"""Windows hold the sites above this share of the largest drive, and relax them to it."""
+
+_MARGIN = 10
+"""Sites added on each side of a window."""
+
+_ROUNDS = 12
+"""Steps of one window before the whole front is looked at again."""
+
+_ROUND_OFF = 1e-9
+"""Backward drive, relative to w_int, that round-off may cause."""
+
+
+@jit
+def monotone_newton(radius, penetration, direction, field, memory, tolerance, max_sweeps):
+    """First metastable front in the direction of motion; the front is changed in place.
+
+    Returns a code, the number of FFT pairs, that of updates of a site, and the largest drive left.
+    """
+    if radius.size <= 2 * HALF_BAND:
+        return rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_sweeps)
+    code, pairs, updates, residual = _run(
+        radius, penetration, direction, field, memory, tolerance, max_sweeps
+    )
+    if code == BLOCKED:
+        # The edge of the contact is near compression, or the field too steep for the digits of a
+        # radius: the reference knows how to stop there.
+        code, sweeps, more, residual = rosso_krauth(
+            radius, penetration, direction, field, memory, tolerance, max_sweeps - pairs
+        )
+        pairs += sweeps
+        updates += more
+    return code, pairs, updates, residual
+
+
+@jit
+def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
+    """Alternate between windows around the largest drives and steps of the whole front."""
+    count = radius.size
+    front, code = place_front(radius, field, memory, direction)
+    unit = np.zeros(count)
+    unit[0] = 1.0
+    row = line_force(unit)
+    window, newton = make_window(row), make_newton(count)
+    drive, active = np.empty(count), np.empty(count, np.bool_)
+    furthest = samples_ahead(field) * (sample_radius(field, 1) - sample_radius(field, 0))
+    collective = _line_outweighs_field(field, memory, front, row, penetration, direction)
+    # A backward force within the tolerance counts as equilibrium.
+    slack = tolerance * WORK_OF_ADHESION * np.min(radius)
+    residual, first_least, pairs, updates = np.inf, 0.0, 0, 0
+    before = np.zeros(count)
+    while code == CONVERGED:
+        residual, least = drive_sites(front, penetration, direction, drive)
+        if pairs == 0:
+            first_least = least
+        pairs += 1
+        if residual <= tolerance:
+            return CONVERGED, pairs, updates, residual
+        if least < first_least - _ROUND_OFF:
+            excused = _is_round_off(front.radius, field, drive, first_least - _ROUND_OFF)
+            return BLOCKED if excused else TURNED, pairs, updates, residual
+        if pairs >= max_sweeps:
+            return LIMIT, pairs, updates, residual
+        if np.array_equal(front.radius, before):
+            return STILL, pairs, updates, residual
+        before[:] = front.radius
+        calm = residual <= _CALM
+        n_active = 0 if calm else _mark(front, drive, _LEVEL * residual, active)
+        if calm or (collective and n_active > 0.3 * count):
+            accuracy = 0.02 if calm else 0.1
+            code, used = newton_step(
+                newton,
+                field,
+                memory,
+                front,
+                drive,
+                penetration,
+                direction,
+                furthest,
+                slack,
+                accuracy,
+            )
+            pairs += used
+            updates += count
+        else:
+            code, used = _relax_active(
+                window, field, memory, front, drive, active, penetration, direction,
+                _LEVEL * residual, furthest, slack,
+            )  # fmt: skip
+            updates += used
+    return code, pairs, updates, residual
+
+
+@jit
+def _is_round_off(radius, field, drive, least):
+    """Whether the last digits of the radii explain every relative drive below a value."""
+    outer = front_products(np.nextafter(radius, np.inf), field)
+    inner = front_products(np.nextafter(radius, 0.0), field)
+    for i in range(radius.size):
+        backward = drive[i] < least * radius[i] * WORK_OF_ADHESION
+        if backward and -drive[i] > 4 * abs(outer[i] - inner[i]):
+            return False
+    return True
+
+
+@jit
+def _line_outweighs_field(field, memory, front, row, penetration, direction):
+    """Whether the coupling that windows leave out is stiffer than the field.
+
+    Then large parts of the front move together, and steps of the whole front pay.
+    """
+    count = front.radius.size
+    left_out = row[0]
+    for lag in range(1, HALF_BAND + 1):
+        left_out += 2 * row[lag]
+    reach = abs(sample_radius(field, 1) - sample_radius(field, 0))
+    total = 0.0
+    for i in range(count):
+        ahead = hardening(
+            field, memory, i, front.radius[i], front.product[i], front.segment[i], reach,
+            penetration, direction,
+        )  # fmt: skip
+        total += max(ahead, 0.0)
+    return total / count < 0.5 * left_out
+
+
+@jit
+def _mark(front, drive, level, active):
+    """Mark the sites with a drive above a level and their neighbours; return their number."""
+    count = drive.size
+    until = -1
+    active[:] = False
+    for i in range(count):
+        if drive[i] > level * front.radius[i] * WORK_OF_ADHESION:
+            for j in range(max(i - _MARGIN, until + 1), i + _MARGIN + 1):
+                active[j - count if j >= count else j] = True
+            until = i + _MARGIN
+    return np.sum(active)
+
+
+@jit
+def _relax_active(
+    window, field, memory, front, drive, active, b, direction, level, furthest, slack
+):
+    """Relax every run of active sites, in pieces that fit a window; return code and updates."""
+    count, updates = drive.size, 0
+    start = np.argmin(active) if not np.all(active) else np.argmin(drive)
+    j = 0
+    while j < count:
+        length = 0
+        while j + length < count and length < LONGEST and active[(start + j + length) % count]:
+            length += 1
+        if length > 0:
+            code, steps = relax_window(
+                window, field, memory, front, drive, (start + j) % count, length, b, direction,
+                level, furthest, slack, _ROUNDS,
+            )  # fmt: skip
+            updates += steps * length
+            if code != CONVERGED:
+                return code, updates
+        j += max(length, 1)
+    return CONVERGED, updates

@@ -1,0 +1,216 @@
+"""Files: written whole or not at all, with their origin; read whole or refused."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crackfront.core.records import Variable
+from crackfront.data.provenance import Provenance, utc_now
+
+_PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
+"""How arrays are compressed."""
+
+
+_SECONDS_TO_WRITE = 3600.0
+"""Time after which a file that is not finished will not be."""
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A part of the values of some variables.
+
+    Attributes
+    ----------
+    place : tuple of int or slice
+        Where in the dimensions of the variables it belongs.
+    columns : sequence of array
+        Values of each variable; texts as objects.
+    """
+
+    place: tuple[int | slice, ...]
+    columns: Sequence[NDArray[Any]]
+
+
+class UnreadableFileError(ValueError):
+    """A file that is missing, truncated, or not what its reader needs."""
+
+
+def labelled(variable: Variable, values: Any) -> tuple[tuple[str, ...], Any, dict[str, str]]:
+    """A variable with its values, as xarray wants it."""
+    return variable.dims, values, variable.attributes
+
+
+def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
+    """Write a dataset as netCDF with its origin, atomically.
+
+    Parameters
+    ----------
+    path : Path
+        File; its folder is created.
+    dataset : xarray.Dataset
+        What to write.
+    origin : Provenance
+        Where it comes from.
+    """
+    replace_atomically(path, lambda part: _write(part, dataset, origin))
+
+
+def write_dataset_in_blocks(
+    path: Path,
+    dataset: xr.Dataset,
+    variables: Sequence[Variable],
+    blocks: Iterable[Block],
+    origin: Provenance,
+) -> None:
+    """Write a dataset whose variables come block by block, atomically, holding one block at a time.
+
+    Parameters
+    ----------
+    path : Path
+        File; its folder is created.
+    dataset : xarray.Dataset
+        Coordinates and attributes.
+    variables : sequence of Variable
+        The variables, all of the same dimensions.
+    blocks : iterable of Block
+        All of their values.
+    origin : Provenance
+        Where it comes from.
+    """
+
+    def write(part: Path) -> None:
+        _write(part, dataset, origin)
+        with netCDF4.Dataset(part, "a") as file:
+            for block in blocks:
+                for variable, values in zip(variables, block.columns, strict=True):
+                    if variable.name not in file.variables:
+                        _create(file, variable, values)
+                    file[variable.name][block.place] = values
+
+    replace_atomically(path, write)
+
+
+def _create(file: netCDF4.Dataset, variable: Variable, values: NDArray[Any]) -> None:
+    """Create a variable for values like those of a block, in chunks of a block's size."""
+    text = values.dtype == object
+    sizes = [len(file.dimensions[name]) for name in variable.dims]
+    created = file.createVariable(
+        variable.name,
+        str if text else values.dtype,
+        variable.dims,
+        fill_value=None if text else False,
+        chunksizes=[1] * (len(sizes) - 1) + [min(sizes[-1], values.size)],
+        chunk_cache=values.nbytes,  # a chunk is written once; the default holds megabytes of them
+        **({} if text else _PACKED),
+    )
+    created.setncatts(variable.attributes)
+
+
+def _write(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
+    """Write a dataset with its origin under a name."""
+    stamped = dataset.assign_attrs(asdict(origin), date=utc_now())
+    encoding: dict[str, dict[str, Any]] = {
+        str(name): {"_FillValue": None}
+        for name, values in stamped.variables.items()
+        if np.issubdtype(values.dtype, np.floating)
+    }
+    for name, values in stamped.variables.items():
+        if values.ndim > 1 and str(name) in encoding:
+            encoding[str(name)] |= _PACKED
+    stamped.to_netcdf(path, engine="netcdf4", encoding=encoding)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file atomically."""
+    replace_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
+
+
+def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
+    """Let a function write a file beside the final one, and rename it once it is on disk."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    # A name of its own: after a killed controller two writers of one file do happen.
+    handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=".part", dir=path.parent)
+    os.close(handle)
+    part = Path(name)
+    try:
+        write(part)
+        with part.open("rb+") as file:
+            os.fsync(file.fileno())
+        part.chmod(0o666 & ~_UMASK)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def leftover_parts(folder: Path) -> list[Path]:
+    """Files that writers began in a folder and did not finish within the last hour.
+
+    Their age is that against a file which is created now, by the clock of the file system.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder in which files are written.
+    """
+    with tempfile.NamedTemporaryFile(prefix=".", suffix=".part", dir=folder) as new:
+        now = Path(new.name).stat().st_mtime
+        parts = [path for path in folder.glob(".*.part") if path.name != Path(new.name).name]
+        return [path for path in parts if now - path.stat().st_mtime > _SECONDS_TO_WRITE]
+
+
+def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset:
+    """Dataset of a file, in memory.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    names : collection of str, optional
+        Variables to read beside the coordinates, those that are there; by default all.
+
+    Raises
+    ------
+    UnreadableFileError
+        If there is no such file or it is no complete netCDF file.
+    """
+    if not path.is_file():
+        raise UnreadableFileError(f"{path} does not exist; check the name")
+    try:
+        with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
+            others = [] if names is None else [name for name in dataset if name not in names]
+            return dataset.drop_vars(others).load()
+    except (OSError, RuntimeError, ValueError) as error:
+        raise UnreadableFileError(
+            f"{path} is no complete netCDF file; remove it or write it again"
+        ) from error
+
+
+def read_attributes(path: Path) -> dict[str, Any]:
+    """What a file says of itself.
+
+    Raises
+    ------
+    UnreadableFileError
+        If there is no such file or it is no complete netCDF file.
+    """
+    return {str(name): value for name, value in read_dataset(path, ()).attrs.items()}
+
+
+def _umask() -> int:
+    """Permissions that new files of this process do not get."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+_UMASK = _umask()

@@ -1,0 +1,92 @@
+"""Where a result comes from: versions, sources, command and moment."""
+
+from __future__ import annotations
+
+import functools
+import platform
+import shlex
+import subprocess
+import sys
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from crackfront.core.fingerprint import PACKAGE, fingerprint, solver_fingerprint
+from crackfront.data.version import __version__
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """What every result file says about its origin.
+
+    Attributes
+    ----------
+    crackfront_version : str
+        Version of the package.
+    git_commit : str
+        Commit of the sources, with "-dirty" where they were changed since; or "unknown".
+    solver_fingerprint : str
+        Changes with every source that determines a result.
+    command : str
+        Command line of the process, the program without its folder.
+    platform : str
+        Operating system, machine and Python.
+    configuration : str
+        Text of the configuration file, empty where there was none.
+    """
+
+    crackfront_version: str
+    git_commit: str
+    solver_fingerprint: str
+    command: str
+    platform: str
+    configuration: str
+
+
+def provenance(configuration: str = "") -> Provenance:
+    """Origin of the results of this process.
+
+    Parameters
+    ----------
+    configuration : str, optional
+        Text of the configuration file.
+    """
+    return Provenance(
+        crackfront_version=__version__,
+        git_commit=git_commit(),
+        solver_fingerprint=solver_fingerprint(),
+        command=_command(),
+        platform=f"{platform.platform()}, Python {platform.python_version()}",
+        configuration=configuration,
+    )
+
+
+def _command() -> str:
+    """Command line without the folder of the program, which is that of one machine."""
+    program = Path(sys.argv[0])
+    name = program.parent.name if program.name == "__main__.py" else program.name
+    return shlex.join([name, *sys.argv[1:]])
+
+
+def utc_now() -> str:
+    """Date and time of now, UTC, ISO 8601."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+@functools.cache
+def git_commit() -> str:
+    """Commit of the sources, with "-dirty" where they were changed since; or "unknown"."""
+    # Without the tags, whose names would stand for the commit.
+    command = ["git", "-C", str(PACKAGE), "describe", "--always", "--dirty", "--abbrev=40"]
+    command.append("--exclude=*")
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, timeout=10, check=False)
+    except (OSError, subprocess.TimeoutExpired):
+        return "unknown"
+    return result.stdout.strip() if result.returncode == 0 else "unknown"
+
+
+@functools.cache
+def package_fingerprint() -> str:
+    """Twelve hexadecimal digits that change with any source of the package."""
+    return fingerprint(".")

@@ -1,0 +1,229 @@
+"""Figures of surfaces, loops, fronts and instabilities, each on axes that are given or new."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from xarray import DataArray, Dataset
+
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.plots.densities import draw_spectrum
+from crackfront.plots.fronts import draw_field, draw_fronts, draw_heights
+from crackfront.plots.instabilities import draw_instabilities
+from crackfront.plots.loop import draw_loop
+from crackfront.plots.style import shown_axes
+from crackfront.simulate.files import cycle_record
+from crackfront.simulate.si_units import refuse_other_units
+from crackfront.simulate.surface_arrays import surface_adhesion, surface_kind
+from crackfront.simulate.tiles import stated_spectrum, tile_modes
+
+_ORDERS = (0.0, 0.5, 1.0)
+_REST = 0.1
+"""Part of a mean square below, and above, the scales that dominate it."""
+
+_BINS_A_DECADE = 20
+
+
+@dataclass(frozen=True, slots=True)
+class _Measures:
+    """Apparent works of adhesion of a loop, and the window of their averages."""
+
+    approach: float
+    retraction: float
+    lowest_radius: float
+    highest_radius: float
+
+
+def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
+    """Given axes in the style that they have, or new ones in that of the package."""
+    return shown_axes() if axes is None else nullcontext(axes)
+
+
+def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
+    """Heights, or works of adhesion, on the tile.
+
+    Parameters
+    ----------
+    surface : xarray.DataArray
+        A surface in reduced units.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default axes of a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Where it was drawn.
+
+    Raises
+    ------
+    ValueError
+        If the surface cannot be used.
+    """
+    adhesion = surface_adhesion(surface)
+    x, y = surface.x.values, surface.y.values
+    with _drawing(axes) as drawn:
+        if surface_kind(surface) == "roughness":
+            draw_heights(drawn, x, y, surface.transpose("x", "y").values)
+        else:
+            values = adhesion.work_of_adhesion / WORK_OF_ADHESION
+            draw_field(drawn, x, y, values, 1.0, 2 * adhesion.rms)
+    return drawn
+
+
+def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
+    """Isotropic power spectrum of a rough surface, with the scales that dominate it.
+
+    A bar spans the wavevectors that carry 80% of the mean square of heights, half-derivatives (and
+    with them e_el) or slopes.
+
+    Parameters
+    ----------
+    surface : xarray.DataArray
+        `height(x, y)` in reduced units.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default axes of a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Where it was drawn.
+
+    Raises
+    ------
+    ValueError
+        If the surface cannot be used, is not one of heights, or is flat.
+    """
+    if surface_kind(surface) != "roughness":
+        raise ValueError(f"{surface.name} has no height spectrum; plot that of height(x, y)")
+    pixel = surface_adhesion(surface).pixel
+    modes = tile_modes(surface.transpose("x", "y").values, pixel)
+    if modes.power.size == 0:
+        raise ValueError("the surface is flat; it has no spectrum to plot")
+    wavevector, density = modes.isotropic_density(_BINS_A_DECADE, pixel**2 * surface.size)
+    shares = np.array([modes.power * modes.wavevector ** (2 * order) for order in _ORDERS])
+    totals = np.cumsum(shares, axis=1)
+    ends = [np.searchsorted(one, one[-1] * np.array([1 - _REST, _REST])) for one in totals]
+    shortest, longest = (2 * np.pi / modes.wavevector[np.array(ends)]).T
+    shape, energy = stated_spectrum(surface), surface.attrs.get("elastic_energy_requested")
+    ideal = None
+    if shape is not None and energy is not None:
+        ideal = shape.with_elastic_energy(float(energy)).density(wavevector)
+    rms = np.sqrt(totals[:, -1])
+    with _drawing(axes) as drawn:
+        draw_spectrum(drawn, wavevector, density, rms, shortest, longest, ideal)
+    return drawn
+
+
+def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
+    """Force against mean radius, between the JKR curves of both branches and those of the paper.
+
+    Parameters
+    ----------
+    loop : xarray.Dataset
+        What :func:`run_loop` has returned.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default axes of a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Where it was drawn.
+
+    Raises
+    ------
+    ValueError
+        If it is no loop in reduced units, or holds no state.
+    """
+    refuse_other_units(loop)
+    record = cycle_record(loop)
+    measures = _Measures(
+        *(float(loop[name]) for name in ("w_appr", "w_retr", "lowest_radius", "highest_radius"))
+    )
+    with _drawing(axes) as drawn:
+        draw_loop(
+            drawn,
+            record,
+            measures,
+            elastic_energy=float(loop.e_el),
+            kind=loop.attrs["kind"],
+        )
+    return drawn
+
+
+def plot_fronts(
+    loop: Dataset, surface: DataArray | None = None, axes: Axes | None = None, most: int = 12
+) -> Axes:
+    """Fronts of both branches, over the work of adhesion that pins them if the surface is given.
+
+    Parameters
+    ----------
+    loop : xarray.Dataset
+        What :func:`run_loop` has returned, with its fronts.
+    surface : xarray.DataArray, optional
+        The surface of the loop.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default axes of a new figure.
+    most : int, optional
+        Fronts of a branch, at most.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Where it was drawn.
+
+    Raises
+    ------
+    ValueError
+        If loop or surface cannot be used, or the loop holds no fronts.
+    """
+    refuse_other_units(loop)
+    if "radius" not in loop or loop.sizes["step"] == 0:
+        raise ValueError("the loop holds no fronts; run it with fronts=True")
+    if most < 1:
+        raise ValueError(f"most is {most}; draw 1 front or more")
+    with _drawing(axes) as drawn:
+        if surface is not None:
+            adhesion = surface_adhesion(surface)
+            values = adhesion.work_of_adhesion / WORK_OF_ADHESION
+            # The apex is the centre of the tile, whatever the coordinates of a given surface.
+            x, y = (adhesion.pixel * (np.arange(count) - count / 2) for count in values.shape)
+            reach = max(2 * adhesion.rms, 0.05)
+            draw_field(drawn, x, y, values, float(np.mean(values)), reach)
+        draw_fronts(drawn, loop.angle.values, loop.radius.values, loop.direction.values, most)
+    return drawn
+
+
+def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
+    """What each instability of a branch has swept, coloured by the energy that it dissipated.
+
+    Parameters
+    ----------
+    jumps : xarray.Dataset
+        What :func:`find_instabilities` has returned.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default axes of a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Where it was drawn.
+
+    Raises
+    ------
+    ValueError
+        If there is no instability, or the units are not reduced.
+    """
+    refuse_other_units(jumps)
+    with _drawing(axes) as drawn:
+        draw_instabilities(
+            drawn,
+            jumps.angle.values,
+            jumps.before.values,
+            jumps.after.values,
+            jumps.dissipated_energy.values,
+            float(jumps.attrs["travel"]),
+        )
+    return drawn

@@ -1,0 +1,1 @@
+"""One contact: its parameters, numerics for an asked error, what it costs, its loop."""

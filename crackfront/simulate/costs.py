@@ -1,0 +1,277 @@
+r"""What simulations cost before they are run: time, memory and disk, from laws of measured runs.
+
+`python -m benchmarks.costs` measures the runs of `costs.csv`. The processor time is that of making
+the tile and that of the load steps,
+
+.. math:: t = c_t n_p^2 \log_2 n_p + n_b N\, e^{c_0 + c \cdot x},
+
+with the :math:`n_p^2` points of the tile, the states :math:`n_b`, the sites :math:`N` and, as
+:math:`x`, logarithms of what the sweeps of a load step depend on and whether the load is a full
+cycle: its steps into and out of contact take longer than those of the steady branches. The
+coefficients are fitted where they are asked for, to the rows that are not held out.
+"""
+
+from __future__ import annotations
+
+import csv
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass, replace
+from importlib.resources import files
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from crackfront.core import jkr
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.simulate.simulation import Simulation, correlation_length
+
+Array = NDArray[np.float64]
+
+_PROCESS_BYTES = 300e6
+"""Memory of a rank with all imported and compiled."""
+
+_TILES, _SITE_BYTES = 4, 512
+"""Tiles in memory while one is made, and bytes a site while the front moves (docs/needs.md)."""
+
+_FILE_BYTES, _STATE_BYTES, _FRONT_PART = 22e3, 104.0, 0.72
+"""Bytes of a file and its row without states, of a state, and what compression leaves of fronts."""
+
+_LEAD_IN, _FEWEST_STEADY, _NOISE = 2.0, 9.0, 1.2
+"""States of a branch before it is steady; the fewest of an approach; variance of k from state to
+state, relative to that of as many independent sites as the front has correlation lengths."""
+
+
+@dataclass(frozen=True, slots=True)
+class Features:
+    """What the time of a simulation depends on.
+
+    Attributes
+    ----------
+    n_angle, n_point : int
+        Sites of the front; points along a side of the tile.
+    elastic_energy, tolerance : float
+        As in :class:`crackfront.simulate.simulation.Simulation`.
+    breadth : float
+        Roll-off over short cutoff.
+    travel : float
+        Way of a smooth front from state to state, in correlation lengths.
+    full_cycle : bool
+        Whether the load goes from first contact to pull-off.
+    n_state : float
+        States that it is expected to find.
+    """
+
+    n_angle: int
+    n_point: int
+    elastic_energy: float
+    tolerance: float
+    breadth: float
+    travel: float
+    full_cycle: bool
+    n_state: float
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A run that was measured.
+
+    Attributes
+    ----------
+    name : str
+        Label of the simulation.
+    held_out : bool
+        Whether the fit does without it.
+    features : Features
+        What its time depends on.
+    n_state : int
+        States that it found.
+    cpu_seconds : float
+        Processor time.
+    """
+
+    name: str
+    held_out: bool
+    features: Features
+    n_state: int
+    cpu_seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What a simulation is expected to cost.
+
+    Attributes
+    ----------
+    seconds : float
+        Processor time. (Units: s)
+    memory : float
+        Memory of the rank that runs it. (Units: bytes)
+    disk : float
+        What is stored. (Units: bytes)
+    """
+
+    seconds: float
+    memory: float
+    disk: float
+
+
+def expected_cost(simulation: Simulation) -> Cost:
+    """What a simulation is expected to cost, with the processor of the measured runs.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        A simulation.
+    """
+    return _cost(replace(simulation, realisation=0))
+
+
+@functools.lru_cache(maxsize=4096)
+def _cost(simulation: Simulation) -> Cost:
+    """What all realisations of a simulation are expected to cost."""
+    item, sizes = features(simulation), simulation.resolution
+    fronts = 8 * item.n_state * sizes.n_angle if simulation.record_fronts else 0.0
+    return Cost(
+        seconds=float(_seconds(_coefficients(), [item])[0]),
+        memory=_PROCESS_BYTES
+        + 8 * _TILES * sizes.n_point**2
+        + _SITE_BYTES * sizes.n_angle
+        + fronts,
+        disk=_FILE_BYTES + _STATE_BYTES * item.n_state + _FRONT_PART * fronts,
+    )
+
+
+def features(simulation: Simulation) -> Features:
+    """What the time of a simulation depends on."""
+    sizes, spectrum, schedule = simulation.resolution, simulation.spectrum, simulation.schedule
+    length = correlation_length(simulation.kind, spectrum)
+    if isinstance(schedule, LoadSchedule):
+        travel = schedule.step / _slope(schedule.max_penetration) / length
+        # The hysteresis lifts w_retr by about twice e_el, and contact is lost that much later.
+        lost_at = jkr.pull_off_penetration(1 + 2 * simulation.elastic_energy)
+        n_state = (2 * schedule.max_penetration - lost_at) / schedule.step
+    else:
+        travel = schedule.travel
+        n_state = _expected_steady(simulation, schedule, length)
+    return Features(
+        n_angle=sizes.n_angle,
+        n_point=sizes.n_point,
+        elastic_energy=simulation.elastic_energy,
+        tolerance=simulation.tolerance,
+        breadth=spectrum.roll_off / spectrum.short_cutoff,
+        travel=travel,
+        full_cycle=isinstance(schedule, LoadSchedule),
+        n_state=n_state,
+    )
+
+
+def measured_runs() -> list[Measured]:
+    """The runs of `costs.csv`."""
+    text = files("crackfront.simulate").joinpath("costs.csv").read_text(encoding="utf-8")
+    return [_run(row) for row in csv.DictReader(text.splitlines())]
+
+
+def predicted_seconds(runs: Sequence[Measured]) -> Array:
+    """Processor times that the law gives for measured runs, in seconds."""
+    return _seconds(_coefficients(), [run.features for run in runs])
+
+
+def _expected_steady(simulation: Simulation, schedule: SteadySchedule, length: float) -> float:
+    """Number of states that the steady parts of both branches are expected to have."""
+    step = schedule.travel * length * _slope(schedule.start)
+    n_most = 1 + math.floor((schedule.max_penetration - schedule.start) / step)
+    alike = length * integral_breadth(simulation)
+    n_independent = 2 * math.pi * jkr.equilibrium_radius(schedule.start) / alike
+    variance = _NOISE / (simulation.elastic_energy * n_independent)
+    return 2 * min(n_most, max(_FEWEST_STEADY, _LEAD_IN + variance / schedule.error**2))
+
+
+def integral_breadth(simulation: Simulation) -> float:
+    """Mean of q times mean of 1/q in the variance of w_loc, relative to those of a flat surface.
+
+    The mean of w_loc along a front varies by its longest waves, the mean of 1/q, and the
+    correlation length is that of the mean of q.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        A simulation; what counts is its spectrum and the kind of its field.
+    """
+    spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
+    flat = SelfAffineSpectrum(1.0, 1.0, hurst=1.0)
+    means = [
+        shape.mean_square(order + 0.5)
+        * shape.mean_square(order - 0.5)
+        / shape.mean_square(order) ** 2
+        for shape in (spectrum, flat)
+    ]
+    return means[0] / means[1]
+
+
+def _slope(penetration: float) -> float:
+    """Penetration per radius of a smooth contact."""
+    radius = jkr.equilibrium_radius(penetration)
+    return 2 * radius - math.sqrt(2 / (3 * radius))
+
+
+@functools.cache
+def _coefficients() -> tuple[float, ...]:
+    """Coefficients of the law, fitted to the runs that are not held out."""
+    runs = [run for run in measured_runs() if not run.held_out]
+    known = [replace(run.features, n_state=run.n_state) for run in runs]
+    found = np.log([run.cpu_seconds for run in runs])
+
+    def residuals(coefficients: Array) -> Array:
+        return np.log(_seconds(coefficients, known)) - found
+
+    return tuple(least_squares(residuals, _START).x.tolist())
+
+
+_START = (-18.0, -12.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+"""Logarithm of the time of a point of the tile, c_0, and exponents to begin with."""
+
+
+def _seconds(coefficients: Sequence[float] | Array, items: Sequence[Features]) -> Array:
+    """Processor times by the law, in seconds."""
+    point, constant, *exponents = coefficients
+    columns = np.array([astuple(item) for item in items], dtype=float).T
+    n_angle, n_point, energy, tolerance, breadth, travel, full_cycle, n_state = columns
+    logarithms = np.array(
+        [
+            np.log(n_angle / 1e3),
+            np.log(n_angle / 1e3) ** 2,
+            np.log(energy / 0.02),
+            np.log(energy / 0.02) ** 2,
+            np.log(tolerance / 1e-4),
+            np.log(breadth),
+            np.log(travel),
+            full_cycle,
+        ]
+    )
+    tile = np.exp(point) * n_point**2 * np.log2(n_point)
+    return tile + n_state * n_angle * np.exp(constant + np.array(exponents) @ logarithms)
+
+
+def _run(row: dict[str, str]) -> Measured:
+    """A run from its row."""
+    return Measured(
+        name=row["name"],
+        held_out=row["held_out"] == "1",
+        features=Features(
+            n_angle=int(row["n_angle"]),
+            n_point=int(row["n_point"]),
+            elastic_energy=float(row["elastic_energy"]),
+            tolerance=float(row["tolerance"]),
+            breadth=float(row["breadth"]),
+            travel=float(row["travel"]),
+            full_cycle=row["full_cycle"] == "1",
+            n_state=float(row["expected_n_state"]),
+        ),
+        n_state=int(row["n_state"]),
+        cpu_seconds=float(row["cpu_seconds"]),
+    )

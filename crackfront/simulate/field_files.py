@@ -1,0 +1,169 @@
+"""Files of fields: the work of adhesion on a periodic tile or on rays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.field.kinds import Interpolation, PolarField, polar_field
+from crackfront.core.records import ADHESION, LATERAL
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
+from crackfront.data.provenance import Provenance
+from crackfront.data.tiles import TOLERANCE, tile_samples
+from crackfront.simulate.si_units import SURFACES
+from crackfront.simulate.surface_arrays import surface_adhesion
+
+Array = NDArray[np.float64]
+
+NAME = SURFACES["chemical"].name
+_HEIGHT = SURFACES["roughness"].name
+
+
+@dataclass(frozen=True, slots=True)
+class PolarSamples:
+    """Samples on rays, and the angles of the rays.
+
+    Attributes
+    ----------
+    field : PolarField
+        The samples.
+    angles : (n_angle,) array
+        Angles of the rays. (Units: rad)
+    """
+
+    field: PolarField
+    angles: Array
+
+
+def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionMap | PolarSamples:
+    """Work of adhesion of a file: a periodic tile, or samples on rays.
+
+    The variable `work_of_adhesion` is in reduced units, in which w_int is 1/pi, or relative to
+    w_int where its attribute `units` says so, as that of the library does. Its dimensions
+    are x and y (equal and uniform spacing, coordinates needed; the sphere's apex is the tile's
+    centre, half a side from the first point) or radius and angle (radius as a coordinate; angles
+    equally spaced in rad), in any order. On rings it is the radius alone. A variable `height`
+    instead is a rough surface as the library makes it.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    interpolation : {"linear", "cubic"}, optional
+        Pieces between samples on rays; without effect on a tile.
+
+    Raises
+    ------
+    ValueError
+        If the file is missing or truncated, or its content is not as said.
+    """
+    dataset = read_dataset(path)
+    if NAME not in dataset and _HEIGHT in dataset:
+        return _map_of(path, dataset[_HEIGHT])
+    if NAME not in dataset:
+        raise UnreadableFileError(
+            f"{path} has no variable {NAME} (it has: {', '.join(map(str, dataset.data_vars))}); "
+            f"name the field {NAME}, or the heights of a surface {_HEIGHT}"
+        )
+    values = dataset[NAME]
+    dims = {str(name) for name in values.dims}
+    known = dims in ({"x", "y"}, {"radius", "angle"}, {"radius"})
+    if not known or not np.issubdtype(values.dtype, np.number):
+        raise UnreadableFileError(
+            f"{path}: {NAME} is {values.dtype} of ({', '.join(map(str, values.dims))}); it must be "
+            "numbers of (x, y) or of (radius, angle), or of (radius) for rings"
+        )
+    _refuse_other_units(path, values)
+    if values.attrs.get("units") == ADHESION:
+        values = values * WORK_OF_ADHESION
+    return _tile(path, values) if "x" in dims else _rays(path, values, interpolation)
+
+
+def write_field(
+    path: Path, adhesion: AdhesionMap, origin: Provenance, **attributes: str | float
+) -> None:
+    """Write a periodic tile as :func:`read_field` reads it.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+    adhesion : AdhesionMap
+        Work of adhesion on the tile.
+    origin : Provenance
+        Where it comes from.
+    **attributes : str or float
+        What else the file says of itself.
+    """
+    values = adhesion.work_of_adhesion / WORK_OF_ADHESION
+    about = {"units": ADHESION, "long_name": "local work of adhesion"}
+    axis = {"units": LATERAL}
+    coordinates = {
+        name: ((name,), adhesion.pixel * np.arange(count), axis)
+        for name, count in zip(("x", "y"), values.shape, strict=True)
+    }
+    dataset = xr.Dataset(
+        {NAME: (("x", "y"), values, about)},
+        coords=coordinates,
+        attrs={"e_el": adhesion.elastic_energy, "w_rms": adhesion.rms, **attributes},
+    )
+    write_dataset(path, dataset, origin)
+
+
+def _refuse_other_units(path: Path, values: xr.DataArray) -> None:
+    """Raise if the field or a length says that it is in units other than reduced ones."""
+    lengths = [values[name] for name in ("x", "y", "radius") if name in values.coords]
+    for part in (values, *lengths):
+        units = str(part.attrs.get("units", ""))
+        if units not in ("", "1", ADHESION) and not units.startswith("reduced"):
+            raise UnreadableFileError(
+                f"{path}: {part.name} is in {units}; convert it to reduced units, as "
+                "crackfront.in_reduced_units does, and remove or renew its attribute units"
+            )
+
+
+def _map_of(path: Path, heights: xr.DataArray) -> AdhesionMap:
+    """Map that is equivalent to the heights of a file."""
+    try:
+        return surface_adhesion(heights)
+    except ValueError as error:
+        raise UnreadableFileError(f"{path}: {error}") from error
+
+
+def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
+    """Map of a periodic tile."""
+    try:
+        samples, pixel = tile_samples(values)
+    except ValueError as error:
+        raise UnreadableFileError(f"{path}: {error}") from error
+    # The refusal of values that are not finite, with their place, is that of the field.
+    with np.errstate(invalid="ignore"):
+        rms = float(np.std(samples) / WORK_OF_ADHESION)
+    return AdhesionMap(samples, pixel, elastic_energy=rms**2 / 4, rms=rms)
+
+
+def _rays(path: Path, values: xr.DataArray, interpolation: Interpolation) -> PolarSamples:
+    """Field of samples on rays."""
+    if "radius" not in values.coords:
+        raise UnreadableFileError(f"{path}: {NAME} has no coordinate radius; give the radii")
+    if "angle" not in values.dims:
+        values = values.expand_dims("angle")
+    count = values.sizes["angle"]
+    angles = 2 * np.pi * np.arange(count) / count
+    if "angle" in values.coords and count > 1:
+        angles = np.asarray(values["angle"], dtype=float)
+        steps = np.diff(angles) * count / (2 * np.pi)
+        if not np.all(np.abs(np.abs(steps) - 1) <= TOLERANCE) or np.ptp(np.sign(steps)) > 0:
+            raise UnreadableFileError(
+                f"{path}: {count} angles lie between {np.min(angles):.6g} and "
+                f"{np.max(angles):.6g}; they must be equally spaced over the whole circle, in rad"
+            )
+    samples = np.asarray(values.transpose("radius", "angle"), dtype=float)
+    radii = np.asarray(values["radius"], dtype=float)
+    return PolarSamples(polar_field(radii, samples, interpolation), angles)

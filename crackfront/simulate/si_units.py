@@ -1,0 +1,226 @@
+"""Labelled arrays from reduced units to SI and back, by the names of their variables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import xarray as xr
+
+from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, Variable
+from crackfront.core.units import Scales
+from crackfront.data.quantities import unit_value
+from crackfront.data.schema import (
+    ANGLES,
+    COORDINATES,
+    COSTS,
+    CURVES,
+    DISSIPATED,
+    HYSTERESIS,
+    RADIUS,
+)
+from crackfront.simulate.loop_arrays import JUMPS
+from crackfront.simulate.simulation import FieldKind
+
+Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
+
+_Change = Callable[[str, xr.DataArray], tuple[float, str]]
+"""From a variable and its name to the factor of its values, and the units that they then have."""
+
+SURFACES: dict[FieldKind, Variable] = {
+    "roughness": Variable("height", ("x", "y"), VERTICAL, "height, positive at peaks"),
+    "chemical": Variable("work_of_adhesion", ("x", "y"), ADHESION, "local work of adhesion"),
+}
+"""What a surface is called, by what its values are."""
+
+_AREA = f"({LATERAL})^2"
+_SI = {LATERAL: "m", VERTICAL: "m", FORCE: "N", ADHESION: "J / m^2", ENERGY: "J", _AREA: "m^2"}
+
+_REDUCED = {
+    item.name: item.units
+    for item in (
+        *SURFACES.values(),
+        *CURVES,
+        DISSIPATED,
+        RADIUS,
+        ANGLES,
+        *COORDINATES,
+        *COSTS,
+        *HYSTERESIS,
+        *JUMPS,
+    )
+} | {"x": LATERAL, "y": LATERAL}
+"""Reduced units of everything that may be converted."""
+
+_ATTRIBUTES = {
+    "short_cutoff": LATERAL,
+    "roll_off": LATERAL,
+    "end_penetration": VERTICAL,
+    "pull_off_energy": ENERGY,
+    "travel": LATERAL,
+}
+"""Reduced units of attributes; they have those of the array that they belong to."""
+
+
+def in_si_units(data: Labelled, scales: Scales) -> Labelled:
+    """The same surface or cycle in SI units.
+
+    Parameters
+    ----------
+    data : xarray.DataArray or xarray.Dataset
+        What is in reduced units.
+    scales : Scales
+        The sphere: what one reduced unit is in SI.
+
+    Returns
+    -------
+    xarray.DataArray or xarray.Dataset
+        A copy.
+
+    Raises
+    ------
+    ValueError
+        If a variable is unknown or not in reduced units.
+    """
+    refuse_other_units(data)
+
+    def physical(name: str, part: xr.DataArray) -> tuple[float, str]:
+        return _scale(scales, _units(name)), _SI.get(_units(name), _units(name))
+
+    return _converted(data, physical, lambda units: _scale(scales, units))
+
+
+def in_reduced_units(data: Labelled, scales: Scales) -> Labelled:
+    """The same surface or cycle in reduced units.
+
+    Parameters
+    ----------
+    data : xarray.DataArray or xarray.Dataset
+        What is in SI units, or in multiples of them as nm; every variable says so in `units`.
+        Attributes that are lengths must be in metres.
+    scales : Scales
+        The sphere: what one reduced unit is in SI.
+
+    Returns
+    -------
+    xarray.DataArray or xarray.Dataset
+        A copy.
+
+    Raises
+    ------
+    ValueError
+        If a variable is unknown, or its units are not those of its quantity.
+
+    Examples
+    --------
+    >>> scales = Scales(radius=1e-3, work_of_adhesion=50e-3, contact_modulus=1e6)
+    >>> import numpy as np
+    >>> nanometres = xr.DataArray([1.0, 2.0], dims="x", name="height", attrs={"units": "nm"})
+    >>> reduced = in_reduced_units(nanometres, scales)
+    >>> bool(np.allclose(reduced * scales.vertical, [1e-9, 2e-9]))
+    True
+    """
+
+    def reduced(name: str, part: xr.DataArray) -> tuple[float, str]:
+        return _si_value(name, part) / _scale(scales, _units(name)), _units(name)
+
+    return _converted(data, reduced, lambda units: 1 / _scale(scales, units))
+
+
+def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
+    """Raise if a variable is not in reduced units.
+
+    Parameters
+    ----------
+    data : xarray.DataArray or xarray.Dataset
+        A surface or a cycle.
+
+    Raises
+    ------
+    ValueError
+        If a variable is unknown or not in reduced units.
+    """
+    for name, part in _parts(_dataset(data)).items():
+        if (given := part.attrs.get("units")) != _units(name):
+            raise ValueError(
+                f"{name} has the units {given!r}; the attribute units must be {_units(name)!r}: "
+                "set it, or convert other units by in_reduced_units"
+            )
+
+
+def _converted(data: Labelled, change: _Change, scale: Callable[[str], float]) -> Labelled:
+    """Copy of which every variable is multiplied by its factor."""
+    dataset = _dataset(data)
+    parts = {}
+    for name, part in _parts(dataset).items():
+        factor, units = change(name, part)
+        # Counts and texts have no scale, and keep their types.
+        values = part.values if factor == 1.0 else part.values * factor
+        parts[name] = (part.dims, values, _attributes(part, scale) | {"units": units})
+    coordinates = {name: parts[str(name)] for name in dataset.coords}
+    variables = {name: parts[str(name)] for name in dataset.data_vars}
+    found = xr.Dataset(variables, coordinates, _attributes(dataset, scale))
+    if isinstance(data, xr.DataArray):
+        return found[data.name]
+    return found
+
+
+def _attributes(part: xr.DataArray | xr.Dataset, scale: Callable[[str], float]) -> dict[str, Any]:
+    """Attributes, those that are lengths or energies converted."""
+    return {
+        str(name): value * scale(_ATTRIBUTES[str(name)]) if name in _ATTRIBUTES else value
+        for name, value in part.attrs.items()
+    }
+
+
+def _dataset(data: xr.DataArray | xr.Dataset) -> xr.Dataset:
+    """Data as a dataset."""
+    if isinstance(data, xr.Dataset):
+        return data
+    if data.name is None:
+        raise ValueError(
+            "the array has no name; name it by what its values are, as in surface.rename('height')"
+        )
+    return data.to_dataset()
+
+
+def _parts(dataset: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Variables and coordinates by their names."""
+    return {str(name): dataset[name] for name in dataset.variables}
+
+
+def _units(name: str) -> str:
+    """Reduced units of a variable."""
+    if name not in _REDUCED:
+        raise ValueError(
+            f"{name} is no variable of a surface or of a cycle; drop or rename it (the names of "
+            f"surfaces are {' and '.join(item.name for item in SURFACES.values())})"
+        )
+    return _REDUCED[name]
+
+
+def _scale(scales: Scales, units: str) -> float:
+    """What a reduced unit is in SI; 1 for what has no scale."""
+    known = {
+        LATERAL: scales.lateral,
+        VERTICAL: scales.vertical,
+        FORCE: scales.force,
+        ADHESION: scales.work_of_adhesion,
+        ENERGY: scales.force * scales.vertical,
+        _AREA: scales.lateral**2,
+    }
+    return known.get(units, 1.0)
+
+
+def _si_value(name: str, part: xr.DataArray) -> float:
+    """The units of a variable in SI."""
+    needed, given = _SI.get(_units(name), _units(name)), part.attrs.get("units")
+    if given == needed:
+        return 1.0
+    try:
+        return unit_value(str(given), needed)
+    except ValueError as error:
+        raise ValueError(
+            f"{name} has the units {given!r}, which cannot be converted to {needed}; set its "
+            "attribute units"
+        ) from error

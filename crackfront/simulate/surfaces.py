@@ -1,0 +1,179 @@
+"""Random surfaces of a spectrum, and the numerics that the measured laws choose for them."""
+
+from __future__ import annotations
+
+import math
+from typing import get_args
+
+import numpy as np
+from numpy.typing import NDArray
+from xarray import DataArray
+
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.asked import asked_simulation
+from crackfront.simulate.contact import simulation_adhesion
+from crackfront.simulate.simulation import FieldKind, Simulation
+from crackfront.simulate.surface_arrays import surface_array
+
+Array = NDArray[np.float64]
+
+TILE_ROLL_OFFS, TILE_CUTOFFS = 4.0, 200.0
+"""Side of a tile in roll-off wavelengths, and least side in short cutoffs."""
+
+
+def random_surface(
+    short_cutoff: float,
+    elastic_energy: float,
+    *,
+    kind: FieldKind = "roughness",
+    roll_off: float | None = None,
+    hurst: float = 1.0,
+    side: float | None = None,
+    error: float = 0.03,
+    seed: int = 0,
+    realisation: int = 0,
+) -> DataArray:
+    """A self-affine Gaussian surface on a periodic tile.
+
+    Parameters
+    ----------
+    short_cutoff : float
+        Shortest wavelength. (Units: reduced lateral length)
+    elastic_energy : float
+        Energy of full conformity e_el, between 0 and 1; for a chemical surface the equivalent
+        (w_rms / w_int)^2 / 4. (Units: w_int)
+    kind : {"roughness", "chemical"}, optional
+        Whether the spectrum is that of the heights, or of the work of adhesion around w_int.
+    roll_off : float, optional
+        Wavelength above which the spectrum is flat, by default the short cutoff.
+        (Units: reduced lateral length)
+    hurst : float, optional
+        Hurst exponent between the two.
+    side : float, optional
+        Side of the tile, by default 4 roll-offs and at least 200 short cutoffs.
+        (Units: reduced lateral length)
+    error : float, optional
+        Standard error of the factor k that the numerics may leave; here it sets the pixel.
+    seed, realisation : int, optional
+        Which surface; a sweep of this seed has the same one.
+
+    Returns
+    -------
+    xarray.DataArray
+        `height(x, y)` (Units: reduced vertical length) or `work_of_adhesion(x, y)`
+        (Units: w_int), the apex of the sphere at x = y = 0.
+
+    Raises
+    ------
+    ValueError
+        If there is no such spectrum, surface or error.
+
+    Examples
+    --------
+    >>> surface = random_surface(short_cutoff=0.2, elastic_energy=0.05, side=4, seed=1)
+    >>> surface.name, surface.dims, float(surface.x[0])
+    ('height', ('x', 'y'), -2.0)
+    """
+    spectrum = SelfAffineSpectrum(
+        short_cutoff, short_cutoff if roll_off is None else roll_off, hurst
+    )
+    simulation = chosen_simulation(
+        kind,
+        spectrum,
+        elastic_energy,
+        LoadSchedule(0.0, 1.0),  # without effect on the surface
+        error=error,
+        side=side,
+        seed=seed,
+        realisation=realisation,
+    )
+    tile = simulation.resolution
+    return surface_array(
+        kind,
+        _values(simulation),
+        tile.tile_side / tile.n_point,
+        short_cutoff=spectrum.short_cutoff,
+        roll_off=spectrum.roll_off,
+        hurst=hurst,
+        elastic_energy_requested=elastic_energy,
+        seed=seed,
+        realisation=realisation,
+    )
+
+
+def chosen_simulation(
+    kind: FieldKind,
+    spectrum: SelfAffineSpectrum,
+    elastic_energy: float,
+    schedule: LoadSchedule,
+    *,
+    error: float,
+    side: float | None = None,
+    seed: int = 0,
+    realisation: int = 0,
+) -> Simulation:
+    """Simulation of a surface that a user asks for, refused where there is none.
+
+    Parameters
+    ----------
+    kind : {"roughness", "chemical"}
+        What the spectrum describes.
+    spectrum : SelfAffineSpectrum
+        Its shape. (Units: reduced lateral length)
+    elastic_energy : float
+        Energy of full conformity. (Units: w_int)
+    schedule : LoadSchedule
+        Penetrations to visit.
+    error : float
+        Standard error of the factor k of either branch that the numerics may leave.
+    side : float, optional
+        Side of the tile. (Units: reduced lateral length)
+    seed, realisation : int, optional
+        Which surface.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range.
+    """
+    if kind not in get_args(FieldKind):
+        raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
+    refuse_no_fraction("error", error)
+    refuse_no_fraction("elastic_energy", elastic_energy)
+    for name, number in (("seed", seed), ("realisation", realisation)):
+        if number < 0:
+            raise ValueError(f"{name} is {number}; it must be 0 or more")
+    if side is not None and not spectrum.short_cutoff <= side < math.inf:
+        raise ValueError(
+            f"side is {side}; the tile must hold the short cutoff, {spectrum.short_cutoff:g}"
+        )
+    return asked_simulation(
+        kind,
+        spectrum,
+        elastic_energy,
+        schedule,
+        error=error,
+        tile_roll_offs=TILE_ROLL_OFFS if side is None else 0.0,
+        tile_cutoffs=TILE_CUTOFFS if side is None else side / spectrum.short_cutoff,
+        seed=seed,
+        realisation=realisation,
+    )
+
+
+def refuse_no_fraction(name: str, value: float) -> None:
+    """Raise if a number does not lie between 0 and 1."""
+    if not 0 < value < 1:
+        raise ValueError(f"{name} is {value}; it must lie between 0 and 1")
+
+
+def _values(simulation: Simulation) -> Array:
+    """Values of the tile of a simulation."""
+    if simulation.kind == "chemical":
+        return simulation_adhesion(simulation).work_of_adhesion / WORK_OF_ADHESION
+    unit, tile = simulation.spectrum.with_elastic_energy(1.0), simulation.resolution
+    rng = np.random.default_rng(simulation.seed)
+    heights = gaussian_field(unit, tile.n_point, tile.tile_side, rng)
+    return heights * math.sqrt(simulation.elastic_energy)

@@ -1,0 +1,131 @@
+"""What can be told of any tile: its modes, its correlation length, the spectrum that it states."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import fftfreq, rfft2, rfftfreq
+from xarray import DataArray
+
+from crackfront.core.spectrum import SelfAffineSpectrum
+
+Array = NDArray[np.float64]
+
+_ROUND_OFF = 1e-28
+"""Power of a mode that is none, relative to that of all; round-off leaves (2e-16)^2."""
+
+
+def stated_spectrum(surface: DataArray) -> SelfAffineSpectrum | None:
+    """Shape of the spectrum that the attributes of a surface state, if they do.
+
+    Parameters
+    ----------
+    surface : xarray.DataArray
+        A surface.
+
+    Raises
+    ------
+    ValueError
+        If the surface holds waves below its stated short cutoff.
+    """
+    names = ("short_cutoff", "roll_off", "hurst")
+    if not all(name in surface.attrs for name in names):
+        return None
+    spectrum = SelfAffineSpectrum(*(float(surface.attrs[name]) for name in names))
+    pixel = float(surface.x[1] - surface.x[0])
+    modes = tile_modes(surface.values, pixel)
+    beyond = modes.wavevector > 2 * np.pi / spectrum.short_cutoff * (1 + 1e-9)
+    if np.sum(modes.power[beyond]) > 1e-9 * np.sum(modes.power):
+        raise ValueError(
+            f"the surface holds waves shorter than its attribute short_cutoff, "
+            f"{spectrum.short_cutoff:g}; remove the attribute, so that the pixels decide"
+        )
+    return spectrum
+
+
+@dataclass(frozen=True, slots=True)
+class Modes:
+    """Modes of a periodic tile that have any power, by increasing wavevector.
+
+    Attributes
+    ----------
+    wavevector : (n_mode,) array
+        Magnitudes. (Units: 1 / length)
+    power : (n_mode,) array
+        Part of the mean square, of a mode and its conjugate. (Units: value**2)
+    count : (n_mode,) array
+        2 where the conjugate is another mode, else 1.
+    """
+
+    wavevector: Array
+    power: Array
+    count: Array
+
+    def isotropic_density(self, bins_a_decade: int, area: float) -> tuple[Array, Array]:
+        """Means of the spectral density over bins that hold modes, and their wavevectors.
+
+        Parameters
+        ----------
+        bins_a_decade : int
+            Bins of equal width on a logarithmic scale.
+        area : float
+            Area of the tile. (Units: length**2)
+        """
+        place = np.floor(bins_a_decade * np.log10(self.wavevector)).astype(int)
+        _, place = np.unique(place, return_inverse=True)
+        power, count = (np.bincount(place, values) for values in (self.power, self.count))
+        total = np.bincount(place, self.count * self.wavevector)
+        return total / count, area * power / count
+
+
+def tile_modes(values: Array, pixel: float) -> Modes:
+    """Modes of a periodic tile, but for its mean and what is round-off.
+
+    Parameters
+    ----------
+    values : (n_x, n_y) array
+        Values of the tile.
+    pixel : float
+        Grid spacing. (Units: length)
+    """
+    n_x, n_y = values.shape
+    power = np.abs(rfft2(values, norm="forward")) ** 2
+    round_off = _ROUND_OFF * float(np.sum(power))
+    power[0, 0] = 0.0
+    count = np.ones_like(power)
+    count[:, 1 : (n_y + 1) // 2] = 2.0
+    wavevector = 2 * np.pi * np.hypot(fftfreq(n_x, pixel)[:, None], rfftfreq(n_y, pixel)[None, :])
+    used = power > round_off
+    rising = np.argsort(wavevector[used])
+    return Modes(*(part[used][rising] for part in (wavevector, count * power, count)))
+
+
+def measured_correlation_length(work_of_adhesion: Array, pixel: float) -> float:
+    """Wavelength of the mean wavevector of a tile, weighted by its variance.
+
+    Parameters
+    ----------
+    work_of_adhesion : (n_x, n_y) array
+        Values of a periodic tile.
+    pixel : float
+        Grid spacing. (Units: length)
+
+    Returns
+    -------
+    float
+        Correlation length; the pixel, the shortest that can be told, where all values are equal.
+        (Units: length)
+
+    Examples
+    --------
+    >>> wave = np.cos(2 * np.pi * np.arange(12) / 6)[:, None] * np.ones(12)
+    >>> round(measured_correlation_length(wave, pixel=0.5), 12)
+    3.0
+    """
+    modes = tile_modes(work_of_adhesion, pixel)
+    if modes.power.size == 0:
+        return pixel
+    return 2 * math.pi * float(np.sum(modes.power) / np.sum(modes.power * modes.wavevector))

@@ -1,0 +1,1 @@
+"""What is built on all of the rest and nothing imports."""

@@ -1,0 +1,83 @@
+"""From measured errors to laws."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.simulate.laws import KNOBS, Knob, Law, abscissa
+from crackfront.studies.accuracy.study import Errors, SceneErrors
+
+Array = NDArray[np.float64]
+
+_LEAST = 3e-4
+"""Errors of k below this count as this: nobody asks for less, and they would bend the laws."""
+
+_SLOWEST: dict[Knob, float] = {
+    "sites": -0.6,
+    "cubic": -2.0,
+    "linear": -1.0,
+    "pixels": -2.0,
+    "tolerance": 0.5,
+}
+"""Slopes that a law of scatter has at least: half the order of the knob.
+
+An avalanche that one discretisation triggers and another does not is of a size of its own; only its
+chance falls with the error of the field, and the rms with the root of that. Among a few surfaces a
+single such event can hide the slope.
+"""
+
+_NO_BIAS = (-99.0, 0.0)
+"""Coefficients of a bias that is not seen."""
+
+
+def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[Law]:
+    """Law of every knob, amplitude and branch, fitted to the errors of scenes.
+
+    A bias counts where it is twice its standard error; elsewhere only scatter is seen, that of
+    both branches together. Both are fitted by least squares of their logarithms.
+
+    Parameters
+    ----------
+    studies : iterable of SceneErrors
+        Scenes in which every knob was varied by itself.
+    """
+    for study in studies:
+        for knob in KNOBS:
+            tried = [errors for errors in study.errors if errors.knob == knob]
+            yield from _laws(study, knob, tried)
+
+
+def _laws(study: SceneErrors, knob: Knob, tried: list[Errors]) -> Iterator[Law]:
+    """Laws of one knob, of both branches."""
+    x = np.array([abscissa(knob, errors.value) for errors in tried])
+    values = np.array([errors.adhesion for errors in tried]) / study.scene.elastic_energy
+    n_realisation = values.shape[1]
+    bias = np.abs(values.mean(axis=1))
+    uncertainty = values.std(axis=1, ddof=1) / np.sqrt(n_realisation)
+    scatter = np.sqrt(np.mean(values.var(axis=1, ddof=1), axis=1))
+    line = _falling_line(x, scatter, _SLOWEST[knob])
+    for branch, direction in enumerate((1, -1)):
+        certain = bias[:, branch] > 2 * uncertainty[:, branch]
+        seen = np.count_nonzero(certain) > 1
+        yield Law(
+            shape=study.scene.shape,
+            elastic_energy=study.scene.elastic_energy,
+            knob=knob,
+            direction=direction,
+            bias=_falling_line(x[certain], bias[certain, branch], _SLOWEST[knob])
+            if seen
+            else _NO_BIAS,
+            scatter=line,
+        )
+
+
+def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
+    """Line through logarithms, at least as steep as a given slope."""
+    y = np.log(np.maximum(values, _LEAST))
+    slope, start = np.polyfit(x, y, 1)
+    if slope / slowest < 1:
+        return float(np.mean(y - slowest * x)), slowest
+    return float(start), float(slope)

@@ -1,0 +1,202 @@
+"""The scenes on which numerical errors are measured, and the numerics that are tried on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.simulate.laws import KNOBS, Knob, chosen_numerics
+from crackfront.simulate.simulation import FieldKind, Numerics, Simulation, resolution
+
+Array = NDArray[np.float64]
+
+ASKED = (0.1, 0.03, 0.02, 0.01, 0.003)
+"""Errors of k for which the laws choose numerics that are then tried."""
+
+_SEED = 20241121
+"""Seed of the surfaces of all scenes."""
+
+_FINER = Numerics(
+    angles=None,
+    angles_per_cutoff=8,
+    samples_per_cutoff=12,
+    interpolation="cubic",
+    pixels_per_cutoff=8,
+    tile_roll_offs=1,
+    tile_cutoffs=1,
+    tolerance=1e-8,
+    max_sweeps=10**8,
+    solver="newton",
+)
+_REFERENCE = replace(
+    _FINER, angles_per_cutoff=6, samples_per_cutoff=8, pixels_per_cutoff=6, tolerance=1e-7
+)
+_LARGE_REFERENCE = replace(_REFERENCE, angles_per_cutoff=4, samples_per_cutoff=6)
+
+_VALUES: dict[Knob, tuple[float, ...]] = {
+    "sites": (1.4, 1.8, 2.2, 2.7, 3.6),
+    "cubic": (2, 3, 4, 5, 6),
+    "linear": (4, 8, 16, 32),
+    "pixels": (2.5, 3, 4),
+    "tolerance": (1e-2, 1e-3, 1e-4, 1e-5),
+}
+"""What is tried of each knob while the others are those of the reference."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Surfaces, and the penetrations at which both branches are measured.
+
+    Attributes
+    ----------
+    name : str
+        What the tables call it: shape and amplitude.
+    kind : {"roughness", "chemical"}
+        What the spectrum describes.
+    spectrum : SelfAffineSpectrum
+        Its shape. (Units: reduced lateral length)
+    elastic_energy : float
+        e_el / w_int; for a chemical field the equivalent (w_rms / w_int)^2 / 4.
+    tile_cutoffs : float
+        Side of the tile in short cutoffs.
+    step : float
+        Difference of the eight penetrations, the largest of which is 1.
+        (Units: reduced vertical length)
+    reference : Numerics
+        What errors are measured against.
+    finer : Numerics
+        What shows that the reference has converged, where single knobs are varied.
+    single_knobs : bool
+        Whether laws are fitted to the errors of single knobs.
+    authors_seconds : float or None
+        CPU time of the authors' code for its full cycle, where it is known. (Units: s)
+    """
+
+    name: str
+    kind: FieldKind
+    spectrum: SelfAffineSpectrum
+    elastic_energy: float
+    tile_cutoffs: float
+    step: float = 0.1
+    reference: Numerics = _REFERENCE
+    finer: Numerics = _FINER
+    single_knobs: bool = True
+    authors_seconds: float | None = None
+
+    @property
+    def shape(self) -> str:
+        """The name without the amplitude."""
+        return self.name.rpartition("-")[0]
+
+    @property
+    def penetrations(self) -> Array:
+        """Loads of the approach; the retraction has them in reverse."""
+        return 1.0 - self.step * np.arange(7, -1, -1.0)
+
+    @property
+    def single_settings(self) -> list[tuple[str, float, Numerics]]:
+        """The finer numerics, and those that differ from the reference in one knob.
+
+        Each is the name of what is varied, its value, and all numerics.
+        """
+        found: list[tuple[str, float, Numerics]] = [("finer", 0.0, self.finer)]
+        found += [
+            (knob, value, with_knob(self.reference, knob, value))
+            for knob in KNOBS
+            for value in _VALUES[knob]
+        ]
+        return found
+
+    @property
+    def asked_settings(self) -> list[tuple[str, float, Numerics]]:
+        """Numerics that the laws choose: `asked`, the error of k, all of them."""
+        kind, spectrum, energy = self.kind, self.spectrum, self.elastic_energy
+        return [
+            ("asked", error, chosen_numerics(error, kind, spectrum, energy, self.reference))
+            for error in ASKED
+        ]
+
+    def simulation(self, numerics: Numerics, realisation: int) -> Simulation:
+        """One realisation; its surface is the same for all numerics."""
+        sizes = resolution(self.spectrum, replace(numerics, tile_cutoffs=self.tile_cutoffs), 1.0)
+        return Simulation(
+            spectrum_name=self.name,
+            kind=self.kind,
+            spectrum=self.spectrum,
+            elastic_energy=self.elastic_energy,
+            realisation=realisation,
+            sweep_seed=_SEED,
+            resolution=sizes,
+            schedule=LoadSchedule(1.0, self.step),
+            tolerance=numerics.tolerance,
+            max_sweeps=numerics.max_sweeps,
+            solver=numerics.solver,
+            record_fronts=False,
+            record_energy=False,
+        )
+
+
+def with_knob(numerics: Numerics, knob: Knob, value: float) -> Numerics:
+    """Numerics with one knob at another value."""
+    if knob == "sites":
+        return replace(numerics, angles_per_cutoff=value)
+    if knob == "pixels":
+        return replace(numerics, pixels_per_cutoff=value)
+    if knob == "tolerance":
+        return replace(numerics, tolerance=value)
+    return replace(numerics, samples_per_cutoff=value, interpolation=knob)
+
+
+def _measured_shapes() -> list[Scene]:
+    """Every shape of the laws at four amplitudes."""
+    flat = SelfAffineSpectrum(0.02, 0.02, 1.0)
+    shapes: tuple[tuple[str, FieldKind, SelfAffineSpectrum, float], ...] = (
+        ("chemical", "chemical", flat, 64),
+        ("flat", "roughness", flat, 64),
+        ("h08", "roughness", SelfAffineSpectrum(0.02, 0.32, 0.8), 96),
+        ("h03", "roughness", SelfAffineSpectrum(0.02, 0.4, 0.3), 120),
+    )
+    authors = {"chemical-0.04": 100.0, "chemical-0.0025": 160.0}
+    return [
+        Scene(
+            f"{shape}-{energy:g}",
+            kind,
+            spectrum,
+            energy,
+            cutoffs,
+            authors_seconds=authors.get(f"{shape}-{energy:g}"),
+        )
+        for shape, kind, spectrum, cutoffs in shapes
+        for energy in (0.0025, 0.01, 0.04, 0.16)
+    ]
+
+
+SCENES: dict[str, Scene] = {
+    scene.name: scene
+    for scene in (
+        *_measured_shapes(),
+        Scene(
+            "small-0.04", "roughness", SelfAffineSpectrum(0.1, 0.1, 1.0), 0.04, 64,
+            single_knobs=False,
+        ),
+        Scene(
+            "large-0.04", "roughness", SelfAffineSpectrum(0.005, 0.1, 0.3), 0.04, 200,
+            step=0.03, reference=_LARGE_REFERENCE, single_knobs=False,
+        ),
+        Scene(
+            "paper-0.05", "roughness", SelfAffineSpectrum(0.000625, 0.01, 0.8), 0.05, 256,
+            step=0.004,
+            reference=replace(
+                _REFERENCE, angles_per_cutoff=2.7, samples_per_cutoff=5, pixels_per_cutoff=4,
+                tolerance=1e-5,
+            ),
+            single_knobs=False,
+        ),
+    )
+}  # fmt: skip
+"""All scenes by name. The first sixteen give the laws; `paper`, the finest spectrum of the paper,
+takes most of an hour by itself."""

@@ -1,0 +1,1 @@
+"""The model against boundary elements of the same rough sphere."""

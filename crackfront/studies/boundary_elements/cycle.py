@@ -1,0 +1,212 @@
+"""Approach and retraction by boundary elements, resumable after every load step."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core.cycle.schedule import LoadSchedule, loads
+from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.solver.relax import Direction
+from crackfront.studies.boundary_elements.contact import HalfSpaceContact
+from crackfront.studies.boundary_elements.minimise import equilibrium
+from crackfront.studies.boundary_elements.perimeter import EDGE, N_ANGLE, perimeter
+
+Array = NDArray[np.float64]
+
+_STEP, _ANGLE, _SHOWN, _X, _Y = "step", "angle", "shown", "x", "y"
+_AREA = f"({LATERAL})^2"
+_PRESSURE = f"{FORCE} / {_AREA}"
+
+_LEAST_RADIUS = 1e-2
+"""Trust radius that every load step may begin with."""
+
+RUNNING, LOST_CONTACT = "running", "lost contact"
+
+
+@dataclass(frozen=True, slots=True)
+class BoundaryCycle:
+    """States of a cycle by boundary elements, and what it takes to go on from the last of them."""
+
+    status: str = variable("running, or what ended the cycle", "1")
+    n_point: int = variable("points along a side of the grid", "1")
+    pixel: float = variable("grid spacing", LATERAL)
+    interaction_range: float = variable("gap at which the attraction ends", VERTICAL)
+    elastic_energy: float = variable("energy of full conformity of the roughness", ADHESION)
+    shown_penetration: float = variable("penetration whose states are kept", VERTICAL)
+    penetration: Array = variable("rigid body penetration", VERTICAL, _STEP)
+    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STEP)
+    force: Array = variable("normal force", FORCE, _STEP)
+    closed_area: Array = variable("area without gap", _AREA, _STEP)
+    radius: Array = variable("distance of the perimeter from the apex", LATERAL, _STEP, _ANGLE)
+    iterations: NDArray[np.int64] = variable("trust-region steps", "1", _STEP)
+    products: NDArray[np.int64] = variable("conjugate-gradient products", "1", _STEP)
+    residual: Array = variable("pressure out of balance", "largest tension", _STEP)
+    seconds: Array = variable("processor time of the load step", "s", _STEP)
+    shown_pressure: NDArray[np.float32] = variable(
+        "pressure at the kept penetration, approach and retraction", _PRESSURE, _SHOWN, _X, _Y
+    )
+    pressure: Array = variable("pressure of the last state", _PRESSURE, _X, _Y)
+    trust_radius: float = variable("trust radius of the next load step", "1")
+
+    @property
+    def contact_area(self) -> Array:
+        """Area within the perimeter (Units: reduced lateral length squared)."""
+        return np.asarray(np.pi * np.mean(self.radius**2, axis=1))
+
+
+Keep = Callable[[BoundaryCycle], None]
+
+
+def boundary_cycle(
+    contact: HalfSpaceContact,
+    schedule: LoadSchedule,
+    elastic_energy: float,
+    shown_penetration: float,
+    *,
+    tolerance: float,
+    resume: BoundaryCycle | None = None,
+    keep: Keep | None = None,
+) -> BoundaryCycle:
+    """Quasi-static approach from before first contact to the largest penetration, and to pull-off.
+
+    Parameters
+    ----------
+    contact : HalfSpaceContact
+        The contact.
+    schedule : LoadSchedule
+        Penetrations; before them, those in steps of the same size from the range of the attraction.
+    elastic_energy : float
+        Energy of full conformity of the roughness, for the record. (Units: w_int)
+    shown_penetration : float
+        Penetration whose pressures are kept, of both branches. (Units: reduced vertical length)
+    tolerance : float
+        Largest pressure out of balance that may be left, relative to the largest tension.
+    resume : BoundaryCycle, optional
+        An unfinished cycle of the same contact and loads.
+    keep : callable, optional
+        Called with the cycle so far after every load step.
+
+    Raises
+    ------
+    ValueError
+        If a state does not come to rest, or the cycle to resume is another one.
+    """
+    so_far = resume or _no_states(contact, elastic_energy, shown_penetration)
+    known = so_far.penetration.size
+    side = contact.n_point
+    displacement = contact.elastic_displacement(_padded(so_far.pressure))
+    for number, (penetration, direction) in enumerate(
+        contact_loads(schedule, contact.interaction_range)
+    ):
+        if so_far.status != RUNNING:
+            break
+        if number < known:
+            if so_far.penetration[number] != penetration:
+                raise ValueError(
+                    f"the cycle to resume has penetration {so_far.penetration[number]:g} where "
+                    f"{penetration:g} is asked for; it is that of another load, so remove it"
+                )
+            continue
+        started = time.process_time()
+        found = equilibrium(
+            contact,
+            displacement,
+            penetration,
+            tolerance=tolerance,
+            radius=max(so_far.trust_radius, _LEAST_RADIUS),
+        )
+        displacement = found.displacement
+        pressure = contact.elastic_pressure(displacement)[:side, :side]
+        gap = contact.gap(displacement, penetration)
+        radius = perimeter(gap, contact.pixel, EDGE * contact.interaction_range)
+        shown = so_far.shown_pressure
+        if math.isclose(penetration, shown_penetration, abs_tol=1e-9):
+            shown = shown.copy()
+            shown[0 if direction > 0 else 1] = pressure
+        lost = direction < 0 and not np.any(gap < contact.interaction_range)
+        so_far = replace(
+            so_far,
+            status=LOST_CONTACT if lost else RUNNING,
+            shown_pressure=shown,
+            pressure=pressure,
+            trust_radius=found.radius,
+            **_appended(
+                so_far,
+                penetration=penetration,
+                direction=direction,
+                force=float(np.sum(pressure)) * contact.pixel**2,
+                closed_area=np.count_nonzero(gap <= 0) * contact.pixel**2,
+                radius=radius,
+                iterations=found.iterations,
+                products=found.products,
+                residual=found.residual,
+                seconds=time.process_time() - started,
+            ),
+        )
+        if keep is not None:
+            keep(so_far)
+    return so_far
+
+
+def contact_loads(
+    schedule: LoadSchedule, interaction_range: float
+) -> Iterator[tuple[float, Direction]]:
+    """Penetrations of a cycle that begins before surfaces attract each other.
+
+    Examples
+    --------
+    >>> from itertools import islice
+    >>> list(islice(contact_loads(LoadSchedule(0.5, 0.25), 0.3), 5))
+    [(-0.5, 1), (-0.25, 1), (0.0, 1), (0.25, 1), (0.5, 1)]
+    """
+    for count in range(math.ceil(interaction_range / schedule.step), 0, -1):
+        yield -count * schedule.step, 1
+    yield from loads(schedule)
+
+
+def _padded(pressure: Array) -> Array:
+    """Pressures on the doubled grid."""
+    return np.pad(pressure, ((0, len(pressure)), (0, len(pressure))))
+
+
+def _no_states(
+    contact: HalfSpaceContact, elastic_energy: float, shown_penetration: float
+) -> BoundaryCycle:
+    """A cycle that has not begun."""
+    side = contact.n_point
+    numbers, counts = np.empty(0), np.empty(0, dtype=np.int64)
+    return BoundaryCycle(
+        status=RUNNING,
+        n_point=side,
+        pixel=contact.pixel,
+        interaction_range=contact.interaction_range,
+        elastic_energy=elastic_energy,
+        shown_penetration=shown_penetration,
+        penetration=numbers,
+        direction=counts,
+        force=numbers,
+        closed_area=numbers,
+        radius=np.empty((0, N_ANGLE)),
+        iterations=counts,
+        products=counts,
+        residual=numbers,
+        seconds=numbers,
+        shown_pressure=np.zeros((2, side, side), dtype=np.float32),
+        pressure=np.zeros((side, side)),
+        trust_radius=1.0,
+    )
+
+
+def _appended(so_far: BoundaryCycle, **state: Any) -> dict[str, Any]:
+    """Columns of the states with one more."""
+    return {
+        name: np.append(getattr(so_far, name), np.asarray(value)[None], axis=0)
+        for name, value in state.items()
+    }

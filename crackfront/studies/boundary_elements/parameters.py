@@ -1,0 +1,194 @@
+"""What a validation compares: cases of one rough sphere, by boundary elements and by the front."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import asdict, dataclass
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.fingerprint import fingerprint
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.data.section import Energy, Positive, Section, refusal
+from crackfront.studies.boundary_elements.contact import refuse_unresolved
+
+Array = NDArray[np.float64]
+
+
+class CaseSection(Section):
+    """One cycle by boundary elements, and the same by the front."""
+
+    n_point: Annotated[int, Field(ge=16)]
+    interaction_range: Positive
+    elastic_energy: Annotated[float, Field(ge=0, lt=1)]
+    step: Positive | None = None
+
+
+class FrontSection(Section):
+    """Resolution of the front model."""
+
+    n_angle: Annotated[int, Field(ge=4)]
+    spacing: Positive
+
+
+class StatisticsSection(Section):
+    """Surfaces on which the front is run with and without the rotation of the crack."""
+
+    surfaces: Annotated[int, Field(ge=2)]
+    n_point: Annotated[int, Field(ge=16)]
+    elastic_energy: Energy
+
+
+class ValidationParameters(Section):
+    """The whole file.
+
+    Attributes
+    ----------
+    seed : int
+        Seed of the surface, which all cases share.
+    short_cutoff : float
+        Shortest wavelength of its flat spectrum. (Units: reduced lateral length)
+    side : float
+        Side of the domain and of the periodic roughness. (Units: reduced lateral length)
+    max_penetration, step : float
+        Load. (Units: reduced vertical length)
+    shown_penetration : float
+        Penetration at which perimeters are compared. (Units: reduced vertical length)
+    tolerance : float
+        Largest pressure out of balance, relative to the largest tension.
+    front : FrontSection
+        Resolution of the front model.
+    statistics : StatisticsSection or None
+        What shows that the rotation has no effect on averages.
+    cases : tuple of CaseSection
+        Grids, ranges of attraction (Units: reduced vertical length) and energies of full
+        conformity (Units: w_int, 0 for a smooth sphere); a step of their own where it is given.
+    """
+
+    seed: Annotated[int, Field(ge=0)]
+    short_cutoff: Positive
+    side: Positive
+    max_penetration: Positive
+    step: Positive
+    shown_penetration: Annotated[float, Field(allow_inf_nan=False)]
+    tolerance: Annotated[float, Field(gt=0, lt=1)]
+    front: FrontSection
+    statistics: StatisticsSection | None = None
+    cases: Annotated[tuple[CaseSection, ...], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _usable(self) -> ValidationParameters:
+        for number, case in enumerate(self.cases):
+            if case in self.cases[:number]:
+                raise refusal(f"cases[{number}] stands twice; remove one")
+            pixel, step = self.side / case.n_point, case.step or self.step
+            if self.short_cutoff < 2 * pixel:
+                needed = math.ceil(2 * self.side / self.short_cutoff)
+                raise refusal(
+                    f"cases[{number}]: short_cutoff {self.short_cutoff:g} is below two pixels "
+                    f"({2 * pixel:.4g}); take n_point {needed} or more"
+                )
+            try:
+                refuse_unresolved(pixel, case.n_point, case.interaction_range, self.max_penetration)
+            except ValueError as error:
+                raise refusal(f"cases[{number}]: {error}") from error
+            shown = self.shown_penetration / step
+            if not (
+                abs(shown - round(shown)) < 1e-9 and self.shown_penetration < self.max_penetration
+            ):
+                raise refusal(
+                    f"shown_penetration {self.shown_penetration:g} is no state of cases[{number}]; "
+                    f"it must be a multiple of the step {step:g} and below max_penetration "
+                    f"{self.max_penetration:g}"
+                )
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """Everything that determines one cycle by boundary elements.
+
+    Attributes
+    ----------
+    seed, short_cutoff, side, shown_penetration, tolerance
+        As in :class:`ValidationParameters`.
+    n_point, interaction_range, elastic_energy
+        As in :class:`CaseSection`.
+    schedule : LoadSchedule
+        Penetrations to visit from 0 on.
+    """
+
+    seed: int
+    short_cutoff: float
+    side: float
+    shown_penetration: float
+    tolerance: float
+    n_point: int
+    interaction_range: float
+    elastic_energy: float
+    schedule: LoadSchedule
+
+    @property
+    def pixel(self) -> float:
+        """Grid spacing (Units: reduced lateral length)."""
+        return self.side / self.n_point
+
+    @property
+    def label(self) -> str:
+        """What a person calls this case, and the stem of its file before the key."""
+        return f"n{self.n_point}-g{self.interaction_range:g}-e{self.elastic_energy:g}"
+
+    @property
+    def stem(self) -> str:
+        """Name of its file, which changes with anything that determines the result."""
+        text = json.dumps([asdict(self), _source_digest()], sort_keys=True, allow_nan=False)
+        return f"{self.label}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
+
+    def heights(self) -> Array:
+        """Roughness of the sphere, the same surface for all grids and amplitudes of a seed.
+
+        The noise belongs to wavevectors, not to the points of a grid.
+
+        Returns
+        -------
+        (n_point, n_point) array
+            Heights. (Units: reduced vertical length)
+        """
+        flat = SelfAffineSpectrum(self.short_cutoff, self.short_cutoff, hurst=1.0)
+        rng = np.random.default_rng(np.random.SeedSequence(self.seed))
+        unit = gaussian_field(flat.with_elastic_energy(1.0), self.n_point, self.side, rng)
+        return unit * math.sqrt(self.elastic_energy)
+
+
+def validation_cases(parameters: ValidationParameters) -> tuple[Case, ...]:
+    """Cases of a validation, in their order."""
+    return tuple(
+        Case(
+            seed=parameters.seed,
+            short_cutoff=parameters.short_cutoff,
+            side=parameters.side,
+            shown_penetration=parameters.shown_penetration,
+            tolerance=parameters.tolerance,
+            n_point=case.n_point,
+            interaction_range=case.interaction_range,
+            elastic_energy=case.elastic_energy,
+            schedule=LoadSchedule(parameters.max_penetration, case.step or parameters.step),
+        )
+        for case in parameters.cases
+    )
+
+
+_SOURCES = ("contact", "minimise", "cycle", "perimeter")
+
+
+def _source_digest() -> str:
+    """Digits that change with the sources of the boundary elements and of their surface."""
+    mine = (f"studies/boundary_elements/{name}.py" for name in _SOURCES)
+    return fingerprint(*mine, "core/synthesis.py", "core/spectrum.py")

@@ -1,0 +1,250 @@
+"""Main Fig. 4: roughness, and the local work of adhesion that it is equivalent to."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+from scipy.fft import fft2, fftfreq
+from scipy.ndimage import maximum_filter
+
+from crackfront.core.adhesion import AdhesionMap, rough_adhesion
+from crackfront.core.records import ADHESION, LATERAL, VERTICAL, variable
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field, tile_mean_square
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.data.section import Count, Energy, Positive, Section, refusal
+from crackfront.studies.paper.checks import Check, close_to
+from crackfront.studies.paper.scene import Progress
+
+Array = NDArray[np.float64]
+
+_X, _Y, _BAND, _PLACE = "x", "y", "band", "coordinate"
+
+_ALIGNMENT = 2 * math.sqrt(2) / math.pi
+"""Correlation of w_loc with heights of one scale: mean of Re sqrt(i q_x + |q_y|) / sqrt(q)."""
+
+_FEWEST_MODES = 100
+"""Modes of a band that is compared."""
+
+
+class MappingParameters(Section):
+    """What Fig. 4 shows.
+
+    Attributes
+    ----------
+    seed : int
+        Seed of the surface.
+    short_cutoff, roll_off, hurst : float
+        Spectrum of the heights. (Units: reduced lateral length, the last 1)
+    elastic_energy : float
+        Energy of full conformity. (Units: w_int)
+    side : float
+        Side of the periodic tile. (Units: reduced lateral length)
+    patch : float
+        Side of the part that is shown. (Units: reduced lateral length)
+    n_point : int
+        Points along a side of the tile.
+    """
+
+    seed: Annotated[int, Field(ge=0)]
+    short_cutoff: Positive
+    roll_off: Positive
+    hurst: Annotated[float, Field(gt=0, le=1)]
+    elastic_energy: Energy
+    side: Positive
+    patch: Positive
+    n_point: Count
+
+    @model_validator(mode="after")
+    def _usable(self) -> MappingParameters:
+        if self.roll_off < self.short_cutoff:
+            raise refusal(
+                f"roll_off {self.roll_off:g} is shorter than short_cutoff {self.short_cutoff:g}; "
+                "lower the cutoff or raise the roll-off"
+            )
+        if not 4 * self.short_cutoff <= self.patch <= self.side:
+            raise refusal(
+                f"patch is {self.patch:g}; it must have at least four short cutoffs "
+                f"({4 * self.short_cutoff:g}) and fit into the side of the tile ({self.side:g})"
+            )
+        if self.short_cutoff < 2 * self.side / self.n_point * (1 - 1e-12):
+            raise refusal(
+                f"n_point is {self.n_point}; the short cutoff {self.short_cutoff:g} needs two "
+                f"points, so {math.ceil(2 * self.side / self.short_cutoff)} or more"
+            )
+        return self
+
+    @property
+    def spectrum(self) -> SelfAffineSpectrum:
+        """Spectrum of the heights, in reduced units."""
+        shape = SelfAffineSpectrum(self.short_cutoff, self.roll_off, self.hurst)
+        return shape.with_elastic_energy(self.elastic_energy)
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """Heights and works of adhesion on a patch, and measures of the whole tile."""
+
+    position: Array = variable("distance from a corner of the patch", LATERAL, _X)
+    heights: Array = variable("height, positive at peaks", VERTICAL, _X, _Y)
+    adhesion: Array = variable("local work of adhesion", ADHESION, _X, _Y)
+    peak: NDArray[np.int64] = variable("indices of the highest point shown", "1", _PLACE)
+    valley: NDArray[np.int64] = variable("indices of the lowest point shown", "1", _PLACE)
+    asked_energy: float = variable("energy of full conformity of the spectrum", ADHESION)
+    mode_energy: float = variable("expected energy of the modes of the tile", ADHESION)
+    energy_error: float = variable("standard deviation of the energy of a tile", ADHESION)
+    energy: float = variable("energy of full conformity of the tile", ADHESION)
+    rms: float = variable("rms of the local work of adhesion on the tile", ADHESION)
+    mean: float = variable("mean of the local work of adhesion on the tile", ADHESION)
+    peak_mean: float = variable("mean work of adhesion at all maxima of the heights", ADHESION)
+    valley_mean: float = variable("mean work of adhesion at all minima of the heights", ADHESION)
+    band_wavelength: Array = variable("middle of a band of wavelengths", LATERAL, _BAND)
+    band_modes: NDArray[np.int64] = variable("modes of the band", "1", _BAND)
+    band_correlation: Array = variable(
+        "correlation of the heights' half-derivative and the work of adhesion in the band",
+        "1",
+        _BAND,
+    )
+
+
+def mapping(parameters: MappingParameters, progress: Progress) -> Mapping:
+    """Synthesise a surface and map it.
+
+    Parameters
+    ----------
+    parameters : MappingParameters
+        What to compute.
+    progress : callable
+        Called with a line when the surface is mapped.
+    """
+    spectrum, pixel = parameters.spectrum, parameters.side / parameters.n_point
+    rng = np.random.default_rng(np.random.SeedSequence(parameters.seed))
+    heights = gaussian_field(spectrum, parameters.n_point, parameters.side, rng)
+    tile = rough_adhesion(heights, pixel)
+    adhesion = tile.work_of_adhesion / WORK_OF_ADHESION
+    progress(f"tile of {parameters.n_point} points a side: w_rms = {tile.rms:.4f} w_int")
+    shown = slice(0, min(round(parameters.patch / pixel) + 1, parameters.n_point))
+    patch = heights[shown, shown]
+    # From a mean square half-derivative to an energy of full conformity.
+    stiffness = spectrum.elastic_energy / spectrum.mean_square(0.5)
+    expected, deviation = tile_mean_square(spectrum, parameters.side, 0.5)
+    wavelength, modes, correlation = _band_correlations(heights, tile, spectrum)
+    return Mapping(
+        position=np.asarray(pixel * np.arange(len(patch)), dtype=float),
+        heights=patch,
+        adhesion=adhesion[shown, shown],
+        peak=_highest(patch),
+        valley=_highest(-patch),
+        asked_energy=parameters.elastic_energy,
+        mode_energy=stiffness * expected,
+        energy_error=stiffness * deviation,
+        energy=tile.elastic_energy,
+        rms=tile.rms,
+        mean=float(adhesion.mean()),
+        peak_mean=float(adhesion[_maxima(heights)].mean()),
+        valley_mean=float(adhesion[_maxima(-heights)].mean()),
+        band_wavelength=wavelength,
+        band_modes=modes,
+        band_correlation=correlation,
+    )
+
+
+def mapping_checks(record: Mapping) -> tuple[Check, ...]:
+    """Parseval, the mean, and that peaks raise the work of adhesion.
+
+    Parameters
+    ----------
+    record : Mapping
+        Data of the figure.
+    """
+    many = record.band_modes >= _FEWEST_MODES
+    furthest = np.argmax(np.abs(record.band_correlation[many] - _ALIGNMENT))
+    return (
+        close_to(
+            "Parseval: w_rms / sqrt(e_el w_int), both of the tile",
+            record.rms / math.sqrt(record.energy),
+            2.0,
+            1e-9,
+            remark="SI Eq. (Wrms); the main text prints sqrt(2) for it",
+        ),
+        close_to(
+            "mean of w_loc: w_int - e_el of the tile",
+            record.mean,
+            1 - record.energy,
+            1e-9,
+            units="w_int",
+        ),
+        close_to(
+            "e_el of the tile: that of the spectrum at its modes, within 3 standard deviations",
+            record.energy,
+            record.mode_energy,
+            3 * record.energy_error,
+            units="w_int",
+            remark=f"the integral over all wavevectors is {record.asked_energy:g}",
+        ),
+        close_to(
+            "peaks raise w_loc: correlation with the half-derivative of the heights in octaves of "
+            "wavelength, the furthest from 2 sqrt(2) / pi",
+            float(record.band_correlation[many][furthest]),
+            _ALIGNMENT,
+            0.015,
+            remark="mean of Re sqrt(i q_x + abs(q_y)) / sqrt(q) over the directions of q; "
+            f"{np.count_nonzero(many)} octaves of {_FEWEST_MODES} modes or more",
+        ),
+        Check(
+            "w_loc at valleys, on average, and at peaks",
+            "increasing",
+            f"{record.valley_mean:.4f}, {record.mean:.4f}, {record.peak_mean:.4f} w_int",
+            record.valley_mean < record.mean < record.peak_mean,
+            "means over all minima, all points and all maxima of the heights of the tile",
+        ),
+        Check(
+            "w_loc at the valley and at the peak that are shown",
+            "increasing",
+            f"{record.adhesion[tuple(record.valley)]:.4f}, "
+            f"{record.adhesion[tuple(record.peak)]:.4f} w_int",
+            bool(record.adhesion[tuple(record.valley)] < record.adhesion[tuple(record.peak)]),
+        ),
+    )
+
+
+def _band_correlations(
+    heights: Array, tile: AdhesionMap, spectrum: SelfAffineSpectrum
+) -> tuple[Array, NDArray[np.int64], Array]:
+    """Middle wavelength, modes and correlation of the octaves below the short cutoff's."""
+    n_point = len(heights)
+    along = 2 * np.pi * fftfreq(n_point, tile.pixel)
+    wavevector = np.hypot(along[:, None], along)
+    # On one scale the half-derivative is the heights; an octave is not quite one scale.
+    one, other = np.sqrt(wavevector) * fft2(heights), fft2(tile.work_of_adhesion)
+    longest = tile.pixel * n_point
+    n_band = max(1, math.floor(math.log2(longest / spectrum.short_cutoff)))
+    edges = 2 * np.pi / spectrum.short_cutoff * 2.0 ** -np.arange(n_band + 1)
+    rows = []
+    for high, low in pairwise(edges):
+        band = (wavevector > low) & (wavevector <= high * (1 + 1e-12))
+        shared = np.sum((one[band] * np.conj(other[band])).real)
+        norms = np.sum(np.abs(one[band]) ** 2) * np.sum(np.abs(other[band]) ** 2)
+        rows.append(
+            (2 * np.pi / math.sqrt(low * high), np.count_nonzero(band), shared / norms**0.5)
+        )
+    middle, modes, correlation = np.array(rows).T
+    return middle, modes.astype(np.int64), correlation
+
+
+def _maxima(heights: Array) -> NDArray[np.bool_]:
+    """Points of a periodic map that no neighbour exceeds."""
+    return np.asarray(heights == maximum_filter(heights, size=3, mode="wrap"))
+
+
+def _highest(patch: Array) -> NDArray[np.int64]:
+    """Indices of the highest point away from the rim, where a profile along x has room."""
+    margins = len(patch) // 5, len(patch) // 20
+    inner = patch[tuple(slice(margin, len(patch) - margin) for margin in margins)]
+    return np.array(np.unravel_index(np.argmax(inner), inner.shape)) + margins

@@ -1,0 +1,157 @@
+"""A whole cycle as it is seen: every front over the field, beside the loop that it draws."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core import jkr
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.solver.relax import Status
+from crackfront.simulate.contact import simulation_adhesion, simulation_field
+from crackfront.simulate.run import compile_solver
+from crackfront.studies.paper.checks import Check, close_to
+from crackfront.studies.paper.rough import RoughCycleParameters, patch_of
+from crackfront.studies.paper.scene import Progress
+
+Array = NDArray[np.float64]
+
+_STATE, _ANGLE, _X, _Y = "state", "angle", "x", "y"
+
+_PATCH_POINTS = 400
+"""Points along a side of the field that is shown."""
+
+
+class MotionParameters(RoughCycleParameters):
+    """What the animation shows: a contact on a flat spectrum, whose instabilities can be seen."""
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """All states of a cycle with their fronts, and the field."""
+
+    status: str = variable("what ended the cycle", "1")
+    elastic_energy: float = variable("energy of full conformity on the tile", ADHESION)
+    end_penetration: float = variable("penetration at which contact was lost", VERTICAL)
+    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    penetration: Array = variable("rigid body penetration", VERTICAL, _STATE)
+    mean_radius: Array = variable("mean contact radius", LATERAL, _STATE)
+    force: Array = variable("normal force", FORCE, _STATE)
+    dissipated_energy: Array = variable("energy lost in a load step", ENERGY, _STATE)
+    pull_off_energy: float = variable("energy lost when the contact vanishes", ENERGY)
+    angle: Array = variable("angle of a site", "rad", _ANGLE)
+    front: Array = variable("front", LATERAL, _STATE, _ANGLE)
+    x: Array = variable("abscissa of the field", LATERAL, _X)
+    y: Array = variable("ordinate of the field", LATERAL, _Y)
+    patch: NDArray[np.float32] = variable("local work of adhesion", ADHESION, _X, _Y)
+
+
+def motion(parameters: MotionParameters, progress: Progress) -> Motion:
+    """A full cycle with all its fronts.
+
+    Parameters
+    ----------
+    parameters : MotionParameters
+        What to compute.
+    progress : callable
+        Called with a line at the end.
+
+    Raises
+    ------
+    ValueError
+        If the cycle does not end by losing contact.
+    """
+    simulation = parameters.simulation()
+    adhesion = simulation_adhesion(simulation)
+    field = simulation_field(simulation, adhesion)
+    compile_solver(simulation.solver)
+    record = run_cycle(
+        field,
+        parameters.schedule,
+        tolerance=simulation.tolerance,
+        max_sweeps=simulation.max_sweeps,
+        solver=simulation.solver,
+        record_fronts=True,
+        record_energy=True,
+    )
+    progress(f"{record.penetration.size} states: {record.status.value}")
+    if record.radius is None or record.dissipated_energy is None or record.pull_off_energy is None:
+        raise ValueError(f"the cycle ended early: {record.status.value}")
+    reach = 1.08 * record.max_radius.max()
+    axis = np.linspace(-reach, reach, _PATCH_POINTS)
+    return Motion(
+        status=record.status.value,
+        elastic_energy=adhesion.elastic_energy,
+        end_penetration=record.end_penetration,
+        direction=record.direction,
+        penetration=record.penetration,
+        mean_radius=record.mean_radius,
+        force=record.force,
+        dissipated_energy=record.dissipated_energy,
+        pull_off_energy=record.pull_off_energy,
+        angle=2 * np.pi * np.arange(record.radius.shape[1]) / record.radius.shape[1],
+        front=record.radius,
+        x=axis,
+        y=axis,
+        patch=patch_of(field, axis, axis),
+    )
+
+
+def motion_checks(shown: Motion) -> tuple[Check, ...]:
+    """What must be true of every frame.
+
+    Parameters
+    ----------
+    shown : Motion
+        Data of the animation.
+    """
+    approach = shown.direction > 0
+    moved = shown.direction[1:, None] * np.diff(shown.front, axis=0)
+    smallest, work = float(shown.dissipated_energy.min()), _loop_work(shown)
+    dissipated = float(shown.dissipated_energy.sum()) + shown.pull_off_energy
+    mean = np.mean(jkr.force(shown.front, shown.penetration[:, None]), axis=1)
+    return (
+        Check(
+            "the cycle is whole: it ends by losing contact",
+            Status.LOST_CONTACT.value,
+            shown.status,
+            shown.status == Status.LOST_CONTACT.value,
+        ),
+        Check(
+            "no site of the front moves back, neither in approach nor in retraction",
+            "the least way forward is 0 or more",
+            f"{moved.min():.2g}",
+            bool(moved.min() >= 0),
+        ),
+        close_to(
+            "the fronts that are shown have the forces that are shown, largest difference",
+            float(np.max(np.abs(mean - shown.force))),
+            0.0,
+            1e-9,
+            units=FORCE,
+        ),
+        Check(
+            "every load step dissipates",
+            "the least energy is 0 or more",
+            f"{smallest:.2g}",
+            smallest >= 0,
+        ),
+        close_to(
+            "the dissipated energies sum up to the work of the loop",
+            dissipated,
+            work,
+            1e-9,
+            remark=f"in {FORCE} times a reduced vertical length; {np.count_nonzero(approach)} "
+            f"states in approach, {np.count_nonzero(~approach)} in retraction",
+        ),
+    )
+
+
+def _loop_work(shown: Motion) -> float:
+    """Loop integral of F db, in which each front is held while the penetration changes."""
+    ends = np.append(shown.penetration[1:], shown.end_penetration)
+    held = np.mean(jkr.force(shown.front, ends[:, None]), axis=1)
+    return float(np.sum((shown.force + held) / 2 * (ends - shown.penetration)))

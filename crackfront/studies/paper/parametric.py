@@ -1,0 +1,189 @@
+"""SI Fig. S-5: hysteresis against disorder for several spectra, from the table of a sweep."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import spearmanr
+
+from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.report import PAPER_FACTOR
+from crackfront.analysis.result import SweepFit
+from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.table import SweepTable
+from crackfront.core.records import ADHESION, LATERAL, variable
+from crackfront.data.section import Section
+from crackfront.studies.paper.checks import Check
+from crackfront.studies.paper.scene import Progress
+
+Array = NDArray[np.float64]
+
+_ABOUT = 0.5
+"""What "about 3" may mean: the paper gives k as a whole number."""
+
+_SAME = 0.25
+"""Relative spread of k among spectra that a plot over three decades shows as one line."""
+
+_spectrum, _amplitude = "spectrum", "amplitude"
+_cell = (_spectrum, _amplitude, "realisation")
+
+
+class ParametricStudyParameters(Section):
+    """Which sweep the figure shows.
+
+    Attributes
+    ----------
+    sweep : str
+        Its configuration; the results must stand in `results/`.
+    """
+
+    sweep: str
+
+
+@dataclass(frozen=True, slots=True)
+class ParametricStudy:
+    """Works of adhesion of a sweep and the range of its fit; the fit follows from them."""
+
+    spectrum: NDArray[np.str_] = variable("name of the spectrum", "1", _spectrum)
+    short_cutoff: Array = variable("shortest wavelength lambda_s", LATERAL, _spectrum)
+    roll_off: Array = variable("roll-off wavelength lambda_r", LATERAL, _spectrum)
+    hurst: Array = variable("Hurst exponent", "1", _spectrum)
+    correlation_length: Array = variable("that of w_loc", LATERAL, _spectrum)
+    e_el_requested: Array = variable("requested e_el", ADHESION, _amplitude)
+    e_el: Array = variable("energy of full conformity of the tile", ADHESION, *_cell)
+    w_rms: Array = variable("rms of w_loc on the tile", ADHESION, *_cell)
+    w_appr: Array = variable("apparent work of adhesion in approach", ADHESION, *_cell)
+    w_retr: Array = variable("apparent work of adhesion in retraction", ADHESION, *_cell)
+    w_appr_from_force: Array = variable("w_appr of a JKR fit", ADHESION, *_cell)
+    w_retr_from_force: Array = variable("w_retr of a JKR fit", ADHESION, *_cell)
+    w_appr_numerical_error: Array = variable("numerical error of w_appr", ADHESION, *_cell)
+    w_retr_numerical_error: Array = variable("numerical error of w_retr", ADHESION, *_cell)
+    kind: str = variable("roughness or chemical", "1")
+    lowest_elastic_energy: float = variable("lowest e_el of the fit", ADHESION)
+    highest_elastic_energy: float = variable("highest e_el of the fit", ADHESION)
+    n_bootstrap: int = variable("bootstrap samples of the fit", "1")
+    seed: int = variable("seed of the bootstrap", "1")
+
+
+def parametric_study(
+    parameters: ParametricStudyParameters, progress: Progress, fit: SweepFit
+) -> ParametricStudy:
+    """Data of the figure from the fit of a sweep.
+
+    Parameters
+    ----------
+    parameters : ParametricStudyParameters
+        Which sweep it is.
+    progress : callable
+        Called with a line.
+    fit : SweepFit
+        Its fit.
+    """
+    progress(f"{parameters.sweep}: {fit.table.finite.sum()} simulations with a value")
+    columns = {item.name: getattr(fit.table, item.name) for item in fields(SweepTable)}
+    return ParametricStudy(
+        **columns,
+        kind=fit.kind,
+        lowest_elastic_energy=fit.lowest_elastic_energy,
+        highest_elastic_energy=fit.highest_elastic_energy,
+        n_bootstrap=fit.n_bootstrap,
+        seed=fit.seed,
+    )
+
+
+def study_fit(study: ParametricStudy) -> SweepFit:
+    """The fit of a sweep once more, from the data of the figure.
+
+    Parameters
+    ----------
+    study : ParametricStudy
+        Data of the figure.
+    """
+    columns = {item.name: getattr(study, item.name) for item in fields(SweepTable)}
+    columns["spectrum"] = study.spectrum.astype(np.str_)
+    return fit_sweep(
+        SweepTable(**columns),
+        lowest_elastic_energy=study.lowest_elastic_energy,
+        highest_elastic_energy=study.highest_elastic_energy,
+        n_bootstrap=study.n_bootstrap,
+        seed=study.seed,
+        kind="roughness" if study.kind == "roughness" else "chemical",
+    )
+
+
+def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
+    """What the paper reads off the figure: k, the square law, one line, the onset.
+
+    Parameters
+    ----------
+    study : ParametricStudy
+        Data of the figure.
+    """
+    fit = study_fit(study)
+    factor, exponent = fit.pooled.factor, fit.pooled.exponent
+    factors = fit.spectra.factor.value
+    spread = float(np.ptp(factors) / np.mean(factors))
+    onset = _onsets(fit)
+    order = float(spearmanr(study.correlation_length, onset).statistic)
+    text = ", ".join(
+        f"{name} {length:.3g}: {energy:.2g}"
+        for name, length, energy in zip(
+            study.spectrum, study.correlation_length, onset, strict=True
+        )
+    )
+    return (
+        Check(
+            f"k of all spectra, e_el from {study.lowest_elastic_energy:g} to "
+            f"{study.highest_elastic_energy:g} w_int: about 3",
+            f"{PAPER_FACTOR:g} ± {_ABOUT:g}",
+            _interval(factor),
+            bool(abs(factor.value - PAPER_FACTOR) <= _ABOUT),
+            "95% interval; k grows with the number of correlation lengths around the contact, and "
+            "falls with disorder beyond the onset: panels b and c",
+        ),
+        Check(
+            "hysteresis in proportion to w_rms^2: exponent 2",
+            "2 in the 95% interval",
+            _interval(exponent),
+            bool(exponent.low <= 2 <= exponent.high),
+            "over the range of the fit, where k falls with disorder",
+        ),
+        Check(
+            "independent of the shape of the spectrum: spread of k among the spectra",
+            f"at most {100 * _SAME:.0f}%",
+            f"{100 * spread:.0f}%",
+            spread <= _SAME,
+            ", ".join(
+                f"{name} {value:.2f}" for name, value in zip(study.spectrum, factors, strict=True)
+            ),
+        ),
+        Check(
+            "onset of hysteresis at larger e_el for a longer correlation length",
+            "rank correlation above 0",
+            f"{order:.2f}",
+            order > 0,
+            f"correlation length: e_el / w_int at which k is half that of the fit ({text})",
+        ),
+    )
+
+
+def _interval(estimate: Estimate) -> str:
+    """An estimate with its interval."""
+    return f"{estimate.value:.2f} ({estimate.low:.2f} to {estimate.high:.2f})"
+
+
+def _onsets(fit: SweepFit) -> Array:
+    """e_el at which k rises to half of its mean over the range, or the least that was simulated."""
+    found = []
+    for energies, factors, mean in zip(
+        fit.cells.e_el, fit.cells.factor.value, fit.spectra.factor.value, strict=True
+    ):
+        below = np.flatnonzero(factors < mean / 2)
+        if below.size == 0:
+            found.append(energies[0])
+            continue
+        near = slice(below[-1], below[-1] + 2)
+        found.append(np.exp(np.interp(mean / 2, factors[near], np.log(energies[near]))))
+    return np.array(found)

@@ -1,0 +1,159 @@
+"""Main Fig. 1d: a smooth sphere whose work of adhesion is larger in retraction than in approach."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from crackfront.core import jkr
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.kinds import PolarField, polar_field
+from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.solver.relax import Direction, Status, relax
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.data.section import Positive, Section, refusal
+from crackfront.studies.paper.checks import Check, close_to
+from crackfront.studies.paper.scene import Progress
+
+Array = NDArray[np.float64]
+
+_STATE = "state"
+
+INNERMOST = 1e-3
+"""Radius at which contact is made."""
+
+TOLERANCE = 1e-13
+"""Force that may be left on a circle, relative to w_int: next to pull-off it is soft."""
+
+
+class SmoothLoopParameters(Section):
+    """What Fig. 1d shows.
+
+    Attributes
+    ----------
+    approach, retraction : float
+        Works of adhesion of the two branches. (Units: w_int)
+    max_penetration, step : float
+        Penetrations to visit. (Units: reduced vertical length)
+    """
+
+    approach: Positive
+    retraction: Positive
+    max_penetration: Positive
+    step: Positive
+
+    @model_validator(mode="after")
+    def _ordered(self) -> SmoothLoopParameters:
+        if self.approach > self.retraction:
+            raise refusal(
+                f"works of adhesion are {self.approach:g} in approach and {self.retraction:g} in "
+                "retraction; the first must not be above the second"
+            )
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class SmoothLoop:
+    """States of both branches, as the file of the figure holds them."""
+
+    approach: float = variable("work of adhesion in approach", ADHESION)
+    retraction: float = variable("work of adhesion in retraction", ADHESION)
+    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    penetration: Array = variable("rigid body penetration", VERTICAL, _STATE)
+    radius: Array = variable("contact radius", LATERAL, _STATE)
+    force: Array = variable("normal force", FORCE, _STATE)
+
+
+def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothLoop:
+    """Approach with one work of adhesion and retraction with another.
+
+    Parameters
+    ----------
+    parameters : SmoothLoopParameters
+        What to compute.
+    progress : callable
+        Called with a line for every branch.
+    """
+    schedule = LoadSchedule(parameters.max_penetration, parameters.step)
+    front = np.array([INNERMOST])
+    states: list[tuple[int, float, float]] = []
+    branches: tuple[tuple[Direction, float, Iterable[float]], ...] = (
+        (1, parameters.approach, schedule.approach()),
+        (-1, parameters.retraction, schedule.retraction()),
+    )
+    for direction, adhesion, penetrations in branches:
+        field = _constant(adhesion, parameters)
+        for penetration in penetrations:
+            outcome = relax(front, penetration, direction, field, tolerance=TOLERANCE)
+            if outcome.status is not Status.CONVERGED:
+                break
+            front = outcome.radius
+            states.append((direction, penetration, float(front[0])))
+        progress(f"work of adhesion {adhesion:g}: contact radius {front[0]:.4f} at the end")
+    directions, visited, radii = (np.array(column) for column in zip(*states, strict=True))
+    return SmoothLoop(
+        approach=parameters.approach,
+        retraction=parameters.retraction,
+        direction=directions,
+        penetration=visited,
+        radius=radii,
+        force=jkr.force(radii, visited),
+    )
+
+
+def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
+    """The closed forms of JKR, which both branches must follow.
+
+    Parameters
+    ----------
+    loop : SmoothLoop
+        Data of the figure.
+    """
+    retracting = loop.direction < 0
+    largest = loop.radius[~retracting].max()
+    smooth = [jkr.equilibrium_radius(b, loop.approach) for b in loop.penetration[~retracting]]
+    receding = [jkr.equilibrium_radius(b, loop.retraction) for b in loop.penetration[retracting]]
+    return (
+        close_to(
+            "radii in approach: the stable JKR radius, largest difference",
+            _largest(loop.radius[~retracting] - smooth),
+            0.0,
+            1e-9,
+        ),
+        close_to(
+            "radii in retraction: the JKR radius, or that at the turn while the edge is pinned",
+            _largest(loop.radius[retracting] - np.minimum(receding, largest)),
+            0.0,
+            1e-9,
+        ),
+        close_to(
+            "lowest force: -3/2 w_retr, where the force is controlled",
+            loop.force.min(),
+            jkr.pull_off_force(loop.retraction),
+            2e-3,
+            units="pi w_int R",
+            remark="lowest of the visited states; the load step leaves the difference",
+        ),
+        close_to(
+            "last penetration: that of pull-off, within a load step",
+            loop.penetration[-1],
+            jkr.pull_off_penetration(loop.retraction),
+            float(np.max(np.abs(np.diff(loop.penetration[retracting])))),
+        ),
+    )
+
+
+def _largest(difference: Array) -> float:
+    """Largest magnitude."""
+    return float(np.max(np.abs(difference)))
+
+
+def _constant(adhesion: float, parameters: SmoothLoopParameters) -> PolarField:
+    """Field of a smooth sphere, large enough for the whole loop."""
+    largest = jkr.equilibrium_radius(parameters.max_penetration, parameters.retraction)
+    ring = np.full(2, adhesion * WORK_OF_ADHESION)
+    return polar_field(np.array([INNERMOST, 1.1 * largest]), ring)

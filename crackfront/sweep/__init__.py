@@ -1,0 +1,1 @@
+"""Many simulations: configuration, store, MPI ranks, and the table that they become."""

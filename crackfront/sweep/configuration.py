@@ -1,0 +1,194 @@
+"""Configuration files: read, validated in full, and turned into a sweep."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import Scales
+from crackfront.data.yaml import ConfigurationError, content_of, sentences
+from crackfront.simulate.laws import numerical_error
+from crackfront.simulate.simulation import Numerics, resolution
+from crackfront.sweep.sections import (
+    Configuration,
+    LoadSection,
+    NumericsSection,
+    SpectrumSection,
+    SurfaceSection,
+)
+from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
+from crackfront.topography.files import Treatment
+from crackfront.topography.measures import measured_surface
+from crackfront.topography.reading import read_measurements
+
+
+def load_configuration(path: Path) -> Sweep:
+    """Sweep of a configuration file.
+
+    Parameters
+    ----------
+    path : Path
+        YAML file.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file cannot be read, is no YAML mapping, or anything in it is unknown, missing or
+        out of range; one sentence for each.
+    """
+    content = content_of(path)
+    try:
+        configuration = Configuration.model_validate(content)
+    except ValidationError as error:
+        raise ConfigurationError(
+            "\n".join(f"{path}: {line}" for line in sentences(error.errors(), Configuration))
+        ) from error
+    try:
+        sweep = _sweep(configuration)
+    except ConfigurationError as error:
+        raise ConfigurationError(f"{path}: {error}") from error
+    _refuse_round_off(path, sweep)
+    _refuse_unreachable(path, sweep)
+    return sweep
+
+
+def results_folder(path: Path) -> Path:
+    """Folder for the results of a configuration file, named after it.
+
+    Raises
+    ------
+    ConfigurationError
+        If the name is not one for a folder and a command line.
+    """
+    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", path.stem):
+        raise ConfigurationError(
+            f"the results are named after {path.name!r}, which must consist of letters, digits, "
+            "_, - and dots; rename it"
+        )
+    return Path("results") / path.stem
+
+
+def _refuse_unreachable(path: Path, sweep: Sweep) -> None:
+    """Raise if the finest numerics that may be chosen leave more than the asked error."""
+    asked = sweep.numerical_error
+    if asked is None:
+        return
+    for item in sweep.spectra:
+        for energy in sweep.elastic_energies:
+            stated = max(numerical_error(sweep.simulation(item, energy, 0))) / energy
+            if stated > 1.2 * asked:
+                raise ConfigurationError(
+                    f"{path}: numerics: error is {asked:g}, but the finest numerics leave "
+                    f"{stated:.2g} for {item.name} at e_el {energy:g}; ask for that, or give the "
+                    "knobs"
+                )
+
+
+def _refuse_round_off(path: Path, sweep: Sweep) -> None:
+    """Raise if a front has so many sites that round-off exceeds the tolerance."""
+    for item in sweep.spectra:
+        for energy in sweep.elastic_energies:
+            numerics = sweep.numerics_of(item, energy)
+            sizes = resolution(item.spectrum, numerics, sweep.schedule.max_penetration)
+            round_off = sys.float_info.epsilon * sizes.n_angle
+            if numerics.tolerance < round_off:
+                raise ConfigurationError(
+                    f"{path}: numerics: tolerance is {numerics.tolerance}, below the round-off of "
+                    f"the {sizes.n_angle} sites of {item.name} ({round_off:.1e}); raise it"
+                )
+
+
+def _sweep(configuration: Configuration) -> Sweep:
+    """Frozen parameters in reduced units."""
+    scales = None if configuration.scales is None else Scales(**dict(configuration.scales))
+    lateral, vertical = (scales.lateral, scales.vertical) if scales else (1.0, 1.0)
+    numerics, load, fit = configuration.numerics, configuration.load, configuration.fit
+    return Sweep(
+        seed=configuration.seed,
+        kind=configuration.field,
+        scales=scales,
+        spectra=tuple(
+            _named_spectrum(position, item, lateral)
+            for position, item in enumerate(configuration.spectra)
+        ),
+        elastic_energies=configuration.amplitudes.elastic_energies,
+        n_realisation=configuration.realisations,
+        numerics=_numerics(numerics),
+        numerical_error=numerics.error,
+        schedule=_schedule(load, vertical),
+        record_fronts="fronts" in configuration.record,
+        record_energy="energy" in configuration.record,
+        failed_fraction=configuration.failed_fraction,
+        fit=FitRange(fit.lowest_elastic_energy, fit.highest_elastic_energy, fit.bootstrap),
+    )
+
+
+def _named_spectrum(position: int, section: SpectrumSection, lateral: float) -> NamedSpectrum:
+    """Spectrum of a section, lengths divided by a unit."""
+    if section.surface is None:
+        short, hurst = section.short_cutoff, section.hurst
+        assert short is not None, "the schema asks for it"
+        assert hurst is not None, "the schema asks for it"
+        return NamedSpectrum(
+            section.name,
+            SelfAffineSpectrum(short / lateral, (section.roll_off or short) / lateral, hurst),
+        )
+    try:
+        spectrum, checksum = _fitted(section.surface)
+    except OSError as error:
+        raise ConfigurationError(
+            f"spectra[{position}].surface: {error.filename} cannot be read: {error.strerror}"
+        ) from error
+    except ValueError as error:
+        raise ConfigurationError(f"spectra[{position}].surface: {error}") from error
+    return NamedSpectrum(
+        f"{section.name}-{checksum}",
+        SelfAffineSpectrum(
+            spectrum.short_cutoff / lateral, spectrum.roll_off / lateral, spectrum.hurst
+        ),
+    )
+
+
+def _fitted(section: SurfaceSection) -> tuple[SelfAffineSpectrum, str]:
+    """Spectrum of a surface in metres, and eight digits that change with any of its files.
+
+    Five digits of each parameter, so that simulations keep their names whatever the round-off.
+    """
+    treatment = Treatment(section.detrend, section.unit, section.size, section.shortest)
+    surface = measured_surface(read_measurements(section.file, treatment))
+    found = surface.fitted.spectrum
+    short, long, hurst = (
+        float(f"{value:.5g}") for value in (found.short_cutoff, found.roll_off, found.hurst)
+    )
+    return SelfAffineSpectrum(short, max(short, long), hurst), surface.checksum
+
+
+def _numerics(section: NumericsSection) -> Numerics:
+    """Numerics; what an error decides is that of a coarse resolution here, and replaced."""
+    return Numerics(
+        angles=section.angles,
+        angles_per_cutoff=section.angles_per_cutoff or 1.0,
+        samples_per_cutoff=section.samples_per_cutoff or 4.0,
+        interpolation=section.interpolation or "cubic",
+        pixels_per_cutoff=section.pixels_per_cutoff or 4.0,
+        tile_roll_offs=section.tile.roll_offs,
+        tile_cutoffs=section.tile.cutoffs,
+        tolerance=section.tolerance or 1e-3,
+        max_sweeps=section.max_sweeps,
+        solver=section.solver,
+    )
+
+
+def _schedule(load: LoadSection, vertical: float) -> LoadSchedule | SteadySchedule:
+    """Penetrations to visit, lengths divided by a unit."""
+    deepest, steady = load.max_penetration / vertical, load.steady
+    if load.step is not None:
+        return LoadSchedule(deepest, load.step / vertical)
+    assert steady is not None, "the schema asks for one of the two"
+    return SteadySchedule(steady.start / vertical, deepest, steady.travel, steady.error)

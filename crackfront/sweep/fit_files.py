@@ -1,0 +1,87 @@
+"""Files of a fit: arrays with units as netCDF and JSON, and the table that a person reads."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from crackfront.analysis.notes import fit_notes
+from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR, fit_table
+from crackfront.analysis.result import SweepFit, fit_columns
+from crackfront.analysis.steady import STEADY_DEFINITION
+from crackfront.analysis.sweep import FIT_DEFINITION
+from crackfront.data.files import write_dataset, write_text
+from crackfront.data.provenance import Provenance, utc_now
+
+
+def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Path, Path]:
+    """Write `fit.nc`, `fit.json` and `fit.md`.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to write.
+    fit : SweepFit
+        What to write.
+    origin : Provenance
+        Where it comes from.
+
+    Returns
+    -------
+    tuple of Path
+        The three files.
+    """
+    paths = folder / "fit.nc", folder / "fit.json", folder / "fit.md"
+    columns = list(fit_columns(fit))
+    about = _about(fit)
+    variables = {
+        item.name: (item.dims, item.values, {"units": item.units, "long_name": item.long_name})
+        for item in columns
+    }
+    write_dataset(paths[0], xr.Dataset(variables, attrs=about), origin)
+    entries = {
+        item.name: {
+            "dims": item.dims,
+            "values": _plain(item.values),
+            "units": item.units,
+            "long_name": item.long_name,
+        }
+        for item in columns
+    }
+    content = {
+        "about": about,
+        "origin": asdict(origin) | {"date": utc_now()},
+        "notes": list(fit_notes(fit)),
+        "columns": entries,
+    }
+    write_text(paths[1], json.dumps(content, indent=1, allow_nan=False) + "\n")
+    write_text(paths[2], fit_table(fit))
+    return paths
+
+
+def _about(fit: SweepFit) -> dict[str, str | float]:
+    """What holds for all numbers of a fit."""
+    return {
+        "definition": FIT_DEFINITION,
+        "steady_definition": STEADY_DEFINITION,
+        "lowest_elastic_energy": fit.lowest_elastic_energy,
+        "highest_elastic_energy": fit.highest_elastic_energy,
+        "n_bootstrap": fit.n_bootstrap,
+        "seed": fit.seed,
+        "factor_of_the_paper": PAPER_FACTOR,
+        "factor_of_perturbation_theory": PERTURBATION_FACTOR,
+    }
+
+
+def _plain(values: Any) -> Any:
+    """Nested lists for JSON, with null where there is no number."""
+    if isinstance(values, list):
+        return [_plain(item) for item in values]
+    if isinstance(values, float):
+        return values if np.isfinite(values) else None
+    return _plain(np.asarray(values).tolist()) if isinstance(values, np.ndarray) else values

@@ -1,0 +1,199 @@
+"""Tasks over MPI ranks, or one after the other without MPI; the only importer of mpi4py."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import secrets
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, as_completed
+from pathlib import Path
+from types import FrameType
+from typing import TypeVar, cast
+
+from crackfront.sweep import notice
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+
+def under_mpi() -> bool:
+    """Whether this process is a rank: one started as `python -m mpi4py -m crackfront`."""
+    return "mpi4py.run" in sys.modules
+
+
+def is_manager(n_worker: int) -> bool:
+    """Whether this process plans and reports; without MPI it always does.
+
+    Parameters
+    ----------
+    n_worker : int
+        Ranks that shall compute; the manager is one more.
+
+    Raises
+    ------
+    ValueError
+        On the manager, if the number of ranks is another one. A launcher that does not belong to
+        the MPI library starts ranks that each believe to be alone.
+    SystemExit
+        On the other ranks in that case.
+    """
+    if not under_mpi():
+        return True
+    from mpi4py import MPI
+
+    world = MPI.COMM_WORLD
+    if world.size == n_worker + 1:
+        return world.rank == 0
+    if world.rank != 0:
+        sys.exit(2)
+    raise ValueError(
+        f"MPI started {world.size} rank(s) where {n_worker + 1} were expected ({n_worker} workers "
+        "and a manager); launch workers + 1, by the launcher that belongs to mpi4py's MPI library"
+    )
+
+
+def serve_tasks(module: str) -> None:
+    """Compute what the manager hands out until it has no more.
+
+    Parameters
+    ----------
+    module : str
+        Where the tasks' function stands; it is imported while the manager still plans.
+    """
+    importlib.import_module(module)
+    from mpi4py import MPI
+    from mpi4py.futures import MPICommExecutor
+
+    with MPICommExecutor(MPI.COMM_WORLD, root=0):
+        pass
+
+
+def run_tasks(
+    function: Callable[[Task], Result], tasks: Sequence[Task]
+) -> Iterator[tuple[Task, Result]]:
+    """Results of tasks as they are found; a free rank takes the next task of the list.
+
+    Without MPI the tasks run here, one after the other. With MPI this is called by the manager
+    while the other ranks are in :func:`serve_tasks`, also where there is no task.
+
+    Parameters
+    ----------
+    function : callable
+        A module's function of one task; it and the tasks travel by pickle.
+    tasks : sequence
+        The longest first.
+
+    Yields
+    ------
+    tuple
+        Task and result, in the order in which they finish.
+    """
+    if not under_mpi():
+        for task in tasks:
+            yield task, function(task)
+        return
+    from mpi4py import MPI
+    from mpi4py.futures import MPICommExecutor
+
+    with MPICommExecutor(MPI.COMM_WORLD, root=0) as entered:
+        executor = cast("Executor", entered)  # None on the other ranks, which are not here
+        futures = {executor.submit(function, task): task for task in tasks}
+        try:
+            for future in as_completed(futures):
+                yield futures[future], future.result()
+        finally:
+            executor.shutdown(wait=True, cancel_futures=True)
+
+
+def default_launcher() -> str:
+    """The `mpiexec` beside this Python, or else the one on the path.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    beside = Path(sys.executable).with_name("mpiexec")
+    found = str(beside) if beside.exists() else shutil.which("mpiexec")
+    if found is None:
+        raise ValueError(
+            f"there is no mpiexec beside {sys.executable} or on the path; run `make env`, name a "
+            "launcher (--launcher) or use one rank"
+        )
+    return shlex.quote(found)
+
+
+def launch_ranks(
+    arguments: Sequence[str], n_worker: int, launcher: str | None, folder: Path
+) -> int:
+    """Run a crackfront command on a manager and a number of workers.
+
+    SIGTERM is passed on as a notice, a file that the ranks see, since launchers differ in what
+    they do with it; a second SIGTERM ends the launcher.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Arguments of `crackfront`.
+    n_worker : int
+        Ranks that compute.
+    launcher : str or None
+        Command that takes `-n` and a number, as in "srun -K1 --mpi=pmi2".
+    folder : Path
+        Folder for the notice, which all ranks see.
+
+    Returns
+    -------
+    int
+        Exit code of the launcher.
+
+    Raises
+    ------
+    ValueError
+        If there is no launcher, or it cannot be started.
+    """
+    # Under -m mpi4py a rank that fails ends the job, where it would else hang.
+    command = [
+        *shlex.split(launcher or default_launcher()),
+        *("-n", str(n_worker + 1)),
+        *(sys.executable, "-m", "mpi4py", "-m", "crackfront"),
+        *arguments,
+    ]
+    file = folder / f".notice-{secrets.token_hex(8)}"
+    environment = {"OMP_NUM_THREADS": "1"} | dict(os.environ) | {notice.VARIABLE: str(file)}
+    try:
+        process = subprocess.Popen(command, env=environment)
+    except OSError as error:
+        raise ValueError(
+            f"launcher {command[0]!r} cannot be started ({error.strerror}); name another one"
+        ) from error
+    with _notice_passed_on(process, file):
+        return process.wait()
+
+
+@contextlib.contextmanager
+def _notice_passed_on(process: subprocess.Popen[bytes], file: Path) -> Iterator[None]:
+    """Leave a file where this process is told to end; end a child where it is interrupted."""
+
+    def leave_notice(number: int, frame: FrameType | None) -> None:
+        try:
+            file.touch(exist_ok=False)
+        except OSError:  # the second time, or where nothing can be written
+            process.terminate()
+
+    before = signal.signal(signal.SIGTERM, leave_notice)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+        if process.poll() is None:
+            process.terminate()
+            process.wait()
+        file.unlink(missing_ok=True)

@@ -1,0 +1,253 @@
+"""A sweep: its parameters, its simulations, and the files that they become."""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import Scales
+from crackfront.simulate.laws import chosen_numerics
+from crackfront.simulate.simulation import (
+    FieldKind,
+    Numerics,
+    Simulation,
+    correlation_length,
+    resolution,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class NamedSpectrum:
+    """A spectrum and what the configuration calls it.
+
+    Attributes
+    ----------
+    name : str
+        Name of the spectrum.
+    spectrum : SelfAffineSpectrum
+        Its shape. (Units: reduced lateral length)
+    """
+
+    name: str
+    spectrum: SelfAffineSpectrum
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """What one job runs: a spectrum with all its amplitudes, and a block of its realisations.
+
+    Attributes
+    ----------
+    item : NamedSpectrum
+        The spectrum.
+    realisations : range
+        Numbers of the realisations.
+    name : str
+        The spectrum's name, with the first and last realisation where these are not all.
+    """
+
+    item: NamedSpectrum
+    realisations: range
+    name: str
+
+
+MOST_SHARDS = 1000
+"""Jobs of one sweep; a graph of more takes seconds to build and minutes to submit."""
+
+
+@dataclass(frozen=True, slots=True)
+class FitRange:
+    """Amplitudes that enter a fit, and the number of bootstrap samples.
+
+    Attributes
+    ----------
+    lowest_elastic_energy, highest_elastic_energy : float
+        Smallest and largest requested e_el / w_int.
+    n_bootstrap : int
+        Resamplings of the realisations.
+    """
+
+    lowest_elastic_energy: float
+    highest_elastic_energy: float
+    n_bootstrap: int
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """All parameters of a sweep, in reduced units.
+
+    Attributes
+    ----------
+    seed : int
+        Seed of all noise.
+    kind : {"roughness", "chemical"}
+        What the spectra describe.
+    scales : Scales or None
+        Scene that the configuration was written for, where it was in SI units.
+    spectra : tuple of NamedSpectrum
+        Shapes of the spectra.
+    elastic_energies : tuple of float
+        Requested e_el / w_int.
+    n_realisation : int
+        Realisations of the noise for every spectrum.
+    numerics : Numerics
+        Resolution and solver.
+    numerical_error : float or None
+        Standard error of k that the numerics may leave. Where it is given, it decides the
+        resolution and the tolerance for every spectrum and amplitude.
+    schedule : LoadSchedule or SteadySchedule
+        Penetrations to visit: full cycles, or the steady parts of their branches.
+    record_fronts, record_energy : bool
+        What to record beside the curves.
+    failed_fraction : float
+        Part of the simulations that may end without a value.
+    fit : FitRange
+        Amplitudes that enter the fit.
+    """
+
+    seed: int
+    kind: FieldKind
+    scales: Scales | None
+    spectra: tuple[NamedSpectrum, ...]
+    elastic_energies: tuple[float, ...]
+    n_realisation: int
+    numerics: Numerics
+    numerical_error: float | None
+    schedule: LoadSchedule | SteadySchedule
+    record_fronts: bool
+    record_energy: bool
+    failed_fraction: float
+    fit: FitRange
+
+    def named(self, name: str) -> NamedSpectrum:
+        """Spectrum of a name.
+
+        Raises
+        ------
+        ValueError
+            If there is none, with the nearest name.
+        """
+        for item in self.spectra:
+            if item.name == name:
+                return item
+        names = [item.name for item in self.spectra]
+        near = difflib.get_close_matches(name, names, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(names)}"
+        raise ValueError(f"the sweep has no spectrum {name!r}; {hint}")
+
+    def correlation_length(self, item: NamedSpectrum) -> float:
+        """Wavelength of the mean wavevector of w_loc, in reduced lateral lengths."""
+        return correlation_length(self.kind, item.spectrum)
+
+    def numerics_of(self, item: NamedSpectrum, energy: float) -> Numerics:
+        """Numerics of one spectrum and amplitude."""
+        if self.numerical_error is None:
+            return self.numerics
+        return chosen_numerics(
+            self.numerical_error, self.kind, item.spectrum, energy, self.numerics
+        )
+
+    def simulation(self, item: NamedSpectrum, energy: float, realisation: int) -> Simulation:
+        """One simulation of the sweep."""
+        numerics = self.numerics_of(item, energy)
+        return Simulation(
+            spectrum_name=item.name,
+            kind=self.kind,
+            spectrum=item.spectrum,
+            elastic_energy=energy,
+            realisation=realisation,
+            sweep_seed=self.seed,
+            resolution=resolution(item.spectrum, numerics, self.schedule.max_penetration),
+            schedule=self.schedule,
+            tolerance=numerics.tolerance,
+            max_sweeps=numerics.max_sweeps,
+            solver=numerics.solver,
+            record_fronts=self.record_fronts,
+            record_energy=self.record_energy,
+        )
+
+    def simulations(
+        self, item: NamedSpectrum | None = None, realisations: range | None = None
+    ) -> Iterator[Simulation]:
+        """Simulations one after the other: by spectrum, amplitude and realisation.
+
+        Parameters
+        ----------
+        item : NamedSpectrum, optional
+            The spectrum; by default all.
+        realisations : range, optional
+            Numbers of the realisations; by default all.
+        """
+        block = range(self.n_realisation) if realisations is None else realisations
+        for one in self.spectra if item is None else (item,):
+            for energy in self.elastic_energies:
+                first = self.simulation(one, energy, 0)
+                yield from (replace(first, realisation=number) for number in block)
+
+    def shard(
+        self, item: NamedSpectrum, realisations: range | None = None
+    ) -> tuple[Simulation, ...]:
+        """Simulations of one spectrum, amplitude by amplitude; by default all realisations."""
+        return tuple(self.simulations(item, realisations))
+
+    @property
+    def n_simulation(self) -> int:
+        """Number of simulations."""
+        return len(self.spectra) * len(self.elastic_energies) * self.n_realisation
+
+    def shards(self, block: int | str | None = None) -> tuple[Shard, ...]:
+        """Shards of the sweep.
+
+        Parameters
+        ----------
+        block : int, optional
+            Realisations of a shard; by default all. Text is refused.
+
+        Raises
+        ------
+        ValueError
+            If the block is no positive number, or there are more than :data:`MOST_SHARDS` shards.
+        """
+        size = self.n_realisation if block is None else block
+        if not isinstance(size, int) or size < 1:
+            raise ValueError(f"a block is {size} realisations; it must be 1 or more of them")
+        n_block = -(-self.n_realisation // size)
+        if len(self.spectra) * n_block > MOST_SHARDS:
+            least = -(-self.n_realisation // max(1, MOST_SHARDS // len(self.spectra)))
+            raise ValueError(
+                f"blocks of {size} realisations are {len(self.spectra) * n_block} shards, more "
+                f"than {MOST_SHARDS} jobs; take blocks of {least} or more"
+            )
+        return tuple(
+            self.named_shard(item, range(first, min(first + size, self.n_realisation)))
+            for item in self.spectra
+            for first in range(0, self.n_realisation, size)
+        )
+
+    def named_shard(self, item: NamedSpectrum, realisations: range) -> Shard:
+        """Shard of a spectrum and a block of realisations.
+
+        Raises
+        ------
+        ValueError
+            If the sweep has no such realisations.
+        """
+        everything = range(self.n_realisation)
+        if not realisations or not set(realisations) <= set(everything):
+            raise ValueError(
+                f"realisations {realisations.start} to {realisations.stop - 1} are not among those "
+                f"of the sweep, 0 to {self.n_realisation - 1}"
+            )
+        block = f".{realisations.start}-{realisations.stop - 1}"
+        return Shard(item, realisations, item.name + ("" if realisations == everything else block))
+
+
+def shard_fingerprint(shard: Sequence[Simulation]) -> str:
+    """Twelve hexadecimal digits that change with any simulation of a shard."""
+    text = "\n".join(simulation.stem for simulation in shard)
+    return hashlib.sha256(text.encode()).hexdigest()[:12]

@@ -1,0 +1,177 @@
+"""A measured surface and the adhesion that is predicted for it, in SI units."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crackfront.core import jkr
+from crackfront.core.units import Scales
+from crackfront.plots.densities import (
+    ISOTROPIC_LABEL,
+    PROFILE_LABEL,
+    WAVEVECTOR_LABEL,
+    add_wavelengths,
+    draw_dominant_scales,
+    set_density_scales,
+)
+from crackfront.plots.parts import label_panel
+from crackfront.plots.style import (
+    BLACK,
+    BLUE,
+    COLOURS,
+    MARKERS,
+    PAGE,
+    VERMILION,
+    blank_figure,
+    house_style,
+)
+from crackfront.topography.densities import Density
+from crackfront.topography.measures import Surface
+from crackfront.topography.prediction import Prediction
+
+Array = NDArray[np.float64]
+
+_ROOM = 3.0
+"""How far beyond the trusted wavelengths the fit is shown."""
+
+
+def prediction_figure(surface: Surface, prediction: Prediction) -> Figure:
+    """Densities with the fitted spectrum, and predicted forces of both branches.
+
+    Parameters
+    ----------
+    surface : Surface
+        The measured surface.
+    prediction : Prediction
+        What is predicted for it.
+    """
+    with house_style():
+        figure = blank_figure(PAGE, 0.56 * PAGE)
+        panels = figure.subplot_mosaic([["a", "c"], ["b", "c"]], height_ratios=(1.35, 1))
+        upper, lower, forces = panels["a"], panels["b"], panels["c"]
+        upper.sharex(lower)
+        upper.tick_params(labelbottom=False)
+        _draw_isotropic(upper, surface)
+        _draw_profiles(lower, surface)
+        add_wavelengths(upper)
+        lower.set_xlabel(WAVEVECTOR_LABEL)
+        _draw_forces(forces, prediction)
+        for name, axes in panels.items():
+            label_panel(axes, name)
+        return figure
+
+
+def _draw_isotropic(axes: Axes, surface: Surface) -> None:
+    """Isotropic densities, the spectrum and the scales that dominate."""
+    fitted, wavevector = surface.fitted, _wavevectors(surface)
+    set_density_scales(axes, wavevector)
+    trusted = wavevector <= 2 * np.pi / fitted.spectrum.short_cutoff
+    for index, density in enumerate(surface.isotropic):
+        if density is not None:
+            _draw_density(axes, index, density, surface.measurements[index].path.name)
+    axes.plot(
+        wavevector[trusted],
+        fitted.spectrum.density(wavevector[trusted]),
+        color=BLACK,
+        label="self-affine fit",
+        zorder=4,
+    )
+    measures = surface.measures
+    draw_dominant_scales(
+        axes,
+        np.array([item.rms.value**2 for item in measures]),
+        np.array([item.shortest for item in measures]),
+        np.array([item.longest for item in measures]),
+    )
+    axes.set_ylabel(ISOTROPIC_LABEL)
+    axes.legend(loc="lower left")
+
+
+def _draw_profiles(axes: Axes, surface: Surface) -> None:
+    """Densities of profiles and the projection of the spectrum."""
+    fitted, wavevector = surface.fitted, _wavevectors(surface)
+    for index, density in enumerate(surface.profiles):
+        is_line = surface.measurements[index].is_line
+        name = surface.measurements[index].path.name if is_line else ""
+        _draw_density(axes, index, density, name)
+    axes.plot(
+        wavevector,
+        fitted.projected_density(wavevector),
+        color=BLACK,
+        label="projection of the fit",
+        zorder=4,
+    )
+    axes.set_yscale("log")
+    axes.set_ylabel(PROFILE_LABEL)
+    axes.legend(loc="lower left")
+
+
+def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
+    """Points of one measurement."""
+    axes.plot(
+        density.wavevector,
+        density.value,
+        linestyle="none",
+        marker=MARKERS[index % len(MARKERS)],
+        markersize=2.8,
+        markerfacecolor="none",
+        markeredgewidth=0.6,
+        color=COLOURS[index % len(COLOURS)],
+        label=name or None,
+        zorder=3,
+    )
+
+
+def _draw_forces(axes: Axes, prediction: Prediction) -> None:
+    """Force against contact radius of both branches with their intervals, and of a smooth one."""
+    scales = Scales(prediction.radius, prediction.work_of_adhesion, prediction.contact_modulus)
+    adhesions = (
+        ("approach", BLUE, prediction.w_appr, prediction.w_appr_low, prediction.w_appr_high),
+        (
+            "retraction",
+            VERMILION,
+            prediction.w_retr,
+            prediction.w_retr_low,
+            prediction.w_retr_high,
+        ),
+    )
+    strongest = max(prediction.w_retr_high, prediction.work_of_adhesion)
+    largest = 1.15 * jkr.radius_at_force(0.0, strongest / prediction.work_of_adhesion)
+    radius = np.linspace(1e-3, largest, 400)
+    unit, power = _force_unit(scales.force)
+
+    def force(adhesion: float) -> Array:
+        relative = max(adhesion, 0.0) / prediction.work_of_adhesion
+        return jkr.equilibrium_force(radius, relative) * scales.force / power
+
+    place = 1e6 * radius * scales.lateral
+    for name, colour, value, low, high in adhesions:
+        label = rf"{name}, $w = {1e3 * value:.3g}$ mJ m$^{{-2}}$"
+        axes.plot(place, force(value), color=colour, label=label, zorder=3)
+        axes.fill_between(place, force(low), force(high), color=colour, alpha=0.2, linewidth=0)
+    smooth = rf"smooth, $w_\mathrm{{int}} = {1e3 * prediction.work_of_adhesion:.3g}$ mJ m$^{{-2}}$"
+    axes.plot(place, force(prediction.work_of_adhesion), color="0.35", dashes=(4, 2), label=smooth)
+    axes.axhline(0.0, color="0.6", linewidth=0.5, zorder=1)
+    axes.set_xlim(0, place[-1])
+    axes.set_xlabel("contact radius (µm)")
+    axes.set_ylabel(f"normal force ({unit})")
+    axes.legend(loc="upper left", title="95% intervals shaded", title_fontsize=6)
+
+
+def _force_unit(force: float) -> tuple[Literal["mN", "µN", "nN"], float]:
+    """Unit in which a force is drawn, and its value in newtons."""
+    if force > 1e-5:
+        return "mN", 1e-3
+    return ("µN", 1e-6) if force > 1e-8 else ("nN", 1e-9)
+
+
+def _wavevectors(surface: Surface) -> Array:
+    """Wavevectors that are shown."""
+    fitted = surface.fitted
+    ends = fitted.longest * _ROOM, fitted.spectrum.short_cutoff / _ROOM
+    return np.geomspace(2 * np.pi / ends[0], 2 * np.pi / ends[1], 400)

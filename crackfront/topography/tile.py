@@ -1,0 +1,112 @@
+"""A measured map as the field of a simulation: mirrored to a periodic tile."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import replace
+from typing import Literal, get_args
+
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+from crackfront.core import jkr
+from crackfront.core.adhesion import AdhesionMap, rough_adhesion
+from crackfront.core.units import Scales
+from crackfront.topography.densities import topography
+from crackfront.topography.files import surface_library
+from crackfront.topography.reading import Measurement
+
+Placement = Literal["tiled", "within"]
+"""Whether the contact may go on to mirror images of the scan, or must fit in the scan itself."""
+
+_EQUAL = 1e-6
+"""Relative difference up to which pixels count as square."""
+
+
+def measured_adhesion(
+    measurement: Measurement, scales: Scales, placement: Placement = "tiled"
+) -> AdhesionMap:
+    """Work of adhesion of the very map, on a periodic tile with the scan in its middle.
+
+    The scan is mirrored at its edges, which leaves no steps there, on a tile of twice its sides;
+    waves shorter than can be trusted are taken away. The apex of the sphere is the centre of the
+    scan. A map with oblong pixels is interpolated by cubic splines on square ones, and one that is
+    periodic is a tile as it stands.
+
+    Parameters
+    ----------
+    measurement : Measurement
+        A map.
+    scales : Scales
+        The scene, in SI units.
+    placement : {"tiled", "within"}, optional
+        Whether a contact larger than the scan meets its mirror images, or is refused.
+
+    Returns
+    -------
+    AdhesionMap
+        Field of mean w_int - e_el. (Units: reduced)
+
+    Raises
+    ------
+    ValueError
+        If the measurement is a line, the contact must fit in the scan and does not, or the surface
+        is too rough for full conformity.
+    """
+    if measurement.is_line:
+        raise ValueError(
+            f"{measurement.path} is a line scan, which is no field; use its spectrum, as "
+            "crackfront predict --simulate does"
+        )
+    if placement not in get_args(Placement):
+        raise ValueError(
+            f"placement is {placement!r}; choose one of {', '.join(get_args(Placement))}"
+        )
+    across = 2 * zero_load_radius(scales)
+    if placement == "within" and min(measurement.size) < across:
+        raise ValueError(
+            f"{measurement.path}: the scan of {_micrometres(measurement.size)} is smaller than the "
+            f"contact at zero load, {1e6 * across:.3g} um across; tile it, or use its spectrum"
+        )
+    scan = topography(_with_square_pixels(measurement))
+    whole = scan if measurement.periodic else scan.mirror_stitch()
+    tile = surface_library().Topography(
+        whole.heights(), whole.physical_sizes, periodic=True, unit="m"
+    )
+    with warnings.catch_warnings():
+        # The library calls an inverse transform in a way that numpy will change.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        heights = tile.shortcut(cutoff_wavelength=measurement.shortest).heights()
+    # Mirror images stand behind the scan: half a scan further its centre is that of the tile.
+    behind = [0 if measurement.periodic else count // 4 for count in heights.shape]
+    centred = np.roll(heights, behind, axis=(0, 1))
+    return rough_adhesion(
+        np.ascontiguousarray(centred) / scales.vertical, tile.pixel_size[0] / scales.lateral
+    )
+
+
+def zero_load_radius(scales: Scales) -> float:
+    """Radius of the smooth contact at zero load (Units: m)."""
+    return scales.lateral * jkr.radius_at_force(0.0)
+
+
+def _with_square_pixels(measurement: Measurement) -> Measurement:
+    """The map on square pixels, the finer of the two that it has."""
+    pixel = min(measurement.pixels)
+    if max(measurement.pixels) <= pixel * (1 + _EQUAL):
+        return measurement
+    places = [
+        (np.arange(count) + 0.5) * width
+        for count, width in zip(measurement.heights.shape, measurement.pixels, strict=True)
+    ]
+    counts = [math.floor(side / pixel * (1 + _EQUAL)) for side in measurement.size]
+    wanted = [(np.arange(count) + 0.5) * pixel for count in counts]
+    spline = RectBivariateSpline(*places, measurement.heights)
+    sides = tuple(count * pixel for count in counts)
+    return replace(measurement, size=sides, heights=np.asarray(spline(*wanted)))
+
+
+def _micrometres(sides: tuple[float, ...]) -> str:
+    """Sides of a scan."""
+    return " x ".join(f"{1e6 * side:.3g}" for side in sides) + " um"
