@@ -25,10 +25,11 @@ from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.files import write_text
 from crackfront.simulate.costs import Features, Measured, features, measured_runs, predicted_seconds
+from crackfront.simulate.laws import Knobs
 from crackfront.simulate.run import compile_solver, run_simulation
-from crackfront.simulate.simulation import Numerics, Simulation, resolution
+from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
-NUMERICS = Numerics(None, 2.4, 4, "cubic", 4, 4, 200, 1e-4, 10**8, "newton")
+KNOBS = Knobs(None, 2.4, 4, "cubic", 4, 1e-4)
 ENERGIES = (0.002, 0.01, 0.05, 0.15)
 STEADY = SteadySchedule(start=1.0, max_penetration=1.5, travel=1.5, error=0.1)
 CYCLE = LoadSchedule(1.0, 0.1)
@@ -42,24 +43,12 @@ def _simulation(
     shape: tuple[float, float, float],
     energy: float,
     schedule: LoadSchedule | SteadySchedule,
-    numerics: Numerics = NUMERICS,
+    knobs: Knobs = KNOBS,
 ) -> Simulation:
     """One simulation of a roughness spectrum (short cutoff, roll-off, Hurst exponent)."""
     spectrum = SelfAffineSpectrum(*shape)
-    return Simulation(
-        spectrum_name=name,
-        kind="roughness",
-        spectrum=spectrum,
-        elastic_energy=energy,
-        realisation=0,
-        sweep_seed=7,
-        resolution=resolution(spectrum, numerics, schedule.max_penetration),
-        schedule=schedule,
-        tolerance=numerics.tolerance,
-        max_sweeps=numerics.max_sweeps,
-        solver=numerics.solver,
-        record_fronts=False,
-        record_energy=False,
+    return simulation_of(
+        "roughness", spectrum, energy, schedule, Numerics(knobs), seed=7, name=name
     )
 
 
@@ -79,14 +68,14 @@ def fitted_to() -> Iterator[Simulation]:
         yield _simulation("flat", (0.00125, 0.00125, 1.0), energy, STEADY)
         yield _simulation("h08", (0.000625, 0.01, 0.8), energy, STEADY)
     for tolerance in (1e-3, 1e-6):
-        numerics = replace(NUMERICS, tolerance=tolerance)
+        knobs = replace(KNOBS, tolerance=tolerance)
         for energy in ENERGIES:
-            yield _simulation("flat", (0.02, 0.02, 1.0), energy, STEADY, numerics)
+            yield _simulation("flat", (0.02, 0.02, 1.0), energy, STEADY, knobs)
 
 
 def held_out() -> Iterator[Simulation]:
     """Simulations of other spectra, amplitudes, loads and numerics, to hold the model against."""
-    finer = replace(NUMERICS, angles_per_cutoff=3.2, tolerance=1e-5)
+    finer = replace(KNOBS, angles_per_cutoff=3.2, tolerance=1e-5)
     longer = replace(STEADY, max_penetration=2.0, travel=2.0)
     for energy in (0.005, 0.03, 0.1):
         yield _simulation("flat", (0.0125, 0.0125, 1.0), energy, STEADY)
@@ -105,8 +94,8 @@ def measured(simulation: Simulation, held: bool) -> Measured:
         name=simulation.label,
         held_out=held,
         features=features(simulation),
-        n_state=result.record.penetration.size,
-        cpu_seconds=result.cpu_seconds,
+        n_state=result.record.states.penetration.size,
+        cpu_seconds=result.measures.cpu_seconds,
     )
 
 
@@ -157,7 +146,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="what simulations cost")
     parser.add_argument("--output", type=Path, default=Path("results/benchmark"))
     chosen = parser.parse_args()
-    compile_solver(NUMERICS.solver)
+    compile_solver("newton")
     click.echo(described_machine())
     runs = least_of_passes([*fitted_to()], held=False) + least_of_passes([*held_out()], held=True)
     write_text(chosen.output / "costs.csv", table(runs))

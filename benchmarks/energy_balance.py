@@ -15,7 +15,7 @@ import click
 import numpy as np
 
 from crackfront.core.adhesion import chemical_adhesion
-from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -43,19 +43,19 @@ def cycle(rms: float, seed: int, step: float) -> CycleRecord:
     field = contact_field(
         chemical_adhesion(noise, pixel), N_ANGLE, CUTOFF / 5, 1.0, band_limited=True
     )
-    return run_cycle(field, LoadSchedule(1.0, step), record_energy=True)
+    return run_cycle(field, LoadSchedule(1.0, step), recorder=Recorder(energy=True))
 
 
 def energies(record: CycleRecord) -> tuple[float, float, float]:
     """Dissipated energy, work of the load steps, and the trapezoidal rule on the force curve."""
     if record.dissipated_energy is None or record.pull_off_energy is None:
         raise RuntimeError("the cycle has no energies")
-    change = np.diff(np.append(record.penetration, record.end_penetration))
-    held = record.force + 2 * CONTACT_MODULUS * record.mean_radius * change
+    change = np.diff(np.append(record.states.penetration, record.end_load))
+    held = record.states.force + 2 * CONTACT_MODULUS * record.states.mean_radius * change
     # Contact is lost at the last load by the front that was held on the way to it.
-    after = np.append(record.force[1:], held[-1])
+    after = np.append(record.states.force[1:], held[-1])
     lost = record.dissipated_energy.sum() + record.pull_off_energy
-    work = (np.sum((record.force + other) * change) / 2 for other in (held, after))
+    work = (np.sum((record.states.force + other) * change) / 2 for other in (held, after))
     return (float(lost), *(float(value) for value in work))
 
 

@@ -14,18 +14,19 @@ import click
 import numpy as np
 
 from crackfront.core import jkr
-from crackfront.core.cycle.history import FrontHistory
-from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.adhesion import correlation_length
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import forward_circle
-from crackfront.core.field.kinds import TileField, first_radius, last_radius, n_angle
-from crackfront.core.solver.relax import Direction
+from crackfront.core.field.fields import TileField, first_place, last_place
+from crackfront.core.outcome import Direction
+from crackfront.core.solver.relax import Newton
 from crackfront.simulate.contact import simulation_field
-from crackfront.simulate.simulation import correlation_length
 from crackfront.studies.accuracy.scenes import SCENES, Scene
 
 _CHEMICAL, _H03, _H08 = (SCENES[f"{shape}-0.04"] for shape in ("chemical", "h03", "h08"))
-NUMERICS = replace(
+KNOBS = replace(
     _CHEMICAL.reference,
     angles_per_cutoff=2.2,
     samples_per_cutoff=4,
@@ -50,11 +51,10 @@ SURFACES = tuple(
 
 def branch(field: TileField, start: np.ndarray, loads: np.ndarray, sign: Direction) -> CycleRecord:
     """States of one branch from a start."""
-    history = FrontHistory(field, start, tolerance=NUMERICS.tolerance, record_fronts=True)
-    history.begin(start)
-    for penetration in loads:
-        history.follow(float(penetration), sign)
-    return history.record()
+    recorder = Recorder(fronts=True)
+    loads_of_branch = (Load(float(penetration), sign) for penetration in loads)
+    recorder.run(field, start, loads_of_branch, Newton(KNOBS.tolerance))
+    return recorder.record()
 
 
 def differing(scene: Scene, sign: Direction) -> tuple[int, int]:
@@ -64,15 +64,15 @@ def differing(scene: Scene, sign: Direction) -> tuple[int, int]:
     schedule = LoadSchedule(float(loads.max()), 0.1)
     count = total = 0
     for number in range(N_REALISATION):
-        field = simulation_field(replace(scene.simulation(NUMERICS, number), schedule=schedule))
-        furthest = first_radius(field) if sign > 0 else last_radius(field)
-        behind = branch(field, np.full(n_angle(field), furthest), loads, sign)
+        field = simulation_field(replace(scene.simulation(KNOBS, number), schedule=schedule))
+        furthest = first_place(field) if sign > 0 else last_place(field)
+        behind = branch(field, np.full(field.geometry.n_site, furthest), loads, sign)
         begin = jkr.equilibrium_radius(1.0) - sign * length
         near = branch(field, forward_circle(field, 1.0, sign, begin), loads, sign)
-        if near.radius is None or behind.radius is None:
+        if near.fronts is None or behind.fronts is None:
             raise RuntimeError("fronts were not recorded")
-        steady = near.least_travel >= length
-        difference = np.max(np.abs(near.radius - behind.radius), axis=1)
+        steady = near.states.least_travel >= length
+        difference = np.max(np.abs(near.fronts - behind.fronts), axis=1)
         count += int(np.count_nonzero(difference[steady] > SAME * scene.spectrum.short_cutoff))
         total += int(np.count_nonzero(steady))
     return count, total

@@ -16,12 +16,12 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.core.adhesion import correlation_length
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.steady import SteadySchedule
-from crackfront.core.solver.relax import Direction
-from crackfront.simulate.laws import chosen_numerics
+from crackfront.core.outcome import Direction
+from crackfront.simulate.laws import chosen_knobs
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import correlation_length
 from crackfront.studies.accuracy.scenes import SCENES, Scene
 
 Array = NDArray[np.float64]
@@ -38,11 +38,9 @@ NAMES = [name for name in SCENES if name.startswith(("chemical", "flat", "h08", 
 
 def records(scene: Scene) -> list[CycleRecord]:
     """Steady branches on all surfaces, states half a correlation length apart."""
-    numerics = chosen_numerics(
-        0.03, scene.kind, scene.spectrum, scene.elastic_energy, scene.reference
-    )
+    knobs = chosen_knobs(0.03, scene.kind, scene.spectrum, scene.elastic_energy)
     simulations = (
-        replace(scene.simulation(numerics, number), schedule=_SCHEDULE)
+        replace(scene.simulation(knobs, number), schedule=_SCHEDULE)
         for number in range(_FIRST, _FIRST + N_REALISATION)
     )
     return [run_simulation(simulation).record for simulation in simulations]
@@ -54,11 +52,11 @@ def independent_distance(
     """Integral of the autocorrelation over positive and negative lags, and the fronts' rms."""
     radii, values, roughness = [], [], []
     for record in found:
-        steady = (record.direction == direction) & (record.least_travel >= length)
-        order = np.argsort(record.mean_radius[steady])
-        radii.append(record.mean_radius[steady][order])
-        values.append(record.apparent_work_of_adhesion[steady][order])
-        roughness.append(np.mean(record.rms_radius[steady]))
+        steady = (record.states.direction == direction) & (record.states.least_travel >= length)
+        order = np.argsort(record.states.mean_radius[steady])
+        radii.append(record.states.mean_radius[steady][order])
+        values.append(record.states.apparent_work_of_adhesion[steady][order])
+        roughness.append(np.mean(record.states.rms_radius[steady]))
     spacing = length / 2
     grid = np.arange(max(r[0] for r in radii), min(r[-1] for r in radii), spacing)
     rows = np.array([np.interp(grid, *pair) for pair in zip(radii, values, strict=True)])

@@ -14,7 +14,7 @@ import multiprocessing
 import tempfile
 import time
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, astuple, dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -27,17 +27,19 @@ from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
-from crackfront.core.field.kinds import Field, first_radius, n_angle, polar_field
+from crackfront.core.field.fields import Field, first_place, polar_field
 from crackfront.core.field.samples import make_memory
-from crackfront.core.solver.relax import Status
+from crackfront.core.outcome import Status
+from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.contact import contact_field, simulation_adhesion
 from crackfront.simulate.files import write_cycle, write_simulation
+from crackfront.simulate.laws import Knobs
 from crackfront.simulate.run import compile_solver, run_simulation
-from crackfront.simulate.simulation import Numerics, Simulation, resolution
+from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
 TOLERANCE = 1e-5
 RING_AMPLITUDE = 0.2
@@ -154,32 +156,16 @@ class Row:
 
 def simulation(scene: Scene, need: Need) -> Simulation:
     """Simulation on the surface."""
-    numerics = Numerics(
-        angles=None,
-        angles_per_cutoff=2.4,
-        samples_per_cutoff=5,
-        interpolation="cubic",
-        pixels_per_cutoff=4,
-        tile_roll_offs=4,
-        tile_cutoffs=scene.tile_cutoffs,
-        tolerance=TOLERANCE,
-        max_sweeps=10_000_000,
-        solver="newton",
-    )
-    return Simulation(
-        spectrum_name="surface",
-        kind="roughness",
-        spectrum=scene.spectrum,
-        elastic_energy=0.05,
-        realisation=0,
-        sweep_seed=1,
-        resolution=resolution(scene.spectrum, numerics, scene.cycle.max_penetration),
-        schedule=scene.steady if need.load == "steady" else scene.cycle,
-        tolerance=numerics.tolerance,
-        max_sweeps=numerics.max_sweeps,
-        solver=numerics.solver,
-        record_fronts=need.fronts,
-        record_energy=need.energy,
+    knobs = Knobs(None, 2.4, 5, "cubic", 4, TOLERANCE)
+    return simulation_of(
+        "roughness",
+        scene.spectrum,
+        0.05,
+        scene.steady if need.load == "steady" else scene.cycle,
+        Numerics(knobs, tile_cutoffs=scene.tile_cutoffs, max_sweeps=10_000_000),
+        seed=1,
+        name="surface",
+        record=[name for name in ("fronts", "energy") if getattr(need, name)],
     )
 
 
@@ -198,7 +184,7 @@ def measure(scene: Scene, need: Need) -> Row:
     before, start = restart_peak(), time.process_time()
     if need.rays:
         field = ring_field(scene, need.rays)
-        record = run_cycle(field, scene.cycle, tolerance=TOLERANCE)
+        record = run_cycle(field, scene.cycle, Newton(TOLERANCE))
         write = functools.partial(write_cycle, record=record)
     else:
         result = run_simulation(simulation(scene, need))
@@ -214,13 +200,13 @@ def measure(scene: Scene, need: Need) -> Row:
     return Row(
         name=need.name,
         status=record.status.name.lower(),
-        n_angle=n_angle(field),
-        n_step=record.penetration.size,
-        samples=n_angle(field) * _way(record) / first_radius(field),
+        n_angle=field.geometry.n_site,
+        n_step=record.states.penetration.size,
+        samples=field.geometry.n_site * _way(record) / first_place(field),
         seconds=seconds,
         peak=peak,
         field=(_bytes(field) + _bytes(make_memory(field))) / 1e6,
-        record=_bytes(getattr(record, item.name) for item in fields(record)) / 1e6,
+        record=_bytes((*asdict(record.states).values(), *astuple(record)[3:])) / 1e6,
         file=size / 1e3,
     )
 
@@ -243,15 +229,21 @@ def _way(record: CycleRecord) -> float:
     """Mean way of a site over both branches, and to the centre where contact was lost."""
     way = 0.0
     for direction in (1, -1):
-        branch = record.direction == direction
-        radius = record.mean_radius[branch]
-        way += float(np.sum(record.least_travel[branch][:1]) + np.sum(np.abs(np.diff(radius))))
-    return way + (float(record.mean_radius[-1]) if record.status is Status.LOST_CONTACT else 0.0)
+        branch = record.states.direction == direction
+        radius = record.states.mean_radius[branch]
+        way += float(
+            np.sum(record.states.least_travel[branch][:1]) + np.sum(np.abs(np.diff(radius)))
+        )
+    return way + (
+        float(record.states.mean_radius[-1]) if record.status is Status.LOST_CONTACT else 0.0
+    )
 
 
 def _bytes(values: object) -> int:
-    """Bytes of all arrays among values."""
-    return sum(item.nbytes for item in values if isinstance(item, np.ndarray))
+    """Bytes of an array, or of all among values."""
+    if isinstance(values, tuple):
+        return sum(_bytes(item) for item in values)
+    return values.nbytes if isinstance(values, np.ndarray) else 0
 
 
 def table(rows: list[Row]) -> str:

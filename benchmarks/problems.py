@@ -8,8 +8,9 @@ import numpy as np
 
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import Interpolation, PolarField, TileField, tile_field
+from crackfront.core.field.fields import Interpolation, RayField, TileField, tile_field
 from crackfront.core.field.rays import sampled_on_rays
+from crackfront.core.geometry.sphere import sphere
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 
@@ -74,14 +75,16 @@ class Problem:
         """A problem of the same kind that takes no time, to compile by."""
         return replace(self, spectrum=_flat(0.16), n_angle=256)
 
-    def field(self, seed: int) -> PolarField | TileField:
+    def field(self, seed: int) -> RayField | TileField:
         """Field of a realisation."""
         cutoff = self.spectrum.short_cutoff
         pixel = cutoff / PIXELS_PER_CUTOFF
         n_point = PIXELS_PER_CUTOFF * max(64, round(8 * self.spectrum.roll_off / cutoff))
         adhesion = self._adhesion(n_point, pixel, seed)
         spacing = cutoff / self.samples_per_cutoff
-        tile = tile_field(adhesion, self.n_angle, spacing, LARGEST_RADIUS, self.interpolation)
+        tile = tile_field(
+            adhesion, sphere(self.n_angle), spacing, LARGEST_RADIUS, self.interpolation
+        )
         return tile if self.on_tile else sampled_on_rays(tile)
 
     def _adhesion(self, n_point: int, pixel: float, seed: int) -> AdhesionMap:

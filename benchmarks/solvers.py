@@ -13,10 +13,11 @@ from matplotlib.figure import Figure
 
 from benchmarks.machine import described_machine
 from benchmarks.problems import Problem
-from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import PolarField, TileField
+from crackfront.core.field.fields import RayField, TileField
+from crackfront.core.solver.relax import SOLVERS
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
 
 TOLERANCE = 1e-8
@@ -64,11 +65,11 @@ class Row:
 
 
 def timed_cycle(
-    field: PolarField | TileField, schedule: LoadSchedule, solver: str
+    field: RayField | TileField, schedule: LoadSchedule, solver: str
 ) -> tuple[float, CycleRecord]:
     """CPU seconds of a cycle, and its record."""
     start = time.process_time()
-    record = run_cycle(field, schedule, tolerance=TOLERANCE, solver=solver, record_fronts=True)
+    record = run_cycle(field, schedule, SOLVERS[solver](TOLERANCE), Recorder(fronts=True))
     return time.process_time() - start, record
 
 
@@ -82,9 +83,9 @@ def measure(problem: Problem, seed: int, repeats: int) -> Row:
         for _ in range(repeats)
     ]
     reference, newton = runs[0]["reference"][1], runs[0]["newton"][1]
-    if reference.radius is None or newton.radius is None or reference.status != newton.status:
+    if reference.fronts is None or newton.fronts is None or reference.status != newton.status:
         raise RuntimeError(f"{problem.label}: the solvers end with different states")
-    travel = 2 * float(reference.max_radius.max())
+    travel = 2 * float(reference.states.max_radius.max())
     spacing = problem.spectrum.short_cutoff / problem.samples_per_cutoff
     return Row(
         group=problem.group,
@@ -93,11 +94,11 @@ def measure(problem: Problem, seed: int, repeats: int) -> Row:
         n_visit=problem.n_angle * travel / spacing,
         reference_seconds=min(run["reference"][0] for run in runs),
         newton_seconds=min(run["newton"][0] for run in runs),
-        reference_pairs=int(reference.iterations.sum()),
-        newton_pairs=int(newton.iterations.sum()),
-        reference_updates=int(reference.updates.sum()),
-        newton_updates=int(newton.updates.sum()),
-        error=float(np.max(np.abs(newton.radius - reference.radius)))
+        reference_pairs=int(reference.states.iterations.sum()),
+        newton_pairs=int(newton.states.iterations.sum()),
+        reference_updates=int(reference.states.updates.sum()),
+        newton_updates=int(newton.states.updates.sum()),
+        error=float(np.max(np.abs(newton.fronts - reference.fronts)))
         / problem.spectrum.short_cutoff,
         memory=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
     )

@@ -9,12 +9,14 @@ from click.testing import CliRunner
 from scipy import stats
 
 from crackfront.cli import main
+from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.provenance import provenance
 from crackfront.simulate.contact import simulation_field
-from crackfront.simulate.laws import LAW_SIZE, chosen_numerics, read_laws
+from crackfront.simulate.laws import LAW_SIZE, chosen_knobs, read_laws
 from crackfront.studies.accuracy.coverage import (
     held_out_coverage,
     numerical_interval,
@@ -101,30 +103,32 @@ def test_more_sites_converge_faster_than_any_power(converged):
 
 def test_the_mean_over_realisations_converges_with_the_root_of_their_number():
     schedule = LoadSchedule(1.0, 0.2)
-    numerics = chosen_numerics(0.1, "roughness", SMALL.spectrum, 0.04, SMALL.reference)
+    numerics = chosen_knobs(0.1, "roughness", SMALL.spectrum, 0.04)
     values = []
     for number in range(64):
         field = simulation_field(replace(SMALL.simulation(numerics, number), schedule=schedule))
-        record = run_cycle(field, schedule, tolerance=numerics.tolerance)
-        values.append(record.apparent_work_of_adhesion[record.direction < 0][:4].mean())
+        record = run_cycle(field, schedule, Newton(numerics.tolerance))
+        values.append(
+            record.states.apparent_work_of_adhesion[record.states.direction < 0][:4].mean()
+        )
     single = np.std(values, ddof=1)
     of_four = np.std(np.mean(np.reshape(values, (16, 4)), axis=1), ddof=1)
     assert abs(math.log(of_four / single) / math.log(4) + 0.5) < 0.3
 
 
 def test_a_branch_has_the_states_of_a_full_cycle_at_the_same_loads():
-    numerics = chosen_numerics(0.03, "roughness", SMALL.spectrum, 0.04, SMALL.reference)
+    numerics = chosen_knobs(0.03, "roughness", SMALL.spectrum, 0.04)
     numerics = replace(numerics, tolerance=1e-9)
     branches = measured_branches(SMALL, numerics, 1)
     simulation = SMALL.simulation(numerics, 1)
     field = simulation_field(simulation)
-    cycle = run_cycle(field, LoadSchedule(1.0, 0.1), tolerance=1e-9, record_fronts=True)
-    approach = cycle.direction > 0
-    assert np.allclose(SMALL.penetrations, cycle.penetration[approach][-8:])
-    assert np.allclose(branches.radius[0], cycle.radius[approach][-8:], rtol=0, atol=1e-7)
+    cycle = run_cycle(field, LoadSchedule(1.0, 0.1), Newton(1e-9), Recorder(fronts=True))
+    approach = cycle.states.direction > 0
+    assert np.allclose(SMALL.penetrations, cycle.states.penetration[approach][-8:])
+    assert np.allclose(branches.radius[0], cycle.fronts[approach][-8:], rtol=0, atol=1e-7)
     # The branch begins outside the turn of the cycle, which has left the turn behind at 0.4.
-    assert np.allclose(cycle.penetration[~approach][5:7], SMALL.penetrations[1::-1])
-    retraction = cycle.radius[~approach][5:7]
+    assert np.allclose(cycle.states.penetration[~approach][5:7], SMALL.penetrations[1::-1])
+    retraction = cycle.fronts[~approach][5:7]
     assert np.allclose(branches.radius[1, 1::-1], retraction, rtol=0, atol=1e-7)
 
 
@@ -189,7 +193,7 @@ def test_a_study_is_read_as_it_was_written(small_study, tmp_path):
     assert again.scene == SMALL
     assert np.array_equal(again.adhesion, small_study.adhesion)
     for one, other in zip(again.errors, small_study.errors, strict=True):
-        assert (one.knob, one.value, one.numerics) == (other.knob, other.value, other.numerics)
+        assert (one.knob, one.value, one.knobs) == (other.knob, other.value, other.knobs)
         assert np.array_equal(one.front_max, other.front_max)
     with pytest.raises(ValueError, match="does not exist; check the name"):
         read_errors(tmp_path / "none.nc")

@@ -131,8 +131,10 @@ def test_the_perimeter_of_a_disc_is_its_circle():
 def test_loads_begin_before_the_surfaces_attract_each_other():
     loads = contact_loads(LoadSchedule(0.2, 0.1), 0.25)
     visited = [next(loads) for _ in range(8)]
-    assert [b for b, _ in visited] == pytest.approx([-0.3, -0.2, -0.1, 0, 0.1, 0.2, 0.1, 0])
-    assert [d for _, d in visited] == [1, 1, 1, 1, 1, 1, -1, -1]
+    assert [load.value for load in visited] == pytest.approx(
+        [-0.3, -0.2, -0.1, 0, 0.1, 0.2, 0.1, 0]
+    )
+    assert [load.direction for load in visited] == [1, 1, 1, 1, 1, 1, -1, -1]
 
 
 SCHEDULE = LoadSchedule(0.3, 0.15)

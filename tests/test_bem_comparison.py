@@ -73,8 +73,8 @@ def front(case):
 def boundary(case, front):
     """A cycle that is that of the front, as boundary elements would record it."""
     record = front.record
-    count = record.penetration.size
-    modes = np.fft.rfft(record.radius, norm="forward")
+    count = record.states.penetration.size
+    modes = np.fft.rfft(record.fronts, norm="forward")
     nothing = np.zeros((case.n_point, case.n_point))
     return BoundaryCycle(
         status="lost contact",
@@ -83,10 +83,10 @@ def boundary(case, front):
         interaction_range=case.interaction_range,
         elastic_energy=case.elastic_energy,
         shown_penetration=case.shown_penetration,
-        penetration=record.penetration,
-        direction=record.direction,
-        force=record.force,
-        closed_area=record.contact_area,
+        penetration=record.states.penetration,
+        direction=record.states.direction,
+        force=record.states.force,
+        closed_area=record.states.contact_area,
         radius=np.fft.irfft(modes, n=N_ANGLE, norm="forward"),
         iterations=np.ones(count, dtype=np.int64),
         products=np.ones(count, dtype=np.int64),
@@ -150,7 +150,7 @@ def test_differences_are_those_of_the_boundary_elements_minus_the_front(case, bo
     assert found.force_rms == pytest.approx(0.1)
     assert found.area_mean == pytest.approx(0.0201)
     assert found.pull_off_force == pytest.approx(-0.1)
-    radius = front.record.mean_radius[np.isclose(front.record.penetration, 0.3)][0]
+    radius = front.record.states.mean_radius[np.isclose(front.record.states.penetration, 0.3)][0]
     assert found.perimeter_approach == pytest.approx(0.01 * radius / 0.6, rel=1e-6)
 
 
@@ -169,8 +169,8 @@ def test_approach_is_compared_where_the_jump_into_contact_is_forgotten(case, bou
 def test_the_front_of_a_smooth_sphere_is_jkr(configuration):
     smooth = validation_cases(load_validation(configuration))[0]
     record = front_cycle(smooth, 64, 0.05).record
-    expected = [jkr.equilibrium_radius(b) for b in record.penetration]
-    np.testing.assert_allclose(record.mean_radius, expected, rtol=1e-4)
+    expected = [jkr.equilibrium_radius(b) for b in record.states.penetration]
+    np.testing.assert_allclose(record.states.mean_radius, expected, rtol=1e-4)
 
 
 def test_what_two_ranges_have_in_common_is_extrapolated_by_their_squares(boundary):
@@ -185,26 +185,30 @@ def test_what_two_ranges_have_in_common_is_extrapolated_by_their_squares(boundar
 
 def test_states_are_shared_by_penetration_and_direction(front):
     record = front.record
+    states = record.states
     fewer = replace(
         record,
-        penetration=record.penetration[1:],
-        direction=record.direction[1:],
-        force=record.force[1:] + 0.5,
+        states=replace(
+            states,
+            penetration=states.penetration[1:],
+            direction=states.direction[1:],
+            force=states.force[1:] + 0.5,
+        ),
     )
-    one, other = shared_states(record, fewer)
-    np.testing.assert_array_equal(one, np.arange(1, record.penetration.size))
+    one, other = shared_states(states, fewer.states)
+    np.testing.assert_array_equal(one, np.arange(1, states.penetration.size))
     np.testing.assert_array_equal(other, one - 1)
     assert force_error(fewer, record) == pytest.approx(0.5)
 
 
 def test_perimeters_are_asked_for_where_there_is_contact(front):
-    record = front.record
-    here = perimeter_at(0.3, -1, record, record.radius)
+    states, fronts = front.record.states, front.record.fronts
+    here = perimeter_at(0.3, -1, states, fronts)
     np.testing.assert_array_equal(
-        here, record.radius[(record.direction == -1) & np.isclose(record.penetration, 0.3)][0]
+        here, fronts[(states.direction == -1) & np.isclose(states.penetration, 0.3)][0]
     )
     with pytest.raises(ValueError, match=r"no contact at penetration -3 in retraction; raise"):
-        perimeter_at(-3.0, -1, record, record.radius)
+        perimeter_at(-3.0, -1, states, fronts)
 
 
 def test_the_exponent_of_a_power_law_is_found():

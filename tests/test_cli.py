@@ -18,7 +18,7 @@ from crackfront import __version__
 from crackfront.cli import main
 from crackfront.cli.report import TRY_AGAIN
 from crackfront.core import jkr
-from crackfront.core.solver.relax import Status
+from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, Journal

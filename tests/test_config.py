@@ -10,6 +10,7 @@ import yaml
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.units import Scales
 from crackfront.data.yaml import ConfigurationError
+from crackfront.simulate.laws import Knobs
 from crackfront.sweep.configuration import load_configuration
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.reading import read_measurements
@@ -92,7 +93,7 @@ def test_a_roll_off_that_is_not_given_makes_a_flat_spectrum(tmp_path):
 
 
 def test_numbers_with_an_exponent_but_no_point_are_numbers(tmp_path):
-    assert load_configuration(written(tmp_path, GOOD)).numerics.tolerance == 1e-6
+    assert load_configuration(written(tmp_path, GOOD)).numerics.knobs.tolerance == 1e-6
 
 
 def test_an_rms_is_converted_to_the_energy_of_full_conformity(tmp_path):
@@ -129,17 +130,21 @@ def asking(error):
     return text.replace("  tolerance: 1e-6\n", "")
 
 
+def knobs_of(sweep, item, energy):
+    return sweep.numerics.knobs_of(sweep.kind, item.spectrum, energy)
+
+
 def test_an_error_chooses_the_numerics_of_every_spectrum_and_amplitude(tmp_path):
     sweep = load_configuration(written(tmp_path, asking(0.03)))
-    assert sweep.numerical_error == 0.03
+    given = sweep.numerics
+    assert (given.knobs, given.tile_cutoffs, given.max_sweeps) == (0.03, 20, 100000)
     flat = sweep.named("flat")
-    weak, strong = (sweep.numerics_of(flat, energy) for energy in sweep.elastic_energies)
+    weak, strong = (knobs_of(sweep, flat, energy) for energy in sweep.elastic_energies)
     assert strong.angles_per_cutoff > weak.angles_per_cutoff
-    assert (weak.tile_cutoffs, weak.max_sweeps, weak.solver) == (20, 100000, "reference")
-    finer = load_configuration(written(tmp_path, asking(0.01))).numerics_of(flat, 0.1)
+    finer = knobs_of(load_configuration(written(tmp_path, asking(0.01))), flat, 0.1)
     assert finer.angles_per_cutoff > strong.angles_per_cutoff
     simulation = sweep.simulation(flat, 0.1, 0)
-    assert simulation.tolerance == strong.tolerance
+    assert simulation.solver.tolerance == strong.tolerance
     assert simulation.resolution.spacing == pytest.approx(0.1 / strong.samples_per_cutoff)
 
 
@@ -151,8 +156,8 @@ def test_an_error_below_that_of_the_finest_numerics_is_refused(tmp_path):
 
 def test_given_numerics_serve_every_amplitude(tmp_path):
     sweep = load_configuration(written(tmp_path, GOOD))
-    assert sweep.numerical_error is None
-    assert sweep.numerics_of(sweep.named("rough"), 0.1) is sweep.numerics
+    assert isinstance(sweep.numerics.knobs, Knobs)
+    assert knobs_of(sweep, sweep.named("rough"), 0.1) is sweep.numerics.knobs
 
 
 def test_an_error_beside_what_it_decides_is_refused(tmp_path):

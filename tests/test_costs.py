@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from benchmarks import costs as benchmark
-from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.adhesion import correlation_length, rough_adhesion
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.simulate.costs import expected_cost, features, integral_breadth, measured_runs
-from crackfront.simulate.simulation import correlation_length
 from crackfront.sweep.configuration import load_configuration
 
 ROOT = Path(__file__).parents[1]

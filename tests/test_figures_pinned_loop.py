@@ -69,9 +69,9 @@ def test_fronts_that_sample_the_wrong_places_fail_their_checks(loop):
 def test_a_patch_is_the_field_that_the_front_feels():
     simulation = coarse().simulation()
     field = simulation_field(simulation)
-    along = front_adhesion(np.full(field.cosine.size, 1.2), field) * np.pi
-    for ray in (0, field.cosine.size // 3):
-        place = 1.2 * field.cosine[ray : ray + 1], 1.2 * field.sine[ray : ray + 1]
+    along = front_adhesion(np.full(field.geometry.n_site, 1.2), field) * np.pi
+    for ray in (0, field.geometry.n_site // 3):
+        place = (1.2 * way[ray : ray + 1] for way in field.geometry)
         np.testing.assert_allclose(patch_of(field, *place)[0, 0], along[ray], atol=1e-3)
 
 

@@ -22,8 +22,10 @@ from crackfront.core import jkr
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import polar_field
-from crackfront.core.solver.relax import Status
+from crackfront.core.field.fields import polar_field
+from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.outcome import Status
+from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 
 AMPLITUDES = np.array([0.005, 0.01, 0.02, 0.05, 0.1])
@@ -39,20 +41,22 @@ def smooth_record(w_appr, w_retr, n_state=9):
     zero = np.zeros(radius.size)
     return CycleRecord(
         status=Status.LOST_CONTACT,
-        end_penetration=-0.5,
-        penetration=jkr.equilibrium_penetration(radius, adhesion),
-        direction=direction,
-        mean_radius=radius,
-        min_radius=radius,
-        max_radius=radius,
-        rms_radius=zero,
-        force=jkr.equilibrium_force(radius, adhesion),
-        contact_area=np.pi * radius**2,
-        apparent_work_of_adhesion=adhesion,
-        least_travel=np.abs(radius - np.where(direction > 0, 0.0, 1.8)),
-        iterations=zero.astype(int),
-        updates=zero.astype(int),
-        residual=zero,
+        end_load=-0.5,
+        states=ContactState(
+            penetration=jkr.equilibrium_penetration(radius, adhesion),
+            direction=direction,
+            mean_radius=radius,
+            min_radius=radius,
+            max_radius=radius,
+            rms_radius=zero,
+            force=jkr.equilibrium_force(radius, adhesion),
+            contact_area=np.pi * radius**2,
+            apparent_work_of_adhesion=adhesion,
+            least_travel=np.abs(radius - np.where(direction > 0, 0.0, 1.8)),
+            iterations=zero.astype(int),
+            updates=zero.astype(int),
+            residual=zero,
+        ),
     )
 
 
@@ -115,41 +119,46 @@ def covered(estimate: Estimate, truth):
 def test_smooth_branches_return_their_works_of_adhesion_to_round_off():
     steady = steady_adhesion(smooth_record(0.8, 1.3), correlation_length=0.1)
     assert steady.sentence == ""
-    assert steady.approach == pytest.approx(0.8, rel=1e-14)
-    assert steady.retraction == pytest.approx(1.3, rel=1e-14)
+    assert steady.w_appr == pytest.approx(0.8, rel=1e-14)
+    assert steady.w_retr == pytest.approx(1.3, rel=1e-14)
     assert steady.hysteresis == pytest.approx(0.5, rel=1e-13)
     assert steady.midpoint == pytest.approx(1.05, rel=1e-14)
-    assert steady.approach_from_force == pytest.approx(0.8, rel=1e-13)
-    assert steady.retraction_from_force == pytest.approx(1.3, rel=1e-13)
+    assert steady.w_appr_from_force == pytest.approx(0.8, rel=1e-13)
+    assert steady.w_retr_from_force == pytest.approx(1.3, rel=1e-13)
 
 
 def test_both_branches_are_averaged_over_one_window_of_radii_without_transients():
     record = smooth_record(0.8, 1.3)
-    drifting = replace(record, apparent_work_of_adhesion=record.mean_radius)
+    states = replace(record.states, apparent_work_of_adhesion=record.states.mean_radius)
+    drifting = replace(record, states=states)
     steady = steady_adhesion(drifting, correlation_length=0.2)
     # Retraction starts at 1.8: its first steady state lies 0.2 below. Approach starts at 1.2.
-    window = (record.mean_radius >= 1.2) & (record.mean_radius <= 1.6)
-    approach = window & (record.direction > 0)
-    last = np.max(record.mean_radius[(record.direction < 0) & (record.mean_radius <= 1.6)])
+    window = (record.states.mean_radius >= 1.2) & (record.states.mean_radius <= 1.6)
+    approach = window & (record.states.direction > 0)
+    last = np.max(
+        record.states.mean_radius[
+            (record.states.direction < 0) & (record.states.mean_radius <= 1.6)
+        ]
+    )
     assert steady.lowest_radius == 1.2
     assert steady.highest_radius == last
-    assert steady.approach == pytest.approx(
-        np.mean(record.mean_radius[approach & (record.mean_radius <= last)])
+    assert steady.w_appr == pytest.approx(
+        np.mean(record.states.mean_radius[approach & (record.states.mean_radius <= last)])
     )
-    assert steady.approach < 1.6
-    assert steady.n_approach == np.count_nonzero(approach & (record.mean_radius <= last))
+    assert steady.w_appr < 1.6
+    assert steady.n_approach == np.count_nonzero(approach & (record.states.mean_radius <= last))
 
 
 def test_a_field_without_disorder_has_its_own_work_of_adhesion_on_both_branches():
     radii = np.linspace(0.02, 2.2, 110)
     field = polar_field(radii, np.full((radii.size, 16), 0.9 * WORK_OF_ADHESION))
-    record = run_cycle(field, LoadSchedule(1.0, 0.1), tolerance=1e-12)
+    record = run_cycle(field, LoadSchedule(1.0, 0.1), Newton(1e-12))
     steady = steady_adhesion(record, correlation_length=0.05)
     values = (
-        steady.approach,
-        steady.retraction,
-        steady.approach_from_force,
-        steady.retraction_from_force,
+        steady.w_appr,
+        steady.w_retr,
+        steady.w_appr_from_force,
+        steady.w_retr_from_force,
     )
     np.testing.assert_allclose(values, 0.9, rtol=1e-10)
 
@@ -164,7 +173,7 @@ def test_a_field_without_disorder_has_its_own_work_of_adhesion_on_both_branches(
 )
 def test_too_few_steady_states_give_no_value_and_say_why(record, length, words):
     steady = steady_adhesion(record, correlation_length=length)
-    assert np.isnan([steady.approach, steady.retraction, steady.approach_from_force]).all()
+    assert np.isnan([steady.w_appr, steady.w_retr, steady.w_appr_from_force]).all()
     assert words in steady.sentence
 
 

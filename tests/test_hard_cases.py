@@ -8,12 +8,14 @@ import yaml
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
+from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.elasticity import half_laplacian
-from crackfront.core.field.kinds import polar_field, tile_field
+from crackfront.core.field.fields import polar_field, tile_field
 from crackfront.core.field.rays import front_adhesion
-from crackfront.core.solver.relax import SOLVERS, Status, front_force, relax
+from crackfront.core.geometry.sphere import half_laplacian, sphere
+from crackfront.core.outcome import Status
+from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
@@ -26,9 +28,9 @@ every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 
 def tight(front, penetration, direction, field, solver, tolerance=1e-12):
     """Converged front of one relaxation."""
-    outcome = relax(front, penetration, direction, field, tolerance=tolerance, solver=solver)
+    outcome = relax(front, penetration, direction, field, SOLVERS[solver](tolerance))
     assert outcome.status is Status.CONVERGED
-    return outcome.radius
+    return outcome.front
 
 
 def chemical_tile(rms, cutoff, seed, n_angle, *, penetration=1.0, interpolation="cubic"):
@@ -44,9 +46,9 @@ def chemical_tile(rms, cutoff, seed, n_angle, *, penetration=1.0, interpolation=
 
 def branches(record):
     """Rows of the penetrations that both branches visit, approach and retraction."""
-    up = np.flatnonzero(record.direction > 0)[:-1]
+    up = np.flatnonzero(record.states.direction > 0)[:-1]
     down = up[-1] + 2 + np.arange(up.size)
-    assert np.array_equal(record.penetration[down], record.penetration[up[::-1]])
+    assert np.array_equal(record.states.penetration[down], record.states.penetration[up[::-1]])
     return up, down[::-1]
 
 
@@ -57,14 +59,14 @@ def branches(record):
 def test_disorder_too_weak_to_pin_has_no_hysteresis_although_the_adhesion_fluctuates(solver):
     field = chemical_tile(0.02, 0.16, 1, 256)
     record = run_cycle(
-        field, LoadSchedule(1.0, 0.05), tolerance=1e-12, solver=solver, record_fronts=True
+        field, LoadSchedule(1.0, 0.05), SOLVERS[solver](1e-12), Recorder(fronts=True)
     )
     up, down = branches(record)
-    fluctuation = [np.std(front_adhesion(front, field)) for front in record.radius[up]]
+    fluctuation = [np.std(front_adhesion(front, field)) for front in record.fronts[up]]
     assert np.min(fluctuation) > 0.015 * WORK_OF_ADHESION
-    assert np.ptp(record.radius[up], axis=1).min() > 1e-3
-    assert np.max(np.abs(record.radius[down] - record.radius[up])) < 1e-11
-    apparent = record.apparent_work_of_adhesion
+    assert np.ptp(record.fronts[up], axis=1).min() > 1e-3
+    assert np.max(np.abs(record.fronts[down] - record.fronts[up])) < 1e-11
+    apparent = record.states.apparent_work_of_adhesion
     assert np.max(np.abs(apparent[down] - apparent[up])) < 1e-11
 
 
@@ -74,19 +76,19 @@ def test_solvers_agree_where_the_fluctuation_is_twice_w_int_and_much_of_the_surf
 ):
     field = chemical_tile(2.0, 0.16, 2, 128, interpolation=interpolation)
     reference, newton = (
-        run_cycle(field, LoadSchedule(1.0, 0.2), tolerance=1e-10, solver=solver, record_fronts=True)
+        run_cycle(field, LoadSchedule(1.0, 0.2), SOLVERS[solver](1e-10), Recorder(fronts=True))
         for solver in ("reference", "newton")
     )
     assert reference.status is newton.status is Status.LOST_CONTACT
-    assert reference.end_penetration == newton.end_penetration
-    assert np.max(np.abs(reference.radius - newton.radius)) < 1e-9
-    assert np.all(newton.residual <= 1e-10)
-    lowest = np.sqrt(np.maximum(newton.penetration, 0.0))
-    assert np.all(newton.min_radius >= lowest * (1 - 1e-12))
-    repelled = [np.mean(front_adhesion(front, field) < 0) for front in newton.radius]
+    assert reference.end_load == newton.end_load
+    assert np.max(np.abs(reference.fronts - newton.fronts)) < 1e-9
+    assert np.all(newton.states.residual <= 1e-10)
+    lowest = np.sqrt(np.maximum(newton.states.penetration, 0.0))
+    assert np.all(newton.states.min_radius >= lowest * (1 - 1e-12))
+    repelled = [np.mean(front_adhesion(front, field) < 0) for front in newton.fronts]
     assert np.max(repelled) > 0.1
     up, down = branches(newton)
-    apparent = newton.apparent_work_of_adhesion
+    apparent = newton.states.apparent_work_of_adhesion
     assert np.mean(apparent[down] - apparent[up]) > 0.2
 
 
@@ -96,12 +98,12 @@ def test_hysteresis_and_bending_grow_from_nothing_as_the_line_turns_from_stiff_t
     pinned, bent = [], []
     for rms in (0.02, 0.1, 0.3, 1.0):
         record = run_cycle(
-            chemical_tile(rms, 0.1, 3, 256), LoadSchedule(1.0, 0.05), tolerance=1e-9, solver=solver
+            chemical_tile(rms, 0.1, 3, 256), LoadSchedule(1.0, 0.05), SOLVERS[solver](1e-9)
         )
         up, down = branches(record)
-        apparent = record.apparent_work_of_adhesion
+        apparent = record.states.apparent_work_of_adhesion
         pinned.append(np.mean((apparent[down] - apparent[up])[up > 5]) / rms)
-        bent.append(np.mean(record.rms_radius[up]) / 0.1)
+        bent.append(np.mean(record.states.rms_radius[up]) / 0.1)
     assert np.max(np.abs(pinned[:2])) < 1e-7
     assert 0.05 < pinned[2] < pinned[3] / 2 < 0.15
     # A stiff line bends in proportion to the disorder.
@@ -115,13 +117,10 @@ def test_patches_as_wide_as_the_contact_pin_less_than_many_small_ones(solver):
     hysteresis = []
     for cutoff, n_angle in ((0.8, 32), (0.4, 64), (0.1, 256)):
         record = run_cycle(
-            chemical_tile(0.3, cutoff, 3, n_angle),
-            LoadSchedule(1.0, 0.05),
-            tolerance=1e-9,
-            solver=solver,
+            chemical_tile(0.3, cutoff, 3, n_angle), LoadSchedule(1.0, 0.05), SOLVERS[solver](1e-9)
         )
         up, down = branches(record)
-        apparent = record.apparent_work_of_adhesion
+        apparent = record.states.apparent_work_of_adhesion
         hysteresis.append(np.mean((apparent[down] - apparent[up])[up > 5]))
     assert -1e-7 < hysteresis[0] < hysteresis[1] < hysteresis[2] / 2
 
@@ -243,15 +242,15 @@ def test_solvers_agree_on_patches_with_sharp_edges(interpolation):
     # Squares of 5 pixels of 0.4 and 1.6 w_int; 5 samples a pixel resolve what the splines make.
     patches = np.random.default_rng(6).choice([0.4, 1.6], (8, 8)).repeat(5, 0).repeat(5, 1)
     adhesion = AdhesionMap(WORK_OF_ADHESION * patches, 0.05, 0.0, 0.0)
-    field = tile_field(adhesion, 160, 0.01, 3.0, interpolation)
+    field = tile_field(adhesion, sphere(160), 0.01, 3.0, interpolation)
     reference, newton = (
-        run_cycle(field, LoadSchedule(0.8, 0.2), tolerance=1e-10, solver=solver, record_fronts=True)
+        run_cycle(field, LoadSchedule(0.8, 0.2), SOLVERS[solver](1e-10), Recorder(fronts=True))
         for solver in ("reference", "newton")
     )
     assert newton.status is reference.status is Status.LOST_CONTACT
-    assert np.max(np.abs(reference.radius - newton.radius)) < 1e-8
+    assert np.max(np.abs(reference.fronts - newton.fronts)) < 1e-8
     # Splines through a step overshoot it, along each axis by less than 11% of the step.
-    held = np.array([front_adhesion(front, field) for front in newton.radius]) / WORK_OF_ADHESION
+    held = np.array([front_adhesion(front, field) for front in newton.fronts]) / WORK_OF_ADHESION
     assert 0.4 - 0.3 < held.min() < 0.4 < 1.6 < held.max() < 1.6 + 0.3
 
 
@@ -296,13 +295,13 @@ def test_self_affine_surfaces_of_any_hurst_exponent_run_through_a_cycle(hurst):
     assert adhesion.elastic_energy == pytest.approx(0.05, rel=0.15)
     field = contact_field(adhesion, 240, 0.02, 0.8, band_limited=True)
     reference, newton = (
-        run_cycle(field, LoadSchedule(0.8, 0.1), tolerance=1e-9, solver=solver, record_fronts=True)
+        run_cycle(field, LoadSchedule(0.8, 0.1), SOLVERS[solver](1e-9), Recorder(fronts=True))
         for solver in ("reference", "newton")
     )
     assert newton.status is reference.status is Status.LOST_CONTACT
-    assert np.max(np.abs(reference.radius - newton.radius)) < 1e-7
+    assert np.max(np.abs(reference.fronts - newton.fronts)) < 1e-7
     up, down = branches(newton)
-    apparent = newton.apparent_work_of_adhesion
+    apparent = newton.states.apparent_work_of_adhesion
     assert 0.03 < np.mean((apparent[down] - apparent[up])[2:]) < 2 * 4 * adhesion.elastic_energy
 
 
@@ -345,7 +344,13 @@ def test_a_tile_smaller_than_the_contact_gives_the_fronts_of_its_repetition(solv
     adhesion = WORK_OF_ADHESION * (1 + 0.3 * noise)
     start = np.full(48, 0.04)
     fronts = [
-        tight(start, 0.7, 1, tile_field(AdhesionMap(tile, 0.06, 0.0, 0.0), 48, 0.04, 3.2), solver)
+        tight(
+            start,
+            0.7,
+            1,
+            tile_field(AdhesionMap(tile, 0.06, 0.0, 0.0), sphere(48), 0.04, 3.2),
+            solver,
+        )
         for tile in (adhesion, np.tile(adhesion, (3, 3)))
     ]
     # The contact is three to four times as wide as the tile.
@@ -361,7 +366,7 @@ def test_any_factorisation_of_the_number_of_sites_gives_the_same_front_of_a_smoo
     adhesion = AdhesionMap(WORK_OF_ADHESION * (1 + 0.03 * wave), 0.1, 0.0, 0.0)
     modes = []
     for n_angle in (128, 125, 127, 126, 256):
-        field = tile_field(adhesion, n_angle, 0.05, 2.6)
+        field = tile_field(adhesion, sphere(n_angle), 0.05, 2.6)
         front = tight(np.full(n_angle, 0.5), 0.5, 1, field, solver)
         modes.append(np.fft.rfft(front)[:20] / n_angle)
     # Powers of two and of five, a prime, and 2 * 3 * 3 * 7.
@@ -373,12 +378,10 @@ def test_any_factorisation_of_the_number_of_sites_gives_the_same_front_of_a_smoo
 @every_solver
 def test_eight_sites_hold_a_cycle(solver):
     field = chemical_tile(0.5, 0.8, 5, 8)
-    record = run_cycle(
-        field, LoadSchedule(1.0, 0.1), tolerance=1e-12, solver=solver, record_fronts=True
-    )
+    record = run_cycle(field, LoadSchedule(1.0, 0.1), SOLVERS[solver](1e-12), Recorder(fronts=True))
     assert record.status is Status.LOST_CONTACT
     for front, load, direction in zip(
-        record.radius, record.penetration, record.direction, strict=True
+        record.fronts, record.states.penetration, record.states.direction, strict=True
     ):
         force = direction * front_force(front, load, field) / (front * WORK_OF_ADHESION)
         free = front > np.sqrt(max(load, 0.0)) * (1 + 1e-12)
@@ -417,7 +420,7 @@ def test_a_front_shrinks_onto_a_strong_spot_at_the_centre_and_is_held_there(solv
     front = tight(np.full(16, 1.5), load, -1, field, solver, 1e-8)
     # The rings ask for 3/8 b^2 = 0.84 w_int of radius times adhesion, the spot gives up to 3.
     assert np.all((front >= core) & (front <= core * 1.001))
-    lost = relax(front, -3.0, -1, field, solver=solver)
+    lost = relax(front, -3.0, -1, field, SOLVERS[solver]())
     assert lost.status is Status.LOST_CONTACT
 
 
@@ -431,11 +434,11 @@ def test_zero_adhesion_at_places_is_physical_and_is_accepted(solver):
     assert np.count_nonzero(holes.work_of_adhesion == 0) > 10
     rays = np.full((50, 32), WORK_OF_ADHESION)
     rays[20, 5] = rays[:, 9] = 0.0
-    fields = [tile_field(holes, 64, 0.04, 3.2), polar_field(0.06 * np.arange(1, 51), rays)]
+    fields = [tile_field(holes, sphere(64), 0.04, 3.2), polar_field(0.06 * np.arange(1, 51), rays)]
     for field in fields:
-        record = run_cycle(field, LoadSchedule(0.6, 0.2), solver=solver, record_energy=True)
+        record = run_cycle(field, LoadSchedule(0.6, 0.2), SOLVERS[solver](), Recorder(energy=True))
         assert record.status is Status.LOST_CONTACT
-        assert np.all(record.residual <= 1e-8)
+        assert np.all(record.states.residual <= 1e-8)
         assert np.all(record.dissipated_energy > 0)
 
 
@@ -468,6 +471,6 @@ def test_a_scene_from_nanometres_to_metres_gives_the_reduced_result(tmp_path, ra
         records.append(run_simulation(sweep.simulation(sweep.named("rough"), 0.1, 0)).record)
     one, other = records
     assert other.status is one.status is Status.LOST_CONTACT
-    assert np.allclose(other.penetration, one.penetration, rtol=1e-13, atol=1e-15)
-    assert np.allclose(other.mean_radius, one.mean_radius, rtol=0, atol=1e-12)
-    assert np.allclose(other.force, one.force, rtol=0, atol=1e-12)
+    assert np.allclose(other.states.penetration, one.states.penetration, rtol=1e-13, atol=1e-15)
+    assert np.allclose(other.states.mean_radius, one.states.mean_radius, rtol=0, atol=1e-12)
+    assert np.allclose(other.states.force, one.states.force, rtol=0, atol=1e-12)

@@ -13,11 +13,14 @@ from hypothesis import strategies as st
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.cycle.history import FrontHistory
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import first_radius, last_radius, n_angle, polar_field, tile_field
-from crackfront.core.solver.relax import SOLVERS, Status, front_force, relax
+from crackfront.core.field.fields import first_place, last_place, polar_field, tile_field
+from crackfront.core.geometry.sphere import sphere
+from crackfront.core.outcome import Status
+from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.units import WORK_OF_ADHESION
 
 TIGHT = 1e-12
@@ -34,7 +37,7 @@ def random_field(seed, n_ray=24, amplitude=0.4, *, tile=False, interpolation="li
     if tile:
         noise = rng.standard_normal((17, 17))
         adhesion = AdhesionMap(WORK_OF_ADHESION * (1 + amplitude * noise), 0.12, 0.0, 0.0)
-        return tile_field(adhesion, n_ray, 0.05, 3.4, interpolation)
+        return tile_field(adhesion, sphere(n_ray), 0.05, 3.4, interpolation)
     radii = np.cumsum(rng.uniform(0.03, 0.09, 60))
     noise = rng.standard_normal((60, n_ray))
     return polar_field(radii, WORK_OF_ADHESION * (1 + amplitude * noise), interpolation)
@@ -52,14 +55,14 @@ every_kind = st.builds(
 
 def circle(field):
     """The innermost circle of a field."""
-    return np.full(n_angle(field), first_radius(field))
+    return np.full(field.geometry.n_site, first_place(field))
 
 
 def extent(front, penetration, direction, field, solver):
     """Tight front, nothing where contact is lost."""
-    outcome = relax(front, penetration, direction, field, tolerance=TIGHT, solver=solver)
+    outcome = relax(front, penetration, direction, field, SOLVERS[solver](TIGHT))
     if outcome.status is Status.CONVERGED:
-        return outcome.radius
+        return outcome.front
     assert outcome.status in (Status.LOST_CONTACT, Status.LEFT_FIELD_INWARD)
     return np.zeros_like(front)
 
@@ -87,7 +90,7 @@ def tight(front, penetration, direction, field, solver):
 @given(field=every_kind, seed=st.integers(0, 2**32 - 1), loads=st.tuples(*2 * [st.floats(-0.6, 1)]))
 def test_no_front_passes_another_on_any_kind_of_field(solver, direction, field, seed, loads):
     rng = np.random.default_rng(seed)
-    count = n_angle(field)
+    count = field.geometry.n_site
     inner = rng.uniform(0.3, 1.2, count)
     outer = inner + rng.uniform(0, 0.8, count) * (rng.random(count) < 0.5)
     behind = extent(inner, min(loads), direction, field, solver)
@@ -121,7 +124,7 @@ def test_any_order_of_forward_moves_ends_in_the_same_front_on_cubic_pieces(
     rng, load = np.random.default_rng(seed), 0.3 if direction > 0 else -0.1
     start = np.full(n_ray, 0.9 if direction > 0 else 2.2)
     # Steeper than any chord of a site's own force: line, products and rings on the whole field.
-    fine = np.linspace(0.2, 0.99 * last_radius(field), 3000)
+    fine = np.linspace(0.2, 0.99 * last_place(field), 3000)
     forces = [front_force(np.full(n_ray, radius), load, field) for radius in fine]
     bound = 1.1 * np.max(np.abs(np.diff(forces, axis=0))) / np.diff(fine)[0]
     bound += n_ray / 4 * WORK_OF_ADHESION
@@ -172,14 +175,12 @@ def test_nested_minor_loops_close_one_after_the_other(solver, field, shares, ski
 def test_one_step_from_first_contact_to_the_largest_load_loses_nothing(solver, tile):
     field = random_field(1, 48, tile=tile, interpolation="cubic")
     records = [
-        run_cycle(
-            field, LoadSchedule(1.2, step), tolerance=TIGHT, solver=solver, record_fronts=True
-        )
+        run_cycle(field, LoadSchedule(1.2, step), SOLVERS[solver](TIGHT), Recorder(fronts=True))
         for step in (1.2, 0.05)
     ]
-    tops = [record.radius[record.direction > 0][-1] for record in records]
-    assert [record.penetration.max() for record in records] == pytest.approx([1.2, 1.2])
-    assert np.count_nonzero(records[0].direction > 0) == 2
+    tops = [record.fronts[record.states.direction > 0][-1] for record in records]
+    assert [record.states.penetration.max() for record in records] == pytest.approx([1.2, 1.2])
+    assert np.count_nonzero(records[0].states.direction > 0) == 2
     assert np.allclose(*tops, rtol=0, atol=SAME)
 
 
@@ -194,10 +195,10 @@ def test_fifty_steps_of_a_millionth_are_one_of_fifty_millionths(solver, directio
     front, sweeps = start, 0
     for k in range(1, 51):
         outcome = relax(
-            front, begin + direction * 1e-6 * k, direction, field, tolerance=TIGHT, solver=solver
+            front, begin + direction * 1e-6 * k, direction, field, SOLVERS[solver](TIGHT)
         )
-        assert np.all(direction * (outcome.radius - front) >= 0)
-        front, sweeps = outcome.radius, sweeps + outcome.sweeps
+        assert np.all(direction * (outcome.front - front) >= 0)
+        front, sweeps = outcome.front, sweeps + outcome.sweeps
     assert np.max(np.abs(front - start)) > 1e-6
     assert np.allclose(front, at_once, rtol=0, atol=1e-10)
     assert sweeps < 50 * 2000
@@ -206,24 +207,16 @@ def test_fifty_steps_of_a_millionth_are_one_of_fifty_millionths(solver, directio
 @every_solver
 def test_a_load_that_is_repeated_moves_nothing_and_dissipates_nothing(solver):
     field = random_field(3, 48, interpolation="cubic")
-    history = FrontHistory(
-        field, circle(field), solver=solver, record_fronts=True, record_energy=True
-    )
-    for load, direction in [
-        (0.0, 1),
-        (0.0, 1),
-        (0.5, 1),
-        (0.5, 1),
-        (0.5, -1),
-        (0.2, -1),
-        (0.2, -1),
-    ]:
-        assert history.follow(load, direction) is Status.CONVERGED
-    record = history.record()
+    recorder = Recorder(fronts=True, energy=True)
+    ways = [(0.0, 1), (0.0, 1), (0.5, 1), (0.5, 1), (0.5, -1), (0.2, -1), (0.2, -1)]
+    recorder.run(field, circle(field), [Load(*way) for way in ways], SOLVERS[solver]())
+    record = recorder.record()
+    assert record.status is Status.CONVERGED
+    assert len(recorder.states) == len(ways)
     for row in (1, 3, 4, 6):
-        assert np.array_equal(record.radius[row], record.radius[row - 1])
+        assert np.array_equal(record.fronts[row], record.fronts[row - 1])
         assert record.dissipated_energy[row] == 0.0
-        assert record.force[row] == record.force[row - 1]
+        assert record.states.force[row] == record.states.force[row - 1]
     assert np.all(record.dissipated_energy[[0, 2, 5]] > 0)
 
 
@@ -234,9 +227,9 @@ def last_held(front, low, high, field, solver, n_step):
     """Penetrations that hold and that lose the contact, by halving; the front that is held."""
     for _ in range(n_step):
         middle = (low + high) / 2
-        outcome = relax(front, middle, -1, field, tolerance=TIGHT, solver=solver)
+        outcome = relax(front, middle, -1, field, SOLVERS[solver](TIGHT))
         if outcome.status is Status.CONVERGED:
-            front, high = outcome.radius, middle
+            front, high = outcome.front, middle
         else:
             assert outcome.status is Status.LOST_CONTACT
             low = middle
@@ -290,14 +283,12 @@ def test_tolerances_next_to_round_off_are_met_or_told(solver, n_ray):
     limit = np.finfo(float).eps * n_ray
     fronts = []
     for factor in (1.0, 4.0, 1e4):
-        outcome = relax(
-            circle(field), 0.6, 1, field, tolerance=factor * limit, max_sweeps=200_000,
-            solver=solver,
-        )  # fmt: skip
+        method = SOLVERS[solver](factor * limit, max_sweeps=200_000)
+        outcome = relax(circle(field), 0.6, 1, field, method)
         # At the limit itself the last digit may decide; the status then says so.
         allowed = {Status.CONVERGED} | ({Status.ROUND_OFF} if factor == 1 else set())
         assert outcome.status in allowed
-        fronts.append(outcome.radius)
+        fronts.append(outcome.front)
     assert np.allclose(fronts[0], fronts[2], rtol=0, atol=1e-8)
 
 
@@ -313,17 +304,16 @@ def test_the_order_of_the_sums_leaves_ten_digits_of_a_cycle(solver, n_ray):
         return run_cycle(
             polar_field(radii, values, "cubic"),
             LoadSchedule(0.8, 0.2),
-            tolerance=TIGHT,
-            solver=solver,
-            record_fronts=True,
+            SOLVERS[solver](TIGHT),
+            Recorder(fronts=True),
         )
 
     plain = cycle(adhesion)
     for change in (lambda x: np.roll(x, 37, axis=1), lambda x: x[:, ::-1]):
         other = cycle(change(adhesion))
-        assert np.array_equal(other.penetration, plain.penetration)
-        assert np.allclose(other.radius, change(plain.radius), rtol=0, atol=1e-10)
-        assert np.allclose(other.force, plain.force, rtol=0, atol=1e-10)
+        assert np.array_equal(other.states.penetration, plain.states.penetration)
+        assert np.allclose(other.fronts, change(plain.fronts), rtol=0, atol=1e-10)
+        assert np.allclose(other.states.force, plain.states.force, rtol=0, atol=1e-10)
 
 
 PLAIN = """
@@ -350,9 +340,9 @@ def plain_cycles():
         field = random_field(8, n_ray, amplitude, tile=tile, interpolation=interpolation)
         for solver in ("reference", "newton") if n_ray < 64 else ("newton",):
             record = run_cycle(
-                field, LoadSchedule(0.8, 0.4), tolerance=1e-7, solver=solver, record_energy=True
+                field, LoadSchedule(0.8, 0.4), SOLVERS[solver](1e-7), Recorder(energy=True)
             )
-            means, lost = record.mean_radius.tolist(), record.dissipated_energy.tolist()
+            means, lost = record.states.mean_radius.tolist(), record.dissipated_energy.tolist()
             found.append([record.status.name, means, lost])
     return found
 

@@ -5,13 +5,13 @@ import itertools
 import numpy as np
 import pytest
 
+from crackfront.core.adhesion import correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.instabilities import larkin_length, resolved_motion, swept_clusters
-from crackfront.core.field.kinds import polar_field
-from crackfront.core.solver.relax import relax
+from crackfront.core.field.fields import polar_field
+from crackfront.core.solver.relax import Newton, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.simulation import correlation_length
 
 TRAVEL = 0.004
 
@@ -32,7 +32,7 @@ def rough_field(amplitude=0.4, n_angle=24):
 
 def retraction(field, start=0.8, stop=0.2, precision=1e-6, tolerance=1e-9, travel=TRAVEL):
     count = field.products.shape[0]
-    front = relax(np.full(count, 0.06), start, 1, field, tolerance=tolerance).radius
+    front = relax(np.full(count, 0.06), start, 1, field, Newton(tolerance)).front
     return list(
         resolved_motion(
             field,
@@ -42,7 +42,7 @@ def retraction(field, start=0.8, stop=0.2, precision=1e-6, tolerance=1e-9, trave
             -1,
             travel=travel,
             precision=precision,
-            tolerance=tolerance,
+            solver=Newton(tolerance),
         )
     )
 
@@ -53,14 +53,14 @@ def test_the_steps_follow_each_other_and_end_where_one_large_step_does():
     for one, other in itertools.pairwise(motions):
         assert other.start == one.end
         np.testing.assert_array_equal(other.before, one.after)
-    direct = relax(motions[0].before, motions[-1].end, -1, field, tolerance=1e-9).radius
+    direct = relax(motions[0].before, motions[-1].end, -1, field, Newton(1e-9)).front
     np.testing.assert_allclose(motions[-1].after, direct, atol=1e-6)
 
 
 def test_rings_jump_where_their_running_minimum_does():
     field = ring_field(0.2)
     jumps = [motion for motion in retraction(field) if motion.unstable]
-    radii = field.radii
+    radii = field.places
     balance = radii**2 - np.sqrt(8 * radii * field.products[0] / radii / WORK_OF_ADHESION / 3)
     # Coming from outside, a ring leaves a minimum of b when the load falls below it.
     inside = radii < jumps[0].before[0] + 0.01
@@ -119,7 +119,7 @@ def test_a_resolution_that_is_not_positive_is_refused(name, value):
 
 def test_a_front_that_leaves_the_field_says_so():
     field = ring_field(0.1)
-    front = relax(np.full(1, 0.06), 0.5, 1, field).radius
+    front = relax(np.full(1, 0.06), 0.5, 1, field).front
     with pytest.raises(ValueError, match="left the sampled field outward"):
         list(resolved_motion(field, front, 0.5, [4.0], 1, travel=0.05, precision=1e-3))
 

@@ -8,14 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.laws import (
-    KNOBS,
-    LAW_SIZE,
-    chosen_numerics,
-    numerical_error,
-    read_laws,
-    spectral_shape,
-)
+from crackfront.simulate.laws import KNOBS, LAW_SIZE, chosen_knobs, read_laws, spectral_shape
+from crackfront.simulate.simulation import numerical_error
 from crackfront.studies.accuracy.scenes import SCENES, with_knob
 
 ENERGIES = (0.0025, 0.01, 0.04, 0.16)
@@ -27,7 +21,7 @@ scenes = st.sampled_from([scene for scene in SCENES.values() if scene.single_kno
 
 def chosen(scene, error):
     """Numerics for an error."""
-    return chosen_numerics(error, scene.kind, scene.spectrum, scene.elastic_energy, scene.reference)
+    return chosen_knobs(error, scene.kind, scene.spectrum, scene.elastic_energy)
 
 
 def stated(scene, numerics, size=LAW_SIZE):
@@ -56,11 +50,11 @@ def test_no_knob_that_is_made_finer_states_a_larger_error(scene, knob, steps):
 
 
 @given(scene=scenes, error=st.sampled_from([0.1, 0.03, 0.01]))
-def test_the_chosen_numerics_state_no_more_than_the_error_that_was_asked_for(scene, error):
+def test_the_chosen_knobs_state_no_more_than_the_error_that_was_asked_for(scene, error):
     assert max(stated(scene, chosen(scene, error))) <= 1.05 * error
 
 
-def test_the_chosen_numerics_are_not_much_finer_than_the_error_needs():
+def test_the_chosen_knobs_are_not_much_finer_than_the_error_needs():
     for scene in SCENES.values():
         if scene.elastic_energy >= 0.04 and scene.single_knobs:
             assert max(stated(scene, chosen(scene, 0.01))) > 0.007

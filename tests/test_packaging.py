@@ -83,7 +83,8 @@ def test_the_wheel_holds_the_laws_and_the_types_and_no_tests(wheel):
     modules = {str(path.relative_to(ROOT)) for path in (ROOT / "crackfront").rglob("*.py")}
     committed = set(told("git", "-C", ROOT, "ls-tree", "-r", "--name-only", "HEAD").splitlines())
     assert (modules & committed) <= set(names)
-    assert {"crackfront/laws.csv", "crackfront/costs.csv", "crackfront/py.typed"} <= set(names)
+    assert {"crackfront/simulate/laws.csv", "crackfront/simulate/costs.csv"} <= set(names)
+    assert {"crackfront/analysis/factors.csv", "crackfront/py.typed"} <= set(names)
     others = {name.split("/")[0] for name in names} - {"crackfront"}
     assert len(others) == 1
     assert others.pop().endswith(".dist-info")

@@ -6,9 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion
-from crackfront.core.field.kinds import first_radius, last_radius, n_angle, polar_field, tile_field
+from crackfront.core.field.fields import first_place, last_place, polar_field, tile_field
 from crackfront.core.field.rays import front_adhesion, sampled_on_rays, swept_adhesion
-from crackfront.core.field.samples import evaluate, sample_count, sample_product, sample_radius
+from crackfront.core.field.samples import evaluate, sample_count, sample_place
+from crackfront.core.geometry.sphere import sphere
 from crackfront.core.units import WORK_OF_ADHESION
 
 
@@ -61,7 +62,7 @@ def test_a_leading_zero_radius_changes_nothing():
     padded = polar_field(
         np.concatenate([[0.0], radii]), np.concatenate([np.ones((1, 8)), adhesion])
     )
-    assert np.array_equal(padded.radii, field.radii)
+    assert np.array_equal(padded.places, field.places)
     assert np.array_equal(padded.products, field.products)
 
 
@@ -77,12 +78,12 @@ def test_a_field_keeps_its_values_when_the_arrays_it_was_made_of_change():
 def test_a_polar_field_states_its_rays_and_its_range():
     radii, adhesion = noisy_polar()
     field = polar_field(radii, adhesion)
-    assert n_angle(field) == 8
-    assert first_radius(field) == radii[0]
-    assert last_radius(field) == radii[-1]
+    assert field.geometry.n_site == 8
+    assert first_place(field) == radii[0]
+    assert last_place(field) == radii[-1]
     assert sample_count(field) == radii.size
-    assert sample_radius(field, 3) == radii[3]
-    assert sample_product(field, 5, 3) == pytest.approx(radii[3] * adhesion[3, 5])
+    assert sample_place(field, 3) == radii[3]
+    assert evaluate(field, 5, 3)[0] == pytest.approx(radii[3] * adhesion[3, 5])
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
@@ -116,8 +117,8 @@ def test_rings_are_one_ray_of_the_same_samples_and_slopes(interpolation, innermo
     rings = WORK_OF_ADHESION * rng.uniform(0.5, 1.5, 20)
     one = polar_field(radii, rings, interpolation)
     many = polar_field(radii, np.repeat(rings[:, None], 8, axis=1), interpolation)
-    assert n_angle(one) == 1
-    assert np.array_equal(one.radii, many.radii)
+    assert one.geometry.n_site == 1
+    assert np.array_equal(one.places, many.places)
     for found, expected in ((one.products, many.products), (one.slopes, many.slopes)):
         assert np.array_equal(found, expected[:1])
         assert found.flags.c_contiguous
@@ -157,11 +158,11 @@ def test_a_field_with_too_few_samples_or_angles_is_refused(n_sample, n_angle):
 
 def test_a_tile_is_met_at_its_own_points_along_both_axes(rng):
     values = 1 + 0.3 * rng.standard_normal((10, 10))
-    field = tile_field(tile(values), n_angle=4, spacing=0.1, largest_radius=1.2)
+    field = tile_field(tile(values), geometry=sphere(4), spacing=0.1, largest_place=1.2)
     for sample in range(12):
         ahead, behind = (5 + sample + 1) % 10, (5 - sample - 1) % 10
         met = [values[ahead, 5], values[5, ahead], values[behind, 5], values[5, behind]]
-        found = [sample_product(field, ray, sample) for ray in range(4)]
+        found = [evaluate(field, ray, sample)[0] for ray in range(4)]
         assert np.allclose(found, 0.1 * (sample + 1) * np.array(met), rtol=1e-12)
 
 
@@ -170,10 +171,10 @@ def test_the_apex_is_half_a_side_from_the_first_point_on_even_and_odd_tiles():
         period = n_point * 0.1
         x = 0.1 * np.arange(n_point)
         values = 1 + 0.3 * np.cos(2 * np.pi * (x - period / 2) / period)[:, None] * np.ones(n_point)
-        field = tile_field(tile(values), 4, spacing=0.01, largest_radius=0.2)
+        field = tile_field(tile(values), sphere(4), spacing=0.01, largest_place=0.2)
         # The field is symmetric about the apex, and highest there.
-        assert sample_product(field, 0, 9) == pytest.approx(sample_product(field, 2, 9), rel=1e-13)
-        assert sample_product(field, 0, 0) / 0.01 == pytest.approx(1.3, abs=1e-3)
+        assert evaluate(field, 0, 9)[0] == pytest.approx(evaluate(field, 2, 9)[0], rel=1e-13)
+        assert evaluate(field, 0, 0)[0] / 0.01 == pytest.approx(1.3, abs=1e-3)
 
 
 def test_interpolation_of_a_tile_converges_with_fourth_order():
@@ -181,13 +182,13 @@ def test_interpolation_of_a_tile_converges_with_fourth_order():
     for n_point in (16, 32, 64):
         pixel = 1.0 / n_point
         x = pixel * np.arange(n_point) - 0.5
-        field = tile_field(tile(wavy(x[:, None], x[None, :], 1.0), pixel), 32, 0.0173, 1.6)
+        field = tile_field(tile(wavy(x[:, None], x[None, :], 1.0), pixel), sphere(32), 0.0173, 1.6)
         angle = 2 * np.pi * np.arange(32) / 32
         error = 0.0
         for sample in range(0, 90, 3):
-            radius = sample_radius(field, sample)
+            radius = sample_place(field, sample)
             exact = wavy(radius * np.cos(angle), radius * np.sin(angle), 1.0)
-            found = [sample_product(field, ray, sample) / radius for ray in range(32)]
+            found = [evaluate(field, ray, sample)[0] / radius for ray in range(32)]
             error = max(error, np.abs(found - exact).max())
         errors.append(error)
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
@@ -200,24 +201,24 @@ def test_a_tile_smaller_than_the_contact_repeats(rng):
     # Doubling moves the apex to a corner of the original cell: roll by half a side.
     doubled = np.roll(np.tile(values, (2, 2)), (6, 6), axis=(0, 1))
     front = rng.uniform(0.1, 4.0, 16)
-    small = tile_field(tile(values), 16, 0.03, 4.0)
-    large = tile_field(tile(doubled), 16, 0.03, 4.0)
+    small = tile_field(tile(values), sphere(16), 0.03, 4.0)
+    large = tile_field(tile(doubled), sphere(16), 0.03, 4.0)
     assert np.allclose(front_adhesion(front, small), front_adhesion(front, large), rtol=1e-12)
 
 
 def test_a_tile_may_have_sides_of_different_length(rng):
     values = 1 + 0.3 * rng.standard_normal((8, 12))
-    field = tile_field(tile(values), 4, 0.1, 2.0)
+    field = tile_field(tile(values), sphere(4), 0.1, 2.0)
     for step in (0, 3, 11, 17):
         radius = 0.1 * (step + 1)
         along_x = values[(4 + step + 1) % 8, 6]
         along_y = values[4, (6 + step + 1) % 12]
-        assert sample_product(field, 0, step) == pytest.approx(radius * along_x)
-        assert sample_product(field, 1, step) == pytest.approx(radius * along_y)
+        assert evaluate(field, 0, step)[0] == pytest.approx(radius * along_x)
+        assert evaluate(field, 1, step)[0] == pytest.approx(radius * along_y)
 
 
 def test_a_constant_tile_is_constant_everywhere():
-    field = tile_field(tile(np.full((5, 5), 0.7)), 7, 0.013, 3.0)
+    field = tile_field(tile(np.full((5, 5), 0.7)), sphere(7), 0.013, 3.0)
     front = np.linspace(0.02, 2.9, 7)
     assert np.allclose(front_adhesion(front, field), 0.7, rtol=1e-14)
 
@@ -225,21 +226,21 @@ def test_a_constant_tile_is_constant_everywhere():
 @pytest.mark.parametrize("interpolation", ["linear", "cubic"])
 def test_the_rays_of_a_tile_sampled_beforehand_are_the_same_field(rng, interpolation):
     values = 1 + 0.3 * rng.standard_normal((16, 16))
-    field = tile_field(tile(values), 12, 0.04, 1.5, interpolation)
+    field = tile_field(tile(values), sphere(12), 0.04, 1.5, interpolation)
     polar = sampled_on_rays(field)
     front = rng.uniform(0.05, 1.45, 12)
     assert np.allclose(front_adhesion(front, polar), front_adhesion(front, field), rtol=1e-13)
-    assert last_radius(polar) == last_radius(field) >= 1.5
-    assert first_radius(polar) == first_radius(field) == 0.04
+    assert last_place(polar) == last_place(field) >= 1.5
+    assert first_place(polar) == first_place(field) == 0.04
 
 
 def test_straight_pieces_of_a_tile_join_its_samples(rng):
     values = 1 + 0.3 * rng.standard_normal((16, 16))
-    field = tile_field(tile(values), 12, 0.04, 1.5, "linear")
+    field = tile_field(tile(values), sphere(12), 0.04, 1.5, "linear")
     radii = 0.04 * np.arange(1, 39)
     front = rng.uniform(0.05, 1.45, 12)
     for ray in range(12):
-        samples = [sample_product(field, ray, k) for k in range(38)]
+        samples = [evaluate(field, ray, k)[0] for k in range(38)]
         expected = np.interp(front[ray], radii, samples)
         found = front[ray] * front_adhesion(front, field)[ray]
         assert found == pytest.approx(expected, rel=1e-13)
@@ -250,7 +251,7 @@ def test_pieces_converge_to_the_tile_with_their_order(interpolation, order):
     n_point = 32
     x = 1.6 / n_point * np.arange(n_point)
     smooth = tile(wavy(x[:, None], x[None, :], 1.6), 1.6 / n_point)
-    fine = tile_field(smooth, 16, 1e-4, 1.5)
+    fine = tile_field(smooth, sphere(16), 1e-4, 1.5)
     front = np.random.default_rng(3).uniform(0.3, 1.4, 16)
     expected = front_adhesion(front, fine)
     spacings = np.array([0.04, 0.02, 0.01])
@@ -265,7 +266,7 @@ def test_pieces_converge_to_the_tile_with_their_order(interpolation, order):
             )
         )
         for spacing in spacings
-        for field in [tile_field(smooth, 16, spacing, 1.5, interpolation)]
+        for field in [tile_field(smooth, sphere(16), spacing, 1.5, interpolation)]
     ]
     assert np.all(np.isfinite(expected))
     observed = np.polyfit(np.log(spacings), np.log(errors), 1)[0]
@@ -275,12 +276,12 @@ def test_pieces_converge_to_the_tile_with_their_order(interpolation, order):
 @pytest.mark.parametrize("kind", ["tile", "polar"])
 def test_cubic_pieces_have_one_slope_where_they_meet(rng, kind):
     if kind == "tile":
-        field = tile_field(tile(1 + 0.3 * rng.standard_normal((16, 16))), 8, 0.05, 1.5)
+        field = tile_field(tile(1 + 0.3 * rng.standard_normal((16, 16))), sphere(8), 0.05, 1.5)
     else:
         radii = 0.05 * np.arange(1, 31)
         field = polar_field(radii, 1 + 0.3 * rng.standard_normal((30, 8)), "cubic")
     for sample in (3, 11, 20):
-        radius, step = sample_radius(field, sample), 1e-7
+        radius, step = sample_place(field, sample), 1e-7
         inner, at, outer = (
             (radius + way) * front_adhesion(np.full(8, radius + way), field)
             for way in (-step, 0.0, step)
@@ -294,13 +295,13 @@ def test_an_unknown_interpolation_is_refused():
     with pytest.raises(ValueError, match="interpolation is 'quintic'; choose one of cubic, linear"):
         polar_field(*noisy_polar(), interpolation="quintic")
     with pytest.raises(ValueError, match="interpolation is 'quintic'; choose one of cubic, linear"):
-        tile_field(tile(np.ones((8, 8))), 8, 0.1, 1.0, "quintic")
+        tile_field(tile(np.ones((8, 8))), sphere(8), 0.1, 1.0, "quintic")
 
 
 def test_a_chemical_map_serves_as_a_field(rng):
     adhesion = chemical_adhesion(0.1 * rng.standard_normal((8, 8)), 0.1)
-    field = tile_field(adhesion, 8, 0.05, 1.0)
-    assert n_angle(field) == 8
+    field = tile_field(adhesion, sphere(8), 0.05, 1.0)
+    assert field.geometry.n_site == 8
     assert np.all(np.isfinite(front_adhesion(np.full(8, 0.5), field)))
 
 
@@ -309,23 +310,23 @@ def test_a_tile_with_a_value_that_is_not_finite_is_refused_with_its_place(value)
     values = np.ones((8, 8))
     values[2, 5] = value
     with pytest.raises(ValueError, match=f"work of adhesion is {value} at x index 2, y index 5"):
-        tile_field(tile(values), 8, 0.1, 1.0)
+        tile_field(tile(values), sphere(8), 0.1, 1.0)
 
 
 def test_a_tile_of_zeros_is_refused():
     with pytest.raises(ValueError, match="zero everywhere; nothing adheres"):
-        tile_field(tile(np.zeros((8, 8))), 8, 0.1, 1.0)
+        tile_field(tile(np.zeros((8, 8))), sphere(8), 0.1, 1.0)
 
 
 def test_a_tile_for_fewer_than_four_angles_is_refused():
     with pytest.raises(ValueError, match="number of angles is 3; at least 4 are needed"):
-        tile_field(tile(np.ones((8, 8))), 3, 0.1, 1.0)
+        tile_field(tile(np.ones((8, 8))), sphere(3), 0.1, 1.0)
 
 
 @pytest.mark.parametrize("spacing", [0.0, -0.1, 0.5, float("nan")])
 def test_a_sample_spacing_that_cannot_resolve_the_ray_is_refused(spacing):
     with pytest.raises(ValueError, match=f"sample spacing {spacing} must be positive and below"):
-        tile_field(tile(np.ones((8, 8))), 8, spacing, 1.0)
+        tile_field(tile(np.ones((8, 8))), sphere(8), spacing, 1.0)
 
 
 # --- swept adhesion
@@ -371,7 +372,9 @@ def test_the_derivative_of_swept_adhesion_is_the_product_under_the_site():
 
 @pytest.mark.parametrize("interpolation", ["linear", "cubic"])
 def test_swept_adhesion_of_a_tile_is_the_integral_of_its_products(rng, interpolation):
-    field = tile_field(tile(1 + 0.3 * rng.standard_normal((16, 16))), 8, 0.04, 1.5, interpolation)
+    field = tile_field(
+        tile(1 + 0.3 * rng.standard_normal((16, 16))), sphere(8), 0.04, 1.5, interpolation
+    )
     before, after = rng.uniform(0.1, 1.4, 8), rng.uniform(0.1, 1.4, 8)
     share = np.linspace(0, 1, 20001)
     fronts = before[:, None] + (after - before)[:, None] * share
@@ -387,9 +390,9 @@ def test_splines_of_a_band_limited_tile_keep_the_amplitudes_of_its_modes():
     wave = tile(1 + 0.5 * np.cos(q * x)[:, None] * np.ones(n_point), pixel)
     amplitudes = {}
     for band_limited in (False, True):
-        field = tile_field(wave, 4, 0.001, 3.2, band_limited=band_limited)
-        radii = np.array([sample_radius(field, k) for k in range(3200)])
-        values = np.array([sample_product(field, 0, k) for k in range(3200)]) / radii
+        field = tile_field(wave, sphere(4), 0.001, 3.2, band_limited=band_limited)
+        radii = np.array([sample_place(field, k) for k in range(3200)])
+        values = np.array([evaluate(field, 0, k)[0] for k in range(3200)]) / radii
         # The apex is 16 points, four waves, from the first point.
         amplitudes[band_limited] = 2 * np.mean((values - 1) * np.cos(q * radii)) / 0.5
     assert amplitudes[True] == pytest.approx(1, abs=1e-5)

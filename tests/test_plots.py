@@ -13,7 +13,8 @@ from crackfront.analysis.table import SweepTable
 from crackfront.core import jkr
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import polar_field
+from crackfront.core.field.fields import polar_field
+from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.loop import loop_figure
@@ -65,7 +66,7 @@ def record():
     angle = np.linspace(0, 2 * np.pi, 32, endpoint=False)
     bumps = 1 + 0.2 * np.sin(8 * np.pi * radii)[:, None] * np.cos(4 * angle)
     return run_cycle(
-        polar_field(radii, WORK_OF_ADHESION * bumps), LoadSchedule(1.0, 0.05), tolerance=1e-6
+        polar_field(radii, WORK_OF_ADHESION * bumps), LoadSchedule(1.0, 0.05), Newton(1e-6)
     )
 
 
@@ -116,34 +117,39 @@ def test_the_inset_compares_spectra_of_equal_elastic_energy(table, fit):
         np.testing.assert_allclose(density, spectrum.density(wavevector))
 
 
+def measured(steady):
+    """Works of adhesion and their window, as a loop is drawn with them."""
+    return (steady.w_appr, steady.w_retr), (steady.lowest_radius, steady.highest_radius)
+
+
 def test_the_loop_lies_between_its_curves(record):
     steady = steady_adhesion(record, correlation_length=0.1)
-    axes = loop_figure(record, steady, elastic_energy=0.01, title="loop").axes[0]
+    axes = loop_figure(record.states, *measured(steady), elastic_energy=0.01, title="loop").axes[0]
     assert axes.get_title() == "loop"
-    for words, adhesion in (("appr", steady.approach), ("retr", steady.retraction)):
+    for words, adhesion in (("appr", steady.w_appr), ("retr", steady.w_retr)):
         radius, force = line_labelled(axes, f"\\mathrm{{{words}}}").get_data()
         np.testing.assert_allclose(force, jkr.equilibrium_force(radius, adhesion))
     drawn = line_labelled(axes, "approach").get_xdata()
-    np.testing.assert_array_equal(drawn, record.mean_radius[record.direction > 0])
+    np.testing.assert_array_equal(drawn, record.states.mean_radius[record.states.direction > 0])
 
 
 def test_a_loop_without_steady_states_is_drawn_without_curves(record):
     steady = steady_adhesion(record, correlation_length=10.0)
-    axes = loop_figure(record, steady).axes[0]
+    axes = loop_figure(record.states, *measured(steady)).axes[0]
     assert not [line for line in axes.get_lines() if "JKR" in str(line.get_label())]
 
 
 def test_an_empty_record_is_refused(record):
-    empty = replace(record, mean_radius=np.array([]))
+    empty = replace(record.states, mean_radius=np.array([]))
     with pytest.raises(ValueError, match="holds no state"):
-        loop_figure(empty, steady_adhesion(record, 0.1))
+        loop_figure(empty, *measured(steady_adhesion(record, 0.1)))
 
 
 def test_a_figure_is_the_same_file_again_whatever_the_user_settings(table, fit, record, tmp_path):
     steady = steady_adhesion(record, correlation_length=0.1)
     makers = (
         lambda: hysteresis_figure(table, fit),
-        lambda: loop_figure(record, steady, elastic_energy=0.01),
+        lambda: loop_figure(record.states, *measured(steady), elastic_energy=0.01),
     )
     for number, make in enumerate(makers):
         first = save_figure(make(), tmp_path / "one" / f"figure.{number}")

@@ -16,7 +16,7 @@ from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.cli import main
 from crackfront.core.records import variables
 from crackfront.core.units import Scales
-from crackfront.simulate.field_files import read_field
+from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import read_cycle
 from crackfront.topography.drawing import prediction_figure
 from crackfront.topography.files import Treatment
@@ -280,7 +280,7 @@ def test_a_map_becomes_a_field_that_a_cycle_runs_on(tmp_path):
     more = ("--max-penetration", 0.2, "--step", 0.4, "--tolerance", 1e-3, "--angles", 64)
     result = run("cycle", "--field", field, *more, "--output", out)
     assert result.exit_code == 0, result.output
-    assert read_cycle(out).penetration.size > 1
+    assert read_cycle(out).states.penetration.size > 1
 
 
 def test_a_surface_alone_has_no_energy_and_with_a_sphere_it_has(surface):

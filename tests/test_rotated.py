@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crackfront.core.adhesion import rough_adhesion
-from crackfront.core.field.kinds import polar_field
+from crackfront.core.field.fields import polar_field
 from crackfront.core.rotated import adhesion_on_rays, rotated_field
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field

@@ -8,18 +8,22 @@ import pytest
 
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
-from crackfront.core.cycle.history import FrontHistory
-from crackfront.core.cycle.record import CycleState
+from crackfront.core.adhesion import correlation_length
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.cycle.run import first_touch
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule, forward_circle, run_steady, standard_error
-from crackfront.core.field.kinds import first_radius, polar_field
+from crackfront.core.field.fields import polar_field
 from crackfront.core.field.rays import front_adhesion
-from crackfront.core.solver.relax import Status
+from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.outcome import Status
+from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.contact import contact_field, simulation_adhesion
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Resolution, Simulation, correlation_length
+from crackfront.simulate.simulation import Resolution, Simulation
 
 SPECTRUM = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
 LENGTH = correlation_length("roughness", SPECTRUM)
@@ -36,11 +40,8 @@ def simulation(elastic_energy=0.04, realisation=0, schedule=SCHEDULE):
         sweep_seed=3,
         resolution=Resolution(320, 0.025, "cubic", 4.0, 160),
         schedule=schedule,
-        tolerance=1e-9,
-        max_sweeps=10**7,
-        solver="newton",
+        solver=Newton(1e-9),
         record_fronts=True,
-        record_energy=False,
     )
 
 
@@ -58,32 +59,29 @@ def test_its_fronts_are_those_of_the_full_cycle(elastic_energy):
     steady = run_simulation(one).record
     assert steady.status is Status.STEADY
     # The cycle goes deeper, so that both of its branches are steady over the same radii.
-    cycle = FrontHistory(
-        field, np.full(320, first_radius(field)), tolerance=1e-9, record_fronts=True
-    )
-    n_approach = np.count_nonzero(steady.direction > 0)
-    for penetration in (*steady.penetration[:n_approach], 1.6):
-        cycle.follow(penetration, 1)
-    for penetration in steady.penetration[n_approach:]:
-        cycle.follow(penetration, -1)
+    n_approach = np.count_nonzero(steady.states.direction > 0)
+    loads = [Load(b, 1) for b in (*steady.states.penetration[:n_approach], 1.6)]
+    loads += [Load(b, -1) for b in steady.states.penetration[n_approach:]]
+    cycle = Recorder(fronts=True)
+    cycle.run(field, first_touch(field), loads, Newton(1e-9))
     expected = cycle.record()
-    found = np.delete(expected.radius, n_approach, axis=0)
-    travel = np.delete(expected.least_travel, n_approach)
-    compared = (travel >= LENGTH) & (steady.least_travel >= LENGTH)
+    found = np.delete(expected.fronts, n_approach, axis=0)
+    travel = np.delete(expected.states.least_travel, n_approach)
+    compared = (travel >= LENGTH) & (steady.states.least_travel >= LENGTH)
     assert np.count_nonzero(compared[:n_approach]) >= 5
     assert np.count_nonzero(compared[n_approach:]) >= 3
-    difference = np.max(np.abs(found - steady.radius)[compared])
+    difference = np.max(np.abs(found - steady.fronts)[compared])
     assert difference < 1e-5 * SPECTRUM.short_cutoff
 
 
 def test_it_passes_the_same_radii_in_both_directions_and_not_many_more():
     record = run_simulation(simulation()).record
-    approach, retraction = record.direction > 0, record.direction < 0
-    steady = approach & (record.least_travel >= LENGTH)
-    lowest = record.mean_radius[steady].min()
-    assert np.count_nonzero(record.mean_radius[retraction] < lowest) == 1
-    assert record.penetration[approach][0] == 0.4
-    assert 0.95 < record.penetration[approach][-1] <= 1.0
+    approach, retraction = record.states.direction > 0, record.states.direction < 0
+    steady = approach & (record.states.least_travel >= LENGTH)
+    lowest = record.states.mean_radius[steady].min()
+    assert np.count_nonzero(record.states.mean_radius[retraction] < lowest) == 1
+    assert record.states.penetration[approach][0] == 0.4
+    assert 0.95 < record.states.penetration[approach][-1] <= 1.0
     adhesion = steady_adhesion(record, LENGTH)
     assert adhesion.sentence == ""
     assert adhesion.n_retraction >= 5
@@ -93,9 +91,12 @@ def test_the_approach_ends_when_the_requested_error_is_met():
     found = {}
     for error in (1e-6, 0.45, 1.0):
         record = run_simulation(simulation(schedule=replace(SCHEDULE, error=error))).record
-        steady = (record.direction > 0) & (record.least_travel >= LENGTH)
-        values, radius = record.apparent_work_of_adhesion[steady], record.mean_radius[steady]
-        roughness = record.rms_radius[steady]
+        steady = (record.states.direction > 0) & (record.states.least_travel >= LENGTH)
+        values, radius = (
+            record.states.apparent_work_of_adhesion[steady],
+            record.states.mean_radius[steady],
+        )
+        roughness = record.states.rms_radius[steady]
         reached = standard_error(values, radius, roughness, LENGTH)
         before = standard_error(values[:-1], radius[:-1], roughness[:-1], LENGTH)
         found[error] = values.size
@@ -114,7 +115,7 @@ def test_the_hysteresis_agrees_with_that_of_the_full_cycle_at_a_part_of_the_work
         differences.append(
             steady_adhesion(steady, LENGTH).hysteresis - steady_adhesion(cycle, LENGTH).hysteresis
         )
-        work.append(steady.iterations.sum() / cycle.iterations.sum())
+        work.append(steady.states.iterations.sum() / cycle.states.iterations.sum())
     error = np.std(differences, ddof=1) / math.sqrt(len(differences))
     assert abs(np.mean(differences)) < 4 * error
     assert np.mean(work) < 0.75
@@ -153,8 +154,8 @@ def test_contact_that_is_lost_on_the_way_back_is_told():
     schedule = SteadySchedule(0.0, 1.0, 2.0, 1e-9)
     record = run_steady(field, schedule, correlation_length=0.05, elastic_energy=0.25)
     assert record.status is Status.LOST_CONTACT
-    assert record.mean_radius[0] < record.mean_radius[-1]
-    assert -1.8 < record.end_penetration < record.penetration[-1] < -1
+    assert record.states.mean_radius[0] < record.states.mean_radius[-1]
+    assert -1.8 < record.end_load < record.states.penetration[-1] < -1
 
 
 def test_states_closer_than_a_correlation_length_count_as_one():
@@ -180,8 +181,8 @@ def test_the_standard_error_covers_the_scatter_between_realisations():
     for realisation in range(12):
         record = run_simulation(simulation(realisation=realisation)).record
         adhesion = steady_adhesion(record, LENGTH)
-        estimates.append(adhesion.retraction_error)
-        values.append(adhesion.retraction)
+        estimates.append(adhesion.w_retr_error)
+        values.append(adhesion.w_retr)
     assert 0.4 < np.mean(estimates) / np.std(values, ddof=1) < 2.5
 
 
@@ -207,8 +208,8 @@ def test_progress_is_told_state_by_state():
         SCHEDULE,
         correlation_length=LENGTH,
         elastic_energy=0.04,
-        tolerance=1e-6,
-        progress=told.append,
+        solver=Newton(1e-6),
+        recorder=Recorder(observers=[lambda one: told.append(one.states[-1])]),
     )
-    assert len(told) == record.penetration.size
-    assert isinstance(told[0], CycleState)
+    assert len(told) == record.states.penetration.size
+    assert isinstance(told[0], ContactState)

@@ -107,9 +107,9 @@ def test_a_file_of_an_older_solver_is_not_found(store, monkeypatch):
 @pytest.mark.parametrize(
     ("change", "part"),
     [
-        ({"tolerance": 1e-7}, "numerics"),
+        ({"solver": replace(FLAT[0].solver, tolerance=1e-7)}, "numerics"),
         ({"sweep_seed": 2}, "seed"),
-        ({"max_sweeps": 7}, "numerics"),
+        ({"solver": replace(FLAT[0].solver, max_sweeps=7)}, "numerics"),
     ],
 )
 def test_what_is_stale_is_told_with_what_has_changed(store, change, part):
@@ -161,7 +161,7 @@ def test_a_line_in_a_journal_without_its_file_does_not_count(store):
 
 
 def test_a_failed_simulation_is_stored_with_its_status(store):
-    limited = replace(FLAT[0], max_sweeps=1)
+    limited = replace(FLAT[0], solver=replace(FLAT[0].solver, max_sweeps=1))
     [(_, finished)] = fill(store, [limited])
     assert finished.status == "step_limit"
     assert read_simulation(store.path(limited), limited).record.status.name == "STEP_LIMIT"

@@ -99,5 +99,5 @@ def test_a_sweep_in_metres_is_the_reduced_one_to_round_off():
     metres = NamedSpectrum("rough", SelfAffineSpectrum(*there_and_back, item.spectrum.hurst))
     one, other = (run_simulation(SWEEP.simulation(one, 0.1, 0)) for one in (item, metres))
     assert other.simulation.key != one.simulation.key
-    assert other.record.mean_radius == pytest.approx(one.record.mean_radius, rel=1e-9)
-    assert other.record.force == pytest.approx(one.record.force, rel=1e-9)
+    assert other.record.states.mean_radius == pytest.approx(one.record.states.mean_radius, rel=1e-9)
+    assert other.record.states.force == pytest.approx(one.record.states.force, rel=1e-9)

@@ -18,10 +18,10 @@ from click.testing import CliRunner
 
 from crackfront.cli import main
 from crackfront.cli.watch import Canvas, Watch, frame, state_line
-from crackfront.core.cycle.record import Checkpoint
+from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import polar_field
+from crackfront.core.field.fields import polar_field
 from crackfront.core.units import WORK_OF_ADHESION
 
 
@@ -39,10 +39,11 @@ def rays(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def circle():
-    """States of a smooth contact up to its largest load."""
+    """Recorder of a smooth contact, past its largest load."""
     field = polar_field(0.05 * np.arange(1, 61), np.full((60, 8), WORK_OF_ADHESION))
-    record = run_cycle(field, LoadSchedule(1.0, 0.5), record_fronts=True)
-    return Checkpoint(record, record.radius[2], record.radius[2])
+    recorder = Recorder()
+    run_cycle(field, LoadSchedule(1.0, 0.5), recorder=recorder)
+    return recorder
 
 
 def on_a_terminal(arguments, columns):
@@ -81,7 +82,10 @@ def test_a_character_has_the_colour_of_its_last_dot():
 
 @pytest.mark.parametrize("columns", [60, 79, 140])
 def test_a_frame_fits_the_terminal_and_the_front_is_round(circle, columns):
-    lines = [click.unstyle(line) for line in frame(circle, columns, 2.0, (-2.0, 1.0))]
+    lines = [
+        click.unstyle(line)
+        for line in frame(circle.states, circle.front, columns, 2.0, (-2.0, 1.0))
+    ]
     assert all(len(line) <= columns for line in lines)
     plane = [line.split("│")[0] for line in lines[:-1]]
     dots = [
@@ -99,10 +103,10 @@ def test_a_frame_fits_the_terminal_and_the_front_is_round(circle, columns):
 
 
 def test_the_line_of_a_state_tells_branch_load_radius_and_force(circle):
-    record = circle.record
-    assert state_line(record) == (
-        f"state {record.force.size}, retraction: penetration {record.penetration[-1]:+.4f}, "
-        f"radius {record.mean_radius[-1]:.4f}, force {record.force[-1]:+.4f}"
+    last = circle.states[-1]
+    assert state_line(circle.states) == (
+        f"state {len(circle.states)}, retraction: penetration {last.penetration:+.4f}, "
+        f"radius {last.mean_radius:.4f}, force {last.force:+.4f}"
     )
 
 
@@ -135,11 +139,11 @@ def test_a_terminal_without_room_for_the_panels_shows_the_line_alone(
     monkeypatch.setattr(os, "get_terminal_size", lambda _: os.terminal_size(size))
     monkeypatch.setattr(sys, "stderr", terminal)
     shown = Watch(1.0)
-    shown(lambda: circle)
+    shown(circle)
     shown.finish()
     first, second = terminal.getvalue().split(f"\x1b[{height}A\x1b[J")
     assert first == second
-    assert first.startswith(state_line(circle.record))
+    assert first.startswith(state_line(circle.states))
     assert len(first.splitlines()) == height
 
 

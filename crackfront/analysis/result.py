@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.table import SweepTable
+from crackfront.core.adhesion import FieldKind
 
 Array = NDArray[np.float64]
 
 SPECTRUM, AMPLITUDE = "spectrum", "amplitude"
 """Names of the dimensions."""
-
-FieldKind = Literal["roughness", "chemical"]
-"""Roughness lowers the mean work of adhesion by e_el, chemical heterogeneity does not."""
 
 
 @dataclass(frozen=True, slots=True)

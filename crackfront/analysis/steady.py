@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 
 from crackfront.core import jkr
 from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.cycle.steady import standard_error
+from crackfront.core.cycle.steady import FEWEST_STATES, standard_error
+from crackfront.core.records import ADHESION, LATERAL, variable
 
 Array = NDArray[np.float64]
-
-FEWEST_STATES = 3
-"""Steady states that each branch must have in the common window."""
 
 STEADY_DEFINITION = (
     "w_appr and w_retr are means of the apparent work of adhesion, <a G> / <a> with the mean over "
@@ -33,41 +31,33 @@ STEADY_DEFINITION = (
 """What `w_appr` and `w_retr` mean; stored in every file that holds them."""
 
 
-@dataclass(frozen=True, slots=True)
-class SteadyAdhesion:
+@dataclass(frozen=True)
+class SteadyMeasures:
     """Apparent work of adhesion of the two branches, as :data:`STEADY_DEFINITION` says.
 
-    Attributes
-    ----------
-    approach, retraction : float
-        w_appr and w_retr; NaN where the record holds no steady window. (Units: w_int)
-    approach_error, retraction_error : float
-        Standard errors of the two, by `standard_error`. (Units: w_int)
-    hysteresis, midpoint : float
-        w_retr - w_appr and their mean. (Units: w_int)
-    approach_from_force, retraction_from_force : float
-        Work of adhesion of the JKR curve that fits force against mean radius. (Units: w_int)
-    lowest_radius, highest_radius : float
-        Window of mean radii. (Units: reduced lateral length)
-    n_approach, n_retraction : int
-        States averaged.
-    sentence : str
-        Why there is no value; empty where there is one.
+    NaN where a record holds no steady window.
     """
 
-    approach: float
-    retraction: float
-    approach_error: float
-    retraction_error: float
-    hysteresis: float
-    midpoint: float
-    approach_from_force: float
-    retraction_from_force: float
-    lowest_radius: float
-    highest_radius: float
-    n_approach: int
-    n_retraction: int
-    sentence: str
+    w_appr: float = variable("apparent work of adhesion in steady approach", ADHESION)
+    w_retr: float = variable("apparent work of adhesion in steady retraction", ADHESION)
+    w_appr_error: float = variable("standard error of w_appr over its states", ADHESION)
+    w_retr_error: float = variable("standard error of w_retr over its states", ADHESION)
+    hysteresis: float = variable("w_retr - w_appr", ADHESION)
+    midpoint: float = variable("(w_retr + w_appr) / 2", ADHESION)
+    w_appr_from_force: float = variable("w of the JKR curve fitted to the approach", ADHESION)
+    w_retr_from_force: float = variable("w of the JKR curve fitted to the retraction", ADHESION)
+    hysteresis_from_force: float = variable("difference of the two JKR curves' w", ADHESION)
+    n_approach: int = variable("states that w_appr averages", "1")
+    n_retraction: int = variable("states that w_retr averages", "1")
+    lowest_radius: float = variable("smallest mean radius of the steady window", LATERAL)
+    highest_radius: float = variable("largest mean radius of the steady window", LATERAL)
+
+
+@dataclass(frozen=True)
+class SteadyAdhesion(SteadyMeasures):
+    """The measures of one record, and a sentence that says why it has none, else empty."""
+
+    sentence: str = ""
 
 
 def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdhesion:
@@ -95,9 +85,9 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
         raise ValueError(
             f"correlation length is {correlation_length}; it must be positive and finite"
         )
-    steady = record.least_travel >= correlation_length
-    approach = steady & (record.direction > 0)
-    retraction = steady & (record.direction < 0)
+    steady = record.states.least_travel >= correlation_length
+    approach = steady & (record.states.direction > 0)
+    retraction = steady & (record.states.direction < 0)
     counts = int(np.count_nonzero(approach)), int(np.count_nonzero(retraction))
     if min(counts) < FEWEST_STATES:
         return _no_value(
@@ -105,7 +95,7 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
             f"{counts[0]} steady states in approach and {counts[1]} in retraction; "
             f"{FEWEST_STATES} each are needed, so penetrate deeper or use a smaller load step",
         )
-    radius = record.mean_radius
+    radius = record.states.mean_radius
     lowest = float(max(radius[approach].min(), radius[retraction].min()))
     highest = float(min(radius[approach].max(), radius[retraction].max()))
     inside = (radius >= lowest) & (radius <= highest)
@@ -118,27 +108,32 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
             f"retraction at equal mean radii; {FEWEST_STATES} each are needed, so penetrate "
             "deeper or use a smaller load step",
         )
-    values = record.apparent_work_of_adhesion
+    values = record.states.apparent_work_of_adhesion
     errors = [
         standard_error(
-            values[branch], radius[branch], record.rms_radius[branch], correlation_length
+            values[branch], radius[branch], record.states.rms_radius[branch], correlation_length
         )
         for branch in (approach, retraction)
     ]
     w_appr, w_retr = float(np.mean(values[approach])), float(np.mean(values[retraction]))
+    from_force = [
+        _adhesion_from_force(radius[branch], record.states.force[branch])
+        for branch in (approach, retraction)
+    ]
     return SteadyAdhesion(
-        approach=w_appr,
-        retraction=w_retr,
-        approach_error=errors[0],
-        retraction_error=errors[1],
+        w_appr=w_appr,
+        w_retr=w_retr,
+        w_appr_error=errors[0],
+        w_retr_error=errors[1],
         hysteresis=w_retr - w_appr,
         midpoint=(w_retr + w_appr) / 2,
-        approach_from_force=_adhesion_from_force(radius[approach], record.force[approach]),
-        retraction_from_force=_adhesion_from_force(radius[retraction], record.force[retraction]),
-        lowest_radius=lowest,
-        highest_radius=highest,
+        w_appr_from_force=from_force[0],
+        w_retr_from_force=from_force[1],
+        hysteresis_from_force=from_force[1] - from_force[0],
         n_approach=counts[0],
         n_retraction=counts[1],
+        lowest_radius=lowest,
+        highest_radius=highest,
         sentence="",
     )
 
@@ -154,4 +149,4 @@ def _adhesion_from_force(radius: Array, force: Array) -> float:
 def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
     """A result without values, and why."""
     nan = math.nan
-    return SteadyAdhesion(*(nan,) * 10, *counts, sentence)
+    return SteadyAdhesion(*(nan,) * 9, *counts, nan, nan, sentence)

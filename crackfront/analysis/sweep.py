@@ -19,14 +19,9 @@ from crackfront.analysis.estimate import (
     slope,
     student_estimate,
 )
-from crackfront.analysis.result import (
-    CellEstimates,
-    FieldKind,
-    ForceDifference,
-    LawEstimates,
-    SweepFit,
-)
+from crackfront.analysis.result import CellEstimates, ForceDifference, LawEstimates, SweepFit
 from crackfront.analysis.table import SweepTable
+from crackfront.core.adhesion import FieldKind
 
 Array = NDArray[np.float64]
 

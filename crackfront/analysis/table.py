@@ -1,4 +1,4 @@
-"""What a fit reads: the works of adhesion of a sweep on plain arrays."""
+"""What the table of a sweep holds, and what a fit reads of it, on plain arrays."""
 
 from __future__ import annotations
 
@@ -7,7 +7,68 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.analysis.steady import SteadyMeasures
+from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
+
 Array = NDArray[np.float64]
+
+SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
+"""Dimensions of a sweep."""
+
+_SHAPE = SPECTRUM, AMPLITUDE
+
+
+@dataclass(frozen=True)
+class RunMeasures:
+    """What is measured on the tile of a simulation, and what the simulation cost."""
+
+    e_el: float = variable("energy of full conformity measured on the tile", ADHESION)
+    w_rms: float = variable("rms of the local work of adhesion measured on the tile", ADHESION)
+    seconds: float = variable("wall time of synthesis and cycle", "s")
+    cpu_seconds: float = variable("processor time of synthesis and cycle", "s")
+    peak_memory: float = variable(
+        "high-water mark of the process when the simulation ended, earlier ones included", "byte"
+    )
+
+
+@dataclass(frozen=True)
+class SweepRow(SteadyMeasures, RunMeasures):
+    """One simulation of a sweep; without a value the works of adhesion are NaN."""
+
+    w_appr_numerical_error: float = variable("expected numerical error of w_appr", ADHESION)
+    w_retr_numerical_error: float = variable("expected numerical error of w_retr", ADHESION)
+    iterations: int = variable("sweeps of the solver, sum over the cycle", "1")
+    n_step: int = variable("states of the cycle", "1")
+    pull_off_force: float = variable("lowest force of a full cycle", FORCE)
+    end_penetration: float = variable("penetration at which the cycle ended", VERTICAL)
+    status: str = variable("how it ended: lost_contact or steady where it is complete", "1")
+    status_sentence: str = variable("the same in words", "1")
+    seed: int = variable("numpy.random.default_rng(seed) gives the surface's noise", "1")
+    curve: str = variable("file of the simulation in the folder curves", "1")
+
+
+@dataclass(frozen=True, slots=True)
+class SweepAxes:
+    """Coordinates of the table of a sweep."""
+
+    spectrum: NDArray[np.str_] = variable("name of the spectrum", "1", SPECTRUM)
+    short_cutoff: Array = variable("shortest wavelength lambda_s", LATERAL, SPECTRUM)
+    roll_off: Array = variable("roll-off wavelength lambda_r", LATERAL, SPECTRUM)
+    hurst: Array = variable("Hurst exponent, without effect on a flat spectrum", "1", SPECTRUM)
+    correlation_length: Array = variable(
+        "wavelength of the mean wavevector of w", LATERAL, SPECTRUM
+    )
+    n_angle: NDArray[np.int64] = variable("sites of the front", "1", *_SHAPE)
+    sample_spacing: Array = variable("distance of samples along a ray", LATERAL, *_SHAPE)
+    tile_side: Array = variable("side of the periodic tile", LATERAL, SPECTRUM)
+    n_point: NDArray[np.int64] = variable("points along a side of the tile", "1", *_SHAPE)
+    tolerance: Array = variable(
+        "largest force along the motion that may be left", ADHESION, *_SHAPE
+    )
+    amplitude: Array = variable("requested e_el (chemical field: w_rms^2/4)", ADHESION, AMPLITUDE)
+    w_rms_requested: Array = variable("requested rms, 2 sqrt(e_el w_int)", ADHESION, AMPLITUDE)
+    realisation: NDArray[np.int64] = variable("number of the realisation", "1", REALISATION)
+
 
 CELL_COLUMNS = (
     "e_el",

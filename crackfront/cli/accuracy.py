@@ -48,11 +48,7 @@ def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
     from crackfront.data.provenance import provenance
     from crackfront.simulate.run import compile_solver
     from crackfront.studies.accuracy.coverage import held_out_coverage
-    from crackfront.studies.accuracy.files import (
-        write_coverage,
-        write_errors,
-        write_samples,
-    )
+    from crackfront.studies.accuracy.files import write_coverage, write_errors, write_samples
     from crackfront.studies.accuracy.sampling import sampling_errors
     from crackfront.studies.accuracy.scenes import SCENES
     from crackfront.studies.accuracy.study import scene_errors

@@ -3,19 +3,47 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
+from dataclasses import MISSING, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from crackfront.cli.report import FILE, announce_compilation, as_json, echo_json, examples
+from crackfront.cli.watch import Watch, state_line
+from crackfront.simulate.cases import CASES, Resolution
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from crackfront.core.cycle.record import Recorder
+    from crackfront.core.field.fields import Interpolation
 
-    from crackfront.core.cycle.record import CycleState
-    from crackfront.core.field.kinds import Field, Interpolation
+
+def _case_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of all cases."""
+    known: dict[str, list[str]] = {}
+    texts: dict[str, str] = {}
+    for name, case in CASES.items():
+        for item in fields(case):
+            flag = _flag(item)
+            known.setdefault(flag, []).append(name)
+            texts.setdefault(flag, item.metadata["text"])
+    for flag, names in reversed(known.items()):
+        owner = "" if len(names) == len(CASES) else f"({', '.join(names)}) "
+        command = click.option(flag, _parameter(flag), type=float, help=owner + texts[flag])(
+            command
+        )
+    return command
+
+
+def _flag(item: Any) -> str:
+    """How the option of a field of a case is written."""
+    return item.metadata["flag"] or f"--{item.name.replace('_', '-')}"
+
+
+def _parameter(flag: str) -> str:
+    """Name of the parameter of an option; some flags are words of Python."""
+    return f"case_{flag.strip('-').replace('-', '_')}"
 
 
 @click.command(
@@ -26,12 +54,14 @@ if TYPE_CHECKING:
     )
 )
 @click.option("--field", "field_file", type=FILE, required=True, help="netCDF file of the field.")
-@click.option("--max-penetration", type=float, required=True, help="Largest penetration.")
 @click.option(
-    "--step",
-    type=float,
-    help="Difference of penetrations.  [default: 0.004, dissipated energies to 1%]",
+    "--geometry",
+    type=click.Choice(list(CASES)),
+    default="sphere",
+    show_default=True,
+    help="What touches the surface.",
 )
+@_case_options
 @click.option(
     "--tolerance",
     type=click.FloatRange(min=0, min_open=True),
@@ -82,8 +112,7 @@ if TYPE_CHECKING:
 @as_json
 def cycle(
     field_file: Path,
-    max_penetration: float,
-    step: float | None,
+    geometry: str,
     tolerance: float,
     solver: str,
     max_sweeps: int,
@@ -94,6 +123,7 @@ def cycle(
     output: Path,
     watch: bool,
     as_json: bool,
+    **given: float | None,
 ) -> None:
     """Run one approach and retraction on a field from a file.
 
@@ -106,87 +136,72 @@ def cycle(
     The exit code is 0 where the cycle ended by losing contact and 1 where it ended early; the
     output is written in both cases. It is 2 where the input cannot be used.
     """
-    import numpy as np
-
-    from crackfront.cli.watch import Watch
-    from crackfront.core.cycle.run import run_cycle
-    from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
-    from crackfront.core.field.kinds import n_angle
-    from crackfront.core.solver.relax import Status
+    from crackfront.core.cycle.record import Recorder
+    from crackfront.core.outcome import Status
+    from crackfront.core.solver.relax import named_solver
     from crackfront.data.provenance import provenance
+    from crackfront.simulate.fields import read_field
     from crackfront.simulate.files import write_cycle
 
-    schedule = LoadSchedule(max_penetration, DEFAULT_STEP if step is None else step)
-    field, directions = _contact(
-        field_file, max_penetration, angles, samples_per_pixel, interpolation
+    case = _case(geometry, given)
+    solution = named_solver(solver, tolerance, max_sweeps)
+    problem = case.problem(
+        lambda: read_field(field_file, interpolation or "linear"),
+        Resolution(angles, samples_per_pixel, interpolation),
     )
-    if "fronts" in record and n_angle(field) == 1:
+    if "fronts" in record and problem.front.size == 1:
         raise ValueError(
             "--record fronts: on rings the front is a circle, whose radius every record holds as "
             "mean_radius; leave it out"
         )
     announce_compilation(err=as_json)
-    shown = Watch(max_penetration) if watch else None
-    outcome = run_cycle(
-        field,
-        schedule,
-        tolerance=tolerance,
-        max_sweeps=max_sweeps,
-        solver=solver,
-        record_fronts="fronts" in record,
-        record_energy="energy" in record,
-        progress=None if watch else _report,
-        keep=shown,
+    shown = Watch(getattr(case, "max_penetration", None)) if watch else None
+    recorder = Recorder(
+        fronts="fronts" in record,
+        energy="energy" in record,
+        observers=[_report if shown is None else shown],
     )
+    recorder.run(problem.field, problem.front, problem.loads, solution)
     if shown is not None:
         shown.finish()
-    write_cycle(output, outcome, provenance(), directions)
+    outcome = recorder.record()
+    write_cycle(output, outcome, provenance(), problem.field.geometry, problem.sites)
+    count, load = len(recorder.states), recorder.load_name
     if as_json:
+        forces = [state.force for state in recorder.states if hasattr(state, "force")]
         echo_json(
             {
                 "output": output,
-                "states": outcome.penetration.size,
+                "states": count,
                 "status": outcome.status.name.lower(),
-                "end_penetration": outcome.end_penetration,
-                "lowest_force": float(np.min(outcome.force)) if outcome.force.size else None,
+                f"end_{load}": outcome.end_load,
+                "lowest_force": min(forces, default=None),
             }
         )
     else:
-        click.echo(f"{outcome.penetration.size} states: {output}")
-    if outcome.status is not Status.LOST_CONTACT:
-        raise click.ClickException(
-            f"at penetration {outcome.end_penetration:.6g} {outcome.status.value}"
-        )
-    if not as_json:
-        click.echo(f"contact was lost at penetration {outcome.end_penetration:.6g}")
+        click.echo(f"{count} states: {output}")
+    if outcome.status is not Status[case.ends_by]:
+        raise click.ClickException(f"at {load} {outcome.end_load:.6g} {outcome.status.value}")
+    if not as_json and outcome.status is Status.LOST_CONTACT:
+        click.echo(f"contact was lost at {load} {outcome.end_load:.6g}")
 
 
-def _contact(
-    path: Path,
-    max_penetration: float,
-    angles: int | None,
-    samples_per_pixel: float | None,
-    interpolation: Interpolation | None,
-) -> tuple[Field, NDArray[np.float64] | None]:
-    """Field of a file, and the angles of its rays; a tile is kept as its splines alone."""
-    from crackfront.core.adhesion import AdhesionMap
-    from crackfront.simulate.contact import tile_contact
-    from crackfront.simulate.field_files import read_field
-
-    given = read_field(path, interpolation or "linear")
-    if isinstance(given, AdhesionMap):
-        pieces = interpolation or "cubic"
-        return tile_contact(given, max_penetration, angles, samples_per_pixel, pieces), None
-    if angles is None and samples_per_pixel is None:
-        return given.field, given.angles
-    raise ValueError(
-        "--angles and --samples-per-pixel are for tiles; a polar field brings its own samples"
-    )
+def _case(geometry: str, given: dict[str, float | None]) -> Any:
+    """The case that the options name."""
+    own = {_parameter(_flag(item)): item for item in fields(CASES[geometry])}
+    values = {}
+    for name, value in given.items():
+        flag = f"--{name.removeprefix('case_').replace('_', '-')}"
+        if name not in own and value is not None:
+            raise ValueError(f"{flag} is no option of --geometry {geometry}; leave it out")
+        if name in own and value is None and own[name].default is MISSING:
+            raise ValueError(f"{flag} is missing; --geometry {geometry} needs it")
+        if name in own and value is not None:
+            values[own[name].name] = value
+    return CASES[geometry](**values)
 
 
-def _report(state: CycleState) -> None:
+def _report(recorder: Recorder) -> None:
     """Tell on a terminal which state was found last."""
     if sys.stderr.isatty():
-        branch = "approach" if state.direction > 0 else "retraction"
-        line = f"{branch} to penetration {state.penetration:8.4f}, radius {state.mean_radius:.4f}"
-        click.echo(f"\r{line}", nl=False, err=True)
+        click.echo(f"\r{state_line(recorder.states)}", nl=False, err=True)

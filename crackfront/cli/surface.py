@@ -82,7 +82,7 @@ def _write_field(
 ) -> None:
     """Write the map of a surface as a field."""
     from crackfront.data.provenance import provenance
-    from crackfront.simulate.field_files import write_field
+    from crackfront.simulate.fields import write_field
     from crackfront.topography.tile import measured_adhesion
 
     [measurement] = surface.measurements

@@ -214,9 +214,10 @@ def figures(configuration: Path, output: Path | None) -> None:
     result = read_simulation(store.path(simulation), simulation)
     steady = steady_adhesion(result.record, sweep.correlation_length(item))
     loop = loop_figure(
-        result.record,
-        steady,
-        elastic_energy=result.elastic_energy,
+        result.record.states,
+        (steady.w_appr, steady.w_retr),
+        (steady.lowest_radius, steady.highest_radius),
+        elastic_energy=result.measures.e_el,
         kind=sweep.kind,
         title=simulation.label,
     )

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from crackfront.core.cycle.record import Checkpoint, CycleRecord
+    from crackfront.core.cycle.record import Recorder
+    from crackfront.core.geometry.sphere import ContactState
 
     Array = NDArray[np.float64]
 
@@ -78,65 +79,71 @@ class Watch:
 
     Parameters
     ----------
-    max_penetration : float
-        Largest penetration of the cycle, which decides how much the panels show.
+    max_penetration : float or None
+        Largest penetration of the cycle, which decides how much the panels show; without one, as
+        where no sphere is pressed, there are lines alone.
     """
 
-    def __init__(self, max_penetration: float) -> None:
+    def __init__(self, max_penetration: float | None) -> None:
         from crackfront.core import jkr
 
-        # Room for a contact that sticks more than a smooth one, or less.
-        smooth = jkr.equilibrium_radius(max_penetration)
-        self._largest = 1.15 * smooth
-        self._forces = 1.5 * jkr.pull_off_force(), float(jkr.equilibrium_force(smooth)) + 0.7
-        self._last: Callable[[], Checkpoint] | None = None
+        self._panels: tuple[float, tuple[float, float]] | None = None
+        if max_penetration is not None:
+            # Room for a contact that sticks more than a smooth one, or less.
+            smooth = jkr.equilibrium_radius(max_penetration)
+            highest = float(jkr.equilibrium_force(smooth)) + 0.7
+            self._panels = 1.15 * smooth, (1.5 * jkr.pull_off_force(), highest)
+        self._last: Recorder | None = None
         self._drawn = 0
         self._next = 0.0
 
-    def __call__(self, checkpoint: Callable[[], Checkpoint]) -> None:
+    def __call__(self, recorder: Recorder) -> None:
         """Show the last state, if the last frame was not just now."""
-        self._last = checkpoint
+        self._last = recorder
         if not sys.stderr.isatty():
-            click.echo(state_line(checkpoint().record), err=True)
+            click.echo(state_line(recorder.states), err=True)
         elif time.monotonic() >= self._next:
-            self._show(checkpoint())
+            self._show(recorder)
             self._next = time.monotonic() + _SECONDS
 
     def finish(self) -> None:
         """Show the last state of all, which may have come just after a frame."""
         if self._last is not None and sys.stderr.isatty():
-            self._show(self._last())
+            self._show(self._last)
 
-    def _show(self, checkpoint: Checkpoint) -> None:
+    def _show(self, recorder: Recorder) -> None:
         """Replace the last frame."""
         columns, rows = os.get_terminal_size(sys.stderr.fileno())
-        lines = [state_line(checkpoint.record)]
+        lines = [state_line(recorder.states)]
         # A frame that does not fit cannot be replaced.
-        if columns >= _NARROWEST and rows > _ROWS + 2:
-            lines += frame(checkpoint, columns - 1, self._largest, self._forces)
+        if self._panels and columns >= _NARROWEST and rows > _ROWS + 2:
+            lines += frame(recorder.states, recorder.front, columns - 1, *self._panels)
         back = f"\x1b[{self._drawn}A\x1b[J" if self._drawn else ""
         click.echo(back + "\n".join(lines), err=True)
         self._drawn = len(lines)
 
 
-def state_line(record: CycleRecord) -> str:
-    """What is told of the last state of a record."""
-    branch = "approach" if record.direction[-1] > 0 else "retraction"
-    return (
-        f"state {record.penetration.size}, {branch}: penetration {record.penetration[-1]:+.4f}, "
-        f"radius {record.mean_radius[-1]:.4f}, force {record.force[-1]:+.4f}"
-    )
+def state_line(states: Sequence[Any]) -> str:
+    """What is told of the last state of a cycle."""
+    branch = "approach" if states[-1].direction > 0 else "retraction"
+    return f"state {len(states)}, {branch}: {states[-1].told}"
 
 
 def frame(
-    checkpoint: Checkpoint, columns: int, largest: float, forces: tuple[float, float]
+    states: Sequence[ContactState[float]],
+    front: Array,
+    columns: int,
+    largest: float,
+    forces: tuple[float, float],
 ) -> list[str]:
     """Front and loop side by side, with their scales below.
 
     Parameters
     ----------
-    checkpoint : Checkpoint
-        The states so far, and the front of the last.
+    states : sequence of ContactState
+        The states so far.
+    front : (n_angle,) array
+        Front of the last. (Units: reduced lateral length)
     columns : int
         Width in characters.
     largest : float
@@ -151,21 +158,23 @@ def frame(
     """
     import numpy as np
 
-    record, front = checkpoint.record, checkpoint.front
     left = 2 * _ROWS
     plane = Canvas(left, _ROWS, -largest, largest, -largest, largest)
     # Several dots a site, so that the curve is closed on the canvas.
     site = np.linspace(0, front.size, max(front.size, 600))
     radius = np.interp(site, np.arange(front.size + 1), np.append(front, front[0]))
     angle = 2 * np.pi * site / front.size
-    colour = _COLOURS[int(record.direction[-1])]
+    colour = _COLOURS[int(states[-1].direction)]
     plane.add(radius * np.cos(angle), radius * np.sin(angle), colour)
     loop = Canvas(columns - left - 3, _ROWS, 0.0, largest, *forces)
     ground = np.linspace(0.0, largest, 400)
     loop.add(ground, np.zeros_like(ground), "bright_black")
     for direction, name in _COLOURS.items():
-        branch = record.direction == direction
-        loop.add(record.mean_radius[branch], record.force[branch], name)
+        branch = [one for one in states if one.direction == direction]
+        radii, pulls = (
+            np.array([getattr(one, key) for one in branch]) for key in ("mean_radius", "force")
+        )
+        loop.add(radii, pulls, name)
     rows = [f"{one} │ {other}" for one, other in zip(plane.lines(), loop.lines(), strict=True)]
     below = f"front, |x|, |y| < {largest:.3g}"
     told = f"force {forces[0]:.3g} to {forces[1]:.3g} over radius 0 to {largest:.3g}"

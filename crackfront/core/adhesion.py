@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fft2, fftfreq, irfft2, rfft2, rfftfreq
 
+from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
+FieldKind = Literal["roughness", "chemical"]
 
 
 def front_stress_intensity(heights: Array, pixel: float, modulus: float = CONTACT_MODULUS) -> Array:
@@ -172,3 +175,23 @@ def chemical_adhesion(fluctuation: Array, pixel: float) -> AdhesionMap:
         elastic_energy=rms**2 / 4,
         rms=rms,
     )
+
+
+def correlation_length(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
+    """Wavelength of the mean wavevector of w_loc, weighted by its variance.
+
+    Parameters
+    ----------
+    kind : {"roughness", "chemical"}
+        What the spectrum describes.
+    spectrum : SelfAffineSpectrum
+        Its shape. (Units: length)
+
+    Returns
+    -------
+    float
+        Correlation length. (Units: length)
+    """
+    if kind == "roughness":
+        return spectrum.correlation_length
+    return 2 * np.pi * spectrum.mean_square(0.0) / spectrum.mean_square(0.5)

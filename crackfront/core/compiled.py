@@ -7,11 +7,16 @@ from other files. The cache therefore lies in a folder named after the sources o
 from __future__ import annotations
 
 import functools
+import inspect
 import os
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numba
+from numba import types
+from numba.extending import overload
 
 from crackfront.core.fingerprint import solver_fingerprint
 
@@ -50,3 +55,42 @@ kernel = functools.partial(jit, _nrt=False)
 
 Counting references to the arrays of a field took three quarters of the time of the inner loops.
 """
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_IMPLEMENTATIONS: dict[Any, dict[type, Any]] = {}
+"""Of every dispatched function what implements it, by the type of its first argument."""
+
+
+def dispatched(function: Function) -> Function:
+    """A function whose implementation is picked by the type of its first argument, a NamedTuple.
+
+    In compiled code numba picks it while it compiles; one kernel serves all types.
+    """
+    known: dict[type, Any] = {}
+
+    @functools.wraps(function)
+    def picked(first: Any, *others: Any) -> Any:
+        return known[type(first)](first, *others)
+
+    def choose(first: Any, *others: Any) -> Any:
+        return known.get(first.instance_class) if isinstance(first, types.BaseNamedTuple) else None
+
+    # numba compares the names of arguments, and annotations as well.
+    names = inspect.signature(function).parameters.values()
+    plain = [name.replace(annotation=name.empty) for name in names]
+    choose.__signature__ = inspect.Signature(plain)  # type: ignore[attr-defined]
+    overload(picked)(choose)
+    _IMPLEMENTATIONS[picked] = known
+    return picked  # type: ignore[return-value]
+
+
+def implements(function: Callable[..., Any], kind: type) -> Callable[[Function], Function]:
+    """Make what follows the implementation of a dispatched function for a type."""
+
+    def register(implementation: Function) -> Function:
+        implementation.__annotations__ = {}
+        _IMPLEMENTATIONS[function][kind] = implementation
+        return implementation
+
+    return register

@@ -146,6 +146,12 @@ def equilibrium_penetration(radius: ArrayLike, work_of_adhesion: ArrayLike = 1.0
     return np.asarray(a**2 - np.sqrt(8 * a * np.asarray(work_of_adhesion) / 3))
 
 
+def penetration_slope(penetration: float) -> float:
+    """Penetration per radius of a stable smooth contact, d(a^2 - sqrt(8a/3)) / da."""
+    radius = equilibrium_radius(penetration)
+    return 2 * radius - math.sqrt(2 / (3 * radius))
+
+
 def equilibrium_force(radius: ArrayLike, work_of_adhesion: ArrayLike = 1.0) -> Array:
     """Force of a smooth contact of this radius in equilibrium, F = a^3 - sqrt(6 w a^3).
 

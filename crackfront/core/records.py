@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any
 
 LATERAL = "reduced lateral length, (3 pi w_int R^2 / 4E')^(1/3)"
@@ -10,6 +10,9 @@ VERTICAL = "reduced vertical length, (9 pi^2 w_int^2 R / 16E'^2)^(1/3)"
 FORCE = "pi w_int R"
 ADHESION = "w_int"
 ENERGY = f"{FORCE} times {VERTICAL}"
+
+STEP = "step"
+"""Dimension of the states of a cycle."""
 
 _KEY = "variable"
 
@@ -29,7 +32,7 @@ class Variable:
         return {"units": self.units, "long_name": self.long_name}
 
 
-def variable(long_name: str, units: str, *dims: str) -> Any:
+def variable(long_name: str, units: str, *dims: str, default: Any = MISSING) -> Any:
     """A field of a dataclass that stands in files as a variable of these dimensions.
 
     Parameters
@@ -40,17 +43,21 @@ def variable(long_name: str, units: str, *dims: str) -> Any:
         Its units.
     *dims : str
         Names of its dimensions; without them it is a number, a truth value or a text.
+    default : optional
+        Default of the field; with None it is left out of files.
     """
-    return field(metadata={_KEY: (dims, units, long_name)})
+    return field(default=default, metadata={_KEY: (dims, units, long_name)})
 
 
-def variables(kind: type[Any]) -> tuple[Variable, ...]:
+def variables(kind: type[Any], *along: str) -> tuple[Variable, ...]:
     """What the fields of a dataclass are in a file.
 
     Parameters
     ----------
     kind : type
         Dataclass; fields that were not made by :func:`variable` are left out.
+    *along : str
+        Dimensions that count records of the kind, before their own ones.
 
     Examples
     --------
@@ -60,6 +67,7 @@ def variables(kind: type[Any]) -> tuple[Variable, ...]:
     >>> variables(Curve)
     (Variable(name='force', dims=(), units='N', long_name='normal force'),)
     """
-    return tuple(
-        Variable(item.name, *item.metadata[_KEY]) for item in fields(kind) if _KEY in item.metadata
+    known = (
+        Variable(one.name, *one.metadata[_KEY]) for one in fields(kind) if _KEY in one.metadata
     )
+    return tuple(replace(item, dims=(*along, *item.dims)) for item in known)

@@ -19,7 +19,7 @@ from scipy.fft import fft2, fftfreq, fftshift
 
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.extras import MissingExtraError
-from crackfront.core.field.kinds import PolarField, polar_field
+from crackfront.core.field.fields import RayField, polar_field
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -36,7 +36,7 @@ def rotated_field(
     largest_radius: float,
     *,
     rotated: bool = True,
-) -> PolarField:
+) -> RayField:
     """Field of a front whose crack turns with the angle, cubic between samples.
 
     Parameters
@@ -59,8 +59,8 @@ def rotated_field(
     Raises
     ------
     ValueError
-        As :func:`crackfront.core.field.kinds.tile_field`, if full conformity is not possible, or if
-        FINUFFT is missing.
+        As :func:`crackfront.core.field.fields.tile_field`, if full conformity is not possible, or
+        if FINUFFT is missing.
 
     References
     ----------

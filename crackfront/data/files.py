@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crackfront.core.records import Variable
+from crackfront.core.records import Variable, variables
 from crackfront.data.provenance import Provenance, utc_now
 
 _PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
@@ -48,6 +48,20 @@ class UnreadableFileError(ValueError):
 def labelled(variable: Variable, values: Any) -> tuple[tuple[str, ...], Any, dict[str, str]]:
     """A variable with its values, as xarray wants it."""
     return variable.dims, values, variable.attributes
+
+
+def labelled_fields(record: Any, *along: str) -> dict[str, Any]:
+    """Variables of a record, its fields made by `variable`; None is left out.
+
+    Parameters
+    ----------
+    record : dataclass
+        The record.
+    *along : str
+        Dimensions that its fields have before those that they state.
+    """
+    values = ((item, getattr(record, item.name)) for item in variables(type(record), *along))
+    return {item.name: labelled(item, value) for item, value in values if value is not None}
 
 
 def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:

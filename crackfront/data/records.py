@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,7 +12,13 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.core.records import Variable, variables
-from crackfront.data.files import UnreadableFileError, labelled, read_dataset, write_dataset
+from crackfront.data.files import (
+    UnreadableFileError,
+    labelled,
+    labelled_fields,
+    read_dataset,
+    write_dataset,
+)
 from crackfront.data.provenance import Provenance
 
 Record = TypeVar("Record")
@@ -33,10 +38,7 @@ def write_record(path: Path, record: Any, origin: Provenance, **attributes: str 
     **attributes : str or float
         What else the file says of itself.
     """
-    values = {
-        item.name: labelled(item, getattr(record, item.name)) for item in variables(type(record))
-    }
-    write_dataset(path, xr.Dataset(values, attrs=attributes), origin)
+    write_dataset(path, xr.Dataset(labelled_fields(record), attrs=attributes), origin)
 
 
 def write_records(
@@ -71,11 +73,8 @@ def stacked(rows: Sequence[Any], along: str) -> dict[str, tuple[Any, ...]]:
         Name of the dimension.
     """
     return {
-        item.name: labelled(
-            replace(item, dims=(along, *item.dims)),
-            np.array([getattr(row, item.name) for row in rows]),
-        )
-        for item in variables(type(rows[0]))
+        item.name: labelled(item, np.array([getattr(row, item.name) for row in rows]))
+        for item in variables(type(rows[0]), along)
     }
 
 
@@ -98,8 +97,7 @@ def unstacked(path: Path, dataset: xr.Dataset, kind: type[Any], along: str) -> l
     UnreadableFileError
         If a variable is missing or has other dimensions.
     """
-    known = [replace(item, dims=(along, *item.dims)) for item in variables(kind)]
-    columns = _columns(path, dataset, kind, known)
+    columns = _columns(path, dataset, kind, variables(kind, along))
     return [
         {name: values[row].item() if values.ndim == 1 else values[row] for name, values in columns}
         for row in range(dataset.sizes[along])

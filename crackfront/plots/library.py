@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,7 +16,7 @@ from crackfront.plots.loop import draw_loop
 from crackfront.plots.style import shown_axes
 from crackfront.simulate.files import cycle_record
 from crackfront.simulate.si_units import refuse_other_units
-from crackfront.simulate.surface_arrays import surface_adhesion, surface_kind
+from crackfront.simulate.surfaces import surface_adhesion, surface_kind
 from crackfront.simulate.tiles import stated_spectrum, tile_modes
 
 _ORDERS = (0.0, 0.5, 1.0)
@@ -25,16 +24,6 @@ _REST = 0.1
 """Part of a mean square below, and above, the scales that dominate it."""
 
 _BINS_A_DECADE = 20
-
-
-@dataclass(frozen=True, slots=True)
-class _Measures:
-    """Apparent works of adhesion of a loop, and the window of their averages."""
-
-    approach: float
-    retraction: float
-    lowest_radius: float
-    highest_radius: float
 
 
 def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
@@ -138,17 +127,12 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
         If it is no loop in reduced units, or holds no state.
     """
     refuse_other_units(loop)
-    record = cycle_record(loop)
-    measures = _Measures(
-        *(float(loop[name]) for name in ("w_appr", "w_retr", "lowest_radius", "highest_radius"))
-    )
+    states = cycle_record(loop).states
+    names = (("w_appr", "w_retr"), ("lowest_radius", "highest_radius"))
+    works, window = ((float(loop[one]), float(loop[other])) for one, other in names)
     with _drawing(axes) as drawn:
         draw_loop(
-            drawn,
-            record,
-            measures,
-            elastic_energy=float(loop.e_el),
-            kind=loop.attrs["kind"],
+            drawn, states, works, window, elastic_energy=float(loop.e_el), kind=loop.attrs["kind"]
         )
     return drawn
 

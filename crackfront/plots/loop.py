@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crackfront.analysis.report import PAPER_FACTOR
-from crackfront.analysis.result import FieldKind
 from crackfront.core import jkr
+from crackfront.core.adhesion import FieldKind
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
 
 Array = NDArray[np.float64]
@@ -39,29 +39,10 @@ class LoopStates(Protocol):
         """Normal forces."""
 
 
-class LoopAdhesion(Protocol):
-    """What is drawn of the apparent works of adhesion."""
-
-    @property
-    def approach(self) -> float:
-        """That of the approach."""
-
-    @property
-    def retraction(self) -> float:
-        """That of the retraction."""
-
-    @property
-    def lowest_radius(self) -> float:
-        """Smallest mean radius of the window of the averages."""
-
-    @property
-    def highest_radius(self) -> float:
-        """Largest mean radius of the window."""
-
-
 def loop_figure(
-    record: LoopStates,
-    steady: LoopAdhesion,
+    states: LoopStates,
+    works: tuple[float, float],
+    window: tuple[float, float],
     *,
     elastic_energy: float | None = None,
     kind: FieldKind = "roughness",
@@ -71,14 +52,8 @@ def loop_figure(
 
     Parameters
     ----------
-    record : LoopStates
-        The cycle, for instance a :class:`crackfront.core.cycle.record.CycleRecord`.
-    steady : LoopAdhesion
-        Its apparent works of adhesion; without values no curves are drawn.
-    elastic_energy : float, optional
-        Measured e_el, for the curves that the paper predicts. (Units: w_int)
-    kind : {"roughness", "chemical"}, optional
-        Whether they lie around w_int - e_el or w_int.
+    states, works, window, elastic_energy, kind
+        As of :func:`draw_loop`.
     title : str, optional
         Title of the figure.
 
@@ -90,15 +65,16 @@ def loop_figure(
     with house_style():
         figure = blank_figure(COLUMN, 0.82 * COLUMN)
         axes = figure.add_subplot()
-        draw_loop(axes, record, steady, elastic_energy=elastic_energy, kind=kind)
+        draw_loop(axes, states, works, window, elastic_energy=elastic_energy, kind=kind)
         axes.set_title(title)
         return figure
 
 
 def draw_loop(
     axes: Axes,
-    record: LoopStates,
-    steady: LoopAdhesion,
+    states: LoopStates,
+    works: tuple[float, float],
+    window: tuple[float, float],
     *,
     elastic_energy: float | None = None,
     kind: FieldKind = "roughness",
@@ -109,10 +85,12 @@ def draw_loop(
     ----------
     axes : Axes
         Where to draw.
-    record : LoopStates
-        The cycle, for instance a :class:`crackfront.core.cycle.record.CycleRecord`.
-    steady : LoopAdhesion
-        Its apparent works of adhesion.
+    states : LoopStates
+        States of the cycle.
+    works : tuple of float
+        w_appr and w_retr; without values (NaN) no curves are drawn. (Units: w_int)
+    window : tuple of float
+        Mean radii over which they are averages. (Units: reduced lateral length)
     elastic_energy : float, optional
         Measured e_el, for the curves that the paper predicts. (Units: w_int)
     kind : {"roughness", "chemical"}, optional
@@ -123,18 +101,18 @@ def draw_loop(
     ValueError
         If the record holds no state.
     """
-    if record.mean_radius.size == 0:
+    if states.mean_radius.size == 0:
         raise ValueError("the record holds no state; there is no loop to draw")
-    radius = np.linspace(0.0, 1.2 * np.max(record.mean_radius), 300)
+    radius = np.linspace(0.0, 1.2 * np.max(states.mean_radius), 300)
     branches = (
-        (1, "approach", "appr", BLUE, "o", steady.approach),
-        (-1, "retraction", "retr", VERMILION, "s", steady.retraction),
+        (1, "approach", "appr", BLUE, "o", works[0]),
+        (-1, "retraction", "retr", VERMILION, "s", works[1]),
     )
     for direction, name, short, colour, marker, adhesion in branches:
-        branch = record.direction == direction
+        branch = states.direction == direction
         axes.plot(
-            record.mean_radius[branch],
-            record.force[branch],
+            states.mean_radius[branch],
+            states.force[branch],
             linestyle="none",
             marker=marker,
             markevery=max(1, np.count_nonzero(branch) // MOST_MARKERS),
@@ -152,30 +130,29 @@ def draw_loop(
     if elastic_energy is not None:
         centre = 1 - elastic_energy if kind == "roughness" else 1.0
         _draw_prediction(axes, radius, centre, PAPER_FACTOR * elastic_energy)
-    if np.isfinite(steady.lowest_radius):
+    if np.isfinite(window[0]):
         axes.axvspan(
-            steady.lowest_radius,
-            steady.highest_radius,
+            *window,
             color="0.93",
             linewidth=0,
             zorder=0,
             label="window of the averages",
         )
     axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
-    _set_limits(axes, record)
+    _set_limits(axes, states)
     for direction, _, _, colour, _, _ in branches:
-        branch = record.direction == direction
-        _draw_motion(axes, record.mean_radius[branch], record.force[branch], colour)
+        branch = states.direction == direction
+        _draw_motion(axes, states.mean_radius[branch], states.force[branch], colour)
     axes.set_xlabel(r"mean contact radius / $(3\pi w_\mathrm{int}R^2/4E')^{1/3}$")
     axes.set_ylabel(r"normal force / $\pi w_\mathrm{int} R$")
     axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
 
 
-def _set_limits(axes: Axes, record: LoopStates) -> None:
+def _set_limits(axes: Axes, states: LoopStates) -> None:
     """Limits around the states, with room for the legend at the upper left."""
     for values, setter, below, above in (
-        (record.mean_radius, axes.set_xlim, 0.12, 0.08),
-        (record.force, axes.set_ylim, 0.15, 0.2),
+        (states.mean_radius, axes.set_xlim, 0.12, 0.08),
+        (states.force, axes.set_ylim, 0.15, 0.2),
     ):
         low, high = float(np.min(values)), float(np.max(values))
         span = max(high - low, 0.1)

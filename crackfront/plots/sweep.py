@@ -13,8 +13,9 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
-from crackfront.analysis.result import FieldKind, SweepFit
+from crackfront.analysis.result import SweepFit
 from crackfront.analysis.table import SweepTable
+from crackfront.core.adhesion import FieldKind
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.plots.parts import (
     arrays,

@@ -8,7 +8,8 @@ import numpy as np
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
-from crackfront.core.field.kinds import Interpolation, TileField, tile_field
+from crackfront.core.field.fields import Interpolation, TileField, tile_field
+from crackfront.core.geometry.sphere import sphere
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.simulation import Simulation, n_site
@@ -71,13 +72,15 @@ def contact_field(
     max_penetration : float
         Largest penetration. (Units: reduced vertical length)
     interpolation, band_limited
-        As in :func:`crackfront.core.field.kinds.tile_field`.
+        As in :func:`crackfront.core.field.fields.tile_field`.
     """
     values = adhesion.work_of_adhesion
     # The refusal of values that are not finite, with their place, is tile_field's.
     strongest = float(np.max(values, where=np.isfinite(values), initial=WORK_OF_ADHESION))
     largest = 1.1 * jkr.equilibrium_radius(max_penetration, strongest / WORK_OF_ADHESION)
-    return tile_field(adhesion, n_angle, spacing, largest, interpolation, band_limited=band_limited)
+    return tile_field(
+        adhesion, sphere(n_angle), spacing, largest, interpolation, band_limited=band_limited
+    )
 
 
 def tile_contact(

@@ -28,7 +28,7 @@ from crackfront.core import jkr
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.simulation import Simulation, correlation_length
+from crackfront.simulate.simulation import Simulation
 
 Array = NDArray[np.float64]
 
@@ -149,9 +149,9 @@ def _cost(simulation: Simulation) -> Cost:
 def features(simulation: Simulation) -> Features:
     """What the time of a simulation depends on."""
     sizes, spectrum, schedule = simulation.resolution, simulation.spectrum, simulation.schedule
-    length = correlation_length(simulation.kind, spectrum)
+    length = simulation.correlation_length
     if isinstance(schedule, LoadSchedule):
-        travel = schedule.step / _slope(schedule.max_penetration) / length
+        travel = schedule.step / jkr.penetration_slope(schedule.max_penetration) / length
         # The hysteresis lifts w_retr by about twice e_el, and contact is lost that much later.
         lost_at = jkr.pull_off_penetration(1 + 2 * simulation.elastic_energy)
         n_state = (2 * schedule.max_penetration - lost_at) / schedule.step
@@ -162,7 +162,7 @@ def features(simulation: Simulation) -> Features:
         n_angle=sizes.n_angle,
         n_point=sizes.n_point,
         elastic_energy=simulation.elastic_energy,
-        tolerance=simulation.tolerance,
+        tolerance=simulation.solver.tolerance,
         breadth=spectrum.roll_off / spectrum.short_cutoff,
         travel=travel,
         full_cycle=isinstance(schedule, LoadSchedule),
@@ -183,7 +183,7 @@ def predicted_seconds(runs: Sequence[Measured]) -> Array:
 
 def _expected_steady(simulation: Simulation, schedule: SteadySchedule, length: float) -> float:
     """Number of states that the steady parts of both branches are expected to have."""
-    step = schedule.travel * length * _slope(schedule.start)
+    step = schedule.travel * length * jkr.penetration_slope(schedule.start)
     n_most = 1 + math.floor((schedule.max_penetration - schedule.start) / step)
     alike = length * integral_breadth(simulation)
     n_independent = 2 * math.pi * jkr.equilibrium_radius(schedule.start) / alike
@@ -211,12 +211,6 @@ def integral_breadth(simulation: Simulation) -> float:
         for shape in (spectrum, flat)
     ]
     return means[0] / means[1]
-
-
-def _slope(penetration: float) -> float:
-    """Penetration per radius of a smooth contact."""
-    radius = jkr.equilibrium_radius(penetration)
-    return 2 * radius - math.sqrt(2 / (3 * radius))
 
 
 @functools.cache

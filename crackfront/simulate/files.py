@@ -2,35 +2,43 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, fields
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crackfront.analysis.table import RunMeasures
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
-from crackfront.core.solver.relax import Status
-from crackfront.data.files import UnreadableFileError, labelled, read_dataset, write_dataset
-from crackfront.data.provenance import Provenance
-from crackfront.data.schema import (
-    ANGLES,
-    COSTS,
-    CURVES,
-    DISSIPATED,
-    LAST_FRONT,
-    RADIUS,
-    TURNING_FRONT,
+from crackfront.core.geometry.base import Geometry
+from crackfront.core.geometry.sphere import ContactState, sphere
+from crackfront.core.outcome import Status
+from crackfront.core.records import LATERAL, STEP, Variable, variables
+from crackfront.data.files import (
+    UnreadableFileError,
+    labelled,
+    labelled_fields,
+    read_dataset,
+    write_dataset,
 )
+from crackfront.data.provenance import Provenance
 from crackfront.simulate.run import PartialRun, SimulationResult
 from crackfront.simulate.simulation import Simulation
 
 Array = NDArray[np.float64]
 
+LAST_FRONT = Variable("last_front", ("angle",), LATERAL, "front of the last state")
+TURNING_FRONT = Variable("turning_front", ("angle",), LATERAL, "front at which its branch began")
+"""Fronts of a checkpoint."""
+
 
 def write_cycle(
-    path: Path, record: CycleRecord, origin: Provenance, angles: Array | None = None
+    path: Path,
+    record: CycleRecord,
+    origin: Provenance,
+    geometry: Geometry | None = None,
+    sites: Array | None = None,
 ) -> None:
     """Write the record of one cycle.
 
@@ -42,10 +50,10 @@ def write_cycle(
         What to write.
     origin : Provenance
         Where it comes from.
-    angles : (n_angle,) array, optional
-        Angles of the sites, if not 0, 2 pi / N, ... (Units: rad)
+    geometry, sites
+        As of :func:`cycle_dataset`.
     """
-    write_dataset(path, cycle_dataset(record, angles), origin)
+    write_dataset(path, cycle_dataset(record, geometry, sites), origin)
 
 
 def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> None:
@@ -60,24 +68,15 @@ def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -
     origin : Provenance
         Where it comes from.
     """
-    costs = (
-        result.elastic_energy,
-        result.work_of_adhesion_rms,
-        result.seconds,
-        result.cpu_seconds,
-        result.peak_memory,
-    )
     simulation = result.simulation
-    dataset = cycle_dataset(result.record).assign(
-        {item.name: labelled(item, value) for item, value in zip(COSTS, costs, strict=True)}
-    )
+    dataset = cycle_dataset(result.record).assign(labelled_fields(result.measures))
     dataset.attrs |= {
         "simulation": simulation.label,
         "key": simulation.key,
         "seed": np.int64(simulation.seed),
         "kind": simulation.kind,
-        "solver": simulation.solver,
-        "tolerance": simulation.tolerance,
+        "solver": simulation.solver.name,
+        "tolerance": simulation.solver.tolerance,
         "elastic_energy_requested": simulation.elastic_energy,
         "short_cutoff": simulation.spectrum.short_cutoff,
         "roll_off": simulation.spectrum.roll_off,
@@ -122,11 +121,11 @@ def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
     if dataset.attrs.get("key") != simulation.key:
         raise UnreadableFileError(f"{path} is not the result of {simulation.label}; remove it")
     record = cycle_record(dataset, path)
-    missing = [item.name for item in COSTS if item.name not in dataset]
-    if missing:
+    names = [item.name for item in variables(RunMeasures)]
+    if missing := [name for name in names if name not in dataset]:
         raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; remove it")
-    costs = (float(dataset[item.name]) for item in COSTS)
-    return SimulationResult(simulation, record, *costs)
+    measures = RunMeasures(**{name: float(dataset[name]) for name in names})
+    return SimulationResult(simulation, record, measures)
 
 
 def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> None:
@@ -181,32 +180,35 @@ def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
     return PartialRun(simulation, checkpoint, *costs)
 
 
-def cycle_dataset(record: CycleRecord, angles: Array | None = None) -> xr.Dataset:
+def cycle_dataset(
+    record: CycleRecord, geometry: Geometry | None = None, sites: Array | None = None
+) -> xr.Dataset:
     """Labelled curves of a record.
 
     Parameters
     ----------
     record : CycleRecord
         The states of a cycle.
-    angles : (n_angle,) array, optional
-        Angles of the sites, if not 0, 2 pi / N, ... (Units: rad)
+    geometry : Geometry, optional
+        The contact; by default a sphere.
+    sites : (n_site,) array, optional
+        Coordinates of the sites, if not those of the geometry.
     """
-    variables = {item.name: labelled(item, getattr(record, item.name)) for item in CURVES}
-    if record.dissipated_energy is not None:
-        variables[DISSIPATED.name] = labelled(DISSIPATED, record.dissipated_energy)
-    if record.radius is not None:
-        count = record.radius.shape[1]
-        directions = 2 * np.pi * np.arange(count) / count if angles is None else angles
-        variables[RADIUS.name] = labelled(RADIUS, record.radius)
-        variables[ANGLES.name] = labelled(ANGLES, directions)
+    curves = labelled_fields(record.states, STEP) | labelled_fields(record)
+    if record.fronts is not None:
+        contact = geometry or sphere(record.fronts.shape[1])
+        front, site = contact.variables
+        curves[front.name] = labelled(replace(front, dims=(STEP, *front.dims)), record.fronts)
+        curves[site.name] = labelled(site, contact.sites if sites is None else sites)
+    load = variables(type(record.states))[0].name
     attributes: dict[str, str | float] = {
         "status": record.status.name.lower(),
         "status_sentence": record.status.value,
-        "end_penetration": record.end_penetration,
+        f"end_{load}": record.end_load,
     }
     if record.pull_off_energy is not None:
         attributes["pull_off_energy"] = record.pull_off_energy
-    return xr.Dataset(variables, attrs=attributes)
+    return xr.Dataset(curves, attrs=attributes)
 
 
 def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> CycleRecord:
@@ -224,19 +226,19 @@ def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> Cycl
     UnreadableFileError
         If it holds no cycle.
     """
-    missing = [item.name for item in CURVES if item.name not in dataset]
+    names = [item.name for item in variables(ContactState)]
+    missing = [name for name in names if name not in dataset]
     name = str(dataset.attrs.get("status", "")).upper()
     if missing or name not in Status.__members__ or "end_penetration" not in dataset.attrs:
         what = ", ".join(missing) or "a known status"
         raise UnreadableFileError(f"{place} holds no cycle: it lacks {what}")
-    known = {item.name for item in fields(CycleRecord)} - {"pull_off_energy"}
-    columns: dict[str, Any] = {
-        str(name): np.asarray(values) for name, values in dataset.data_vars.items() if name in known
-    }
-    pull_off = dataset.attrs.get("pull_off_energy")
+    pull_off, fronts = dataset.attrs.get("pull_off_energy"), dataset.get("radius")
+    lost = dataset.get("dissipated_energy")
     return CycleRecord(
         status=Status[name],
-        end_penetration=float(dataset.attrs["end_penetration"]),
+        end_load=float(dataset.attrs["end_penetration"]),
+        states=ContactState(**{name: np.asarray(dataset[name]) for name in names}),
+        dissipated_energy=None if lost is None else np.asarray(lost),
         pull_off_energy=None if pull_off is None else float(pull_off),
-        **columns,
+        fronts=None if fronts is None else np.asarray(fronts),
     )

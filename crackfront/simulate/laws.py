@@ -18,18 +18,17 @@ from __future__ import annotations
 import csv
 import functools
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from importlib.resources import files
 from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.analysis.steady import SteadyAdhesion
-from crackfront.core import jkr
+from crackfront.core.adhesion import FieldKind
+from crackfront.core.field.fields import Interpolation
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.simulation import FieldKind, Numerics, Simulation
 
 Array = NDArray[np.float64]
 
@@ -50,6 +49,35 @@ _RANGES: dict[Knob, tuple[float, float]] = {
     "tolerance": (1e-9, 1e-3),
 }
 """Values that may be chosen."""
+
+
+@dataclass(frozen=True, slots=True)
+class Knobs:
+    """What an error decides: the resolution relative to the short cutoff, and the tolerance.
+
+    Attributes
+    ----------
+    angles : int or None
+        Number of sites of the front; where None, `angles_per_cutoff` decides.
+    angles_per_cutoff : float
+        Sites per short cutoff on the smooth contact's largest circle, rounded up to an even
+        product of 2, 3 and 5.
+    samples_per_cutoff : float
+        Samples per short cutoff along a ray.
+    interpolation : {"cubic", "linear"}
+        Pieces between samples.
+    pixels_per_cutoff : float
+        Points of the tile per short cutoff, 2 or more.
+    tolerance : float
+        Largest force along the motion that may be left, relative to w_int per front length.
+    """
+
+    angles: int | None
+    angles_per_cutoff: float
+    samples_per_cutoff: float
+    interpolation: Interpolation
+    pixels_per_cutoff: float
+    tolerance: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,88 +125,10 @@ def spectral_shape(kind: FieldKind, spectrum: SelfAffineSpectrum) -> str:
     return "h08" if spectrum.hurst > 0.55 else "h03"
 
 
-def numerical_error(
-    simulation: Simulation, size: float = LAW_SIZE, largest_radius: float | None = None
-) -> tuple[float, float]:
-    """Standard errors that the numerics of a simulation are expected to leave.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        A simulation.
-    size : float, optional
-        Number of states times circumference of the front over the short cutoff.
-    largest_radius : float, optional
-        Largest mean radius of the states; by default that of a smooth sphere at the largest
-        penetration. (Units: reduced lateral length)
-
-    Returns
-    -------
-    tuple of float
-        Standard errors of w_appr and of w_retr. (Units: w_int)
-    """
-    sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
-    if largest_radius is None:
-        largest_radius = jkr.equilibrium_radius(simulation.schedule.max_penetration)
-    circle = 2 * math.pi * largest_radius
-    values: dict[Knob, float] = {
-        "sites": sizes.n_angle * cutoff / circle,
-        sizes.interpolation: cutoff / sizes.spacing,
-        "pixels": cutoff * sizes.n_point / sizes.tile_side,
-        "tolerance": simulation.tolerance,
-    }
-    shape, energy = (
-        spectral_shape(simulation.kind, simulation.spectrum),
-        simulation.elastic_energy,
-    )
-    approach, retraction = (
-        energy
-        * math.hypot(
-            *(
-                _interpolated(shape, energy, knob, direction, value, size)
-                for knob, value in values.items()
-            )
-        )
-        for direction in (1, -1)
-    )
-    return approach, retraction
-
-
-def stated_error(
-    simulation: Simulation, steady: SteadyAdhesion, correlation_length: float
-) -> tuple[float, float]:
-    """Numerical standard errors of the w_appr and w_retr that a simulation has found.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        A simulation.
-    steady : SteadyAdhesion
-        What it has found; states closer than a correlation length count as one.
-    correlation_length : float
-        That of w_loc. (Units: reduced lateral length)
-
-    Returns
-    -------
-    tuple of float
-        Standard errors of w_appr and of w_retr. (Units: w_int)
-    """
-    low, high = steady.lowest_radius, steady.highest_radius
-    cutoffs = math.pi * (low + high) / simulation.spectrum.short_cutoff
-    apart = 1 + (high - low) / correlation_length
-    approach, _ = numerical_error(simulation, cutoffs * min(steady.n_approach, apart), high)
-    _, retraction = numerical_error(simulation, cutoffs * min(steady.n_retraction, apart), high)
-    return approach, retraction
-
-
-def chosen_numerics(
-    error: float,
-    kind: FieldKind,
-    spectrum: SelfAffineSpectrum,
-    elastic_energy: float,
-    given: Numerics,
-) -> Numerics:
-    """Numerics that leave an asked error in w_appr and w_retr.
+def chosen_knobs(
+    error: float, kind: FieldKind, spectrum: SelfAffineSpectrum, elastic_energy: float
+) -> Knobs:
+    """Knobs that leave an asked error in w_appr and w_retr.
 
     Parameters
     ----------
@@ -191,12 +141,10 @@ def chosen_numerics(
         Its shape.
     elastic_energy : float
         e_el / w_int.
-    given : Numerics
-        Where the tile, the solver and its limit are taken from.
 
     Returns
     -------
-    Numerics
+    Knobs
         Coarsest resolution and tolerance that the laws allow.
     """
     shape = spectral_shape(kind, spectrum)
@@ -204,8 +152,7 @@ def chosen_numerics(
         knob: _inverse(shape, elastic_energy, knob, share * error)
         for knob, share in _SHARES.items()
     }
-    return replace(
-        given,
+    return Knobs(
         angles=None,
         angles_per_cutoff=found["sites"],
         samples_per_cutoff=found["cubic"],
@@ -213,6 +160,43 @@ def chosen_numerics(
         pixels_per_cutoff=found["pixels"],
         tolerance=found["tolerance"],
     )
+
+
+def combined_error(
+    kind: FieldKind,
+    spectrum: SelfAffineSpectrum,
+    elastic_energy: float,
+    values: Mapping[Knob, float],
+    size: float,
+) -> tuple[float, float]:
+    """Standard errors that values of all knobs are expected to leave.
+
+    Parameters
+    ----------
+    kind, spectrum, elastic_energy
+        As of :func:`chosen_knobs`.
+    values : mapping
+        Values of the knobs; of interpolations the one that is used.
+    size : float
+        Number of states times circumference of the front over the short cutoff.
+
+    Returns
+    -------
+    tuple of float
+        Standard errors of w_appr and of w_retr. (Units: w_int)
+    """
+    shape = spectral_shape(kind, spectrum)
+    approach, retraction = (
+        elastic_energy
+        * math.hypot(
+            *(
+                _interpolated(shape, elastic_energy, knob, direction, value, size)
+                for knob, value in values.items()
+            )
+        )
+        for direction in (1, -1)
+    )
+    return approach, retraction
 
 
 @functools.cache

@@ -4,27 +4,50 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import get_args
+from dataclasses import dataclass, replace
+from typing import Any, get_args
 
-import numpy as np
 from xarray import DataArray, Dataset
 
-from crackfront.analysis.steady import steady_adhesion
-from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.cycle.instabilities import resolved_motion
-from crackfront.core.cycle.record import CycleState
-from crackfront.core.cycle.run import run_cycle
+from crackfront.analysis.steady import SteadyAdhesion, steady_adhesion
+from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.core.cycle.follow import Load, front_at
+from crackfront.core.cycle.instabilities import measured_instabilities, resolved_motion
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.cycle.run import first_touch, run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import first_radius, n_angle
+from crackfront.core.field.fields import TileField
 from crackfront.core.fingerprint import solver_fingerprint
-from crackfront.core.solver.relax import SOLVERS, Direction, Status, relax
+from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.outcome import Direction
+from crackfront.core.records import variables
+from crackfront.core.solver.relax import Newton, named_solver
+from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.version import __version__
+from crackfront.simulate.contact import contact_field, tile_contact
 from crackfront.simulate.files import cycle_dataset
-from crackfront.simulate.laws import stated_error
-from crackfront.simulate.loop_arrays import jump_dataset, loop_measures
 from crackfront.simulate.run import compile_solver
-from crackfront.simulate.surface_arrays import surface_kind
-from crackfront.simulate.surface_contact import surface_contact
+from crackfront.simulate.simulation import Simulation, missed_error, stated_error
+from crackfront.simulate.surfaces import (
+    chosen_simulation,
+    refuse_no_fraction,
+    surface_adhesion,
+    surface_kind,
+)
+from crackfront.simulate.tiles import measured_correlation_length, stated_spectrum
+
+_KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
+
+_MEASURES = (
+    "w_appr",
+    "w_retr",
+    "w_appr_error",
+    "w_retr_error",
+    "hysteresis",
+    "lowest_radius",
+    "highest_radius",
+)
+"""Measures of a loop, named as in the table of a sweep."""
 
 
 def run_loop(
@@ -36,7 +59,7 @@ def run_loop(
     solver: str = "newton",
     fronts: bool = True,
     energy: bool = False,
-    progress: Callable[[CycleState], None] | None = None,
+    progress: Callable[[ContactState[float]], None] | None = None,
 ) -> Dataset:
     """Approach from first contact, and retraction to pull-off, of a sphere on a surface.
 
@@ -83,28 +106,19 @@ def run_loop(
     >>> loop.attrs["status"], loop.radius.dims
     ('lost_contact', ('step', 'angle'))
     """
-    if solver not in SOLVERS:
-        raise ValueError(f"solver is {solver!r}; choose one of {', '.join(sorted(SOLVERS))}")
-    contact = surface_contact(surface, LoadSchedule(max_penetration, step), error)
+    solution = named_solver(solver, _TOLERANCE)
+    schedule = LoadSchedule(max_penetration, step)
+    contact = surface_contact(surface, schedule, error)
     compile_solver(solver)
+    told = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     record = run_cycle(
         contact.field,
-        LoadSchedule(max_penetration, step),
-        tolerance=contact.tolerance,
-        solver=solver,
-        record_fronts=fronts,
-        record_energy=energy,
-        progress=progress,
+        schedule,
+        replace(solution, tolerance=contact.tolerance),
+        Recorder(fronts=fronts, energy=energy, observers=told),
     )
     steady = steady_adhesion(record, contact.correlation_length)
-    numerical = (math.nan, math.nan)
-    if contact.simulation is not None and not steady.sentence:
-        numerical = stated_error(contact.simulation, steady, contact.correlation_length)
-    loop = cycle_dataset(record).assign(
-        loop_measures(
-            steady, contact.elastic_energy, contact.rms, contact.correlation_length, numerical
-        )
-    )
+    loop = cycle_dataset(record).assign(_measures(contact, steady))
     return loop.assign_attrs(
         kind=surface_kind(surface),
         solver=solver,
@@ -113,6 +127,22 @@ def run_loop(
         crackfront_version=__version__,
         solver_fingerprint=solver_fingerprint(),
     )
+
+
+def _measures(contact: SurfaceContact, steady: SteadyAdhesion) -> dict[str, Any]:
+    """Labelled measures of a loop."""
+    numerical = (math.nan, math.nan)
+    if contact.simulation is not None and not steady.sentence:
+        numerical = stated_error(contact.simulation, steady, contact.correlation_length)
+    values = {
+        "e_el": contact.elastic_energy,
+        "w_rms": contact.rms,
+        "correlation_length": contact.correlation_length,
+        "w_appr_numerical_error": numerical[0],
+        "w_retr_numerical_error": numerical[1],
+        **{name: getattr(steady, name) for name in _MEASURES},
+    }
+    return {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
 
 
 def find_instabilities(
@@ -161,24 +191,98 @@ def find_instabilities(
     schedule = LoadSchedule(max_penetration, step)
     contact = surface_contact(surface, schedule, error)
     compile_solver("newton")
-    field, tolerance = contact.field, min(contact.tolerance, precision / 10)
+    field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
     reach = travel * contact.correlation_length
     start = 0.0 if direction > 0 else max_penetration
-    touched = np.full(n_angle(field), first_radius(field))
-    found = relax(touched, start, 1, field, tolerance=tolerance)
-    if found.status is not Status.CONVERGED:
-        raise ValueError(f"at penetration {start:.6g}: {found.status.value}")
+    touched = front_at(field, first_touch(field), Load(start, 1), solver)
     loads = schedule.approach() if direction > 0 else schedule.retraction()
     steps = resolved_motion(
         field,
-        found.radius,
+        touched,
         start,
         loads,
         direction,
         travel=reach,
         precision=precision,
-        tolerance=tolerance,
+        solver=solver,
     )
     jumps = [motion for motion in steps if motion.unstable]
-    energies = [dissipated_energy(jump.before, jump.after, jump.end, field) for jump in jumps]
-    return jump_dataset(jumps, energies, reach, n_angle(field))
+    found = labelled_fields(measured_instabilities(jumps, field, reach))
+    angle = field.geometry.variables[1]
+    return Dataset(found, {angle.name: labelled(angle, field.geometry.sites)}, {"travel": reach})
+
+
+_TOLERANCE = 1e-8
+"""Force that may be left on a surface whose spectrum is not known, relative to w_int."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceContact:
+    """A sphere on a surface.
+
+    Attributes
+    ----------
+    field : TileField
+        Work of adhesion along the rays.
+    tolerance : float
+        Force that may be left, relative to w_int per front length.
+    elastic_energy, rms : float
+        e_el and w_rms measured on the tile. (Units: w_int)
+    correlation_length : float
+        That of w_loc, measured on the tile. (Units: reduced lateral length)
+    simulation : Simulation or None
+        The numerics and their expected errors, where the spectrum is known.
+    """
+
+    field: TileField
+    tolerance: float
+    elastic_energy: float
+    rms: float
+    correlation_length: float
+    simulation: Simulation | None
+
+
+def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) -> SurfaceContact:
+    """Contact of a surface, resolved by the measured laws or else by its pixels.
+
+    Parameters
+    ----------
+    surface : xarray.DataArray
+        A surface in reduced units.
+    schedule : LoadSchedule
+        Penetrations to visit.
+    error : float
+        Standard error of the factor k of either branch that the numerics may leave.
+
+    Raises
+    ------
+    ValueError
+        If surface or error cannot be used, or the pixels are too coarse for the error.
+    """
+    refuse_no_fraction("error", error)
+    adhesion = surface_adhesion(surface)
+    length = measured_correlation_length(adhesion.work_of_adhesion, adhesion.pixel)
+    spectrum, deepest = stated_spectrum(surface), schedule.max_penetration
+    if spectrum is None or adhesion.elastic_energy == 0:
+        field = tile_contact(adhesion, deepest)
+        return SurfaceContact(
+            field, _TOLERANCE, adhesion.elastic_energy, adhesion.rms, length, None
+        )
+    chosen = chosen_simulation(
+        surface_kind(surface), spectrum, adhesion.elastic_energy, schedule, error=error
+    )
+    n_point = min(adhesion.work_of_adhesion.shape)
+    sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
+    simulation = replace(chosen, resolution=sizes)
+    if left := missed_error(simulation, error):
+        pixels = spectrum.short_cutoff / adhesion.pixel
+        raise ValueError(
+            f"error is {error:g}, but the finest numerics on {pixels:.3g} pixels per short cutoff "
+            f"leave {left:.2g}; ask for that, or make the surface with this error"
+        )
+    field = contact_field(
+        adhesion, sizes.n_angle, sizes.spacing, deepest, sizes.interpolation, band_limited=True
+    )
+    return SurfaceContact(
+        field, chosen.solver.tolerance, adhesion.elastic_energy, adhesion.rms, length, simulation
+    )

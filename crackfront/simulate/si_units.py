@@ -7,20 +7,14 @@ from typing import Any, TypeVar
 
 import xarray as xr
 
-from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, Variable
+from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.core.adhesion import FieldKind
+from crackfront.core.cycle.instabilities import Instabilities
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.geometry.sphere import ContactState, sphere
+from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, Variable, variables
 from crackfront.core.units import Scales
 from crackfront.data.quantities import unit_value
-from crackfront.data.schema import (
-    ANGLES,
-    COORDINATES,
-    COSTS,
-    CURVES,
-    DISSIPATED,
-    HYSTERESIS,
-    RADIUS,
-)
-from crackfront.simulate.loop_arrays import JUMPS
-from crackfront.simulate.simulation import FieldKind
 
 Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
 
@@ -36,18 +30,13 @@ SURFACES: dict[FieldKind, Variable] = {
 _AREA = f"({LATERAL})^2"
 _SI = {LATERAL: "m", VERTICAL: "m", FORCE: "N", ADHESION: "J / m^2", ENERGY: "J", _AREA: "m^2"}
 
+_KINDS = (ContactState, CycleRecord, Instabilities, SweepAxes, SweepRow)
 _REDUCED = {
     item.name: item.units
     for item in (
         *SURFACES.values(),
-        *CURVES,
-        DISSIPATED,
-        RADIUS,
-        ANGLES,
-        *COORDINATES,
-        *COSTS,
-        *HYSTERESIS,
-        *JUMPS,
+        *sphere(1).variables,
+        *(item for kind in _KINDS for item in variables(kind)),
     )
 } | {"x": LATERAL, "y": LATERAL}
 """Reduced units of everything that may be converted."""

@@ -6,62 +6,58 @@ import functools
 import hashlib
 import json
 import math
+from collections.abc import Collection
 from dataclasses import astuple, dataclass
 from typing import Any, Literal
 
 import numpy as np
 from scipy.fft import next_fast_len
 
+from crackfront.analysis.steady import SteadyAdhesion
 from crackfront.core import jkr
+from crackfront.core.adhesion import FieldKind, correlation_length
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
-from crackfront.core.field.kinds import Interpolation
+from crackfront.core.field.fields import Interpolation
 from crackfront.core.fingerprint import NO_PART, SOLVER, fingerprint
+from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.simulate.laws import LAW_SIZE, Knob, Knobs, chosen_knobs, combined_error
 
 _SOURCES = ("simulate/simulation.py", "simulate/contact.py", "simulate/run.py")
 """What determines a simulation beside the solver."""
 
-FieldKind = Literal["roughness", "chemical"]
-
 
 @dataclass(frozen=True, slots=True)
 class Numerics:
-    """Resolution relative to the short cutoff, and the solver.
+    """How simulations are resolved and solved.
 
     Attributes
     ----------
-    angles : int or None
-        Number of sites of the front; where None, `angles_per_cutoff` decides.
-    angles_per_cutoff : float
-        Sites per short cutoff on the smooth contact's largest circle, rounded up to an even
-        product of 2, 3 and 5.
-    samples_per_cutoff : float
-        Samples per short cutoff along a ray.
-    interpolation : {"cubic", "linear"}
-        Pieces between samples.
-    pixels_per_cutoff : float
-        Points of the tile per short cutoff, 2 or more.
+    knobs : Knobs or float
+        Resolution and tolerance, or the standard error of the factor k of either branch that they
+        may leave: measured laws then choose them for every spectrum and amplitude.
     tile_roll_offs, tile_cutoffs : float
         Side of the tile in roll-off wavelengths, and at least so many short cutoffs.
-    tolerance : float
-        Largest force along the motion that may be left, relative to w_int per front length.
     max_sweeps : int
         Limit on the sweeps of one load step.
     solver : str
         A name in :data:`crackfront.core.solver.relax.SOLVERS`.
     """
 
-    angles: int | None
-    angles_per_cutoff: float
-    samples_per_cutoff: float
-    interpolation: Interpolation
-    pixels_per_cutoff: float
-    tile_roll_offs: float
-    tile_cutoffs: float
-    tolerance: float
-    max_sweeps: int
-    solver: str
+    knobs: Knobs | float
+    tile_roll_offs: float = 4.0
+    tile_cutoffs: float = 200.0
+    max_sweeps: int = 100_000_000
+    solver: str = "newton"
+
+    def knobs_of(
+        self, kind: FieldKind, spectrum: SelfAffineSpectrum, elastic_energy: float
+    ) -> Knobs:
+        """Knobs for one spectrum and amplitude."""
+        if isinstance(self.knobs, Knobs):
+            return self.knobs
+        return chosen_knobs(self.knobs, kind, spectrum, elastic_energy)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +86,7 @@ class Resolution:
 
 
 def resolution(
-    spectrum: SelfAffineSpectrum, numerics: Numerics, max_penetration: float
+    spectrum: SelfAffineSpectrum, numerics: Numerics, knobs: Knobs, max_penetration: float
 ) -> Resolution:
     """Sizes of the front and of the tile for one spectrum.
 
@@ -99,6 +95,8 @@ def resolution(
     spectrum : SelfAffineSpectrum
         Spectrum of the surface. (Units: reduced lateral length)
     numerics : Numerics
+        Size of the tile.
+    knobs : Knobs
         Resolution relative to the short cutoff.
     max_penetration : float
         Largest penetration. (Units: reduced vertical length)
@@ -106,19 +104,20 @@ def resolution(
     Examples
     --------
     >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
-    >>> numerics = Numerics(None, 2, 4, "cubic", 4, 10, 20, 1e-6, 1000, "reference")
-    >>> resolution(flat, numerics, max_penetration=1.0)
+    >>> knobs = Knobs(None, 2, 4, "cubic", 4, 1e-6)
+    >>> numerics = Numerics(knobs, tile_roll_offs=10, tile_cutoffs=20)
+    >>> resolution(flat, numerics, knobs, max_penetration=1.0)
     Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
     cutoff = spectrum.short_cutoff
     circle = 2 * math.pi * jkr.equilibrium_radius(max_penetration)
-    sites = circle / cutoff * numerics.angles_per_cutoff
+    sites = circle / cutoff * knobs.angles_per_cutoff
     side = max(numerics.tile_roll_offs * spectrum.roll_off, numerics.tile_cutoffs * cutoff)
-    points = math.ceil(side / cutoff * numerics.pixels_per_cutoff * (1 - 1e-12))
+    points = math.ceil(side / cutoff * knobs.pixels_per_cutoff * (1 - 1e-12))
     return Resolution(
-        n_angle=numerics.angles or n_site(sites),
-        spacing=cutoff / numerics.samples_per_cutoff,
-        interpolation=numerics.interpolation,
+        n_angle=knobs.angles or n_site(sites),
+        spacing=cutoff / knobs.samples_per_cutoff,
+        interpolation=knobs.interpolation,
         tile_side=side,
         n_point=next_fast_len(points, real=True),
     )
@@ -146,8 +145,8 @@ class Simulation:
         Sizes of the front and of the tile.
     schedule : LoadSchedule or SteadySchedule
         Penetrations to visit: a full cycle, or the steady parts of its branches.
-    tolerance, max_sweeps, solver
-        As in :class:`Numerics`.
+    solver : Solver
+        How its fronts are found.
     record_fronts, record_energy : bool
         What to record beside the curves.
     """
@@ -160,11 +159,9 @@ class Simulation:
     sweep_seed: int
     resolution: Resolution
     schedule: LoadSchedule | SteadySchedule
-    tolerance: float
-    max_sweeps: int
-    solver: str
-    record_fronts: bool
-    record_energy: bool
+    solver: Solver
+    record_fronts: bool = False
+    record_energy: bool = False
 
     @property
     def key(self) -> str:
@@ -187,10 +184,15 @@ class Simulation:
             "seed": self.sweep_seed,
             "resolution": astuple(self.resolution),
             "load": astuple(self.schedule),
-            "numerics": (self.tolerance, self.max_sweeps, self.solver),
+            "numerics": (self.solver.tolerance, self.solver.max_sweeps, self.solver.name),
             "record": (self.record_fronts, self.record_energy),
             "sources": scene_fingerprint(),
         }
+
+    @property
+    def correlation_length(self) -> float:
+        """Wavelength of the mean wavevector of w_loc (Units: reduced lateral length)."""
+        return correlation_length(self.kind, self.spectrum)
 
     @property
     def label(self) -> str:
@@ -220,6 +222,124 @@ class Simulation:
         return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))
 
 
+def simulation_of(
+    kind: FieldKind,
+    spectrum: SelfAffineSpectrum,
+    elastic_energy: float,
+    schedule: LoadSchedule | SteadySchedule,
+    numerics: Numerics,
+    *,
+    seed: int,
+    realisation: int = 0,
+    name: str = "asked",
+    record: Collection[Literal["fronts", "energy"]] = (),
+) -> Simulation:
+    """The simulation of a surface.
+
+    Parameters
+    ----------
+    kind : {"roughness", "chemical"}
+        What the spectrum describes.
+    spectrum : SelfAffineSpectrum
+        Its shape. (Units: reduced lateral length)
+    elastic_energy : float
+        Energy of full conformity. (Units: w_int)
+    schedule : LoadSchedule or SteadySchedule
+        Penetrations; the largest decides the number of sites.
+    numerics : Numerics
+        How it is resolved and solved.
+    seed, realisation : int
+        Which surface.
+    name : str, optional
+        Name of the spectrum.
+    record : collection of {"fronts", "energy"}, optional
+        What to record beside the curves.
+    """
+    knobs = numerics.knobs_of(kind, spectrum, elastic_energy)
+    return Simulation(
+        spectrum_name=name,
+        kind=kind,
+        spectrum=spectrum,
+        elastic_energy=elastic_energy,
+        realisation=realisation,
+        sweep_seed=seed,
+        resolution=resolution(spectrum, numerics, knobs, schedule.max_penetration),
+        schedule=schedule,
+        solver=named_solver(numerics.solver, knobs.tolerance, numerics.max_sweeps),
+        record_fronts="fronts" in record,
+        record_energy="energy" in record,
+    )
+
+
+def missed_error(simulation: Simulation, asked: float) -> float:
+    """Error of k that the numerics are expected to leave, 0 where it is the asked one."""
+    left = max(numerical_error(simulation)) / simulation.elastic_energy
+    # Knobs have two digits.
+    return left if left > 1.2 * asked else 0.0
+
+
+def numerical_error(
+    simulation: Simulation, size: float = LAW_SIZE, largest_radius: float | None = None
+) -> tuple[float, float]:
+    """Standard errors that the numerics of a simulation are expected to leave.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        A simulation.
+    size : float, optional
+        Number of states times circumference of the front over the short cutoff.
+    largest_radius : float, optional
+        Largest mean radius of the states; by default that of a smooth sphere at the largest
+        penetration. (Units: reduced lateral length)
+
+    Returns
+    -------
+    tuple of float
+        Standard errors of w_appr and of w_retr. (Units: w_int)
+    """
+    sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
+    if largest_radius is None:
+        largest_radius = jkr.equilibrium_radius(simulation.schedule.max_penetration)
+    circle = 2 * math.pi * largest_radius
+    values: dict[Knob, float] = {
+        "sites": sizes.n_angle * cutoff / circle,
+        sizes.interpolation: cutoff / sizes.spacing,
+        "pixels": cutoff * sizes.n_point / sizes.tile_side,
+        "tolerance": simulation.solver.tolerance,
+    }
+    return combined_error(
+        simulation.kind, simulation.spectrum, simulation.elastic_energy, values, size
+    )
+
+
+def stated_error(
+    simulation: Simulation, steady: SteadyAdhesion, correlation_length: float
+) -> tuple[float, float]:
+    """Numerical standard errors of the w_appr and w_retr that a simulation has found.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        A simulation.
+    steady : SteadyAdhesion
+        What it has found; states closer than a correlation length count as one.
+    correlation_length : float
+        That of w_loc. (Units: reduced lateral length)
+
+    Returns
+    -------
+    tuple of float
+        Standard errors of w_appr and of w_retr. (Units: w_int)
+    """
+    low, high = steady.lowest_radius, steady.highest_radius
+    cutoffs = math.pi * (low + high) / simulation.spectrum.short_cutoff
+    apart = 1 + (high - low) / correlation_length
+    approach, _ = numerical_error(simulation, cutoffs * min(steady.n_approach, apart), high)
+    _, retraction = numerical_error(simulation, cutoffs * min(steady.n_retraction, apart), high)
+    return approach, retraction
+
+
 def _digest(content: Any) -> str:
     """Hexadecimal digits that change with what is given."""
     text = json.dumps(content, sort_keys=True, allow_nan=False)
@@ -230,26 +350,6 @@ def _digest(content: Any) -> str:
 def scene_fingerprint() -> str:
     """Twelve hexadecimal digits that change with what determines a simulation."""
     return fingerprint(*SOLVER, *_SOURCES, without=NO_PART)
-
-
-def correlation_length(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
-    """Wavelength of the mean wavevector of w_loc, weighted by its variance.
-
-    Parameters
-    ----------
-    kind : {"roughness", "chemical"}
-        What the spectrum describes.
-    spectrum : SelfAffineSpectrum
-        Its shape. (Units: length)
-
-    Returns
-    -------
-    float
-        Correlation length. (Units: length)
-    """
-    if kind == "roughness":
-        return spectrum.correlation_length
-    return 2 * math.pi * spectrum.mean_square(0.0) / spectrum.mean_square(0.5)
 
 
 def n_site(least: float) -> int:

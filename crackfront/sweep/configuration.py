@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from dataclasses import fields
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -13,8 +14,8 @@ from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.data.yaml import ConfigurationError, content_of, sentences
-from crackfront.simulate.laws import numerical_error
-from crackfront.simulate.simulation import Numerics, resolution
+from crackfront.simulate.laws import Knobs
+from crackfront.simulate.simulation import Numerics, missed_error
 from crackfront.sweep.sections import (
     Configuration,
     LoadSection,
@@ -53,7 +54,6 @@ def load_configuration(path: Path) -> Sweep:
         sweep = _sweep(configuration)
     except ConfigurationError as error:
         raise ConfigurationError(f"{path}: {error}") from error
-    _refuse_round_off(path, sweep)
     _refuse_unreachable(path, sweep)
     return sweep
 
@@ -75,32 +75,23 @@ def results_folder(path: Path) -> Path:
 
 
 def _refuse_unreachable(path: Path, sweep: Sweep) -> None:
-    """Raise if the finest numerics that may be chosen leave more than the asked error."""
-    asked = sweep.numerical_error
-    if asked is None:
-        return
+    """Raise if numerics leave more than the asked error, or round-off exceeds their tolerance."""
+    asked = sweep.numerics.knobs
     for item in sweep.spectra:
         for energy in sweep.elastic_energies:
-            stated = max(numerical_error(sweep.simulation(item, energy, 0))) / energy
-            if stated > 1.2 * asked:
+            simulation = sweep.simulation(item, energy, 0)
+            n_angle, tolerance = simulation.resolution.n_angle, simulation.solver.tolerance
+            round_off = sys.float_info.epsilon * n_angle
+            if tolerance < round_off:
+                raise ConfigurationError(
+                    f"{path}: numerics: tolerance is {tolerance}, below the round-off of "
+                    f"the {n_angle} sites of {item.name} ({round_off:.1e}); raise it"
+                )
+            if isinstance(asked, float) and (left := missed_error(simulation, asked)):
                 raise ConfigurationError(
                     f"{path}: numerics: error is {asked:g}, but the finest numerics leave "
-                    f"{stated:.2g} for {item.name} at e_el {energy:g}; ask for that, or give the "
+                    f"{left:.2g} for {item.name} at e_el {energy:g}; ask for that, or give the "
                     "knobs"
-                )
-
-
-def _refuse_round_off(path: Path, sweep: Sweep) -> None:
-    """Raise if a front has so many sites that round-off exceeds the tolerance."""
-    for item in sweep.spectra:
-        for energy in sweep.elastic_energies:
-            numerics = sweep.numerics_of(item, energy)
-            sizes = resolution(item.spectrum, numerics, sweep.schedule.max_penetration)
-            round_off = sys.float_info.epsilon * sizes.n_angle
-            if numerics.tolerance < round_off:
-                raise ConfigurationError(
-                    f"{path}: numerics: tolerance is {numerics.tolerance}, below the round-off of "
-                    f"the {sizes.n_angle} sites of {item.name} ({round_off:.1e}); raise it"
                 )
 
 
@@ -120,10 +111,8 @@ def _sweep(configuration: Configuration) -> Sweep:
         elastic_energies=configuration.amplitudes.elastic_energies,
         n_realisation=configuration.realisations,
         numerics=_numerics(numerics),
-        numerical_error=numerics.error,
         schedule=_schedule(load, vertical),
-        record_fronts="fronts" in configuration.record,
-        record_energy="energy" in configuration.record,
+        record=configuration.record,
         failed_fraction=configuration.failed_fraction,
         fit=FitRange(fit.lowest_elastic_energy, fit.highest_elastic_energy, fit.bootstrap),
     )
@@ -170,16 +159,15 @@ def _fitted(section: SurfaceSection) -> tuple[SelfAffineSpectrum, str]:
 
 
 def _numerics(section: NumericsSection) -> Numerics:
-    """Numerics; what an error decides is that of a coarse resolution here, and replaced."""
+    """Numerics of a section, which has an error or all knobs."""
+    names = [item.name for item in fields(Knobs)]
+    given = {name: getattr(section, name) for name in names}
+    if section.angles is not None:
+        given["angles_per_cutoff"] = 1.0  # without effect
     return Numerics(
-        angles=section.angles,
-        angles_per_cutoff=section.angles_per_cutoff or 1.0,
-        samples_per_cutoff=section.samples_per_cutoff or 4.0,
-        interpolation=section.interpolation or "cubic",
-        pixels_per_cutoff=section.pixels_per_cutoff or 4.0,
+        knobs=Knobs(**given) if section.error is None else section.error,
         tile_roll_offs=section.tile.roll_offs,
         tile_cutoffs=section.tile.cutoffs,
-        tolerance=section.tolerance or 1e-3,
         max_sweeps=section.max_sweeps,
         solver=section.solver,
     )

@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from crackfront.analysis.table import SweepRow
 from crackfront.data.files import UnreadableFileError
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.ledger import Ledger
-from crackfront.sweep.table import SweepRow, sweep_row
+from crackfront.sweep.table import sweep_row
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from crackfront.sweep.table import SweepRow
+from crackfront.analysis.table import SweepRow
 
 
 @dataclass(frozen=True, slots=True)

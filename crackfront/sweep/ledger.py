@@ -12,9 +12,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.analysis.table import SweepRow
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.journal import Entry, journal_paths, read_entry, read_journal
-from crackfront.sweep.table import SweepRow, row_fingerprint
+from crackfront.sweep.table import row_fingerprint
 
 ROWS_AT_ONCE = 4096
 """Rows that are in memory at once."""

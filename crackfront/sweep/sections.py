@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from crackfront.core.field.kinds import Interpolation
+from crackfront.core.adhesion import FieldKind
+from crackfront.core.field.fields import Interpolation
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.data.section import Count, Energy, InputFile, Positive, Section, refusal
-from crackfront.simulate.simulation import FieldKind
+from crackfront.simulate.laws import Knobs
 from crackfront.topography.files import Detrend
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
@@ -151,18 +153,8 @@ class NumericsSection(Section):
 
     def _refuse_overruled(self) -> None:
         """Raise if a knob is given that the error decides."""
-        given = [
-            name
-            for name in (
-                "angles",
-                "angles_per_cutoff",
-                "samples_per_cutoff",
-                "interpolation",
-                "pixels_per_cutoff",
-                "tolerance",
-            )
-            if getattr(self, name) is not None
-        ]
+        names = [item.name for item in fields(Knobs)]
+        given = [name for name in names if getattr(self, name) is not None]
         if given:
             raise refusal(f"error already decides {', '.join(given)}; remove one or the other")
 

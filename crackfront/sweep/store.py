@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from crackfront.analysis.table import SweepRow
 from crackfront.data.files import leftover_parts, write_text
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
@@ -15,7 +16,7 @@ from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
 from crackfront.sweep.inventory import Inventory, holdings, inventory
 from crackfront.sweep.sweep import Shard, Sweep, shard_fingerprint
-from crackfront.sweep.table import SweepRow, write_hysteresis
+from crackfront.sweep.table import write_hysteresis
 from crackfront.sweep.tasks import NOT_STORED, STOPPED, Finished, Task, run_task
 
 CHECKPOINT_SECONDS = 60.0
@@ -92,7 +93,7 @@ class Store:
         write_text(self.configuration, origin.configuration)
         longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
         tasks = [Task(one, self.folder, origin, checkpoint_seconds) for one in longest_first]
-        for solver in {item.solver for item in simulations}:
+        for solver in {item.solver.name for item in simulations}:
             compile_solver(solver)
         for task, finished in parallel.run_tasks(run_task, tasks):
             yield task.simulation, finished

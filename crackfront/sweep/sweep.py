@@ -6,19 +6,14 @@ import difflib
 import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
+from crackfront.core.adhesion import FieldKind, correlation_length
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
-from crackfront.simulate.laws import chosen_numerics
-from crackfront.simulate.simulation import (
-    FieldKind,
-    Numerics,
-    Simulation,
-    correlation_length,
-    resolution,
-)
+from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,13 +91,10 @@ class Sweep:
     n_realisation : int
         Realisations of the noise for every spectrum.
     numerics : Numerics
-        Resolution and solver.
-    numerical_error : float or None
-        Standard error of k that the numerics may leave. Where it is given, it decides the
-        resolution and the tolerance for every spectrum and amplitude.
+        How simulations are resolved and solved.
     schedule : LoadSchedule or SteadySchedule
         Penetrations to visit: full cycles, or the steady parts of their branches.
-    record_fronts, record_energy : bool
+    record : tuple of {"fronts", "energy"}
         What to record beside the curves.
     failed_fraction : float
         Part of the simulations that may end without a value.
@@ -117,10 +109,8 @@ class Sweep:
     elastic_energies: tuple[float, ...]
     n_realisation: int
     numerics: Numerics
-    numerical_error: float | None
     schedule: LoadSchedule | SteadySchedule
-    record_fronts: bool
-    record_energy: bool
+    record: tuple[Literal["fronts", "energy"], ...]
     failed_fraction: float
     fit: FitRange
 
@@ -144,31 +134,18 @@ class Sweep:
         """Wavelength of the mean wavevector of w_loc, in reduced lateral lengths."""
         return correlation_length(self.kind, item.spectrum)
 
-    def numerics_of(self, item: NamedSpectrum, energy: float) -> Numerics:
-        """Numerics of one spectrum and amplitude."""
-        if self.numerical_error is None:
-            return self.numerics
-        return chosen_numerics(
-            self.numerical_error, self.kind, item.spectrum, energy, self.numerics
-        )
-
     def simulation(self, item: NamedSpectrum, energy: float, realisation: int) -> Simulation:
         """One simulation of the sweep."""
-        numerics = self.numerics_of(item, energy)
-        return Simulation(
-            spectrum_name=item.name,
-            kind=self.kind,
-            spectrum=item.spectrum,
-            elastic_energy=energy,
+        return simulation_of(
+            self.kind,
+            item.spectrum,
+            energy,
+            self.schedule,
+            self.numerics,
+            seed=self.seed,
             realisation=realisation,
-            sweep_seed=self.seed,
-            resolution=resolution(item.spectrum, numerics, self.schedule.max_penetration),
-            schedule=self.schedule,
-            tolerance=numerics.tolerance,
-            max_sweeps=numerics.max_sweeps,
-            solver=numerics.solver,
-            record_fronts=self.record_fronts,
-            record_energy=self.record_energy,
+            name=item.name,
+            record=self.record,
         )
 
     def simulations(

@@ -6,7 +6,7 @@ import functools
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, fields
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -15,66 +15,45 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crackfront.analysis.steady import STEADY_DEFINITION, SteadyAdhesion, steady_adhesion
-from crackfront.analysis.table import SweepTable
+from crackfront.analysis.steady import (
+    STEADY_DEFINITION,
+    SteadyAdhesion,
+    SteadyMeasures,
+    steady_adhesion,
+)
+from crackfront.analysis.table import (
+    AMPLITUDE,
+    REALISATION,
+    SPECTRUM,
+    SweepAxes,
+    SweepRow,
+    SweepTable,
+)
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.fingerprint import fingerprint
+from crackfront.core.records import ADHESION, variables
 from crackfront.data.files import (
     Block,
     UnreadableFileError,
-    labelled,
+    labelled_fields,
     read_dataset,
     write_dataset_in_blocks,
 )
 from crackfront.data.provenance import Provenance
-from crackfront.data.schema import AMPLITUDE, COORDINATES, HYSTERESIS
-from crackfront.simulate.laws import stated_error
 from crackfront.simulate.run import SimulationResult
-from crackfront.simulate.simulation import Simulation, correlation_length
+from crackfront.simulate.simulation import Simulation, stated_error
 from crackfront.sweep.sweep import Sweep
 
 ROWS_AT_ONCE = 4096
 """Rows that are written at once."""
+
+_ROW = variables(SweepRow, SPECTRUM, AMPLITUDE, REALISATION)
 
 COMPLETE = ("lost_contact", "steady")
 """Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
 
 NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
-
-
-@dataclass(frozen=True, slots=True)
-class SweepRow:
-    """One simulation in the file; each field is a variable of that name."""
-
-    w_appr: float
-    w_retr: float
-    w_appr_error: float
-    w_retr_error: float
-    w_appr_numerical_error: float
-    w_retr_numerical_error: float
-    hysteresis: float
-    midpoint: float
-    w_appr_from_force: float
-    w_retr_from_force: float
-    hysteresis_from_force: float
-    e_el: float
-    w_rms: float
-    seconds: float
-    cpu_seconds: float
-    peak_memory: float
-    iterations: int
-    n_step: int
-    n_approach: int
-    n_retraction: int
-    lowest_radius: float
-    highest_radius: float
-    pull_off_force: float
-    end_penetration: float
-    status: str
-    status_sentence: str
-    seed: int
-    curve: str
 
 
 def write_hysteresis(
@@ -98,7 +77,7 @@ def write_hysteresis(
     Counter
         Number of simulations of every status.
     """
-    dataset = xr.Dataset(coords=_coordinates(sweep), attrs=_attributes(sweep))
+    dataset = xr.Dataset(coords=labelled_fields(_axes(sweep)), attrs=_attributes(sweep))
     statuses: Counter[str] = Counter()
 
     def blocks() -> Iterator[Block]:
@@ -110,13 +89,13 @@ def write_hysteresis(
                 statuses.update(row.status for row in block)
                 yield Block((*cell, slice(start, stop)), _columns(block))
 
-    write_dataset_in_blocks(path, dataset, HYSTERESIS, blocks(), origin)
+    write_dataset_in_blocks(path, dataset, _ROW, blocks(), origin)
     return statuses
 
 
 def _columns(rows: Sequence[SweepRow]) -> list[NDArray[Any]]:
     """Columns of rows in the order of their variables; texts as objects."""
-    columns = [np.array([getattr(row, item.name) for row in rows]) for item in HYSTERESIS]
+    columns = [np.array([getattr(row, item.name) for row in rows]) for item in _ROW]
     return [column.astype(object) if column.dtype.kind == "U" else column for column in columns]
 
 
@@ -161,41 +140,23 @@ def read_statuses(path: Path) -> Counter[str]:
 def sweep_row(result: SimulationResult) -> SweepRow:
     """What the file of a sweep says about one simulation."""
     record, simulation = result.record, result.simulation
-    length = correlation_length(simulation.kind, simulation.spectrum)
+    length = simulation.correlation_length
     steady = steady_adhesion(record, length)
     status, sentence = _status(record, steady)
-    known = status in COMPLETE
-    cycle = status == COMPLETE[0]
-    numerical = np.nan, np.nan
-    if known:
-        numerical = stated_error(simulation, steady, length)
+    known, cycle = status in COMPLETE, status == COMPLETE[0]
+    numerical = stated_error(simulation, steady, length) if known else (np.nan, np.nan)
+    measures: dict[str, Any] = {
+        item.name: getattr(steady, item.name) if known or item.units != ADHESION else np.nan
+        for item in variables(SteadyMeasures)
+    }
     return SweepRow(
-        w_appr=steady.approach if known else np.nan,
-        w_retr=steady.retraction if known else np.nan,
-        w_appr_error=steady.approach_error if known else np.nan,
-        w_retr_error=steady.retraction_error if known else np.nan,
+        **measures | asdict(result.measures),
         w_appr_numerical_error=numerical[0],
         w_retr_numerical_error=numerical[1],
-        hysteresis=steady.hysteresis if known else np.nan,
-        midpoint=steady.midpoint if known else np.nan,
-        w_appr_from_force=steady.approach_from_force if known else np.nan,
-        w_retr_from_force=steady.retraction_from_force if known else np.nan,
-        hysteresis_from_force=(
-            steady.retraction_from_force - steady.approach_from_force if known else np.nan
-        ),
-        e_el=result.elastic_energy,
-        w_rms=result.work_of_adhesion_rms,
-        seconds=result.seconds,
-        cpu_seconds=result.cpu_seconds,
-        peak_memory=result.peak_memory,
-        iterations=int(np.sum(record.iterations)),
-        n_step=record.penetration.size,
-        n_approach=steady.n_approach,
-        n_retraction=steady.n_retraction,
-        lowest_radius=steady.lowest_radius,
-        highest_radius=steady.highest_radius,
-        pull_off_force=float(np.min(record.force, initial=np.inf)) if cycle else np.nan,
-        end_penetration=record.end_penetration,
+        iterations=int(np.sum(record.states.iterations)),
+        n_step=record.states.penetration.size,
+        pull_off_force=float(np.min(record.states.force, initial=np.inf)) if cycle else np.nan,
+        end_penetration=record.end_load,
         status=status,
         status_sentence=sentence,
         seed=simulation.seed,
@@ -233,8 +194,8 @@ def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
     return status, record.status.value
 
 
-def _coordinates(sweep: Sweep) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
-    """Labelled coordinates of a sweep."""
+def _axes(sweep: Sweep) -> SweepAxes:
+    """Coordinates of a sweep."""
     spectra = [item.spectrum for item in sweep.spectra]
     energies = np.array(sweep.elastic_energies)
     firsts = [
@@ -242,24 +203,21 @@ def _coordinates(sweep: Sweep) -> dict[str, tuple[tuple[str, ...], np.ndarray, d
         for item in sweep.spectra
     ]
     tiles = [[one.resolution for one in row] for row in firsts]
-    columns = (
-        np.array([item.name for item in sweep.spectra]),
-        np.array([spectrum.short_cutoff for spectrum in spectra]),
-        np.array([spectrum.roll_off for spectrum in spectra]),
-        np.array([spectrum.hurst for spectrum in spectra]),
-        np.array([sweep.correlation_length(item) for item in sweep.spectra]),
-        np.array([[tile.n_angle for tile in row] for row in tiles]),
-        np.array([[tile.spacing for tile in row] for row in tiles]),
-        np.array([row[0].tile_side for row in tiles]),
-        np.array([[tile.n_point for tile in row] for row in tiles]),
-        np.array([[one.tolerance for one in row] for row in firsts]),
-        energies,
-        2 * np.sqrt(energies),
-        np.arange(sweep.n_realisation),
+    return SweepAxes(
+        spectrum=np.array([item.name for item in sweep.spectra]),
+        short_cutoff=np.array([spectrum.short_cutoff for spectrum in spectra]),
+        roll_off=np.array([spectrum.roll_off for spectrum in spectra]),
+        hurst=np.array([spectrum.hurst for spectrum in spectra]),
+        correlation_length=np.array([sweep.correlation_length(item) for item in sweep.spectra]),
+        n_angle=np.array([[tile.n_angle for tile in row] for row in tiles]),
+        sample_spacing=np.array([[tile.spacing for tile in row] for row in tiles]),
+        tile_side=np.array([row[0].tile_side for row in tiles]),
+        n_point=np.array([[tile.n_point for tile in row] for row in tiles]),
+        tolerance=np.array([[one.solver.tolerance for one in row] for row in firsts]),
+        amplitude=energies,
+        w_rms_requested=2 * np.sqrt(energies),
+        realisation=np.arange(sweep.n_realisation),
     )
-    return {
-        item.name: labelled(item, values) for item, values in zip(COORDINATES, columns, strict=True)
-    }
 
 
 def _attributes(sweep: Sweep) -> dict[str, str | float]:

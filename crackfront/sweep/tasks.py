@@ -138,7 +138,7 @@ def _run(task: Task, journal: Journal) -> Finished:
         with _storing():
             write_simulation(task.curve, result, task.origin)
             size = task.curve.stat().st_size
-        row, sentence, seconds = sweep_row(result), "", result.seconds
+        row, sentence, seconds = sweep_row(result), "", result.measures.seconds
     with _storing():
         journal.append(replace(begun, size=size, definition=row_fingerprint(), row=row))
     task.checkpoint.unlink(missing_ok=True)

@@ -13,11 +13,14 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.units import Scales
-from crackfront.simulate.asked import asked_simulation
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.laws import numerical_error
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Simulation, correlation_length
+from crackfront.simulate.simulation import (
+    Numerics,
+    Simulation,
+    numerical_error,
+    simulation_of,
+)
 from crackfront.topography.measures import Surface
 from crackfront.topography.prediction import Range, reduced_spectrum
 
@@ -29,9 +32,6 @@ _START, _DEEPEST, _TRAVEL, _STEADY_ERROR = 1.0, 1.5, 1.5, 0.1
 
 _WAY = 15.0
 """Correlation lengths that the contact grows by at least, for a few independent states."""
-
-_TILE_ROLL_OFFS, _TILE_CUTOFFS = 4.0, 200.0
-"""Side of the tile, as there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,16 +88,7 @@ def prediction_simulations(
     if not energy < 1:
         raise ValueError(f"e_el is {energy:.3g} w_int; no simulation conforms fully at 1 or more")
     schedule = _schedule(spectrum.correlation_length)
-    first = asked_simulation(
-        "roughness",
-        spectrum,
-        energy,
-        schedule,
-        error=ERROR,
-        tile_roll_offs=_TILE_ROLL_OFFS,
-        tile_cutoffs=_TILE_CUTOFFS,
-        seed=seed,
-    )
+    first = simulation_of("roughness", spectrum, energy, schedule, Numerics(ERROR), seed=seed)
     name = f"measured-{surface.checksum}"
     return tuple(
         replace(first, spectrum_name=name, realisation=number) for number in range(realisations)
@@ -127,13 +118,13 @@ def simulated(simulations: Sequence[Simulation], scales: Scales) -> Simulated:
     rows, failed = [], []
     for simulation in simulations:
         result = run_simulation(simulation)
-        length = correlation_length(simulation.kind, simulation.spectrum)
+        length = simulation.correlation_length
         steady = steady_adhesion(result.record, length)
         if steady.sentence:
             failed.append(f"{simulation.label}: {steady.sentence}")
             continue
-        k = steady.hysteresis / (2 * result.elastic_energy)
-        rows.append((steady.approach, steady.retraction, steady.hysteresis, k))
+        k = steady.hysteresis / (2 * result.measures.e_el)
+        rows.append((steady.w_appr, steady.w_retr, steady.hysteresis, k))
     if not rows:
         raise ValueError(f"no simulation has a value; {failed[0]}")
     means = mean_estimate(np.transpose(rows))[0]

@@ -8,17 +8,22 @@ penetration does not depend on the steps that led there.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.core.field.kinds import Field
-from crackfront.core.field.samples import make_memory
-from crackfront.core.solver.relax import Direction, Status, relax
+from crackfront.core.cycle.energy import dissipated_energy
+from crackfront.core.cycle.follow import Load, follow
+from crackfront.core.field.fields import Field
+from crackfront.core.outcome import Direction, Status
+from crackfront.core.records import ENERGY, LATERAL, VERTICAL, variable
+from crackfront.core.solver.relax import Solver
 
 Array = NDArray[np.float64]
+
+_JUMP = "instability"
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +56,7 @@ def resolved_motion(
     *,
     travel: float,
     precision: float,
-    tolerance: float = 1e-8,
+    solver: Solver | None = None,
 ) -> Iterator[Motion]:
     """Motion of a front from load to load, resolved into smooth steps and single instabilities.
 
@@ -74,9 +79,9 @@ def resolved_motion(
         Largest motion of a site in a smooth step. (Units: reduced lateral length)
     precision : float
         Step in which a larger motion is an instability. (Units: reduced vertical length)
-    tolerance : float, optional
-        As in :func:`crackfront.core.solver.relax.relax`; a front rests until its drive exceeds it,
-        so that a tolerance above the precision delays the instabilities.
+    solver : Solver, optional
+        How each front is found; one rests until its drive exceeds the tolerance, so that a
+        tolerance above the precision delays the instabilities.
 
     Yields
     ------
@@ -91,15 +96,17 @@ def resolved_motion(
     for name, value in (("travel", travel), ("precision", precision)):
         if not 0 < value < math.inf:
             raise ValueError(f"{name} is {value}; it must be positive and finite")
-    memory = make_memory(field)
+    tries: list[Load] = []
+    steps = follow(field, front, iter(tries.pop, None), solver)
 
     def front_at(penetration: float) -> Array | None:
-        found = relax(front, penetration, direction, field, tolerance=tolerance, memory=memory)
+        tries.append(Load(penetration, direction, front))
+        found = next(steps)
         if found.status is Status.LOST_CONTACT:
             return None
         if found.status is not Status.CONVERGED:
             raise ValueError(f"at penetration {penetration:.6g}: {found.status.value}")
-        return found.radius
+        return found.front
 
     for load in loads:
         # Fronts that were found from further behind are those that a halved step arrives at.
@@ -116,6 +123,41 @@ def resolved_motion(
             yield Motion(start, end, front, after, moved > travel)
             start, front = end, after
             ahead.pop()
+
+
+@dataclass(frozen=True, slots=True)
+class Instabilities:
+    """The instabilities of a branch, one entry each."""
+
+    penetration: Array = variable("penetration of the instability", VERTICAL, _JUMP)
+    dissipated_energy: Array = variable("energy that the instability dissipates", ENERGY, _JUMP)
+    area: Array = variable("area that the front has swept", f"({LATERAL})^2", _JUMP)
+    extent: Array = variable("width of the largest patch along the perimeter", LATERAL, _JUMP)
+    before: Array = variable("front before the instability", LATERAL, _JUMP, "angle")
+    after: Array = variable("front after the instability", LATERAL, _JUMP, "angle")
+
+
+def measured_instabilities(jumps: Sequence[Motion], field: Field, travel: float) -> Instabilities:
+    """What jumps have swept and dissipated.
+
+    Parameters
+    ----------
+    jumps : sequence of Motion
+        Unstable motions of one branch.
+    field : Field
+        Work of adhesion along the rays.
+    travel : float
+        Smallest motion of a site that counts. (Units: reduced lateral length)
+    """
+    clusters = [swept_clusters(jump.before, jump.after, travel) for jump in jumps]
+    fronts = [np.array([getattr(jump, name) for jump in jumps]) for name in ("before", "after")]
+    return Instabilities(
+        np.array([jump.end for jump in jumps]),
+        np.array([dissipated_energy(jump.before, jump.after, jump.end, field) for jump in jumps]),
+        np.array([sum(part.area for part in parts) for parts in clusters]),
+        np.array([parts[0].extent for parts in clusters]),
+        *(front.reshape(-1, field.geometry.n_site) for front in fronts),
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from crackfront.core.solver.relax import Direction
+from crackfront.core.cycle.follow import Load
 
 DEFAULT_STEP = 0.004
 """Load step that leaves the dissipated energies of a full cycle within 1% of the quasi-static loop.
@@ -73,9 +73,9 @@ class LoadSchedule:
             k -= 1
 
 
-def loads(schedule: LoadSchedule) -> Iterator[tuple[float, Direction]]:
+def loads(schedule: LoadSchedule) -> Iterator[Load]:
     """Penetrations of a whole cycle, without end, with the direction in which each is reached."""
     for penetration in schedule.approach():
-        yield penetration, 1
+        yield Load(penetration, 1)
     for penetration in schedule.retraction():
-        yield penetration, -1
+        yield Load(penetration, -1)

@@ -8,19 +8,21 @@ one has passed the circle everywhere: the start is forgotten exactly.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core import jkr
-from crackfront.core.cycle.history import FrontHistory
-from crackfront.core.cycle.record import Checkpoint, CycleRecord, CycleState, Keep
-from crackfront.core.cycle.run import refuse_outgrown
-from crackfront.core.field.kinds import Field, first_radius, last_radius, n_angle
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.cycle.run import first_touch, refuse_outgrown
+from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.rays import front_adhesion
-from crackfront.core.solver.relax import Direction, Status
+from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.outcome import Direction, Status
+from crackfront.core.solver.relax import Solver
 from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -88,14 +90,8 @@ def run_steady(
     *,
     correlation_length: float,
     elastic_energy: float,
-    tolerance: float = 1e-8,
-    max_sweeps: int = 10_000_000,
-    solver: str = "newton",
-    record_fronts: bool = False,
-    record_energy: bool = False,
-    progress: Callable[[CycleState], None] | None = None,
-    resume: Checkpoint | None = None,
-    keep: Keep | None = None,
+    solver: Solver | None = None,
+    recorder: Recorder | None = None,
 ) -> CycleRecord:
     """Approach and retraction over the radii that an estimate of the hysteresis needs.
 
@@ -106,7 +102,7 @@ def run_steady(
     Parameters
     ----------
     field : Field
-        Work of adhesion along the rays.
+        Work of adhesion along the rays of a sphere.
     schedule : SteadySchedule
         Where to begin and when to stop.
     correlation_length : float
@@ -114,8 +110,8 @@ def run_steady(
         (Units: reduced lateral length)
     elastic_energy : float
         Unit of the requested error. (Units: w_int)
-    tolerance, max_sweeps, solver, record_fronts, record_energy, progress, resume, keep
-        As in :func:`crackfront.core.cycle.run.run_cycle`.
+    solver, recorder
+        As of :func:`crackfront.core.cycle.run.run_cycle`.
 
     Returns
     -------
@@ -126,29 +122,32 @@ def run_steady(
     Raises
     ------
     ValueError
-        If a smooth sphere would outgrow the field, or the solver is unknown.
+        If a smooth sphere would outgrow the field.
     """
     refuse_outgrown(field, schedule.max_penetration)
-    history = FrontHistory(
-        field,
-        np.full(n_angle(field), first_radius(field)),
-        tolerance=tolerance,
-        max_sweeps=max_sweeps,
-        solver=solver,
-        record_fronts=record_fronts,
-        record_energy=record_energy,
-        progress=progress,
-        resume=resume,
-        keep=keep,
-    )
-    step = schedule.travel * correlation_length * _penetration_slope(schedule.start)
+    recorder = recorder or Recorder()
+    loads = _loads(field, schedule, recorder, correlation_length, elastic_energy)
+    recorder.run(field, first_touch(field), loads, solver)
+    return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
+
+
+def _loads(
+    field: Field,
+    schedule: SteadySchedule,
+    recorder: Recorder,
+    correlation_length: float,
+    elastic_energy: float,
+) -> Iterator[Load]:
+    """Loads of both branches, each by what has been recorded before it."""
+    step = schedule.travel * correlation_length * jkr.penetration_slope(schedule.start)
     n_step = math.floor((schedule.max_penetration - schedule.start) / step)
     near = jkr.equilibrium_radius(schedule.start) - correlation_length
-    history.begin(forward_circle(field, schedule.start, 1, near))
+    circle = forward_circle(field, schedule.start, 1, near)
     for k in range(n_step + 1):
-        if history.follow(schedule.start + k * step, 1) is not Status.CONVERGED:
-            return history.record()
-        steady = [item for item in history.states if item.least_travel >= correlation_length]
+        yield Load(schedule.start + k * step, 1, circle if k == 0 else None)
+        if recorder.status is not Status.CONVERGED:
+            return
+        steady = [item for item in recorder.states if item.least_travel >= correlation_length]
         radius, values, roughness = (
             np.array([getattr(item, name) for item in steady])
             for name in ("mean_radius", "apparent_work_of_adhesion", "rms_radius")
@@ -157,24 +156,25 @@ def run_steady(
         if values.size >= _FEWEST_TO_STOP and error <= schedule.error:
             break
     lowest = np.min(radius, initial=math.inf)
-    last = history.states[-1]
+    last = recorder.states[-1]
     penetration = _retraction_start(field, last)
-    near = last.mean_radius + correlation_length
-    history.begin(forward_circle(field, penetration, -1, near))
-    while history.follow(penetration, -1) is Status.CONVERGED:
-        if history.states[-1].mean_radius < lowest:
-            return history.record(Status.STEADY)
+    yield Load(
+        penetration,
+        -1,
+        forward_circle(field, penetration, -1, last.mean_radius + correlation_length),
+    )
+    while recorder.status is Status.CONVERGED and recorder.states[-1].mean_radius >= lowest:
         penetration -= step
-    return history.record()
+        yield Load(penetration, -1)
 
 
-def _retraction_start(field: Field, last: CycleState) -> float:
+def _retraction_start(field: Field, last: ContactState[float]) -> float:
     """Penetration at which a retraction comes to the radius of the last state of the approach.
 
     The mean of w_loc is taken to lie in the middle between the branches, so that the retraction
     begins outside rather than inside where it is in the upper half.
     """
-    circle = np.full(n_angle(field), last.mean_radius)
+    circle = np.full(field.geometry.n_site, last.mean_radius)
     mean = float(np.mean(front_adhesion(circle, field))) / WORK_OF_ADHESION
     expected = max(mean + 0.8 * (mean - last.apparent_work_of_adhesion), 0.0)
     return min(float(jkr.equilibrium_penetration(last.mean_radius, expected)), last.penetration)
@@ -201,18 +201,18 @@ def forward_circle(field: Field, penetration: float, direction: Direction, near:
         compression, so that no front can rest inside; in retraction the end of the field.
         (Units: reduced lateral length)
     """
-    furthest = last_radius(field)
+    furthest = last_place(field)
     if direction > 0:
-        furthest = max(math.sqrt(max(penetration, 0.0)), first_radius(field))
+        furthest = max(math.sqrt(max(penetration, 0.0)), first_place(field))
     if direction * (furthest - near) > 0:
-        return np.full(n_angle(field), furthest)
+        return np.full(field.geometry.n_site, furthest)
     for radius in np.linspace(near, furthest, _N_CIRCLE):
-        circle = np.full(n_angle(field), radius)
+        circle = np.full(field.geometry.n_site, radius)
         adhesion = front_adhesion(circle, field)
         drive = direction * (np.mean(adhesion) - jkr.energy_release_rate(radius, penetration))
         if drive > _MARGIN * np.std(adhesion):
             return circle
-    return np.full(n_angle(field), furthest)
+    return np.full(field.geometry.n_site, furthest)
 
 
 def standard_error(
@@ -245,9 +245,3 @@ def standard_error(
     distance = max(correlation_length, _DEPTH * float(np.mean(roughness)))
     independent = min(values.size, 1 + np.ptp(radius) / distance)
     return float(np.std(values, ddof=1) / math.sqrt(independent))
-
-
-def _penetration_slope(penetration: float) -> float:
-    """Penetration per radius of a smooth contact, d(a^2 - sqrt(8a/3)) / da."""
-    radius = jkr.equilibrium_radius(penetration)
-    return 2 * radius - math.sqrt(2 / (3 * radius))

@@ -8,13 +8,13 @@ it.
 from __future__ import annotations
 
 from crackfront.core.compiled import kernel
-from crackfront.core.field.samples import evaluate, is_cubic, peek, sample_radius
+from crackfront.core.field.samples import evaluate, is_cubic, peek, sample_place
 
 
 @kernel(inline="always")
 def ordinates(field, segment, start, end):
     """Bezier ordinates of a segment from the products and slopes at its ends."""
-    width = sample_radius(field, segment + 1) - sample_radius(field, segment)
+    width = sample_place(field, segment + 1) - sample_place(field, segment)
     if is_cubic(field):
         third = width / 3
         return start[0], start[0] + third * start[1], end[0] - third * end[1], end[0]

@@ -6,21 +6,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core.compiled import jit
-from crackfront.core.field.kinds import Field, PolarField, TileField
+from crackfront.core.field.fields import Field, RayField, TileField
 from crackfront.core.field.pieces import blend, evaluate_piece, ordinates
-from crackfront.core.field.samples import evaluate, sample_count, sample_radius
+from crackfront.core.field.samples import evaluate, sample_count, sample_place
+from crackfront.core.geometry.base import weight
 
 Array = NDArray[np.float64]
 
 
 @jit
-def segment_below(field, radius, direction):
-    """Index of the sample below a radius; a radius on a sample belongs to the segment ahead."""
+def segment_below(field, place, direction):
+    """Index of the sample below a place; a place on a sample belongs to the segment ahead."""
     low, high = 0, sample_count(field) - 1
     while high - low > 1:
         middle = (low + high) // 2
-        inside = sample_radius(field, middle)
-        if inside < radius or (direction > 0 and inside == radius):
+        inside = sample_place(field, middle)
+        if inside < place or (direction > 0 and inside == place):
             low = middle
         else:
             high = middle
@@ -28,32 +29,41 @@ def segment_below(field, radius, direction):
 
 
 @jit
-def front_products(radius, field):
-    """Radius times work of adhesion under a front, (n_angle,) array."""
-    products = np.empty(radius.size)
-    for i in range(radius.size):
-        low = segment_below(field, radius[i], 1)
-        inner, outer = sample_radius(field, low), sample_radius(field, low + 1)
-        products[i] = blend(evaluate_piece(field, i, low), (radius[i] - inner) / (outer - inner))
+def front_products(front, field):
+    """Weighted work of adhesion under a front, (n_site,) array."""
+    products = np.empty(front.size)
+    for i in range(front.size):
+        low = segment_below(field, front[i], 1)
+        inner, outer = sample_place(field, low), sample_place(field, low + 1)
+        products[i] = blend(evaluate_piece(field, i, low), (front[i] - inner) / (outer - inner))
     return products
 
 
-def front_adhesion(radius: Array, field: Field) -> Array:
+def front_adhesion(front: Array, field: Field) -> Array:
     """Work of adhesion under a front, w_loc(a(theta), theta).
 
     Parameters
     ----------
-    radius : (n_angle,) array
+    front : (n_site,) array
         Front inside the field. (Units: reduced lateral length)
     field : Field
         Work of adhesion along the rays.
 
     Returns
     -------
-    (n_angle,) array
+    (n_site,) array
         Work of adhesion. (Units: reduced energy / area)
     """
-    return np.asarray(front_products(radius, field) / radius)
+    return np.asarray(front_products(front, field) / _weights(front, field.geometry))
+
+
+@jit
+def _weights(front, geometry):
+    """Weights of the work of adhesion under a front."""
+    weights = np.empty(front.size)
+    for i in range(front.size):
+        weights[i] = weight(geometry, front[i])
+    return weights
 
 
 @jit
@@ -64,7 +74,7 @@ def _ray_adhesion(field, ray, inner, outer):
     total, low, position = 0.0, segment_below(field, inner, 1), inner
     start = evaluate(field, ray, low)
     while position < outer:
-        left, right = sample_radius(field, low), sample_radius(field, low + 1)
+        left, right = sample_place(field, low), sample_place(field, low + 1)
         end = evaluate(field, ray, low + 1)
         piece = ordinates(field, low, start, end)
         stop = min(right, outer)
@@ -77,12 +87,12 @@ def _ray_adhesion(field, ray, inner, outer):
 
 @jit
 def _swept_adhesion(before, after, field):
-    """Adhesion energy between two fronts, positive where the second lies outside."""
+    """Sum over the rays of the adhesion energy between two fronts, per width of a site."""
     total = 0.0
     for i in range(before.size):
         low, high = min(before[i], after[i]), max(before[i], after[i])
         total += np.sign(after[i] - before[i]) * _ray_adhesion(field, i, low, high)
-    return 2 * np.pi * total / before.size
+    return total
 
 
 def swept_adhesion(before: Array, after: Array, field: Field) -> float:
@@ -90,7 +100,7 @@ def swept_adhesion(before: Array, after: Array, field: Field) -> float:
 
     Parameters
     ----------
-    before, after : (n_angle,) array
+    before, after : (n_site,) array
         Fronts inside the field. (Units: reduced lateral length)
     field : Field
         Work of adhesion along the rays.
@@ -101,20 +111,21 @@ def swept_adhesion(before: Array, after: Array, field: Field) -> float:
         Integral of w_loc over the area between them, negative where contact is given up.
         (Units: reduced energy)
     """
-    return float(_swept_adhesion(before, after, field))
+    total = _swept_adhesion(before, after, field)
+    return float(field.geometry.perimeter * total / before.size)
 
 
 @jit
-def _sample_rays(field):
+def _sample_rays(field, count):
     """Products and slopes at all samples of all rays."""
-    samples = np.empty((2, field.cosine.size, field.n_sample))
+    samples = np.empty((2, count, field.n_sample))
     for ray in range(samples.shape[1]):
         for sample in range(samples.shape[2]):
             samples[0, ray, sample], samples[1, ray, sample] = evaluate(field, ray, sample)
     return samples
 
 
-def sampled_on_rays(field: TileField) -> PolarField:
+def sampled_on_rays(field: TileField) -> RayField:
     """The same field with all samples evaluated beforehand, as the paper's code has it.
 
     Parameters
@@ -124,9 +135,10 @@ def sampled_on_rays(field: TileField) -> PolarField:
 
     Returns
     -------
-    PolarField
-        Field with identical samples; it takes n_angle * n_sample numbers of memory.
+    RayField
+        Field with identical samples; it takes n_site * n_sample numbers of memory.
     """
-    radii = field.spacing * np.arange(1, field.n_sample + 1, dtype=np.float64)
-    products, slopes = _sample_rays(field)
-    return PolarField(radii, products, slopes if field.cubic else np.empty((0, 0)))
+    places = field.spacing * np.arange(1, field.n_sample + 1, dtype=np.float64)
+    products, slopes = _sample_rays(field, field.geometry.n_site)
+    slopes = slopes if field.cubic else np.empty((0, 0))
+    return RayField(field.geometry, places, products, slopes)

@@ -17,7 +17,8 @@ import numpy as np
 
 from crackfront.core.compiled import jit
 from crackfront.core.field.rays import front_products
-from crackfront.core.field.samples import sample_radius, samples_ahead
+from crackfront.core.field.samples import sample_place, samples_ahead
+from crackfront.core.geometry.base import weight
 from crackfront.core.solver.forces import (
     BLOCKED,
     CONVERGED,
@@ -51,21 +52,21 @@ _ROUND_OFF = 1e-9
 
 
 @jit
-def monotone_newton(radius, penetration, direction, field, memory, tolerance, max_sweeps):
+def monotone_newton(place, load, direction, field, memory, tolerance, max_sweeps):
     """First metastable front in the direction of motion; the front is changed in place.
 
     Returns a code, the number of FFT pairs, that of updates of a site, and the largest drive left.
     """
-    if radius.size <= 2 * HALF_BAND:
-        return rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_sweeps)
+    if place.size <= 2 * HALF_BAND:
+        return rosso_krauth(place, load, direction, field, memory, tolerance, max_sweeps)
     code, pairs, updates, residual = _run(
-        radius, penetration, direction, field, memory, tolerance, max_sweeps
+        place, load, direction, field, memory, tolerance, max_sweeps
     )
     if code == BLOCKED:
         # The edge of the contact is near compression, or the field too steep for the digits of a
         # radius: the reference knows how to stop there.
         code, sweeps, more, residual = rosso_krauth(
-            radius, penetration, direction, field, memory, tolerance, max_sweeps - pairs
+            place, load, direction, field, memory, tolerance, max_sweeps - pairs
         )
         pairs += sweeps
         updates += more
@@ -73,38 +74,38 @@ def monotone_newton(radius, penetration, direction, field, memory, tolerance, ma
 
 
 @jit
-def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
+def _run(place, load, direction, field, memory, tolerance, max_sweeps):
     """Alternate between windows around the largest drives and steps of the whole front."""
-    count = radius.size
-    front, code = place_front(radius, field, memory, direction)
+    count, geometry = place.size, field.geometry
+    front, code = place_front(place, field, memory, direction)
     unit = np.zeros(count)
     unit[0] = 1.0
-    row = line_force(unit)
+    row = line_force(geometry, unit)
     window, newton = make_window(row), make_newton(count)
     drive, active = np.empty(count), np.empty(count, np.bool_)
-    furthest = samples_ahead(field) * (sample_radius(field, 1) - sample_radius(field, 0))
-    collective = _line_outweighs_field(field, memory, front, row, penetration, direction)
+    furthest = samples_ahead(field) * (sample_place(field, 1) - sample_place(field, 0))
+    collective = _line_outweighs_field(field, memory, front, row, load, direction)
     # A backward force within the tolerance counts as equilibrium.
-    slack = tolerance * WORK_OF_ADHESION * np.min(radius)
+    slack = tolerance * WORK_OF_ADHESION * weight(geometry, np.min(place))
     residual, first_least, pairs, updates = np.inf, 0.0, 0, 0
     before = np.zeros(count)
     while code == CONVERGED:
-        residual, least = drive_sites(front, penetration, direction, drive)
+        residual, least = drive_sites(geometry, front, load, direction, drive)
         if pairs == 0:
             first_least = least
         pairs += 1
         if residual <= tolerance:
             return CONVERGED, pairs, updates, residual
         if least < first_least - _ROUND_OFF:
-            excused = _is_round_off(front.radius, field, drive, first_least - _ROUND_OFF)
+            excused = _is_round_off(front.place, field, drive, first_least - _ROUND_OFF)
             return BLOCKED if excused else TURNED, pairs, updates, residual
         if pairs >= max_sweeps:
             return LIMIT, pairs, updates, residual
-        if np.array_equal(front.radius, before):
+        if np.array_equal(front.place, before):
             return STILL, pairs, updates, residual
-        before[:] = front.radius
+        before[:] = front.place
         calm = residual <= _CALM
-        n_active = 0 if calm else _mark(front, drive, _LEVEL * residual, active)
+        n_active = 0 if calm else _mark(geometry, front, drive, _LEVEL * residual, active)
         if calm or (collective and n_active > 0.3 * count):
             accuracy = 0.02 if calm else 0.1
             code, used = newton_step(
@@ -113,7 +114,7 @@ def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
                 memory,
                 front,
                 drive,
-                penetration,
+                load,
                 direction,
                 furthest,
                 slack,
@@ -123,7 +124,7 @@ def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
             updates += count
         else:
             code, used = _relax_active(
-                window, field, memory, front, drive, active, penetration, direction,
+                window, field, memory, front, drive, active, load, direction,
                 _LEVEL * residual, furthest, slack,
             )  # fmt: skip
             updates += used
@@ -131,46 +132,46 @@ def _run(radius, penetration, direction, field, memory, tolerance, max_sweeps):
 
 
 @jit
-def _is_round_off(radius, field, drive, least):
-    """Whether the last digits of the radii explain every relative drive below a value."""
-    outer = front_products(np.nextafter(radius, np.inf), field)
-    inner = front_products(np.nextafter(radius, 0.0), field)
-    for i in range(radius.size):
-        backward = drive[i] < least * radius[i] * WORK_OF_ADHESION
+def _is_round_off(place, field, drive, least):
+    """Whether the last digits of the places explain every relative drive below a value."""
+    outer = front_products(np.nextafter(place, np.inf), field)
+    inner = front_products(np.nextafter(place, -np.inf), field)
+    for i in range(place.size):
+        backward = drive[i] < least * weight(field.geometry, place[i]) * WORK_OF_ADHESION
         if backward and -drive[i] > 4 * abs(outer[i] - inner[i]):
             return False
     return True
 
 
 @jit
-def _line_outweighs_field(field, memory, front, row, penetration, direction):
+def _line_outweighs_field(field, memory, front, row, load, direction):
     """Whether the coupling that windows leave out is stiffer than the field.
 
     Then large parts of the front move together, and steps of the whole front pay.
     """
-    count = front.radius.size
+    count = front.place.size
     left_out = row[0]
     for lag in range(1, HALF_BAND + 1):
         left_out += 2 * row[lag]
-    reach = abs(sample_radius(field, 1) - sample_radius(field, 0))
+    reach = abs(sample_place(field, 1) - sample_place(field, 0))
     total = 0.0
     for i in range(count):
         ahead = hardening(
-            field, memory, i, front.radius[i], front.product[i], front.segment[i], reach,
-            penetration, direction,
+            field, memory, i, front.place[i], front.product[i], front.segment[i], reach,
+            load, direction,
         )  # fmt: skip
         total += max(ahead, 0.0)
     return total / count < 0.5 * left_out
 
 
 @jit
-def _mark(front, drive, level, active):
+def _mark(geometry, front, drive, level, active):
     """Mark the sites with a drive above a level and their neighbours; return their number."""
     count = drive.size
     until = -1
     active[:] = False
     for i in range(count):
-        if drive[i] > level * front.radius[i] * WORK_OF_ADHESION:
+        if drive[i] > level * weight(geometry, front.place[i]) * WORK_OF_ADHESION:
             for j in range(max(i - _MARGIN, until + 1), i + _MARGIN + 1):
                 active[j - count if j >= count else j] = True
             until = i + _MARGIN

@@ -9,15 +9,8 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from crackfront.core.compiled import jit, kernel
-from crackfront.core.solver.forces import (
-    BLOCKED,
-    CONVERGED,
-    hardening,
-    is_compressed,
-    line_force,
-    locate,
-)
-from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.geometry.base import is_below_lowest, mode_stiffness, self_modes
+from crackfront.core.solver.forces import BLOCKED, CONVERGED, hardening, line_force, locate
 
 Array = NDArray[np.float64]
 
@@ -55,11 +48,11 @@ def make_newton(count):
 
 
 @jit
-def _precondition(vector, shift):
+def _precondition(geometry, vector, shift):
     """Inverse of the line stiffness plus a uniform stiffness."""
     modes = scipy.fft.rfft(vector)
     for n in range(modes.size):
-        modes[n] /= WORK_OF_ADHESION * n + shift
+        modes[n] /= mode_stiffness(geometry, n) + shift
     return scipy.fft.irfft(modes, vector.size)
 
 
@@ -82,7 +75,7 @@ def _inner_product(one, other):
 
 
 @jit
-def _solve(newton, right, shift, tolerance, limit):
+def _solve(geometry, newton, right, shift, tolerance, limit):
     """Conjugate gradients for (K + D) step = right on the free sites, to a tolerance in each.
 
     Returns the number of FFT pairs and whether it succeeded; it fails where the matrix is not
@@ -91,7 +84,7 @@ def _solve(newton, right, shift, tolerance, limit):
     """
     step, stiffness, free = newton.step, newton.stiffness, newton.free
     all_free = np.all(free)
-    residual = np.where(free, right - line_force(step) - stiffness * step, 0.0)
+    residual = np.where(free, right - line_force(geometry, step) - stiffness * step, 0.0)
     search, along, old = np.zeros(step.size), np.zeros(step.size), 1.0
     pairs = 0
     while pairs < limit:
@@ -101,13 +94,13 @@ def _solve(newton, right, shift, tolerance, limit):
             largest = max(largest, abs(residual[i]))
         if largest <= tolerance:
             return pairs, True
-        descent = _precondition(residual, shift)
+        descent = _precondition(geometry, residual, shift)
         new = _inner_product(residual, descent)
         for i in range(step.size):
             search[i] = descent[i] + new / old * search[i] if free[i] else 0.0
             along[i] = residual[i] - shift * descent[i] + new / old * along[i]
         if not all_free:
-            along[:] = line_force(search)
+            along[:] = line_force(geometry, search)
             pairs += 1
         curvature = 0.0
         for i in range(step.size):
@@ -135,7 +128,7 @@ def _soften(newton, share, floor):
 
 
 @jit
-def _solve_softest(newton, right, floor, tolerance, share):
+def _solve_softest(geometry, newton, right, floor, tolerance, share):
     """Step with as much softening as leaves the matrix positive definite.
 
     Returns FFT pairs, success and the share of the softening that was used.
@@ -143,7 +136,7 @@ def _solve_softest(newton, right, floor, tolerance, share):
     pairs = 0
     while True:
         mean = _soften(newton, share, floor)
-        used, solved = _solve(newton, right, mean + floor, tolerance, 100)
+        used, solved = _solve(geometry, newton, right, mean + floor, tolerance, 100)
         pairs += used
         if solved or share == 0.0:
             return pairs, solved, share
@@ -160,7 +153,7 @@ def newton_step(newton, field, memory, front, drive, b, direction, furthest, sla
     `slack` are held.
     """
     count, step, reach, ahead = drive.size, newton.step, newton.reach, newton.ahead
-    radius, segment, product = front.radius, front.segment, front.product
+    place, segment, product = front.place, front.segment, front.product
     largest = np.max(drive)
     floor = largest / furthest
     tolerance = min(accuracy * largest, 0.3 * max(np.mean(drive), 1e-6 * largest))
@@ -169,12 +162,12 @@ def newton_step(newton, field, memory, front, drive, b, direction, furthest, sla
         newton.free[i] = drive[i] >= -slack
         reach[i] = min(max(reach[i], 1e-9 * furthest), furthest)
         ahead[i] = hardening(
-            field, memory, i, radius[i], product[i], segment[i], reach[i], b, direction
+            field, memory, i, place[i], product[i], segment[i], reach[i], b, direction
         )
     step[:] = 0.0
     pairs, share, safe = 0, 1.0, False
     for _ in range(6):
-        used, solved, share = _solve_softest(newton, right, floor, tolerance, share)
+        used, solved, share = _solve_softest(field.geometry, newton, right, floor, tolerance, share)
         pairs += used
         if not solved:
             break
@@ -186,7 +179,7 @@ def newton_step(newton, field, memory, front, drive, b, direction, furthest, sla
                 safe = False
                 reach[i] = min(step[i], furthest)
                 further = hardening(
-                    field, memory, i, radius[i], product[i], segment[i], reach[i], b, direction
+                    field, memory, i, place[i], product[i], segment[i], reach[i], b, direction
                 )
                 ahead[i] = max(ahead[i], further)
         if safe:
@@ -197,14 +190,14 @@ def newton_step(newton, field, memory, front, drive, b, direction, furthest, sla
     if direction < 0:
         # All or none: the step of a site is safe only together with those of the others.
         for i in range(count):
-            if is_compressed(radius[i], step[i], b):
+            if is_below_lowest(field.geometry, place[i] - step[i], b):
                 return BLOCKED, pairs
     for i in range(count):
-        moved = radius[i] + direction * step[i]
+        moved = place[i] + direction * step[i]
         low, value = locate(field, memory, i, moved, segment[i], direction)
         if low < 0:
             return -low, pairs
-        radius[i], segment[i], product[i] = moved, low, value
+        place[i], segment[i], product[i] = moved, low, value
         reach[i] = 2 * step[i]
     return CONVERGED, pairs
 
@@ -213,13 +206,13 @@ def newton_step(newton, field, memory, front, drive, b, direction, furthest, sla
 def _own_steps(newton, field, memory, front, drive, b, direction, furthest):
     """Steps of each site by its own force alone, the others held; always safe."""
     count = drive.size
-    line = WORK_OF_ADHESION * count / 4 * (1 - (count % 2) / count**2)
+    line = mode_stiffness(field.geometry, 1) * self_modes(count)
     newton.step[:] = 0.0
     for i in range(count):
         if drive[i] > 0.0:
             reach = min(drive[i] / line, furthest)
             ahead = hardening(
-                field, memory, i, front.radius[i], front.product[i], front.segment[i], reach,
+                field, memory, i, front.place[i], front.product[i], front.segment[i], reach,
                 b, direction,
             )  # fmt: skip
             newton.step[i] = min(drive[i] / (line + max(ahead, 0.0)), reach)

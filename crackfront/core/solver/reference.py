@@ -5,29 +5,25 @@ from __future__ import annotations
 import numpy as np
 
 from crackfront.core.compiled import jit, kernel
-from crackfront.core.elasticity import self_stiffness
 from crackfront.core.field.pieces import peek_piece, polynomial, steepest_inside
 from crackfront.core.field.rays import segment_below
-from crackfront.core.field.samples import fetch, sample_count, sample_radius
-from crackfront.core.solver.forces import (
-    CONVERGED,
-    INWARD,
-    LIMIT,
-    OUTWARD,
-    RING,
-    STILL,
-    line_force,
-    ring_force,
+from crackfront.core.field.samples import fetch, sample_count, sample_place
+from crackfront.core.geometry.base import (
+    lowest_place,
+    mode_stiffness,
+    restoring_force,
+    restoring_slope,
+    self_modes,
+    weight,
 )
+from crackfront.core.solver.forces import CONVERGED, INWARD, LIMIT, OUTWARD, STILL, line_force
 from crackfront.core.units import WORK_OF_ADHESION
-
-_self_stiffness = jit(self_stiffness)
 
 
 @kernel
 def _enter(field, memory, ray, segment, pieces):
     """Fill in the polynomial of the segment that a site comes to; return its ends."""
-    inner, outer = sample_radius(field, segment), sample_radius(field, segment + 1)
+    inner, outer = sample_place(field, segment), sample_place(field, segment + 1)
     fetch(field, memory, ray, segment, segment + 1)
     piece = polynomial(field, peek_piece(field, memory, ray, segment), outer - inner)
     pieces[ray, 0], pieces[ray, 1], pieces[ray, 2], pieces[ray, 3] = piece
@@ -35,57 +31,56 @@ def _enter(field, memory, ray, segment, pieces):
 
 
 @jit
-def rosso_krauth(radius, penetration, direction, field, memory, tolerance, max_sweeps):
+def rosso_krauth(place, load, direction, field, memory, tolerance, max_sweeps):
     """Move every site by its own force over its own stiffness, at most to the next sample.
 
     The front is changed in place. What a site leaves out when it moves, the pull of its
     neighbours' moves, only pushes it on: no barrier is ever passed. The stiffness of a cubic piece
     is that of its steepest chord from the site to the next sample; a linear piece has only one.
     """
-    count, last = radius.size, sample_count(field) - 2
-    line_stiffness = WORK_OF_ADHESION * _self_stiffness(count)
-    lowest = np.sqrt(max(penetration, 0.0))
+    count, last, geometry = place.size, sample_count(field) - 2, field.geometry
+    line_stiffness = mode_stiffness(geometry, 1) * self_modes(count)
+    lowest = lowest_place(geometry, load)
     segment = np.empty(count, np.int64)
     inner, outer = np.empty(count), np.empty(count)
     pieces = np.empty((count, 4))
     for i in range(count):
-        segment[i] = segment_below(field, radius[i], direction)
+        segment[i] = segment_below(field, place[i], direction)
         inner[i], outer[i] = _enter(field, memory, i, segment[i], pieces)
     drive = np.empty(count)
     residual = np.inf
     for sweep in range(1, max_sweeps + 1):
-        line = line_force(radius)
+        line = line_force(geometry, place)
         residual = 0.0
         for i in range(count):
-            a = radius[i]
+            a = place[i]
             s = a - inner[i]
             product = pieces[i, 0] + s * (pieces[i, 1] + s * (pieces[i, 2] + s * pieces[i, 3]))
-            force = product - ring_force(a, penetration) - line[i]
+            force = product - restoring_force(geometry, a, load) - line[i]
             resting = direction < 0 and a <= lowest
             drive[i] = 0.0 if resting else max(direction * force, 0.0)
-            residual = max(residual, drive[i] / (a * WORK_OF_ADHESION))
+            residual = max(residual, drive[i] / (weight(geometry, a) * WORK_OF_ADHESION))
         if residual <= tolerance:
             return CONVERGED, sweep, sweep * count, residual
         still = True
         for i in range(count):
             if drive[i] == 0.0:
                 continue
-            a = radius[i]
+            a = place[i]
             rest = outer[i] - a if direction > 0 else a - inner[i]
             piece = (pieces[i, 0], pieces[i, 1], pieces[i, 2], pieces[i, 3])
             steepest = steepest_inside(piece, a - inner[i], rest, direction)
-            # a G is convex: over the segment ahead its slope is largest at the outer end.
-            furthest = outer[i] if direction > 0 else a
-            hardening = 4 * RING * furthest * max(furthest * furthest - penetration, 0.0)
+            # It is convex: over the segment ahead its slope is largest at the outer end.
+            hardening = restoring_slope(geometry, outer[i] if direction > 0 else a, load)
             stiffness = line_stiffness + hardening + steepest
             target = outer[i] if direction > 0 else max(inner[i], lowest)
             moved = a + direction * drive[i] / stiffness if stiffness > 0.0 else direction * np.inf
             if direction * (moved - target) < 0.0:
                 still = still and moved == a
-                radius[i] = moved
+                place[i] = moved
                 continue
             still = False
-            radius[i] = target
+            place[i] = target
             if direction < 0 and target > inner[i]:
                 continue
             low = segment[i] + direction

@@ -12,14 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core.compiled import jit, kernel
-from crackfront.core.solver.forces import (
-    BLOCKED,
-    CONVERGED,
-    hardening,
-    is_compressed,
-    locate,
-    ring_force,
-)
+from crackfront.core.geometry.base import is_below_lowest, restoring_force, weight
+from crackfront.core.solver.forces import BLOCKED, CONVERGED, hardening, locate
 from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -114,17 +108,17 @@ def _choose_step(
     Sites that would go beyond the reach of their stiffness get it anew for the longer way. It can
     only grow, so that the second step is shorter everywhere and needs no third.
     """
-    radius, segment, product = front.radius, front.segment, front.product
+    place, segment, product = front.place, front.segment, front.product
     reach, stiffness, step = window.reach, window.stiffness, window.step
     # With a stiffness of at least largest / furthest no site moves beyond `furthest`.
     floor, pull = largest / furthest, window.coupling[LONGEST] * furthest
     i = first
     for j in range(count):
         ahead = hardening(
-            field, memory, i, radius[i], product[i], segment[i], reach[j], b, direction
+            field, memory, i, place[i], product[i], segment[i], reach[j], b, direction
         )
         stiffness[j] = max(ahead, floor)
-        i = i + 1 if i + 1 < radius.size else 0
+        i = i + 1 if i + 1 < place.size else 0
     _solve_banded(window, count, slack, pull)
     short = False
     i = first
@@ -133,10 +127,10 @@ def _choose_step(
             short = True
             reach[j] = step[j]
             ahead = hardening(
-                field, memory, i, radius[i], product[i], segment[i], reach[j], b, direction
+                field, memory, i, place[i], product[i], segment[i], reach[j], b, direction
             )
             stiffness[j] = max(ahead, stiffness[j])
-        i = i + 1 if i + 1 < radius.size else 0
+        i = i + 1 if i + 1 < place.size else 0
     if short:
         _solve_banded(window, count, slack, pull)
 
@@ -144,23 +138,24 @@ def _choose_step(
 @kernel
 def _move(window, field, memory, front, first, count, b, direction):
     """Take the step and bring the drive within the window up to date."""
-    radius, segment, product = front.radius, front.segment, front.product
+    place, segment, product = front.place, front.segment, front.product
     drive, step, coupling = window.drive, window.step, window.coupling
+    geometry = field.geometry
     if direction < 0:
         # All or none: the step of a site is safe only together with those of its neighbours.
         for j in range(count):
-            if is_compressed(radius[(first + j) % radius.size], step[j], b):
+            if is_below_lowest(geometry, place[(first + j) % place.size] - step[j], b):
                 return BLOCKED
     i = first
     for j in range(count):
-        moved = radius[i] + direction * step[j]
+        moved = place[i] + direction * step[j]
         low, value = locate(field, memory, i, moved, segment[i], direction)
         if low < 0:
             return -low
-        rings = ring_force(moved, b) - ring_force(radius[i], b)
-        drive[j] += direction * (value - product[i] - rings)
-        radius[i], segment[i], product[i] = moved, low, value
-        i = i + 1 if i + 1 < radius.size else 0
+        rise = restoring_force(geometry, moved, b) - restoring_force(geometry, place[i], b)
+        drive[j] += direction * (value - product[i] - rise)
+        place[i], segment[i], product[i] = moved, low, value
+        i = i + 1 if i + 1 < place.size else 0
     for j in range(count):
         row = coupling[LONGEST - j : LONGEST - j + count]
         for other in range(count):
@@ -177,10 +172,10 @@ def relax_window(
     At most `rounds` steps of at most `furthest` are taken; `drive` is that of the whole front.
     Sites driven backward by more than `slack` are held. Returns a code and the number of steps.
     """
-    radius, local, reach, step = front.radius, window.drive, window.reach, window.step
+    place, local, reach, step = front.place, window.drive, window.reach, window.step
     own = window.coupling[LONGEST]
     for j in range(count):
-        local[j] = drive[(first + j) % radius.size]
+        local[j] = drive[(first + j) % place.size]
         reach[j] = 4 * max(local[j], 0.0) / own
     steps = 0
     while steps < rounds:
@@ -188,9 +183,10 @@ def relax_window(
         i = first
         for j in range(count):
             largest = max(largest, local[j])
-            calm = calm and local[j] <= level * radius[i] * WORK_OF_ADHESION
+            bound = level * weight(field.geometry, place[i]) * WORK_OF_ADHESION
+            calm = calm and local[j] <= bound
             reach[j] = min(max(reach[j], 1e-9 * furthest), furthest)
-            i = i + 1 if i + 1 < radius.size else 0
+            i = i + 1 if i + 1 < place.size else 0
         if calm:
             break
         _choose_step(

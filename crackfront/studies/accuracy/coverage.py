@@ -12,9 +12,9 @@ from scipy import stats
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.records import ADHESION, variable
-from crackfront.simulate.laws import chosen_numerics, numerical_error, stated_error
+from crackfront.simulate.laws import chosen_knobs
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Simulation, correlation_length
+from crackfront.simulate.simulation import Simulation, numerical_error, stated_error
 from crackfront.studies.accuracy.scenes import Scene
 from crackfront.studies.accuracy.study import Branches, measured_branches
 
@@ -99,11 +99,9 @@ def held_out_coverage(
     scatter = np.array([rows.std(axis=0, ddof=1) for rows in others])
     found = []
     for error in asked:
-        numerics = chosen_numerics(
-            error, scene.kind, scene.spectrum, scene.elastic_energy, scene.reference
-        )
-        simulations = [scene.simulation(numerics, number) for number in numbers]
-        branches = [measured_branches(scene, numerics, number) for number in numbers]
+        knobs = chosen_knobs(error, scene.kind, scene.spectrum, scene.elastic_energy)
+        simulations = [scene.simulation(knobs, number) for number in numbers]
+        branches = [measured_branches(scene, knobs, number) for number in numbers]
         runs = np.array([_steady(simulation) for simulation in simulations])
         item = Coverage(
             asked=error,
@@ -188,14 +186,14 @@ def _steady(simulation: Simulation) -> list[tuple[float, float]]:
     requested e_el: what k is made of. Tiles differ in both.
     """
     simulation = replace(simulation, schedule=_SCHEDULE)
-    length = correlation_length(simulation.kind, simulation.spectrum)
+    length = simulation.correlation_length
     result = run_simulation(simulation)
     steady = steady_adhesion(result.record, length)
-    mean = 1 - result.elastic_energy if simulation.kind == "roughness" else 1.0
-    scale = simulation.elastic_energy / result.elastic_energy
+    mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
+    scale = simulation.elastic_energy / result.measures.e_el
     return [
-        (scale * (steady.approach - mean), scale * (steady.retraction - mean)),
+        (scale * (steady.w_appr - mean), scale * (steady.w_retr - mean)),
         stated_error(simulation, steady, length),
-        (steady.approach_error, steady.retraction_error),
+        (steady.w_appr_error, steady.w_retr_error),
         (float(steady.n_approach), float(steady.n_retraction)),
     ]

@@ -5,19 +5,17 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable
-from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+from crackfront.analysis.table import REALISATION
 from crackfront.core.records import ADHESION, Variable
 from crackfront.data.files import UnreadableFileError, labelled, read_dataset, write_dataset
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import stacked, unstacked
-from crackfront.data.schema import REALISATION
-from crackfront.simulate.laws import Law
-from crackfront.simulate.simulation import Numerics
+from crackfront.simulate.laws import Knobs, Law
 from crackfront.studies.accuracy.coverage import Coverage
 from crackfront.studies.accuracy.sampling import Sample
 from crackfront.studies.accuracy.scenes import SCENES, Scene
@@ -55,9 +53,7 @@ def write_errors(path: Path, study: SceneErrors, origin: Provenance) -> None:
     branches = Variable(BRANCH, (BRANCH,), "1", "approach or retraction")
     values = stacked(study.errors, SETTING)
     values |= {
-        item.name: labelled(
-            item, np.array([getattr(one.numerics, item.name) for one in study.errors])
-        )
+        item.name: labelled(item, np.array([getattr(one.knobs, item.name) for one in study.errors]))
         for item in _NUMERICS
     }
     references = zip(_REFERENCE, (study.adhesion, study.seconds), strict=True)
@@ -88,16 +84,11 @@ def read_errors(path: Path) -> SceneErrors:
     dataset = read_dataset(path)
     scene = _scene(path, dataset)
     own = {item.name for item in _NUMERICS}
-    kept = {
-        item.name: getattr(scene.reference, item.name)
-        for item in fields(Numerics)
-        if item.name not in own
-    }
     rows = unstacked(path, dataset, Errors, SETTING)
     errors = []
     for index, row in enumerate(rows):
         found = {name: dataset[name].values[index].item() for name in own}
-        errors.append(Errors(numerics=Numerics(**kept, **found), **row))
+        errors.append(Errors(knobs=Knobs(angles=None, **found), **row))
     adhesion, seconds = (np.asarray(dataset[item.name]) for item in _REFERENCE)
     return SceneErrors(scene, adhesion, seconds, tuple(errors))
 

@@ -143,7 +143,7 @@ def _rms(values: Array) -> float:
 
 def _numbers(errors: Errors) -> str:
     """All numerics in a few words."""
-    n = errors.numerics
+    n = errors.knobs
     return (
         f"{n.angles_per_cutoff:g} sites, {n.samples_per_cutoff:g} {n.interpolation}, "
         f"{n.pixels_per_cutoff:g} pixels, {n.tolerance:g}"

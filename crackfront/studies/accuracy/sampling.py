@@ -12,9 +12,9 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.records import ADHESION, variable
-from crackfront.simulate.laws import chosen_numerics
+from crackfront.simulate.laws import chosen_knobs
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Simulation, correlation_length
+from crackfront.simulate.simulation import Simulation
 from crackfront.studies.accuracy.scenes import Scene
 
 Array = NDArray[np.float64]
@@ -91,14 +91,12 @@ def sampling_errors(
 
 def _simulation(scene: Scene, knob: str, value: float, realisation: int) -> Simulation:
     """One simulation with another schedule or tile."""
-    numerics = chosen_numerics(
-        _NUMERICAL_ERROR, scene.kind, scene.spectrum, scene.elastic_energy, scene.reference
-    )
+    knobs = chosen_knobs(_NUMERICAL_ERROR, scene.kind, scene.spectrum, scene.elastic_energy)
     if knob == "tile":
         scene = replace(scene, tile_cutoffs=value)
     travel = value if knob == "travel" else _TRAVEL
     return replace(
-        scene.simulation(numerics, realisation),
+        scene.simulation(knobs, realisation),
         schedule=LoadSchedule(_DEEPEST, value)
         if knob == "step"
         else SteadySchedule(_START, _DEEPEST, travel, _NO_STOP),
@@ -108,7 +106,7 @@ def _simulation(scene: Scene, knob: str, value: float, realisation: int) -> Simu
 def _run(simulation: Simulation) -> tuple[float, float, float]:
     """Hysteresis of a simulation, its stated standard error and processor time."""
     result = run_simulation(simulation)
-    length = correlation_length(simulation.kind, simulation.spectrum)
+    length = simulation.correlation_length
     steady = steady_adhesion(result.record, length)
-    error = float(np.hypot(steady.approach_error, steady.retraction_error))
-    return steady.hysteresis, error, result.cpu_seconds
+    error = float(np.hypot(steady.w_appr_error, steady.w_retr_error))
+    return steady.hysteresis, error, result.measures.cpu_seconds

@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.core.adhesion import FieldKind
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.laws import KNOBS, Knob, chosen_numerics
-from crackfront.simulate.simulation import FieldKind, Numerics, Simulation, resolution
+from crackfront.simulate.laws import KNOBS, Knob, Knobs, chosen_knobs
+from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
 Array = NDArray[np.float64]
 
@@ -20,17 +21,13 @@ ASKED = (0.1, 0.03, 0.02, 0.01, 0.003)
 _SEED = 20241121
 """Seed of the surfaces of all scenes."""
 
-_FINER = Numerics(
+_FINER = Knobs(
     angles=None,
     angles_per_cutoff=8,
     samples_per_cutoff=12,
     interpolation="cubic",
     pixels_per_cutoff=8,
-    tile_roll_offs=1,
-    tile_cutoffs=1,
     tolerance=1e-8,
-    max_sweeps=10**8,
-    solver="newton",
 )
 _REFERENCE = replace(
     _FINER, angles_per_cutoff=6, samples_per_cutoff=8, pixels_per_cutoff=6, tolerance=1e-7
@@ -66,9 +63,9 @@ class Scene:
     step : float
         Difference of the eight penetrations, the largest of which is 1.
         (Units: reduced vertical length)
-    reference : Numerics
+    reference : Knobs
         What errors are measured against.
-    finer : Numerics
+    finer : Knobs
         What shows that the reference has converged, where single knobs are varied.
     single_knobs : bool
         Whether laws are fitted to the errors of single knobs.
@@ -82,8 +79,8 @@ class Scene:
     elastic_energy: float
     tile_cutoffs: float
     step: float = 0.1
-    reference: Numerics = _REFERENCE
-    finer: Numerics = _FINER
+    reference: Knobs = _REFERENCE
+    finer: Knobs = _FINER
     single_knobs: bool = True
     authors_seconds: float | None = None
 
@@ -98,12 +95,12 @@ class Scene:
         return 1.0 - self.step * np.arange(7, -1, -1.0)
 
     @property
-    def single_settings(self) -> list[tuple[str, float, Numerics]]:
+    def single_settings(self) -> list[tuple[str, float, Knobs]]:
         """The finer numerics, and those that differ from the reference in one knob.
 
         Each is the name of what is varied, its value, and all numerics.
         """
-        found: list[tuple[str, float, Numerics]] = [("finer", 0.0, self.finer)]
+        found: list[tuple[str, float, Knobs]] = [("finer", 0.0, self.finer)]
         found += [
             (knob, value, with_knob(self.reference, knob, value))
             for knob in KNOBS
@@ -112,43 +109,34 @@ class Scene:
         return found
 
     @property
-    def asked_settings(self) -> list[tuple[str, float, Numerics]]:
+    def asked_settings(self) -> list[tuple[str, float, Knobs]]:
         """Numerics that the laws choose: `asked`, the error of k, all of them."""
         kind, spectrum, energy = self.kind, self.spectrum, self.elastic_energy
-        return [
-            ("asked", error, chosen_numerics(error, kind, spectrum, energy, self.reference))
-            for error in ASKED
-        ]
+        return [("asked", error, chosen_knobs(error, kind, spectrum, energy)) for error in ASKED]
 
-    def simulation(self, numerics: Numerics, realisation: int) -> Simulation:
-        """One realisation; its surface is the same for all numerics."""
-        sizes = resolution(self.spectrum, replace(numerics, tile_cutoffs=self.tile_cutoffs), 1.0)
-        return Simulation(
-            spectrum_name=self.name,
-            kind=self.kind,
-            spectrum=self.spectrum,
-            elastic_energy=self.elastic_energy,
+    def simulation(self, knobs: Knobs, realisation: int) -> Simulation:
+        """One realisation; its surface is the same for all knobs."""
+        return simulation_of(
+            self.kind,
+            self.spectrum,
+            self.elastic_energy,
+            LoadSchedule(1.0, self.step),
+            Numerics(knobs, tile_roll_offs=1.0, tile_cutoffs=self.tile_cutoffs),
+            seed=_SEED,
             realisation=realisation,
-            sweep_seed=_SEED,
-            resolution=sizes,
-            schedule=LoadSchedule(1.0, self.step),
-            tolerance=numerics.tolerance,
-            max_sweeps=numerics.max_sweeps,
-            solver=numerics.solver,
-            record_fronts=False,
-            record_energy=False,
+            name=self.name,
         )
 
 
-def with_knob(numerics: Numerics, knob: Knob, value: float) -> Numerics:
-    """Numerics with one knob at another value."""
+def with_knob(knobs: Knobs, knob: Knob, value: float) -> Knobs:
+    """Knobs with one of them at another value."""
     if knob == "sites":
-        return replace(numerics, angles_per_cutoff=value)
+        return replace(knobs, angles_per_cutoff=value)
     if knob == "pixels":
-        return replace(numerics, pixels_per_cutoff=value)
+        return replace(knobs, pixels_per_cutoff=value)
     if knob == "tolerance":
-        return replace(numerics, tolerance=value)
-    return replace(numerics, samples_per_cutoff=value, interpolation=knob)
+        return replace(knobs, tolerance=value)
+    return replace(knobs, samples_per_cutoff=value, interpolation=knob)
 
 
 def _measured_shapes() -> list[Scene]:

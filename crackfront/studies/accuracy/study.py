@@ -11,14 +11,15 @@ from numpy.typing import NDArray
 from scipy.signal import resample
 
 from crackfront.core import jkr
-from crackfront.core.cycle.history import FrontHistory
-from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.steady import forward_circle
-from crackfront.core.field.kinds import TileField, first_radius, n_angle
+from crackfront.core.field.fields import TileField
+from crackfront.core.outcome import Direction
 from crackfront.core.records import ADHESION, FORCE, variable
-from crackfront.core.solver.relax import Direction, Status
+from crackfront.core.solver.relax import Solver
 from crackfront.simulate.contact import simulation_field
-from crackfront.simulate.simulation import Numerics
+from crackfront.simulate.laws import Knobs
 from crackfront.studies.accuracy.scenes import Scene
 
 Array = NDArray[np.float64]
@@ -72,7 +73,7 @@ class Errors:
         Rms and largest error of the radius over all sites and states. (Units: short cutoff)
     """
 
-    numerics: Numerics
+    knobs: Knobs
     knob: str = variable("what is varied", "1")
     value: float = variable("its value; of asked the error of k", "1")
     seconds: Array = variable("processor time of both branches, synthesis included", "s", _RUN)
@@ -107,7 +108,7 @@ class SceneErrors:
 
 def scene_errors(
     scene: Scene,
-    settings: list[tuple[str, float, Numerics]],
+    settings: list[tuple[str, float, Knobs]],
     realisations: range,
     progress: Callable[[str], None] | None = None,
 ) -> SceneErrors:
@@ -132,9 +133,9 @@ def scene_errors(
     seconds = np.array([item.seconds for item in exact])
     tell(f"reference: hysteresis {mean:.5g} w_int, {seconds.mean():.2f} s")
     errors = []
-    for knob, value, numerics in settings:
-        found = [measured_branches(scene, numerics, number) for number in realisations]
-        errors.append(_errors(scene, knob, value, numerics, found, exact))
+    for knob, value, knobs in settings:
+        found = [measured_branches(scene, knobs, number) for number in realisations]
+        errors.append(_errors(scene, knob, value, knobs, found, exact))
         rms = np.sqrt(np.mean(errors[-1].adhesion ** 2)) / scene.elastic_energy
         tell(f"{knob} {value:g}: rms error of k {rms:.2g}, {errors[-1].seconds.mean():.2f} s")
     return SceneErrors(scene, adhesion, seconds, tuple(errors))
@@ -156,7 +157,7 @@ def _errors(
     scene: Scene,
     knob: str,
     value: float,
-    numerics: Numerics,
+    knobs: Knobs,
     found: list[Branches],
     exact: list[Branches],
 ) -> Errors:
@@ -173,7 +174,7 @@ def _errors(
     return Errors(
         knob=knob,
         value=value,
-        numerics=numerics,
+        knobs=knobs,
         seconds=np.array([one.seconds for one in found]),
         adhesion=adhesion.mean(axis=2),
         state=np.sqrt(np.mean(adhesion**2, axis=2)),
@@ -183,7 +184,7 @@ def _errors(
     )
 
 
-def measured_branches(scene: Scene, numerics: Numerics, realisation: int) -> Branches:
+def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
     """Both branches of a scene, each begun at a circle that moves forward.
 
     Raises
@@ -192,41 +193,38 @@ def measured_branches(scene: Scene, numerics: Numerics, realisation: int) -> Bra
         If there is a load without a state.
     """
     start = time.process_time()
-    simulation = scene.simulation(numerics, realisation)
+    simulation = scene.simulation(knobs, realisation)
     field = simulation_field(simulation)
-    approach = _branch(field, scene.penetrations, 1, simulation.tolerance)
-    retraction = _branch(field, scene.penetrations[::-1], -1, simulation.tolerance)
+    approach = _branch(field, scene.penetrations, 1, simulation.solver)
+    retraction = _branch(field, scene.penetrations[::-1], -1, simulation.solver)
     fronts = []
     for record in (approach, retraction):
-        if record.radius is None or len(record.radius) != scene.penetrations.size:
+        if record.fronts is None or len(record.fronts) != scene.penetrations.size:
             raise RuntimeError(f"{simulation.label}: {record.status.value}")
-        fronts.append(record.radius)
+        fronts.append(record.fronts)
     return Branches(
         apparent_work_of_adhesion=np.array(
-            [approach.apparent_work_of_adhesion, retraction.apparent_work_of_adhesion[::-1]]
+            [
+                approach.states.apparent_work_of_adhesion,
+                retraction.states.apparent_work_of_adhesion[::-1],
+            ]
         ),
-        force=np.array([approach.force, retraction.force[::-1]]),
+        force=np.array([approach.states.force, retraction.states.force[::-1]]),
         radius=np.array([fronts[0], fronts[1][::-1]]),
         seconds=time.process_time() - start,
     )
 
 
 def _branch(
-    field: TileField, penetrations: Array, direction: Direction, tolerance: float
+    field: TileField, penetrations: Array, direction: Direction, solver: Solver
 ) -> CycleRecord:
     """One branch over given loads."""
     first = float(penetrations[0])
-    history = FrontHistory(
-        field,
-        np.full(n_angle(field), first_radius(field)),
-        tolerance=tolerance,
-        record_fronts=True,
-    )
-    history.begin(forward_circle(field, first, direction, jkr.equilibrium_radius(first)))
-    for penetration in penetrations:
-        if history.follow(float(penetration), direction) is not Status.CONVERGED:
-            break
-    return history.record()
+    circle = forward_circle(field, first, direction, jkr.equilibrium_radius(first))
+    recorder = Recorder(fronts=True)
+    loads = [Load(float(penetration), direction) for penetration in penetrations]
+    recorder.run(field, circle, loads, solver)
+    return recorder.record()
 
 
 def front_difference(fronts: Array, exact: Array) -> Array:

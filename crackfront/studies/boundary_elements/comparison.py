@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.outcome import Direction
 from crackfront.core.records import ADHESION, FORCE, VERTICAL, variable
-from crackfront.core.solver.relax import Direction
 from crackfront.studies.boundary_elements.cycle import BoundaryCycle
 from crackfront.studies.boundary_elements.front import (
     FrontCycle,
@@ -83,10 +83,10 @@ def comparison(
     """
     record = front.record
     theirs, ours = _compared_states(case, boundary, record)
-    force = boundary.force[theirs] - record.force[ours]
-    area = boundary.contact_area[theirs] / record.contact_area[ours] - 1
-    apart = np.abs(boundary.radius[theirs] - on_rays(record.radius)[ours])
-    compared = record.penetration[ours][record.direction[ours] > 0]
+    force = boundary.force[theirs] - record.states.force[ours]
+    area = boundary.contact_area[theirs] / record.states.contact_area[ours] - 1
+    apart = np.abs(boundary.radius[theirs] - on_rays(record.fronts)[ours])
+    compared = record.states.penetration[ours][record.states.direction[ours] > 0]
     shared = shared_jumps(case, boundary, front)
     shift = np.array([one.penetration - other.penetration for one, other in shared.pairs])
     return Comparison(
@@ -109,8 +109,8 @@ def comparison(
         jumps_shared=len(shared.pairs),
         jump_shift=float(np.mean(shift)) if shared.pairs else 0.0,
         jump_spread=float(np.sqrt(np.mean(shift**2))) if shared.pairs else 0.0,
-        pull_off_force=float(boundary.force.min() - record.force.min()),
-        pull_off_penetration=float(boundary.penetration[-1] - record.end_penetration),
+        pull_off_force=float(boundary.force.min() - record.states.force.min()),
+        pull_off_penetration=float(boundary.penetration[-1] - record.end_load),
         boundary_seconds=float(np.sum(boundary.seconds)),
         mapping_seconds=front.mapping_seconds,
         front_seconds=front.cycle_seconds,
@@ -129,13 +129,13 @@ def shared_jumps(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Shar
     theirs, ours = _compared_states(case, boundary, record)
     small, large = case.short_cutoff / 8, case.short_cutoff / 4
     one, other = (
-        jumps(model.penetration[kept], model.direction[kept], radius[kept], small)
-        for model, radius, kept in (
+        jumps(states.penetration[kept], states.direction[kept], radius[kept], small)
+        for states, radius, kept in (
             (boundary, boundary.radius, theirs),
-            (record, on_rays(record.radius), ours),
+            (record.states, on_rays(record.fronts), ours),
         )
     )
-    angle = _SAME_PLACE * case.short_cutoff / float(np.mean(record.mean_radius))
+    angle = _SAME_PLACE * case.short_cutoff / float(np.mean(record.states.mean_radius))
     pairs = matched_jumps(one, other, angle, _SAME_LOAD)
     return SharedJumps(
         pairs=tuple(pair for pair in pairs if pair[1].distance >= large),
@@ -148,7 +148,7 @@ def _compared_states(
     case: Case, boundary: BoundaryCycle, record: CycleRecord
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """States of both in contact; in approach where the jump into it is left behind everywhere."""
-    theirs, ours = shared_states(boundary, record)
+    theirs, ours = shared_states(boundary, record.states)
     touching = np.any(boundary.radius, axis=1)
     first = boundary.radius[np.argmax(touching)]
     left = np.all(boundary.radius > first + case.short_cutoff / 8, axis=1)
@@ -161,7 +161,10 @@ def _shown_distance(
 ) -> float:
     """Mean distance of the perimeters at the shown penetration, in short cutoffs."""
     one, other = (
-        perimeter_at(case.shown_penetration, direction, model, radius)
-        for model, radius in ((boundary, boundary.radius), (record, on_rays(record.radius)))
+        perimeter_at(case.shown_penetration, direction, states, radius)
+        for states, radius in (
+            (boundary, boundary.radius),
+            (record.states, on_rays(record.fronts)),
+        )
     )
     return float(np.mean(np.abs(one - other))) / case.short_cutoff

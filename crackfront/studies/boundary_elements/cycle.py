@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule, loads
 from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
-from crackfront.core.solver.relax import Direction
 from crackfront.studies.boundary_elements.contact import HalfSpaceContact
 from crackfront.studies.boundary_elements.minimise import equilibrium
 from crackfront.studies.boundary_elements.perimeter import EDGE, N_ANGLE, perimeter
@@ -102,9 +102,8 @@ def boundary_cycle(
     known = so_far.penetration.size
     side = contact.n_point
     displacement = contact.elastic_displacement(_padded(so_far.pressure))
-    for number, (penetration, direction) in enumerate(
-        contact_loads(schedule, contact.interaction_range)
-    ):
+    for number, load in enumerate(contact_loads(schedule, contact.interaction_range)):
+        penetration, direction = load.value, load.direction
         if so_far.status != RUNNING:
             break
         if number < known:
@@ -155,19 +154,17 @@ def boundary_cycle(
     return so_far
 
 
-def contact_loads(
-    schedule: LoadSchedule, interaction_range: float
-) -> Iterator[tuple[float, Direction]]:
+def contact_loads(schedule: LoadSchedule, interaction_range: float) -> Iterator[Load]:
     """Penetrations of a cycle that begins before surfaces attract each other.
 
     Examples
     --------
     >>> from itertools import islice
-    >>> list(islice(contact_loads(LoadSchedule(0.5, 0.25), 0.3), 5))
-    [(-0.5, 1), (-0.25, 1), (0.0, 1), (0.25, 1), (0.5, 1)]
+    >>> [load.value for load in islice(contact_loads(LoadSchedule(0.5, 0.25), 0.3), 5)]
+    [-0.5, -0.25, 0.0, 0.25, 0.5]
     """
     for count in range(math.ceil(interaction_range / schedule.step), 0, -1):
-        yield -count * schedule.step, 1
+        yield Load(-count * schedule.step, 1)
     yield from loads(schedule)
 
 

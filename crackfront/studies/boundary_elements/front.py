@@ -9,10 +9,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
+from crackfront.core.outcome import Direction, Status
 from crackfront.core.rotated import rotated_field
-from crackfront.core.solver.relax import Direction, Status
+from crackfront.core.solver.relax import Newton
 from crackfront.studies.boundary_elements.parameters import Case
 from crackfront.studies.boundary_elements.perimeter import N_ANGLE
 
@@ -59,10 +60,10 @@ def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = Tru
         case.heights(), case.pixel, n_angle, spacing, case.side / 2, rotated=rotated
     )
     mapped = time.process_time()
-    record = run_cycle(field, case.schedule, tolerance=_TOLERANCE, record_fronts=True)
+    record = run_cycle(field, case.schedule, Newton(_TOLERANCE), Recorder(fronts=True))
     if record.status is not Status.LOST_CONTACT:
         raise ValueError(
-            f"{case.label}: at penetration {record.end_penetration:.6g} the front "
+            f"{case.label}: at penetration {record.end_load:.6g} the front "
             f"{record.status.value}; raise n_angle or lower the spacing"
         )
     return FrontCycle(record, mapped - began, time.process_time() - mapped)
@@ -97,8 +98,8 @@ def shared_states(one: States, other: States) -> tuple[NDArray[np.int64], NDArra
 
 def force_error(found: CycleRecord, exact: CycleRecord) -> float:
     """Rms difference of two cycles' forces where they share a state (Units: pi w_int R)."""
-    one, other = shared_states(found, exact)
-    return float(np.sqrt(np.mean((found.force[one] - exact.force[other]) ** 2)))
+    one, other = shared_states(found.states, exact.states)
+    return float(np.sqrt(np.mean((found.states.force[one] - exact.states.force[other]) ** 2)))
 
 
 def on_rays(radius: Array | None) -> Array:

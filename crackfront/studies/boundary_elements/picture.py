@@ -74,8 +74,8 @@ def validation_picture(
         np.stack([perimeter_at(case.shown_penetration, sign, *model) for sign in (1, -1)])
         for model in (
             (boundary, boundary.radius),
-            (record, on_rays(record.radius)),
-            (fixed.record, on_rays(fixed.record.radius)),
+            (record.states, on_rays(record.fronts)),
+            (fixed.record.states, on_rays(fixed.record.fronts)),
         )
     )
     reach = float(np.max(shown)) + _MARGIN
@@ -92,11 +92,11 @@ def validation_picture(
         boundary_direction=boundary.direction,
         boundary_force=boundary.force,
         boundary_area=boundary.contact_area,
-        front_penetration=record.penetration,
-        front_direction=record.direction,
-        front_force=record.force,
-        front_area=record.contact_area,
-        front_end=record.end_penetration,
+        front_penetration=record.states.penetration,
+        front_direction=record.states.direction,
+        front_force=record.states.force,
+        front_area=record.states.contact_area,
+        front_end=record.end_load,
         shown_penetration=case.shown_penetration,
         angle=2 * np.pi * np.arange(N_ANGLE) / N_ANGLE,
         boundary_radius=shown,

@@ -180,8 +180,12 @@ def rotation_effects(parameters: ValidationParameters) -> tuple[RotationEffect, 
 def _branch_works(record: CycleRecord, max_penetration: float) -> list[float]:
     """Mean works of adhesion of approach and retraction in the window."""
     low, high = (part * max_penetration for part in _WINDOW)
-    inside = (record.penetration >= low) & (record.penetration <= high)
+    inside = (record.states.penetration >= low) & (record.states.penetration <= high)
     return [
-        float(np.mean(record.apparent_work_of_adhesion[inside & (record.direction == sign)]))
+        float(
+            np.mean(
+                record.states.apparent_work_of_adhesion[inside & (record.states.direction == sign)]
+            )
+        )
         for sign in (1, -1)
     ]

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 
 from crackfront.analysis.power_law import PowerLaw, truncated_power_law
+from crackfront.core.adhesion import correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.instabilities import resolved_motion, swept_clusters
 from crackfront.core.records import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.section import Count, Energy, Positive, Section
-from crackfront.simulate.simulation import correlation_length
 from crackfront.studies.paper.checks import Check
 from crackfront.studies.paper.contact import (
     STRONG,
@@ -209,7 +209,7 @@ def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -
         -1,
         travel=travel,
         precision=parameters.precision,
-        tolerance=contact.tolerance,
+        solver=contact.solver,
     )
     avalanches, areas, last = [], [0.0, 0.0], front
     for step in steps:

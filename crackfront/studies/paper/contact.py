@@ -8,17 +8,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crackfront.core import jkr
+from crackfront.core.adhesion import correlation_length
+from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.instabilities import larkin_length
+from crackfront.core.cycle.run import first_touch
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import TileField, first_radius, n_angle
-from crackfront.core.solver.relax import Direction, Status, relax
+from crackfront.core.field.fields import TileField
+from crackfront.core.outcome import Direction
+from crackfront.core.solver.relax import Newton, Solver
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import refusal
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
-from crackfront.simulate.laws import chosen_numerics
 from crackfront.simulate.run import compile_solver
-from crackfront.simulate.simulation import Numerics, Simulation, correlation_length, resolution
+from crackfront.simulate.simulation import Numerics, simulation_of
 
 Array = NDArray[np.float64]
 
@@ -50,17 +53,18 @@ class RoughContact:
     rms: float
     larkin_length: float
 
+    @property
+    def solver(self) -> Solver:
+        """How its fronts are found."""
+        return Newton(self.tolerance)
+
     def touched(self, penetration: float) -> Array:
         """Front of an approach from first contact to a penetration."""
-        innermost = np.full(n_angle(self.field), first_radius(self.field))
-        return self.moved(innermost, penetration, 1)
+        return self.moved(first_touch(self.field), penetration, 1)
 
     def moved(self, front: Array, penetration: float, direction: Direction) -> Array:
         """Next metastable front; a ValueError says why there is none."""
-        found = relax(front, penetration, direction, self.field, tolerance=self.tolerance)
-        if found.status is not Status.CONVERGED:
-            raise ValueError(f"at penetration {penetration:.6g}: {found.status.value}")
-        return found.radius
+        return front_at(self.field, front, Load(penetration, direction), self.solver)
 
 
 def rough_contact(
@@ -95,40 +99,25 @@ def rough_contact(
     """
     spectrum = SelfAffineSpectrum(short_cutoff, short_cutoff, hurst=1.0)
     side = _SIDE * jkr.equilibrium_radius(max_penetration)
-    given = Numerics(
-        angles=None,
-        angles_per_cutoff=1.0,
-        samples_per_cutoff=1.0,
-        interpolation="cubic",
-        pixels_per_cutoff=2.0,
-        tile_roll_offs=side / short_cutoff,
-        tile_cutoffs=1.0,
-        tolerance=tolerance,
-        max_sweeps=10_000_000,
-        solver="newton",
-    )
-    chosen = chosen_numerics(error, "roughness", spectrum, elastic_energy, given)
-    sizes = resolution(spectrum, chosen, max_penetration)
-    simulation = Simulation(
-        spectrum_name="flat",
-        kind="roughness",
-        spectrum=spectrum,
-        elastic_energy=elastic_energy,
+    simulation = simulation_of(
+        "roughness",
+        spectrum,
+        elastic_energy,
+        LoadSchedule(max_penetration, max(max_penetration, 1.0)),
+        Numerics(error, side / short_cutoff, tile_cutoffs=1.0, max_sweeps=10_000_000),
+        seed=seed,
         realisation=realisation,
-        sweep_seed=seed,
-        resolution=replace(sizes, n_angle=max(sizes.n_angle, least_angles)),
-        schedule=LoadSchedule(max_penetration, max(max_penetration, 1.0)),
-        tolerance=min(tolerance, chosen.tolerance),
-        max_sweeps=given.max_sweeps,
-        solver=given.solver,
-        record_fronts=False,
-        record_energy=False,
+        name="flat",
     )
-    compile_solver(given.solver)
+    sizes = simulation.resolution
+    simulation = replace(
+        simulation, resolution=replace(sizes, n_angle=max(sizes.n_angle, least_angles))
+    )
+    compile_solver(simulation.solver.name)
     adhesion = simulation_adhesion(simulation)
     return RoughContact(
         field=simulation_field(simulation, adhesion),
-        tolerance=simulation.tolerance,
+        tolerance=min(tolerance, simulation.solver.tolerance),
         rms=adhesion.rms,
         larkin_length=larkin_length(correlation_length("roughness", spectrum), adhesion.rms),
     )

@@ -23,7 +23,8 @@ def pinned_loop_figure(loop: PinnedLoop) -> Figure:
     with house_style():
         figure = blank_figure(PAGE, 0.46 * PAGE)
         left, right = figure.subplots(1, 2, width_ratios=[1, 1])
-        draw_loop(left, loop, loop, elastic_energy=loop.elastic_energy)
+        works, window = (loop.approach, loop.retraction), (loop.lowest_radius, loop.highest_radius)
+        draw_loop(left, loop, works, window, elastic_energy=loop.elastic_energy)
         _draw_fronts(right, loop)
         for axes, letter in ((left, "c"), (right, "d")):
             axes.set_title(letter, loc="left", fontweight="bold")

@@ -13,9 +13,8 @@ from crackfront.core import jkr
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.instabilities import Motion, resolved_motion, swept_clusters
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import n_angle
+from crackfront.core.outcome import Direction
 from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
-from crackfront.core.solver.relax import Direction
 from crackfront.data.section import Count, Energy, Positive, Section, refusal
 from crackfront.studies.paper.contact import STRONG, WEAK, RoughContact, rough_contact
 from crackfront.studies.paper.scene import Progress
@@ -151,7 +150,7 @@ def _contacts(parameters: InstabilityParameters) -> list[RoughContact]:
         )
         for energy in (parameters.strong, parameters.weak)
     ]
-    sites = [n_angle(contact.field) for contact in contacts]
+    sites = [contact.field.geometry.n_site for contact in contacts]
     if sites[STRONG] != sites[WEAK]:
         raise ValueError(
             f"the fronts have {sites[STRONG]} and {sites[WEAK]} sites; raise least_angles to "
@@ -177,7 +176,7 @@ def _branch(
             direction,
             travel=parameters.travel * parameters.short_cutoff,
             precision=parameters.precision,
-            tolerance=contact.tolerance,
+            solver=contact.solver,
         )
     )
     energies = [

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core import jkr
+from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
+from crackfront.core.outcome import Status
 from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
-from crackfront.core.solver.relax import Status
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.run import compile_solver
 from crackfront.studies.paper.checks import Check, close_to
@@ -67,33 +68,26 @@ def motion(parameters: MotionParameters, progress: Progress) -> Motion:
     simulation = parameters.simulation()
     adhesion = simulation_adhesion(simulation)
     field = simulation_field(simulation, adhesion)
-    compile_solver(simulation.solver)
-    record = run_cycle(
-        field,
-        parameters.schedule,
-        tolerance=simulation.tolerance,
-        max_sweeps=simulation.max_sweeps,
-        solver=simulation.solver,
-        record_fronts=True,
-        record_energy=True,
-    )
-    progress(f"{record.penetration.size} states: {record.status.value}")
-    if record.radius is None or record.dissipated_energy is None or record.pull_off_energy is None:
+    compile_solver(simulation.solver.name)
+    recorder = Recorder(fronts=True, energy=True)
+    record = run_cycle(field, parameters.schedule, simulation.solver, recorder)
+    progress(f"{record.states.penetration.size} states: {record.status.value}")
+    if record.fronts is None or record.dissipated_energy is None or record.pull_off_energy is None:
         raise ValueError(f"the cycle ended early: {record.status.value}")
-    reach = 1.08 * record.max_radius.max()
+    reach = 1.08 * record.states.max_radius.max()
     axis = np.linspace(-reach, reach, _PATCH_POINTS)
     return Motion(
         status=record.status.value,
         elastic_energy=adhesion.elastic_energy,
-        end_penetration=record.end_penetration,
-        direction=record.direction,
-        penetration=record.penetration,
-        mean_radius=record.mean_radius,
-        force=record.force,
+        end_penetration=record.end_load,
+        direction=record.states.direction,
+        penetration=record.states.penetration,
+        mean_radius=record.states.mean_radius,
+        force=record.states.force,
         dissipated_energy=record.dissipated_energy,
         pull_off_energy=record.pull_off_energy,
-        angle=2 * np.pi * np.arange(record.radius.shape[1]) / record.radius.shape[1],
-        front=record.radius,
+        angle=2 * np.pi * np.arange(record.fronts.shape[1]) / record.fronts.shape[1],
+        front=record.fronts,
         x=axis,
         y=axis,
         patch=patch_of(field, axis, axis),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,17 +11,18 @@ from numpy.typing import NDArray
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
-from crackfront.core.cycle.history import FrontHistory
-from crackfront.core.cycle.record import CycleState
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.outcome import Status
 from crackfront.core.records import variable
-from crackfront.core.solver.relax import Status
 from crackfront.core.units import Scales
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import Simulation
 from crackfront.studies.paper.advances import AdvanceWatch
 from crackfront.studies.paper.force_radius import ForceRadius, fitted_adhesion
 from crackfront.studies.paper.nanodiamond_parameters import NanodiamondParameters
-from crackfront.studies.paper.rough import first_touch
+from crackfront.studies.paper.rough import recorded
 from crackfront.studies.paper.scene import Progress
 
 Array = NDArray[np.float64]
@@ -95,20 +97,29 @@ class NanodiamondContact:
 class _Perimeters:
     """What is kept of the fronts of the approach, in reduced units."""
 
-    def __init__(self, simulation: Simulation, every: int) -> None:
-        self.watch = AdvanceWatch(simulation.spectrum.correlation_length, _STRIDES)
-        self.states: list[CycleState] = []
+    def __init__(self, parameters: NanodiamondParameters, simulation: Simulation) -> None:
+        self._passed = simulation.spectrum.correlation_length
+        self._shown, self._unit = parameters.shown_force, parameters.scales.force
+        self.watch = AdvanceWatch(self._passed, _STRIDES)
+        self.states: list[ContactState[float]] = []
         self.lines: list[Array] = []
         n_angle = simulation.resolution.n_angle
-        self._every, self._kept = every, slice(None, None, -(-n_angle // _MOST_SITES))
+        self._every = max(1, round(parameters.line_step / parameters.step))
+        self._kept = slice(None, None, -(-n_angle // _MOST_SITES))
         self.angle = (2 * np.pi * np.arange(n_angle) / n_angle)[self._kept]
 
-    def follow(self, state: CycleState, front: Array) -> None:
+    def __call__(self, recorder: Recorder) -> None:
         """Compare a front with the one before, and keep every few of them."""
-        self.watch.follow(front)
+        state = recorder.states[-1]
+        # Before it jumps into contact, the sphere rests on a few places about its apex.
+        if state.direction < 0 or state.least_travel <= self._passed:
+            return
+        if state.force * self._unit > self._shown:
+            return
+        self.watch.follow(recorder.front)
         if self.watch.count % self._every == 1 % self._every:
             self.states.append(state)
-            self.lines.append(front[self._kept])
+            self.lines.append(recorder.front[self._kept])
 
 
 def nanodiamond_contact(
@@ -132,18 +143,22 @@ def nanodiamond_contact(
     scales, simulation = parameters.scales, parameters.simulation()
     adhesion = simulation_adhesion(simulation)
     field = simulation_field(simulation, adhesion)
-    history = first_touch(simulation, field)
-    perimeters = _approach(parameters, simulation, history)
-    last = history.states[-1]
-    progress(f"approach: mean radius {last.mean_radius * scales.lateral:.4g} m at the turn")
-    _retract(history, last.penetration, parameters.retraction_step / scales.vertical)
-    record, surface = history.record(), scales.work_of_adhesion
+    perimeters = _Perimeters(parameters, simulation)
+    recorder = Recorder(observers=[perimeters])
+    record = recorded(simulation, field, _loads(parameters, recorder, progress), recorder)
+    if not np.any(record.states.direction < 0):
+        raise ValueError(f"the largest force was not reached: {record.status.value}")
+    if not perimeters.lines:
+        raise ValueError("the contact has no state between jump-in and shown_force; raise that")
+    surface = scales.work_of_adhesion
     progress(f"retraction: {record.status.value}")
     steady = steady_adhesion(record, simulation.spectrum.correlation_length)
     if steady.sentence:
         raise ValueError(steady.sentence)
     simulated = ForceRadius(
-        record.force * scales.force, record.mean_radius * scales.lateral, record.direction
+        record.states.force * scales.force,
+        record.states.mean_radius * scales.lateral,
+        record.states.direction,
     )
     points, energy = parameters.points(), adhesion.elastic_energy * surface
     widest, extents = perimeters.watch.widest, perimeters.watch.extents
@@ -161,12 +176,12 @@ def nanodiamond_contact(
         largest_force=parameters.largest_force,
         shown_force=parameters.shown_force,
         jump_in=perimeters.states[0].penetration * scales.vertical,
-        direction=record.direction,
-        penetration=record.penetration * scales.vertical,
+        direction=record.states.direction,
+        penetration=record.states.penetration * scales.vertical,
         radius=simulated.radius,
         force=simulated.force,
-        approach=surface * np.array([steady.approach, steady.approach_error]),
-        retraction=surface * np.array([steady.retraction, steady.retraction_error]),
+        approach=surface * np.array([steady.w_appr, steady.w_appr_error]),
+        retraction=surface * np.array([steady.w_retr, steady.w_retr_error]),
         angle=perimeters.angle,
         line=(np.array(perimeters.lines) * scales.lateral).astype(np.float32),
         line_force=np.array([state.force for state in perimeters.states]) * scales.force,
@@ -186,35 +201,24 @@ def nanodiamond_contact(
     )
 
 
-def _approach(
-    parameters: NanodiamondParameters, simulation: Simulation, history: FrontHistory
-) -> _Perimeters:
-    """Follow the approach to the largest force, and keep its perimeters up to the shown one."""
-    scales = parameters.scales
-    perimeters = _Perimeters(simulation, max(1, round(parameters.line_step / parameters.step)))
-    shown, largest = parameters.shown_force, parameters.largest_force
-    count, force = 0, -np.inf
-    while force < largest:
-        status = history.follow(count * parameters.step / scales.vertical, 1)
-        if status is not Status.CONVERGED:
-            raise ValueError(f"the largest force was not reached: {status.value}")
-        state = history.states[-1]
-        force = state.force * scales.force
-        # Before it jumps into contact, the sphere rests on a few places about its apex.
-        if state.least_travel > simulation.spectrum.correlation_length and force <= shown:
-            perimeters.follow(state, history.front)
+def _loads(
+    parameters: NanodiamondParameters, recorder: Recorder, progress: Progress
+) -> Iterator[Load]:
+    """Penetrations of the approach to the largest force, and down from there."""
+    scales, count = parameters.scales, 0
+    force = -np.inf
+    while force < parameters.largest_force:
+        yield Load(count * parameters.step / scales.vertical, 1)
+        if recorder.status is not Status.CONVERGED:
+            return
+        force = recorder.states[-1].force * scales.force
         count += 1
-    if not perimeters.lines:
-        raise ValueError("the contact has no state between jump-in and shown_force; raise that")
-    return perimeters
-
-
-def _retract(history: FrontHistory, penetration: float, step: float) -> None:
-    """Follow the retraction until contact is lost."""
-    status = Status.CONVERGED
-    while status is Status.CONVERGED:
-        penetration -= step
-        status = history.follow(penetration, -1)
+    last = recorder.states[-1]
+    progress(f"approach: mean radius {last.mean_radius * scales.lateral:.4g} m at the turn")
+    penetration = last.penetration
+    while True:
+        penetration -= parameters.retraction_step / scales.vertical
+        yield Load(penetration, -1)
 
 
 def _synthetic_fit(parameters: NanodiamondParameters, radius: Array) -> Estimate:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from crackfront.analysis.report import PAPER_FACTOR
-from crackfront.core.solver.relax import Status
+from crackfront.core.outcome import Status
 from crackfront.studies.paper.checks import Check, close_to
 from crackfront.studies.paper.nanodiamond import NanodiamondContact
 from crackfront.studies.paper.rough import ONE_DIGIT

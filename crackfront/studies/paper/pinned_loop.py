@@ -13,21 +13,22 @@ from pydantic import Field
 from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
+from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.schedule import loads
 from crackfront.core.field.rays import front_adhesion
+from crackfront.core.outcome import Status
 from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
-from crackfront.core.solver.relax import Status
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Positive
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
-from crackfront.simulate.laws import stated_error
+from crackfront.simulate.simulation import stated_error
 from crackfront.studies.paper.checks import Check, close_to
 from crackfront.studies.paper.rough import (
     ONE_DIGIT,
     RoughCycleParameters,
-    first_touch,
     patch_of,
+    recorded,
     rough_spectrum,
 )
 from crackfront.studies.paper.scene import Progress
@@ -116,15 +117,14 @@ def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedL
     adhesion = simulation_adhesion(simulation)
     progress(f"surface: e_el {adhesion.elastic_energy:.4f}, w_rms {adhesion.rms:.4f} w_int")
     field = simulation_field(simulation, adhesion)
-    history = first_touch(simulation, field)
     fronts: list[Array] = []
-    for penetration, direction in loads(parameters.schedule):
-        if history.follow(penetration, direction) is not Status.CONVERGED:
-            break
-        if penetration == 0:
-            fronts.append(history.front)
+
+    def observe(recorder: Recorder) -> None:
+        if recorder.states[-1].penetration == 0:
+            fronts.append(recorder.front)
             progress(f"{FRONTS[len(fronts) - 1]}: mean radius {fronts[-1].mean():.4f} at b = 0")
-    record = history.record()
+
+    record = recorded(simulation, field, loads(parameters.schedule), Recorder(observers=[observe]))
     if len(fronts) < 2:
         raise ValueError(f"the cycle ended before its two fronts at b = 0: {record.status.value}")
     correlation_length = simulation.spectrum.correlation_length
@@ -142,14 +142,14 @@ def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedL
         roll_off=parameters.roll_off,
         hurst=parameters.hurst,
         elastic_energy=adhesion.elastic_energy,
-        direction=record.direction,
-        penetration=record.penetration,
-        mean_radius=record.mean_radius,
-        force=record.force,
-        approach=steady.approach,
-        retraction=steady.retraction,
-        approach_error=math.hypot(steady.approach_error, numerical[0]),
-        retraction_error=math.hypot(steady.retraction_error, numerical[1]),
+        direction=record.states.direction,
+        penetration=record.states.penetration,
+        mean_radius=record.states.mean_radius,
+        force=record.states.force,
+        approach=steady.w_appr,
+        retraction=steady.w_retr,
+        approach_error=math.hypot(steady.w_appr_error, numerical[0]),
+        retraction_error=math.hypot(steady.w_retr_error, numerical[1]),
         lowest_radius=steady.lowest_radius,
         highest_radius=steady.highest_radius,
         angle=2 * np.pi * np.arange(front.shape[1]) / front.shape[1],

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import chain
 from typing import Annotated
 
 import numpy as np
@@ -13,10 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 
 from crackfront.core import jkr
-from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import PolarField, polar_field
+from crackfront.core.cycle.follow import Load, follow
+from crackfront.core.cycle.schedule import LoadSchedule, loads
+from crackfront.core.field.fields import RayField, polar_field
+from crackfront.core.outcome import Direction, Status
 from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
-from crackfront.core.solver.relax import Direction, Status, relax
+from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Count, Positive, Section, refusal
 from crackfront.studies.paper.scene import Progress
@@ -185,10 +186,9 @@ def _loop(parameters: RingsParameters, wavelength: float) -> Array:
     """Rows of direction, penetration, radius and jump of a whole loop."""
     amplitude = parameters.amplitude
     schedule = LoadSchedule(parameters.max_penetration, parameters.step)
-    loads = chain(_loads(1, schedule.approach()), _loads(-1, schedule.retraction()))
     field = _rings(amplitude, wavelength, parameters.max_penetration, parameters.samples)
     rows = []
-    for direction, penetration, before, after in _states(field, loads):
+    for direction, penetration, before, after in _states(field, loads(schedule)):
         passed = ring_penetration(np.linspace(before, after, _PATH), amplitude, wavelength)
         jump = bool(np.any(direction * np.diff(passed) < 0))
         rows.append((direction, penetration, after, jump))
@@ -203,40 +203,30 @@ def _mean_adhesion(parameters: RingsParameters, wavelength: float) -> tuple[floa
     # From there on every front of the retraction rests on a ring that it had not reached before.
     outermost = jkr.equilibrium_radius(high, 1 + amplitude) + wavelength
     turn = float(jkr.equilibrium_penetration(outermost, 1 - amplitude))
-    loads = [*_loads(1, [*window, turn]), *_loads(-1, window[::-1])]
-    radius = np.array(
-        [
-            state[-1]
-            for state in _states(_rings(amplitude, wavelength, turn, parameters.samples), loads)
-        ]
-    )
+    visited = [
+        *(Load(float(b), 1) for b in [*window, turn]),
+        *(Load(float(b), -1) for b in window[::-1]),
+    ]
+    field = _rings(amplitude, wavelength, turn, parameters.samples)
+    radius = np.array([state[-1] for state in _states(field, visited)])
     adhesion = ring_adhesion(radius, amplitude, wavelength)
     return float(adhesion[:count].mean()), float(adhesion[count + 1 :].mean())
 
 
-def _loads(
-    direction: Direction, penetrations: Iterable[float]
-) -> Iterator[tuple[Direction, float]]:
-    """Penetrations with the direction in which they are reached."""
-    return ((direction, float(penetration)) for penetration in penetrations)
-
-
 def _states(
-    field: PolarField, loads: Iterable[tuple[Direction, float]]
+    field: RayField, visited: Iterable[Load]
 ) -> Iterator[tuple[Direction, float, float, float]]:
     """Direction, penetration, radius before and after, until contact is lost."""
-    front = np.array([INNERMOST])
-    for direction, penetration in loads:
-        outcome = relax(front, penetration, direction, field, tolerance=TOLERANCE)
-        if outcome.status is Status.LOST_CONTACT:
+    for step in follow(field, np.array([INNERMOST]), visited, Newton(TOLERANCE)):
+        load = step.load
+        if step.status is Status.LOST_CONTACT:
             return
-        if outcome.status is not Status.CONVERGED:
-            raise RuntimeError(f"no state at penetration {penetration}: {outcome.status.value}")
-        yield direction, penetration, float(front[0]), float(outcome.radius[0])
-        front = outcome.radius
+        if step.status is not Status.CONVERGED:
+            raise RuntimeError(f"no state at penetration {load.value}: {step.status.value}")
+        yield load.direction, load.value, float(step.before[0]), float(step.front[0])
 
 
-def _rings(amplitude: float, wavelength: float, penetration: float, samples: int) -> PolarField:
+def _rings(amplitude: float, wavelength: float, penetration: float, samples: int) -> RayField:
     """Rings as far as a front may get at a penetration."""
     largest = jkr.equilibrium_radius(penetration, 1 + amplitude) + wavelength
     count = math.ceil((largest - INNERMOST) / wavelength * samples)

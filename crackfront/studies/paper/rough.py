@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated
 
 import numpy as np
@@ -9,17 +10,16 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from scipy.ndimage import map_coordinates
 
-from crackfront.core.cycle.history import FrontHistory
-from crackfront.core.cycle.run import refuse_outgrown
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.cycle.run import first_touch, refuse_outgrown
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import TileField, first_radius, n_angle
+from crackfront.core.field.fields import TileField
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Energy, Positive, Section, refusal
-from crackfront.simulate.asked import EXCESS, asked_simulation
-from crackfront.simulate.laws import numerical_error
 from crackfront.simulate.run import compile_solver
-from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.simulation import Numerics, Simulation, missed_error, simulation_of
 
 Array = NDArray[np.float64]
 
@@ -63,18 +63,11 @@ class RoughParameters(Section):
         PydanticCustomError
             If the finest numerics leave more than the asked error.
         """
-        simulation = asked_simulation(
-            "roughness",
-            spectrum,
-            elastic_energy,
-            schedule,
-            error=self.error,
-            tile_roll_offs=self.tile_roll_offs,
-            tile_cutoffs=200,
-            seed=self.seed,
+        numerics = Numerics(self.error, self.tile_roll_offs)
+        simulation = simulation_of(
+            "roughness", spectrum, elastic_energy, schedule, numerics, seed=self.seed
         )
-        left = max(numerical_error(simulation)) / elastic_energy
-        if left > EXCESS * self.error:
+        if left := missed_error(simulation, self.error):
             raise refusal(
                 f"error is {self.error:g}, but the finest numerics leave {left:.2g}; ask for that"
             )
@@ -140,8 +133,10 @@ def rough_spectrum(
         raise refusal(str(error)) from error
 
 
-def first_touch(simulation: Simulation, field: TileField) -> FrontHistory:
-    """Front that has just made contact and can follow any load.
+def recorded(
+    simulation: Simulation, field: TileField, loads: Iterable[Load], recorder: Recorder
+) -> CycleRecord:
+    """States of a front that begins in contact that is just made and follows loads.
 
     Parameters
     ----------
@@ -149,6 +144,10 @@ def first_touch(simulation: Simulation, field: TileField) -> FrontHistory:
         What is simulated.
     field : TileField
         Its field.
+    loads : iterable of Load
+        Where it goes.
+    recorder : Recorder
+        What is kept, and who is told.
 
     Raises
     ------
@@ -156,14 +155,9 @@ def first_touch(simulation: Simulation, field: TileField) -> FrontHistory:
         If a smooth sphere would outgrow the field at the largest penetration.
     """
     refuse_outgrown(field, simulation.schedule.max_penetration)
-    compile_solver(simulation.solver)
-    return FrontHistory(
-        field,
-        np.full(n_angle(field), first_radius(field)),
-        tolerance=simulation.tolerance,
-        max_sweeps=simulation.max_sweeps,
-        solver=simulation.solver,
-    )
+    compile_solver(simulation.solver.name)
+    recorder.run(field, first_touch(field), loads, simulation.solver)
+    return recorder.record()
 
 
 def patch_of(field: TileField, x: Array, y: Array) -> NDArray[np.float32]:

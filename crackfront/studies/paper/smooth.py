@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 
 from crackfront.core import jkr
+from crackfront.core.cycle.follow import Load, follow
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.kinds import PolarField, polar_field
+from crackfront.core.field.fields import RayField, polar_field
+from crackfront.core.outcome import Direction, Status
 from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
-from crackfront.core.solver.relax import Direction, Status, relax
+from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Positive, Section, refusal
 from crackfront.studies.paper.checks import Check, close_to
@@ -87,12 +89,11 @@ def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothL
     )
     for direction, adhesion, penetrations in branches:
         field = _constant(adhesion, parameters)
-        for penetration in penetrations:
-            outcome = relax(front, penetration, direction, field, tolerance=TOLERANCE)
-            if outcome.status is not Status.CONVERGED:
-                break
-            front = outcome.radius
-            states.append((direction, penetration, float(front[0])))
+        coming = (Load(penetration, direction) for penetration in penetrations)
+        for step in follow(field, front, coming, Newton(TOLERANCE)):
+            if step.status is Status.CONVERGED:
+                front = step.front
+                states.append((direction, step.load.value, float(front[0])))
         progress(f"work of adhesion {adhesion:g}: contact radius {front[0]:.4f} at the end")
     directions, visited, radii = (np.array(column) for column in zip(*states, strict=True))
     return SmoothLoop(
@@ -152,7 +153,7 @@ def _largest(difference: Array) -> float:
     return float(np.max(np.abs(difference)))
 
 
-def _constant(adhesion: float, parameters: SmoothLoopParameters) -> PolarField:
+def _constant(adhesion: float, parameters: SmoothLoopParameters) -> RayField:
     """Field of a smooth sphere, large enough for the whole loop."""
     largest = jkr.equilibrium_radius(parameters.max_penetration, parameters.retraction)
     ring = np.full(2, adhesion * WORK_OF_ADHESION)

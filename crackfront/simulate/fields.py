@@ -10,14 +10,14 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.field.kinds import Interpolation, PolarField, polar_field
+from crackfront.core.field.fields import Interpolation, RayField, polar_field
 from crackfront.core.records import ADHESION, LATERAL
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
 from crackfront.data.provenance import Provenance
 from crackfront.data.tiles import TOLERANCE, tile_samples
 from crackfront.simulate.si_units import SURFACES
-from crackfront.simulate.surface_arrays import surface_adhesion
+from crackfront.simulate.surfaces import surface_adhesion
 
 Array = NDArray[np.float64]
 
@@ -31,13 +31,13 @@ class PolarSamples:
 
     Attributes
     ----------
-    field : PolarField
+    field : RayField
         The samples.
     angles : (n_angle,) array
         Angles of the rays. (Units: rad)
     """
 
-    field: PolarField
+    field: RayField
     angles: Array
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, get_args
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,26 +11,30 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import spline_filter
 
 from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.geometry.sphere import sphere
 
 Array = NDArray[np.float64]
 Interpolation = Literal["cubic", "linear"]
 
 
-class PolarField(NamedTuple):
+class RayField(NamedTuple):
     """Samples on the rays themselves.
 
     Attributes
     ----------
-    radii : (n_sample,) array
+    geometry : Geometry
+        The contact, which says how the rays lie.
+    places : (n_sample,) array
         Increasing, positive. (Units: reduced lateral length)
-    products : (n_angle, n_sample) array
-        Radius times work of adhesion. (Units: reduced energy / length)
-    slopes : (n_angle, n_sample) array
+    products : (n_site, n_sample) array
+        Weighted work of adhesion. (Units: reduced energy / length)
+    slopes : (n_site, n_sample) array
         Derivatives of the products along the rays, (0, 0) where the pieces are linear.
         (Units: reduced energy / area)
     """
 
-    radii: Array
+    geometry: Any
+    places: Array
     products: Array
     slopes: Array
 
@@ -38,16 +42,15 @@ class PolarField(NamedTuple):
 class TileField(NamedTuple):
     """A periodic tile, evaluated by cubic B-splines when the front gets there.
 
-    The apex of the sphere is the tile's centre, half a side from its first point.
-
     Attributes
     ----------
+    geometry : Geometry
+        The contact, which says how the rays lie; the apex of a sphere is the tile's centre, half a
+        side from its first point.
     coefficients : (n_x + 3, n_y + 3) array
         Spline coefficients of the work of adhesion, three rows and columns repeated.
     inverse_pixel : float
         Points per length. (Units: 1 / reduced lateral length)
-    cosine, sine : (n_angle,) array
-        Directions of the rays.
     spacing : float
         Distance of samples along a ray; sample m lies at (m + 1) * spacing.
     n_sample : int
@@ -56,38 +59,32 @@ class TileField(NamedTuple):
         Whether the product between samples is cubic, of the same slopes as the tile, or linear.
     """
 
+    geometry: Any
     coefficients: Array
     inverse_pixel: float
-    cosine: Array
-    sine: Array
     spacing: float
     n_sample: int
     cubic: bool
 
 
-Field = PolarField | TileField
+Field = RayField | TileField
 
 
-def n_angle(field: Field) -> int:
-    """Number of rays of a field."""
-    return field.products.shape[0] if isinstance(field, PolarField) else field.cosine.size
+def first_place(field: Field) -> float:
+    """Place of the first sample of a ray (Units: reduced lateral length)."""
+    return float(field.places[0]) if isinstance(field, RayField) else field.spacing
 
 
-def first_radius(field: Field) -> float:
-    """Radius of the innermost sample (Units: reduced lateral length)."""
-    return float(field.radii[0]) if isinstance(field, PolarField) else field.spacing
-
-
-def last_radius(field: Field) -> float:
-    """Radius of the outermost sample (Units: reduced lateral length)."""
-    if isinstance(field, PolarField):
-        return float(field.radii[-1])
+def last_place(field: Field) -> float:
+    """Place of the last sample of a ray (Units: reduced lateral length)."""
+    if isinstance(field, RayField):
+        return float(field.places[-1])
     return field.n_sample * field.spacing
 
 
 def polar_field(
     radii: Array, work_of_adhesion: Array, interpolation: Interpolation = "linear"
-) -> PolarField:
+) -> RayField:
     """Field from samples on rays at equally spaced angles.
 
     Parameters
@@ -104,7 +101,7 @@ def polar_field(
 
     Returns
     -------
-    PolarField
+    RayField
         Field whose front has `n_angle` sites; a single one is a circle, without line elasticity.
 
     Raises
@@ -139,14 +136,14 @@ def polar_field(
         slopes = np.empty_like(products)
         for slope, product in zip(slopes, products, strict=True):
             slope[:] = CubicSpline(radii, product)(radii, 1)
-    return PolarField(radii.copy(), products, slopes)
+    return RayField(sphere(len(rays)), radii.copy(), products, slopes)
 
 
 def tile_field(
     adhesion: AdhesionMap,
-    n_angle: int,
+    geometry: Any,
     spacing: float,
-    largest_radius: float,
+    largest_place: float,
     interpolation: Interpolation = "cubic",
     *,
     band_limited: bool = False,
@@ -157,12 +154,12 @@ def tile_field(
     ----------
     adhesion : AdhesionMap
         Work of adhesion on the tile; the tile may be smaller than the contact.
-    n_angle : int
-        Number of sites of the front.
+    geometry : Geometry
+        The contact.
     spacing : float
         Distance of samples along a ray. (Units: reduced lateral length)
-    largest_radius : float
-        Radius that the front must not leave. (Units: reduced lateral length)
+    largest_place : float
+        Place that the front must not leave. (Units: reduced lateral length)
     interpolation : {"cubic", "linear"}, optional
         How radius times work of adhesion goes on between the samples of a ray: as a cubic with the
         slopes of the tile, or straight.
@@ -173,7 +170,7 @@ def tile_field(
     Returns
     -------
     TileField
-        Field whose front has `n_angle` sites.
+        The field.
 
     Raises
     ------
@@ -188,25 +185,23 @@ def tile_field(
         raise ValueError(f"work of adhesion has shape {values.shape}; a tile must be (x, y)")
     if not 0 < adhesion.pixel < np.inf:
         raise ValueError(f"pixel is {adhesion.pixel}; it must be positive and finite")
-    if n_angle < 4:
-        raise ValueError(f"number of angles is {n_angle}; at least 4 are needed")
-    if not 0 < spacing < largest_radius / 2 < np.inf:
+    if geometry.n_site < 4:
+        raise ValueError(f"number of angles is {geometry.n_site}; at least 4 are needed")
+    if not 0 < spacing < largest_place / 2 < np.inf:
         raise ValueError(
             f"sample spacing {spacing} must be positive and below half the largest radius "
-            f"{largest_radius}"
+            f"{largest_place}"
         )
     if band_limited:
         coefficients = _mode_coefficients(values)
     else:
         coefficients = spline_filter(values, order=3, mode="grid-wrap")
-    angle = 2 * np.pi * np.arange(n_angle) / n_angle
     return TileField(
+        geometry=geometry,
         coefficients=np.pad(coefficients, (0, 3), mode="wrap"),
         inverse_pixel=1.0 / adhesion.pixel,
-        cosine=np.cos(angle),
-        sine=np.sin(angle),
         spacing=float(spacing),
-        n_sample=int(np.ceil(largest_radius / spacing)),
+        n_sample=int(np.ceil(largest_place / spacing)),
         cubic=interpolation == "cubic",
     )
 

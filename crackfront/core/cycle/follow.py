@@ -1,0 +1,124 @@
+"""A front that follows a load from one metastable state to the next: the one loop over loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core.field.fields import Field
+from crackfront.core.field.samples import make_memory
+from crackfront.core.outcome import Direction, Relaxation, Status
+from crackfront.core.solver.relax import Solver, relax
+
+Array = NDArray[np.float64]
+
+
+class Load(NamedTuple):
+    """A load to go to.
+
+    Attributes
+    ----------
+    value : float
+        Penetration of a sphere. (Units: reduced vertical length)
+    direction : {1, -1}
+        Direction in which it is reached.
+    start : (n_site,) array or None
+        Front at which a branch begins with it, no matter how that was reached; by default the
+        front goes on from where it is.
+    """
+
+    value: float
+    direction: Direction
+    start: Array | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step of a front.
+
+    Attributes
+    ----------
+    load : Load
+        Where it went.
+    before : (n_site,) array
+        Front that it began with.
+    found : Relaxation
+        Front that it ended with, and how.
+    """
+
+    load: Load
+    before: Array
+    found: Relaxation
+
+    @property
+    def front(self) -> Array:
+        """Front at the end (Units: reduced lateral length)."""
+        return self.found.front
+
+    @property
+    def status(self) -> Status:
+        """What ended it."""
+        return self.found.status
+
+
+def follow(
+    field: Field, front: Array, loads: Iterable[Load], solver: Solver | None = None
+) -> Iterator[Step]:
+    """Steps of a front from load to load.
+
+    Parameters
+    ----------
+    field : Field
+        Work of adhesion along the rays.
+    front : (n_site,) array
+        Where it begins. (Units: reduced lateral length)
+    loads : iterable of Load
+        Where it goes. The next one is taken when the step before it has been used, so that it may
+        depend on that.
+    solver : Solver, optional
+        How each front is found.
+
+    Yields
+    ------
+    Step
+        One for every load. After a step that did not converge, only a load that brings its own
+        front goes on; the others end the iteration.
+    """
+    memory, at_rest = make_memory(field), True
+    for load in loads:
+        if load.start is not None:
+            front, at_rest = load.start, True
+        if not at_rest:
+            return
+        found = relax(front, load.value, load.direction, field, solver, memory)
+        yield Step(load, front, found)
+        at_rest = found.status is Status.CONVERGED
+        front = found.front
+
+
+def front_at(field: Field, front: Array, load: Load, solver: Solver | None = None) -> Array:
+    """Front of one step.
+
+    Parameters
+    ----------
+    field, front, load, solver
+        As of :func:`follow`.
+
+    Returns
+    -------
+    (n_site,) array
+        The front. (Units: reduced lateral length)
+
+    Raises
+    ------
+    ValueError
+        If there is none, with the reason.
+    """
+    step = next(follow(field, front, [load], solver))
+    if step.status is not Status.CONVERGED:
+        raise ValueError(f"at penetration {load.value:.6g}: {step.status.value}")
+    return step.front

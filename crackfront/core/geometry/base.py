@@ -1,0 +1,122 @@
+r"""What a geometry is: functions that kernels dispatch on by its type, and what is recorded of it.
+
+A site of a front moves along its ray; its place is its distance along it. At rest, per site,
+
+.. math:: \omega(u)\, w_{loc}(u) = f(u, X) + K u ,
+
+with a weight :math:`\omega`, the restoring force f under the load X and the stiffness K of the
+line, which is diagonal in the modes of the front.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core.compiled import dispatched, jit
+from crackfront.core.outcome import Direction, Relaxation
+from crackfront.core.records import Variable
+
+Array = NDArray[np.float64]
+
+
+class Geometry(Protocol):
+    """What Python asks of a geometry beside the compiled functions of this module."""
+
+    @property
+    def n_site(self) -> int:
+        """Sites of the front."""
+
+    @property
+    def perimeter(self) -> float:
+        """Sum of the distances between sites, in the unit in which forces are densities."""
+
+    @property
+    def state_type(self) -> type[Any]:
+        """Dataclass of what is recorded of a front at rest.
+
+        Its fields are made by :func:`crackfront.core.records.variable`; the first is the load, and
+        one of them the direction.
+        """
+
+    @property
+    def sites(self) -> Array:
+        """Coordinates of the sites along the front."""
+
+    @property
+    def variables(self) -> tuple[Variable, Variable]:
+        """What files say of the places of a front, and of the coordinates of its sites."""
+
+    def state(self, found: Relaxation, load: float, direction: Direction, turn: Array) -> Any:
+        """What is recorded of a front at rest whose branch began at the front `turn`."""
+
+    def elastic_energy(self, front: Array, load: float) -> float:
+        """Energy of body and line, the derivative of which is f + K u."""
+
+    def can_rest_inside(self, place: float, product: float, load: float) -> bool:
+        """Whether a front may rest before a place with a given weighted work of adhesion."""
+
+
+@dispatched
+def restoring_force(geometry: Any, place: float, load: float) -> float:
+    """Restoring force f on a site; it increases with the place and is convex."""
+    raise NotImplementedError
+
+
+@dispatched
+def restoring_slope(geometry: Any, place: float, load: float) -> float:
+    """Slope of the restoring force, which bounds that at all smaller places."""
+    raise NotImplementedError
+
+
+@dispatched
+def lowest_place(geometry: Any, load: float) -> float:
+    """Place below which no site can rest."""
+    raise NotImplementedError
+
+
+@dispatched
+def is_below_lowest(geometry: Any, place: float, load: float) -> bool:
+    """Whether a place is at or below the lowest one."""
+    raise NotImplementedError
+
+
+@dispatched
+def mode_stiffness(geometry: Any, mode: float) -> float:
+    """Stiffness of the line against a mode, proportional to its number."""
+    raise NotImplementedError
+
+
+@dispatched
+def weight(geometry: Any, place: float) -> float:
+    """What the work of adhesion at a place is multiplied by in the balance of forces."""
+    raise NotImplementedError
+
+
+@dispatched
+def weight_slope(geometry: Any) -> float:
+    """Derivative of the weight by the place."""
+    raise NotImplementedError
+
+
+@dispatched
+def ray_start(geometry: Any, ray: int, n_x: int, n_y: int, inverse_pixel: float) -> Any:
+    """Where a ray begins on a periodic tile of so many points, x and y (Units: pixels)."""
+    raise NotImplementedError
+
+
+@dispatched
+def ray_direction(geometry: Any, ray: int) -> Any:
+    """Direction of a ray on a tile, x and y of a unit vector."""
+    raise NotImplementedError
+
+
+@jit
+def self_modes(n_site: int) -> float:
+    """Stiffness of the line against the advance of one site, over that of its first mode.
+
+    The mean number of a mode: N/4 for even N, (N^2 - 1)/4N for odd N.
+    """
+    return n_site / 4 if n_site % 2 == 0 else (n_site**2 - 1) / (4 * n_site)

@@ -1,0 +1,242 @@
+r"""A sphere: the front is a closed line around its apex, and its rays are radii.
+
+Per angle, with the penetration b as the load (supplement, Sec. I D),
+
+.. math:: a\, w_{loc}(a, \theta) = a\, G_{JKR}(b, a) + w_{int} (-\Delta_\theta)^{1/2} a .
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Generic, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, rfft
+
+from crackfront.core import jkr
+from crackfront.core.compiled import implements
+from crackfront.core.geometry import base
+from crackfront.core.outcome import Direction, Relaxation
+from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, Variable, variable
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
+
+Array = NDArray[np.float64]
+Value = TypeVar("Value", float, Array)
+
+RING = CONTACT_MODULUS / (2 * np.pi)
+"""Factor of (a^2 - b)^2 in a G_JKR."""
+
+
+@dataclass(frozen=True)
+class ContactState(Generic[Value]):
+    """A metastable contact, or all of a cycle, one entry a state."""
+
+    penetration: Value = variable("rigid body penetration", VERTICAL)
+    direction: Value = variable("+1 in approach, -1 in retraction", "1")
+    mean_radius: Value = variable("mean radius of the front", LATERAL)
+    min_radius: Value = variable("smallest radius of the front", LATERAL)
+    max_radius: Value = variable("largest radius of the front", LATERAL)
+    rms_radius: Value = variable("rms deviation of the radius from its mean", LATERAL)
+    force: Value = variable("normal force, positive where it pushes", FORCE)
+    contact_area: Value = variable("area within the front", f"({LATERAL})^2")
+    apparent_work_of_adhesion: Value = variable("mean of a G over mean of a", ADHESION)
+    least_travel: Value = variable("smallest way of a site since its branch began", LATERAL)
+    iterations: Value = variable("sweeps of the solver", "1")
+    updates: Value = variable("updates of single sites by the solver", "1")
+    residual: Value = variable("largest force along the motion, per front length", ADHESION)
+
+    @property
+    def told(self) -> str:
+        """One state in words."""
+        return (
+            f"penetration {self.penetration:+.4f}, radius {self.mean_radius:.4f}, "
+            f"force {self.force:+.4f}"
+        )
+
+
+class Sphere(NamedTuple):
+    """The contact of a sphere.
+
+    Attributes
+    ----------
+    cosine, sine : (n_angle,) array
+        Directions of the rays.
+    """
+
+    cosine: Array
+    sine: Array
+
+    @property
+    def n_site(self) -> int:
+        """Rays; a single one is a circle, without line elasticity."""
+        return self.cosine.size
+
+    @property
+    def perimeter(self) -> float:
+        """The whole angle, since forces are per angle (Units: rad)."""
+        return 2 * np.pi
+
+    @property
+    def state_type(self) -> type[ContactState[Array]]:
+        """Record of a contact."""
+        return ContactState
+
+    @property
+    def sites(self) -> Array:
+        """Angles of the rays (Units: rad)."""
+        return _angles(self.n_site)
+
+    @property
+    def variables(self) -> tuple[Variable, Variable]:
+        """Radii of a front, and the angles of its sites."""
+        angle = Variable("angle", ("angle",), "rad", "angle of a site of the front")
+        return Variable("radius", ("angle",), LATERAL, "front"), angle
+
+    def state(
+        self, found: Relaxation, load: float, direction: Direction, turn: Array
+    ) -> ContactState[float]:
+        """Quantities that are recorded of a front in equilibrium."""
+        front = found.front
+        release = front * jkr.energy_release_rate(front, load)
+        return ContactState(
+            penetration=load,
+            direction=direction,
+            mean_radius=float(np.mean(front)),
+            min_radius=float(np.min(front)),
+            max_radius=float(np.max(front)),
+            rms_radius=float(np.std(front)),
+            force=float(np.mean(jkr.force(front, load))),
+            contact_area=float(np.pi * np.mean(front**2)),
+            apparent_work_of_adhesion=float(np.mean(release) / np.mean(front) / WORK_OF_ADHESION),
+            least_travel=float(np.min(np.abs(front - turn))),
+            iterations=found.sweeps,
+            updates=found.updates,
+            residual=found.residual,
+        )
+
+    def elastic_energy(self, front: Array, load: float) -> float:
+        """Energy of the rings of a smooth sphere and of the line (Units: reduced energy)."""
+        # No energy is released or stored where an edge in compression advances.
+        open_edge = np.maximum(front, math.sqrt(max(load, 0.0)))
+        return float(np.mean(jkr.elastic_energy(open_edge, load))) + line_energy(front)
+
+    def can_rest_inside(self, place: float, product: float, load: float) -> bool:
+        """Whether a smooth contact of that work of adhesion has an equilibrium within a radius."""
+        radius = np.linspace(0, place, 201)[1:]
+        ring = RING * np.maximum(radius**2 - load, 0.0) ** 2
+        return bool(np.any(radius * (product / place) >= ring))
+
+
+def sphere(n_angle: int) -> Sphere:
+    """Sphere whose front has sites at equally spaced angles."""
+    angle = _angles(n_angle)
+    return Sphere(np.cos(angle), np.sin(angle))
+
+
+def _angles(count: int) -> Array:
+    """Equally spaced angles, the first 0."""
+    return 2 * np.pi * np.arange(count) / count
+
+
+def half_laplacian(radius: Array) -> Array:
+    r"""Half-Laplacian of a front in its angle.
+
+    .. math:: (-\Delta_\theta)^{1/2} a = \sum_n |n| \tilde a_n e^{i n \theta}
+
+    Parameters
+    ----------
+    radius : (n_angle,) array
+        Radius at equally spaced angles. (Units: length)
+
+    Returns
+    -------
+    (n_angle,) array
+        Generalised curvature; it has zero mean. (Units: length)
+
+    References
+    ----------
+    .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. I D.
+
+    Examples
+    --------
+    >>> angle = 2 * np.pi * np.arange(8) / 8
+    >>> bool(np.allclose(half_laplacian(np.cos(3 * angle)), 3 * np.cos(3 * angle)))
+    True
+    """
+    modes = rfft(radius)
+    return np.asarray(irfft(np.arange(modes.size) * modes, n=radius.size))
+
+
+def line_energy(radius: Array) -> float:
+    r"""Energy that distorts the front out of its circle, pi w_int sum_n |n| |a_n|^2.
+
+    Parameters
+    ----------
+    radius : (n_angle,) array
+        Radius at equally spaced angles. (Units: reduced lateral length)
+
+    Returns
+    -------
+    float
+        Energy; its gradient is w_int times the half-Laplacian. (Units: reduced energy)
+    """
+    product = radius * half_laplacian(radius)
+    return float(np.pi * WORK_OF_ADHESION * np.mean(product))
+
+
+@implements(base.restoring_force, Sphere)
+def _ring_force(geometry: Any, place: float, load: float) -> float:
+    """A G_JKR of an open edge, zero in compression."""
+    opening = place * place - load
+    return RING * opening * opening if opening > 0.0 else 0.0
+
+
+@implements(base.restoring_slope, Sphere)
+def _ring_slope(geometry: Any, place: float, load: float) -> float:
+    """Derivative of a G by a: a G is convex."""
+    opening = place * place - load
+    return 4 * RING * place * opening if opening > 0.0 else 0.0
+
+
+@implements(base.lowest_place, Sphere)
+def _lowest(geometry: Any, load: float) -> float:
+    """Radius within which the edge is in compression (a^2 < b)."""
+    return np.sqrt(max(load, 0.0))
+
+
+@implements(base.is_below_lowest, Sphere)
+def _is_compressed(geometry: Any, place: float, load: float) -> bool:
+    """Whether the edge is in compression, which a circle smaller than nothing always is."""
+    return place * abs(place) <= load
+
+
+@implements(base.mode_stiffness, Sphere)
+def _stiffness(geometry: Any, mode: float) -> float:
+    """Of the half-Laplacian in the angle."""
+    return WORK_OF_ADHESION * mode
+
+
+@implements(base.weight, Sphere)
+def _radius(geometry: Any, place: float) -> float:
+    """Perimeter per angle."""
+    return place
+
+
+@implements(base.weight_slope, Sphere)
+def _one(geometry: Any) -> float:
+    """Of the radius by itself."""
+    return 1.0
+
+
+@implements(base.ray_start, Sphere)
+def _apex(geometry: Any, ray: int, n_x: int, n_y: int, inverse_pixel: float) -> Any:
+    """Centre of the tile."""
+    return 0.5 * n_x, 0.5 * n_y
+
+
+@implements(base.ray_direction, Sphere)
+def _direction(geometry: Any, ray: int) -> Any:
+    """Unit vector at the angle."""
+    return geometry.cosine[ray], geometry.sine[ray]

@@ -1,0 +1,119 @@
+"""What one cycle on a given field needs, geometry by geometry: its loads and its field.
+
+A case is a dataclass whose fields are the options of `crackfront cycle` that belong to it. What
+computes is imported where it is used, so that the command's help does not wait for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import MISSING, dataclass
+from dataclasses import field as dataclass_field
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from crackfront.core.adhesion import AdhesionMap
+    from crackfront.core.cycle.follow import Load
+    from crackfront.core.field.fields import Field, Interpolation
+    from crackfront.simulate.fields import PolarSamples
+
+    Array = NDArray[np.float64]
+
+
+def option(text: str, *, flag: str | None = None, default: Any = MISSING) -> Any:
+    """A field of a case, which an option of the command line fills.
+
+    Parameters
+    ----------
+    text : str
+        Its help.
+    flag : str, optional
+        How it is written, if not as the field.
+    default : optional
+        Its value where it is not given; by default it has to be.
+    """
+    return dataclass_field(default=default, metadata={"text": text, "flag": flag})
+
+
+class Problem(NamedTuple):
+    """What a cycle is run on.
+
+    Attributes
+    ----------
+    field : Field
+        Work of adhesion along the rays.
+    front : (n_site,) array
+        Where the front begins.
+    loads : iterable of Load
+        Where it goes.
+    sites : (n_site,) array or None
+        Coordinates of its sites, if not those of the geometry.
+    """
+
+    field: Field
+    front: Array
+    loads: Iterable[Load]
+    sites: Array | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """How a given field is resolved; None leaves the choice to the case.
+
+    Attributes
+    ----------
+    angles : int or None
+        Sites of the front.
+    samples_per_pixel : float or None
+        Samples along a ray per pixel of a tile.
+    interpolation : {"cubic", "linear"} or None
+        Pieces between samples.
+    """
+
+    angles: int | None
+    samples_per_pixel: float | None
+    interpolation: Interpolation | None
+
+
+@dataclass(frozen=True)
+class SphereCase:
+    """A sphere that is pressed on a surface and pulled off, about the centre of a tile."""
+
+    ends_by: ClassVar[str] = "LOST_CONTACT"
+
+    max_penetration: float = option("Largest penetration.")
+    step: float | None = option(
+        "Difference of penetrations.  [default: 0.004, dissipated energies to 1%]", default=None
+    )
+
+    def problem(self, read: Callable[[], AdhesionMap | PolarSamples], asked: Resolution) -> Problem:
+        """Field of a tile, which is kept as its splines alone, or of samples on rays.
+
+        The load goes from first contact to the largest penetration, and back to pull-off.
+        """
+        from crackfront.core.adhesion import AdhesionMap
+        from crackfront.core.cycle.run import checked_touch
+        from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule, loads
+        from crackfront.simulate.contact import tile_contact
+
+        step = DEFAULT_STEP if self.step is None else self.step
+        way = loads(LoadSchedule(self.max_penetration, step))
+        given, angles, density = read(), asked.angles, asked.samples_per_pixel
+        if isinstance(given, AdhesionMap):
+            pieces = asked.interpolation or "cubic"
+            field = tile_contact(given, self.max_penetration, angles, density, pieces)
+            return Problem(field, checked_touch(field, self.max_penetration), way)
+        if angles is not None or density is not None:
+            raise ValueError(
+                "--angles and --samples-per-pixel are for tiles; a polar field brings its own "
+                "samples"
+            )
+        front = checked_touch(given.field, self.max_penetration)
+        return Problem(given.field, front, way, given.angles)
+
+
+CASES: dict[str, type[Any]] = {"sphere": SphereCase}
+"""Cases by the name of their geometry."""
