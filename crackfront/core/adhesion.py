@@ -100,12 +100,15 @@ class AdhesionMap:
         (w_rms / w_int)^2 / 4.
     rms : float
         w_rms / w_int measured on the tile.
+    corner : tuple of float
+        Coordinates of the first point, where they matter. (Units: reduced lateral length)
     """
 
     work_of_adhesion: Array
     pixel: float
     elastic_energy: float
     rms: float
+    corner: tuple[float, float] = (0.0, 0.0)
 
 
 def rough_adhesion(heights: Array, pixel: float) -> AdhesionMap:

@@ -9,6 +9,7 @@ LATERAL = "reduced lateral length, (3 pi w_int R^2 / 4E')^(1/3)"
 VERTICAL = "reduced vertical length, (9 pi^2 w_int^2 R / 16E'^2)^(1/3)"
 FORCE = "pi w_int R"
 ADHESION = "w_int"
+LENGTH = "length, in the unit of the tile"
 ENERGY = f"{FORCE} times {VERTICAL}"
 
 STEP = "step"

@@ -145,7 +145,8 @@ def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
     # The refusal of values that are not finite, with their place, is that of the field.
     with np.errstate(invalid="ignore"):
         rms = float(np.std(samples) / WORK_OF_ADHESION)
-    return AdhesionMap(samples, pixel, elastic_energy=rms**2 / 4, rms=rms)
+    corner = float(values["x"][0]), float(values["y"][0])
+    return AdhesionMap(samples, pixel, elastic_energy=rms**2 / 4, rms=rms, corner=corner)
 
 
 def _rays(path: Path, values: xr.DataArray, interpolation: Interpolation) -> PolarSamples:

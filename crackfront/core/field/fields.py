@@ -51,8 +51,8 @@ class TileField(NamedTuple):
         Spline coefficients of the work of adhesion, three rows and columns repeated.
     inverse_pixel : float
         Points per length. (Units: 1 / reduced lateral length)
-    spacing : float
-        Distance of samples along a ray; sample m lies at (m + 1) * spacing.
+    origin, spacing : float
+        Distance of samples along a ray; sample m lies at (m + 1) * spacing + origin.
     n_sample : int
         Number of samples on a ray.
     cubic : bool
@@ -62,6 +62,7 @@ class TileField(NamedTuple):
     geometry: Any
     coefficients: Array
     inverse_pixel: float
+    origin: float
     spacing: float
     n_sample: int
     cubic: bool
@@ -72,14 +73,14 @@ Field = RayField | TileField
 
 def first_place(field: Field) -> float:
     """Place of the first sample of a ray (Units: reduced lateral length)."""
-    return float(field.places[0]) if isinstance(field, RayField) else field.spacing
+    return float(field.places[0]) if isinstance(field, RayField) else field.origin + field.spacing
 
 
 def last_place(field: Field) -> float:
     """Place of the last sample of a ray (Units: reduced lateral length)."""
     if isinstance(field, RayField):
         return float(field.places[-1])
-    return field.n_sample * field.spacing
+    return field.n_sample * field.spacing + field.origin
 
 
 def polar_field(
@@ -147,6 +148,7 @@ def tile_field(
     interpolation: Interpolation = "cubic",
     *,
     band_limited: bool = False,
+    origin: float = 0.0,
 ) -> TileField:
     """Field from a periodic Cartesian tile.
 
@@ -166,6 +168,8 @@ def tile_field(
     band_limited : bool, optional
         The tile was synthesised from modes: the splines keep their amplitudes, rather than pass
         through the points, which weakens a wave of 4 pixels by 1.4% along each axis.
+    origin : float, optional
+        Place before the first sample. (Units: reduced lateral length)
 
     Returns
     -------
@@ -187,7 +191,7 @@ def tile_field(
         raise ValueError(f"pixel is {adhesion.pixel}; it must be positive and finite")
     if geometry.n_site < 4:
         raise ValueError(f"number of angles is {geometry.n_site}; at least 4 are needed")
-    if not 0 < spacing < largest_place / 2 < np.inf:
+    if not 0 < spacing < (largest_place - origin) / 2 < np.inf:
         raise ValueError(
             f"sample spacing {spacing} must be positive and below half the largest radius "
             f"{largest_place}"
@@ -200,8 +204,9 @@ def tile_field(
         geometry=geometry,
         coefficients=np.pad(coefficients, (0, 3), mode="wrap"),
         inverse_pixel=1.0 / adhesion.pixel,
+        origin=float(origin),
         spacing=float(spacing),
-        n_sample=int(np.ceil(largest_place / spacing)),
+        n_sample=int(np.ceil((largest_place - origin) / spacing)),
         cubic=interpolation == "cubic",
     )
 

@@ -138,7 +138,7 @@ def sampled_on_rays(field: TileField) -> RayField:
     RayField
         Field with identical samples; it takes n_site * n_sample numbers of memory.
     """
-    places = field.spacing * np.arange(1, field.n_sample + 1, dtype=np.float64)
+    places = field.spacing * np.arange(1, field.n_sample + 1, dtype=np.float64) + field.origin
     products, slopes = _sample_rays(field, field.geometry.n_site)
     slopes = slopes if field.cubic else np.empty((0, 0))
     return RayField(field.geometry, places, products, slopes)

@@ -124,7 +124,7 @@ def _ray_peek(field: Any, memory: Any, ray: int, sample: int) -> Any:
 
 @implements(sample_place, TileField)
 def _tile_place(field: Any, sample: int) -> float:
-    return (sample + 1) * field.spacing
+    return (sample + 1) * field.spacing + field.origin
 
 
 @implements(evaluate, TileField)
@@ -132,7 +132,7 @@ def _tile_evaluate(field: Any, ray: int, sample: int) -> Any:
     """By bicubic B-splines."""
     coefficients = field.coefficients
     n_x, n_y = coefficients.shape[0] - 3, coefficients.shape[1] - 3
-    place = (sample + 1) * field.spacing
+    place = (sample + 1) * field.spacing + field.origin
     cosine, sine = ray_direction(field.geometry, ray)
     start_x, start_y = ray_start(field.geometry, ray, n_x, n_y, field.inverse_pixel)
     x = place * cosine * field.inverse_pixel + start_x
