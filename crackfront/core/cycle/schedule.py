@@ -73,6 +73,34 @@ class LoadSchedule:
             k -= 1
 
 
+def there_and_back(first: float, last: float, step: float) -> list[Load]:
+    """Loads from one to a higher one, and back to the first.
+
+    Parameters
+    ----------
+    first, last : float
+        The two ends; the last is visited even where it is no whole number of steps away.
+    step : float
+        Difference of loads.
+
+    Raises
+    ------
+    ValueError
+        If the step is not positive, or the ends are not in order.
+
+    Examples
+    --------
+    >>> [load.value for load in there_and_back(1.0, 3.5, 1.0)]
+    [1.0, 2.0, 3.0, 3.5, 3.0, 2.0, 1.0]
+    """
+    if not -math.inf < first < last < math.inf:
+        raise ValueError(
+            f"loads go from {first} to {last}; the second must be above the first, both finite"
+        )
+    way = [first + load for load in LoadSchedule(last - first, step).approach()]
+    return [*(Load(load, 1) for load in way), *(Load(load, -1) for load in way[-2::-1])]
+
+
 def loads(schedule: LoadSchedule) -> Iterator[Load]:
     """Penetrations of a whole cycle, without end, with the direction in which each is reached."""
     for penetration in schedule.approach():
