@@ -86,7 +86,8 @@ class SphereCase:
 
     max_penetration: float = option("Largest penetration.")
     step: float | None = option(
-        "Difference of penetrations.  [default: 0.004, dissipated energies to 1%]", default=None
+        "Difference of loads.  [default on a sphere: 0.004, dissipated energies to 1%]",
+        default=None,
     )
 
     def problem(self, read: Callable[[], AdhesionMap | PolarSamples], asked: Resolution) -> Problem:
@@ -115,5 +116,38 @@ class SphereCase:
         return Problem(given.field, front, way, given.angles)
 
 
-CASES: dict[str, type[Any]] = {"sphere": SphereCase}
+@dataclass(frozen=True)
+class LineCase:
+    """A straight front along y on a periodic tile, which springs pull along x and back."""
+
+    ends_by: ClassVar[str] = "CONVERGED"
+
+    spring: float = option("Length of the springs, w_int / kappa, in the unit of the tile.")
+    first: float = option("First load, and the last.", flag="--from")
+    last: float = option("Load at which the motion turns.", flag="--to")
+    step: float | None = option("Difference of loads.")
+
+    def problem(self, read: Callable[[], AdhesionMap | PolarSamples], asked: Resolution) -> Problem:
+        """Field on the points of a tile, one site for every y unless asked for otherwise."""
+        from crackfront.core.adhesion import AdhesionMap
+        from crackfront.core.cycle.schedule import there_and_back
+        from crackfront.core.geometry.line import line_field, straight_front
+
+        way = there_and_back(self.first, self.last, self.step or 0.0)
+        given, density = read(), asked.samples_per_pixel or 1.0
+        if not isinstance(given, AdhesionMap):
+            raise ValueError("a line needs a tile work_of_adhesion(x, y), not samples on rays")
+        field = line_field(
+            given,
+            self.spring,
+            (self.first, self.last),
+            n_site=asked.angles,
+            spacing=given.pixel / density,
+            interpolation=asked.interpolation or "cubic",
+        )
+        front = straight_front(field, given, self.first)
+        return Problem(field, front, [way[0]._replace(start=front), *way[1:]])
+
+
+CASES: dict[str, type[Any]] = {"sphere": SphereCase, "line": LineCase}
 """Cases by the name of their geometry."""
