@@ -51,6 +51,8 @@ def _parameter(flag: str) -> str:
         "crackfront cycle --field tile.nc --max-penetration 1 --output cycle.nc --watch",
         "crackfront cycle --field tile.nc --max-penetration 1 --step 0.05 --record fronts \\",
         "  --record energy --output cycle.nc",
+        "crackfront cycle --geometry line --spring 32 --field tile.nc --from 300 --to 1100 \\",
+        "  --step 10 --record fronts --output line.nc",
     )
 )
 @click.option("--field", "field_file", type=FILE, required=True, help="netCDF file of the field.")
@@ -133,8 +135,12 @@ def cycle(
     reduced units: R = 1, w_int = 1/pi, E' = 3/4. Surfaces of the Python library, saved by
     surface.to_netcdf, are fields as well.
 
-    The exit code is 0 where the cycle ended by losing contact and 1 where it ended early; the
-    output is written in both cases. It is 2 where the input cannot be used.
+    With --geometry line the front is straight, along y, one site for every y of the tile. Springs
+    of the length --spring pull it along x, from --from to --to and back; lengths are those of the
+    tile, and the springs do not pull where the front feels the mean of the tile.
+
+    The exit code is 0 where the cycle came to its end (on a sphere, by losing contact) and 1 where
+    it ended early; the output is written in both cases. It is 2 where the input cannot be used.
     """
     from crackfront.core.cycle.record import Recorder
     from crackfront.core.outcome import Status
