@@ -10,12 +10,14 @@ from pathlib import Path
 from snakemake.exceptions import WorkflowError
 
 from crackfront.data.provenance import package_fingerprint
-from crackfront.studies.paper.configuration import (
+from crackfront.studies.paper.figure import (
+    FIGURES,
     SCALES,
+    figure,
     figure_files,
+    figure_fingerprint,
     load_figure,
 )
-from crackfront.studies.paper.figures import FIGURES, figure_fingerprint
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.sweep import shard_fingerprint
 

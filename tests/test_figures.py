@@ -15,11 +15,16 @@ from crackfront.data.files import UnreadableFileError, read_attributes
 from crackfront.data.provenance import provenance
 from crackfront.data.records import largest_differences, read_record, write_record
 from crackfront.data.yaml import ConfigurationError
-from crackfront.studies.paper.checks import Check, checks_table, close_to
-from crackfront.studies.paper.configuration import SCALES, load_figure
-from crackfront.studies.paper.figures import FIGURES
-from crackfront.studies.paper.makers import FIGURE_MAKERS
-from crackfront.studies.paper.smooth import SmoothLoop
+from crackfront.studies.paper.figure import (
+    FIGURES,
+    SCALES,
+    Check,
+    checks_table,
+    close_to,
+    figure,
+    load_figure,
+)
+from crackfront.studies.paper.main_1d import SmoothLoop
 
 REFERENCES = Path(__file__).parents[1] / "docs" / "reference"
 CONFIGURATIONS = Path(__file__).parents[1] / "config" / "figures"
@@ -35,7 +40,7 @@ def ignore(line):
 @pytest.fixture
 def smooth():
     parameters = load_figure(CONFIGURATIONS / "main-1d.yaml", "quick")
-    return FIGURES["main-1d"].compute(parameters, ignore)
+    return figure("main-1d").compute(parameters, ignore)
 
 
 def test_every_figure_has_a_configuration_and_a_drawing():
@@ -47,7 +52,7 @@ def test_every_figure_has_a_configuration_and_a_drawing():
 @pytest.mark.parametrize("name", FIGURES)
 def test_every_configuration_is_valid_at_every_scale(name, scale):
     parameters = load_figure(CONFIGURATIONS / f"{name}.yaml", scale)
-    assert isinstance(parameters, FIGURES[name].parameters)
+    assert isinstance(parameters, figure(name).parameters)
 
 
 def edited(tmp_path, text):
@@ -103,12 +108,12 @@ def test_a_file_that_lacks_data_is_refused(smooth, tmp_path):
 
 
 def test_a_smooth_loop_follows_the_closed_forms(smooth):
-    assert all(check.passed for check in FIGURES["main-1d"].checks(smooth))
+    assert all(check.passed for check in figure("main-1d").checks(smooth))
 
 
 def test_a_wrong_smooth_loop_fails_its_checks(smooth):
     wrong = replace(smooth, radius=smooth.radius * 1.01, force=smooth.force * 1.01)
-    assert [check.passed for check in FIGURES["main-1d"].checks(wrong)] == [
+    assert [check.passed for check in figure("main-1d").checks(wrong)] == [
         False,
         False,
         False,
@@ -145,7 +150,7 @@ def test_commands_compute_draw_and_check_a_figure(tmp_path):
 
 @pytest.mark.parametrize("path", sorted(REFERENCES.glob("*.nc")), ids=lambda path: path.stem)
 def test_the_kept_data_can_be_read_and_say_where_they_come_from(path):
-    scene = FIGURES[path.stem]
+    scene = figure(path.stem)
     checks = scene.checks(read_record(path, scene.record))
     assert any(check.passed for check in checks)
     told = read_attributes(path)
@@ -177,7 +182,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
     tmp_path, monkeypatch
 ):
     (tmp_path / "taken").write_text("a file")
-    monkeypatch.setitem(FIGURES, "main-1d", replace(FIGURES["main-1d"], compute=None))
+    monkeypatch.setitem(FIGURES, "main-1d", replace(figure("main-1d"), compute=None))
     arguments = [CONFIGURATIONS / "main-1d.yaml", "--output", tmp_path / "taken"]
     result = CliRunner().invoke(main, ["figure", *map(str, arguments)])
     assert result.exit_code == 2
@@ -203,13 +208,13 @@ def test_commands_refuse_what_is_no_figure(tmp_path):
 
 
 def test_a_figure_of_the_smooth_loop_has_labelled_axes(smooth):
-    drawn = FIGURE_MAKERS["main-1d"](smooth)
+    drawn = figure("main-1d").draw(smooth)
     assert isinstance(drawn, Figure)
     assert "force" in drawn.axes[0].get_ylabel()
 
 
 def test_a_figure_of_the_smooth_loop_names_its_jumps_and_the_pull_off_force(smooth):
-    axes = FIGURE_MAKERS["main-1d"](smooth).axes[0]
+    axes = figure("main-1d").draw(smooth).axes[0]
     texts = " ".join(text.get_text() for text in axes.texts).replace("\n", " ")
     for name in ("jump into contact", "jump out of contact", "pull-off force"):
         assert name in texts

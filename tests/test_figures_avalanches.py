@@ -9,13 +9,11 @@ from matplotlib.figure import Figure
 from pydantic import ValidationError
 
 from crackfront.studies.paper.avalanches import AvalancheRecord, size_law
-from crackfront.studies.paper.configuration import load_figure
 from crackfront.studies.paper.contact import STRONG
-from crackfront.studies.paper.figures import FIGURES
-from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.figure import figure, load_figure
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "beyond-avalanches.yaml"
-SCENE = FIGURES["beyond-avalanches"]
+SCENE = figure("beyond-avalanches")
 
 
 def parameters(**changes):
@@ -106,6 +104,6 @@ def test_penetrations_in_the_wrong_order_are_refused():
 
 
 def test_its_drawing_has_three_labelled_panels(rng):
-    drawn = FIGURE_MAKERS["beyond-avalanches"](synthetic(rng))
+    drawn = figure("beyond-avalanches").draw(synthetic(rng))
     assert isinstance(drawn, Figure)
     assert all(axes.get_xlabel() and axes.get_ylabel() for axes in drawn.axes)

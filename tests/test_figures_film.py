@@ -11,10 +11,8 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.data.yaml import ConfigurationError
-from crackfront.studies.paper.configuration import load_figure
-from crackfront.studies.paper.figures import FIGURES
+from crackfront.studies.paper.figure import figure, load_figure
 from crackfront.studies.paper.film_scales import FilmScalesParameters, film_scales
-from crackfront.studies.paper.makers import FIGURE_MAKERS
 from crackfront.studies.paper.measured import MeasuredFileError
 from crackfront.studies.paper.profile_densities import conformity_energy, read_profile_density
 from crackfront.studies.paper.synthetic_film import (
@@ -51,7 +49,7 @@ def synthetic():
 
 
 def failed(name, record):
-    return [check.claim for check in FIGURES[name].checks(record) if not check.passed]
+    return [check.claim for check in figure(name).checks(record) if not check.passed]
 
 
 def table(tmp_path, text):
@@ -110,7 +108,7 @@ def test_the_density_of_lines_is_the_same_in_both_directions_on_average():
 def test_data_without_measured_points_come_back_from_their_file(name, request, tmp_path):
     record = request.getfixturevalue({"main-5a": "scales", "si-6": "synthetic"}[name])
     write_record(tmp_path / f"{name}.nc", record, provenance(), title="film")
-    again = read_record(tmp_path / f"{name}.nc", FIGURES[name].record)
+    again = read_record(tmp_path / f"{name}.nc", figure(name).record)
     assert again.measured_profile.size == 0
     assert failed(name, again) == failed(name, record)
 
@@ -118,7 +116,7 @@ def test_data_without_measured_points_come_back_from_their_file(name, request, t
 @pytest.mark.parametrize("name", ["main-5a", "si-6"])
 def test_figures_of_densities_have_units_in_si(name, request):
     record = request.getfixturevalue({"main-5a": "scales", "si-6": "synthetic"}[name])
-    drawn = FIGURE_MAKERS[name](record)
+    drawn = figure(name).draw(record)
     assert all("(m$^" in axes.get_ylabel() for axes in drawn.axes)
     assert "m$^{-1}$" in drawn.axes[-1].get_xlabel()
 
@@ -135,12 +133,12 @@ def test_measured_profiles_are_drawn_and_give_their_own_energy(tmp_path):
     path = measured_film(tmp_path)
     record = film_scales(FilmScalesParameters(**SCALES, measured=str(path)), ignore)
     assert failed("main-5a", record) == []
-    assert len(FIGURES["main-5a"].checks(record)) == 11
+    assert len(figure("main-5a").checks(record)) == 11
     found = conformity_energy(
         record.measured_wavevector, record.measured_profile, record.contact_modulus
     )
     assert found == pytest.approx(11.14e-3, abs=0.05e-3)
-    labels = FIGURE_MAKERS["main-5a"](record).axes[1].get_legend_handles_labels()[1]
+    labels = figure("main-5a").draw(record).axes[1].get_legend_handles_labels()[1]
     assert "measured" in labels
 
 

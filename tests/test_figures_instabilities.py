@@ -8,12 +8,10 @@ import pytest
 from matplotlib.figure import Figure
 from pydantic import ValidationError
 
-from crackfront.studies.paper.configuration import load_figure
-from crackfront.studies.paper.figures import FIGURES
-from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.figure import figure, load_figure
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "main-3ab.yaml"
-SCENE = FIGURES["main-3ab"]
+SCENE = figure("main-3ab")
 COARSE = {
     "short_cutoff": 0.14,
     "load_step": 0.1,
@@ -75,7 +73,7 @@ def test_fronts_of_different_sizes_are_refused():
 
 
 def test_its_drawing_has_patches_and_a_cycle(record):
-    drawn = FIGURE_MAKERS["main-3ab"](record)
+    drawn = figure("main-3ab").draw(record)
     assert isinstance(drawn, Figure)
     patches, cycle = drawn.axes[:2]
     assert len(patches.collections) == 2

@@ -9,8 +9,7 @@ from pydantic import ValidationError
 
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
-from crackfront.studies.paper.figures import FIGURES
-from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.figure import figure
 from crackfront.studies.paper.mapping import Mapping, MappingParameters, mapping
 
 GIVEN = {
@@ -31,7 +30,7 @@ def record():
 
 
 def failed(record):
-    return [check.claim for check in FIGURES["main-4"].checks(record) if not check.passed]
+    return [check.claim for check in figure("main-4").checks(record) if not check.passed]
 
 
 def test_a_mapped_surface_keeps_parseval_its_mean_and_its_peaks(record):
@@ -70,7 +69,7 @@ def test_data_of_a_mapping_come_back_from_their_file(record, tmp_path):
 
 
 def test_a_figure_of_a_mapping_shows_two_maps_and_two_profiles(record):
-    drawn = FIGURE_MAKERS["main-4"](record)
+    drawn = figure("main-4").draw(record)
     maps = [axes for axes in drawn.axes if axes.images]
     assert len(maps) == 2
     assert len(drawn.axes) == 6

@@ -10,8 +10,7 @@ from crackfront.cli import main
 from crackfront.data.provenance import provenance
 from crackfront.data.records import write_record
 from crackfront.plots.animation import save_animation
-from crackfront.studies.paper.figures import FIGURES
-from crackfront.studies.paper.makers import ANIMATION_MAKERS
+from crackfront.studies.paper.figure import FIGURES, figure
 from crackfront.studies.paper.motion import MotionParameters
 
 
@@ -21,7 +20,7 @@ def ignore(line):
 
 def failing(record):
     """Claims that fail."""
-    return [check.claim for check in FIGURES["beyond-animation"].checks(record) if not check.passed]
+    return [check.claim for check in figure("beyond-animation").checks(record) if not check.passed]
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +34,7 @@ def shown():
         max_penetration=0.6,
         step=0.2,
     )
-    return FIGURES["beyond-animation"].compute(parameters, ignore)
+    return figure("beyond-animation").compute(parameters, ignore)
 
 
 def test_the_animation_shows_a_cycle_whose_energies_close(shown):
@@ -45,7 +44,7 @@ def test_the_animation_shows_a_cycle_whose_energies_close(shown):
 
 
 def test_an_animation_has_a_frame_for_every_state(shown, tmp_path):
-    path = save_animation(ANIMATION_MAKERS["beyond-animation"](shown), tmp_path / "cycle")
+    path = save_animation(figure("beyond-animation").animate(shown), tmp_path / "cycle")
     with Image.open(path) as image:
         assert image.n_frames >= shown.direction.size
     assert path.stat().st_size < 3_000_000

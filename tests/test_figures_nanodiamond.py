@@ -10,9 +10,7 @@ from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.data.yaml import ConfigurationError
 from crackfront.studies.paper.advances import AdvanceWatch, advances
-from crackfront.studies.paper.configuration import figure_files, load_figure
-from crackfront.studies.paper.figures import FIGURES
-from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.figure import figure, figure_files, load_figure
 from crackfront.studies.paper.nanodiamond_parameters import NanodiamondParameters
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "main-5bc.yaml"
@@ -24,7 +22,7 @@ def ignore(line):
 
 def failing(record):
     """Claims that fail."""
-    return [check.claim for check in FIGURES["main-5bc"].checks(record) if not check.passed]
+    return [check.claim for check in figure("main-5bc").checks(record) if not check.passed]
 
 
 def film_parameters(**others):
@@ -51,7 +49,7 @@ def film_parameters(**others):
 
 @pytest.fixture(scope="module")
 def contact():
-    return FIGURES["main-5bc"].compute(film_parameters(), ignore)
+    return figure("main-5bc").compute(film_parameters(), ignore)
 
 
 def test_nanodiamond_has_the_numbers_of_the_paper(contact):
@@ -111,7 +109,7 @@ def test_longer_load_steps_see_wider_advances():
 def test_the_drawing_of_its_file_has_labelled_axes(contact, tmp_path):
     path = tmp_path / "main-5bc.nc"
     write_record(path, contact, provenance(), title="test")
-    drawn = FIGURE_MAKERS["main-5bc"](read_record(path, FIGURES["main-5bc"].record))
+    drawn = figure("main-5bc").draw(read_record(path, figure("main-5bc").record))
     for axes in drawn.axes[:2]:
         assert axes.get_xlabel()
         assert axes.get_ylabel()
@@ -128,13 +126,13 @@ MEASURED = """force (mN),radius (um),branch
 def test_measured_points_are_fitted_checked_and_drawn(tmp_path):
     path = tmp_path / "measured.csv"
     path.write_text(MEASURED)
-    record = FIGURES["main-5bc"].compute(film_parameters(measured=str(path), step=960e-9), ignore)
+    record = figure("main-5bc").compute(film_parameters(measured=str(path), step=960e-9), ignore)
     value, low, high = record.measured_fit
     assert 0.02 < low < value < high
     assert "w_int from the measured approach with k = 3" in [
-        check.claim for check in FIGURES["main-5bc"].checks(record)
+        check.claim for check in figure("main-5bc").checks(record)
     ]
-    labels = [line.get_label() for line in FIGURE_MAKERS["main-5bc"](record).axes[1].get_lines()]
+    labels = [line.get_label() for line in figure("main-5bc").draw(record).axes[1].get_lines()]
     assert {"measured, approach", "measured, retraction"} <= set(labels)
 
 
@@ -175,4 +173,4 @@ def test_a_contact_that_cannot_be_computed_is_refused(others, sentence):
 def test_a_force_below_that_of_jump_in_shows_no_perimeter():
     parameters = film_parameters().model_copy(update={"shown_force": -1.0})
     with pytest.raises(ValueError, match="no state between jump-in and shown_force"):
-        FIGURES["main-5bc"].compute(parameters, ignore)
+        figure("main-5bc").compute(parameters, ignore)

@@ -7,15 +7,14 @@ from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
-from crackfront.studies.paper.figures import FIGURES
-from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.figure import figure
 from crackfront.studies.paper.parametric import (
     ParametricStudy,
     ParametricStudyParameters,
     study_fit,
 )
 
-SCENE = FIGURES["si-5"]
+SCENE = figure("si-5")
 AMPLITUDES = np.array([0.002, 0.01, 0.05, 0.15])
 LENGTHS = np.array([0.01, 0.04])
 
@@ -79,6 +78,6 @@ def test_the_fit_from_the_data_of_the_figure_is_that_of_the_sweep(tmp_path):
 
 
 def test_the_page_shows_the_law_and_k_against_disorder_and_size():
-    figure = FIGURE_MAKERS["si-5"](study(3.0)[0])
+    figure = figure("si-5").draw(study(3.0)[0])
     assert [axes.get_title(loc="left") for axes in figure.axes][:3] == ["a", "b", "c"]
     assert figure.axes[1].get_xscale() == figure.axes[2].get_xscale() == "log"

@@ -9,8 +9,7 @@ from crackfront.core.field.rays import front_adhesion
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.simulate.contact import simulation_field
-from crackfront.studies.paper.figures import FIGURES
-from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.figure import figure
 from crackfront.studies.paper.pinned_loop import PinnedLoopParameters
 from crackfront.studies.paper.rough import patch_of
 
@@ -21,7 +20,7 @@ def ignore(line):
 
 def failing(record):
     """Claims that fail."""
-    return [check.claim for check in FIGURES["main-3cd"].checks(record) if not check.passed]
+    return [check.claim for check in figure("main-3cd").checks(record) if not check.passed]
 
 
 def coarse(**others):
@@ -42,7 +41,7 @@ def coarse(**others):
 
 @pytest.fixture(scope="module")
 def loop():
-    return FIGURES["main-3cd"].compute(coarse(), ignore)
+    return figure("main-3cd").compute(coarse(), ignore)
 
 
 def test_a_coarse_loop_fails_no_check_but_those_of_the_paper(loop):
@@ -78,7 +77,7 @@ def test_a_patch_is_the_field_that_the_front_feels():
 def test_the_drawing_of_its_file_has_labelled_axes(loop, tmp_path):
     path = tmp_path / "main-3cd.nc"
     write_record(path, loop, provenance(), title="test")
-    drawn = FIGURE_MAKERS["main-3cd"](read_record(path, FIGURES["main-3cd"].record))
+    drawn = figure("main-3cd").draw(read_record(path, figure("main-3cd").record))
     for axes in drawn.axes[:2]:
         assert axes.get_xlabel()
         assert axes.get_ylabel()
@@ -98,4 +97,4 @@ def test_a_loop_that_cannot_be_computed_is_refused(others, sentence):
 
 def test_a_cycle_without_steady_branches_is_refused():
     with pytest.raises(ValueError, match="steady states in approach"):
-        FIGURES["main-3cd"].compute(coarse(max_penetration=0.1), ignore)
+        figure("main-3cd").compute(coarse(max_penetration=0.1), ignore)

@@ -8,11 +8,10 @@ from pydantic import ValidationError
 
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
-from crackfront.studies.paper.figures import FIGURES
-from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.figure import figure
+from crackfront.studies.paper.main_1d import INNERMOST
 from crackfront.studies.paper.rings import RingLoops, RingsParameters, ring_loops, ring_penetration
 from crackfront.studies.paper.rings_checks import first_stops
-from crackfront.studies.paper.smooth import INNERMOST
 
 GIVEN = {
     "amplitude": 0.4,
@@ -33,12 +32,12 @@ def loops():
 
 
 def failed(record):
-    return [check.claim for check in FIGURES["main-2"].checks(record) if not check.passed]
+    return [check.claim for check in figure("main-2").checks(record) if not check.passed]
 
 
 def test_fronts_on_rings_rest_at_the_first_stopping_points(loops):
     assert failed(loops) == []
-    first = [c for c in FIGURES["main-2"].checks(loops) if "first points" in c.claim]
+    first = [c for c in figure("main-2").checks(loops) if "first points" in c.claim]
     assert len(first) == 4
 
 
@@ -90,7 +89,7 @@ def test_data_of_rings_come_back_from_their_file(loops, tmp_path):
 
 
 def test_a_figure_of_rings_shows_units_on_every_axis(loops):
-    drawn = FIGURE_MAKERS["main-2"](loops)
+    drawn = figure("main-2").draw(loops)
     assert len(drawn.axes) == 5
     assert all("/" in axes.get_ylabel() for axes in drawn.axes)
 

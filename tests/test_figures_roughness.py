@@ -8,15 +8,13 @@ import pytest
 from matplotlib.figure import Figure
 from pydantic import ValidationError
 
-from crackfront.studies.paper.configuration import load_figure
 from crackfront.studies.paper.contact import STRONG, WEAK
-from crackfront.studies.paper.figures import FIGURES
-from crackfront.studies.paper.makers import FIGURE_MAKERS
+from crackfront.studies.paper.figure import figure, load_figure
 from crackfront.studies.paper.roughness import RoughnessRecord
 from crackfront.studies.paper.roughness_checks import fitted_roughness, stiffness_wavevector
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "beyond-roughness.yaml"
-SCENE = FIGURES["beyond-roughness"]
+SCENE = figure("beyond-roughness")
 
 
 def parameters(**changes):
@@ -112,6 +110,6 @@ def test_parameters_that_cannot_be_fitted_are_refused(changes, sentence):
 
 def test_its_drawing_has_three_labelled_panels(record):
     wide = replace(record, longest=np.full(2, 1.0), shortest=np.full(2, 0.2))
-    drawn = FIGURE_MAKERS["beyond-roughness"](wide)
+    drawn = figure("beyond-roughness").draw(wide)
     assert isinstance(drawn, Figure)
     assert all(axes.get_xlabel() and axes.get_ylabel() for axes in drawn.axes)

@@ -50,17 +50,15 @@ def figure(configuration: Path, scale: str, output: Path) -> None:
     """Compute the data of one figure, named as its file in config/figures."""
     from crackfront.data.provenance import provenance
     from crackfront.data.records import write_record
-    from crackfront.studies.paper.configuration import load_figure
-    from crackfront.studies.paper.figures import FIGURES
-    from crackfront.studies.paper.parametric import ParametricStudyParameters
+    from crackfront.studies.paper import figure as figures
 
     started = time.perf_counter(), time.process_time()
-    parameters = load_figure(configuration, scale)
-    scene = FIGURES[configuration.stem]
+    parameters = figures.load_figure(configuration, scale)
+    scene = figures.figure(configuration.stem)
     path = output / scale / f"{configuration.stem}.nc"
     refuse_unwritable(path.parent)
-    if isinstance(parameters, ParametricStudyParameters):
-        record = scene.compute(parameters, click.echo, fit_of_sweep(Path(parameters.sweep)))
+    if (sweep := getattr(parameters, "sweep", None)) is not None:
+        record = scene.compute(parameters, click.echo, fit_of_sweep(Path(sweep)))
     else:
         announce_compilation()
         record = scene.compute(parameters, click.echo)
@@ -89,14 +87,15 @@ def draw_figure(data: Path) -> None:
     """Draw a figure from its data, beside them, and its animation where it has one."""
     from crackfront.plots.animation import save_animation
     from crackfront.plots.style import save_figure
-    from crackfront.studies.paper.makers import ANIMATION_MAKERS, FIGURE_MAKERS
+    from crackfront.studies.paper.figure import figure
 
     record = _record(data)
-    drawn = FIGURE_MAKERS[data.stem](record)
+    shown = figure(data.stem)
+    drawn = shown.draw(record)
     for path in save_figure(drawn, data.with_suffix("")):
         click.echo(f"figure: {path}")
-    if data.stem in ANIMATION_MAKERS:
-        animation = ANIMATION_MAKERS[data.stem](record)
+    if shown.animate is not None:
+        animation = shown.animate(record)
         click.echo(f"animation: {save_animation(animation, data.with_suffix(''))}")
 
 
@@ -114,16 +113,15 @@ def draw_figure(data: Path) -> None:
 def check_figures(output: Path, as_json: bool) -> None:
     """Compare the data of all figures with what the paper states, in checks.md."""
     from crackfront.data.files import write_text
-    from crackfront.studies.paper.checks import checks_table
-    from crackfront.studies.paper.configuration import SCALES
-    from crackfront.studies.paper.figures import FIGURES
+    from crackfront.studies.paper.figure import FIGURES, SCALES, checks_table, figure
 
     lines, found = ["# Checks of the figures"], []
     for scale in SCALES:
-        for name, scene in FIGURES.items():
+        for name in FIGURES:
             path = output / scale / f"{name}.nc"
             if not path.exists():
                 continue
+            scene = figure(name)
             checks = scene.checks(_record(path))
             found += [{"figure": name, "scale": scale, **asdict(check)} for check in checks]
             lines += ["", f"## {scene.title} ({scale})", "", *checks_table(checks)]
@@ -182,23 +180,22 @@ def gallery(output: Path, page: Path) -> None:
     """
     from crackfront.data.files import read_attributes, write_text
     from crackfront.plots.style import save_picture
-    from crackfront.studies.paper.checks import checks_table
-    from crackfront.studies.paper.figures import FIGURES
-    from crackfront.studies.paper.makers import FIGURE_MAKERS
+    from crackfront.studies.paper.figure import FIGURES, checks_table, figure
 
     parts = []
-    for name, scene in FIGURES.items():
+    for name in FIGURES:
+        scene = figure(name)
         paths = [output / scale / f"{name}.nc" for scale in ("paper", "quick")]
         data = next((path for path in paths if path.exists()), None)
         if data is None:
             continue
         record = _record(data)
-        picture = page.parent / "figures" / f"{name}.{'gif' if scene.animated else 'png'}"
+        picture = page.parent / "figures" / f"{name}.{'gif' if scene.animate else 'png'}"
         picture.parent.mkdir(parents=True, exist_ok=True)
-        if scene.animated:
+        if scene.animate:
             shutil.copyfile(data.with_suffix(".gif"), picture)
         else:
-            save_picture(FIGURE_MAKERS[name](record), picture)
+            save_picture(scene.draw(record), picture)
         told = read_attributes(data)
         parts += [
             f"## {scene.title}",
@@ -220,10 +217,10 @@ def gallery(output: Path, page: Path) -> None:
 def _record(path: Path) -> object:
     """Data of a figure."""
     from crackfront.data.records import read_record
-    from crackfront.studies.paper.figures import FIGURES
+    from crackfront.studies.paper.figure import FIGURES, figure
 
     if path.stem not in FIGURES:
         raise ValueError(
             f"{path} is no data of a figure; their files are named {', '.join(FIGURES)}"
         )
-    return read_record(path, FIGURES[path.stem].record)
+    return read_record(path, figure(path.stem).record)

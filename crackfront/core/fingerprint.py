@@ -10,7 +10,7 @@ import ast
 import functools
 import hashlib
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1]
@@ -22,7 +22,9 @@ NO_PART = ("core/rotated.py", "core/cycle/instabilities.py")
 """Sources there that no simulation uses."""
 
 
-def fingerprint(*places: str, without: Sequence[str] = ()) -> str:
+def fingerprint(
+    *places: str, without: Sequence[str] = (), reached: Mapping[str, Sequence[str]] | None = None
+) -> str:
     """Twelve hexadecimal digits that change with the meaning of sources, or with data.
 
     Parameters
@@ -31,6 +33,8 @@ def fingerprint(*places: str, without: Sequence[str] = ()) -> str:
         Files or folders of the package. What is no Python counts byte by byte.
     without : sequence of str, optional
         Files that do not count.
+    reached : mapping, optional
+        Files of which only some names count, with all that these reach within the file.
 
     Examples
     --------
@@ -39,13 +43,15 @@ def fingerprint(*places: str, without: Sequence[str] = ()) -> str:
     """
     skipped = {PACKAGE / place for place in without}
     paths = {path for place in places for path in _files(PACKAGE / place)} - skipped
+    chosen = {PACKAGE / place: names for place, names in (reached or {}).items()}
+    paths |= set(chosen)
     sources = {path: ast.parse(path.read_bytes()) for path in paths if path.suffix == ".py"}
     shared = _shared_names(list(sources.values()))
     parts = [path.read_bytes() for path in paths - set(sources)]
     for path, tree in sources.items():
         meaning = _Meaning(path.stem, tree, shared)
-        kept = (statement for statement in tree.body if not _is_mute(statement))
-        parts += [meaning.text(statement).encode() for statement in kept]
+        kept = _reached(tree, chosen[path]) if path in chosen else tree.body
+        parts += [meaning.text(one).encode() for one in kept if not _is_mute(one)]
     digest = hashlib.sha256()
     for part in sorted(hashlib.sha256(part).digest() for part in parts):
         digest.update(part)
@@ -61,6 +67,19 @@ def solver_fingerprint() -> str:
 def _files(place: Path) -> Iterator[Path]:
     """A file, or all sources of a folder."""
     return place.rglob("*.py") if place.is_dir() else iter((place,))
+
+
+def _reached(tree: ast.Module, names: Sequence[str]) -> list[ast.stmt]:
+    """Statements of a module that some of its names reach."""
+    known = {name: one for one in tree.body for name in _defined(one)}
+    found: dict[str, ast.stmt] = {}
+    coming = list(names)
+    while coming:
+        if (name := coming.pop()) in known and name not in found:
+            found[name] = known[name]
+            nodes = ast.walk(known[name])
+            coming += [node.id for node in nodes if isinstance(node, ast.Name)]
+    return [one for one in tree.body if any(one is statement for statement in found.values())]
 
 
 def _shared_names(trees: Sequence[ast.Module]) -> set[str]:

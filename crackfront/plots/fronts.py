@@ -9,7 +9,7 @@ from matplotlib.colors import BoundaryNorm
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from crackfront.plots.parts import ADHESION_LABEL, FIELD_COLOURS, HEIGHT_LABEL, LATERAL_UNIT
+from crackfront.plots.parts import ADHESION_LABEL, HEIGHT_LABEL, LATERAL_UNIT, field_colours
 from crackfront.plots.style import BLUE, VERMILION
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ def draw_field(
         Middle of the shades, and how far they go to either side. (Units: w_int)
     """
     levels = MaxNLocator(_MOST_GREYS).tick_values(mean - reach, mean + reach)
-    shades = ScalarMappable(BoundaryNorm(levels, FIELD_COLOURS.N), FIELD_COLOURS)
+    shades = ScalarMappable(BoundaryNorm(levels, field_colours().N), field_colours())
     # Coloured once, not once a frame.
     axes.imshow(
         shades.to_rgba(adhesion.T, bytes=True),

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap
-from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import Estimate
@@ -17,6 +13,11 @@ from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.table import SweepTable
 from crackfront.plots.style import BLACK, COLOURS, MARKERS
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.colors import Colormap
 
 Array = NDArray[np.float64]
 
@@ -28,8 +29,12 @@ ADHESION_LABEL = r"work of adhesion / $w_\mathrm{int}$"
 LENGTH_LABEL = r"{} / $(3\pi w_\mathrm{{int}}R^2/4E')^{{1/3}}$"
 HEIGHT_LABEL = r"{} / $(9\pi^2 w_\mathrm{{int}}^2 R/16E'^2)^{{1/3}}$"
 
-FIELD_COLOURS = LinearSegmentedColormap.from_list("field", ["white", "0.45"])
-"""From weak to strong adhesion, light enough for black, blue and vermilion lines."""
+
+def field_colours() -> Colormap:
+    """From weak to strong adhesion, light enough for black, blue and vermilion lines."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list("field", ["white", "0.45"])
 
 
 def draw_arrow(axes: Axes, abscissa: Array, ordinate: Array, colour: str) -> None:
@@ -136,6 +141,8 @@ def draw_theory(axes: Axes, ends: Array, curve: Callable[[float, Array], Array])
 
 def legend_entries(axes: Axes) -> tuple[list[Artist], list[str]]:
     """Handles and labels, the spectra before the lines."""
+    from matplotlib.lines import Line2D
+
     handles, labels = axes.get_legend_handles_labels()
     order = sorted(range(len(labels)), key=lambda entry: isinstance(handles[entry], Line2D))
     return [handles[entry] for entry in order], [labels[entry] for entry in order]
@@ -143,6 +150,8 @@ def legend_entries(axes: Axes) -> tuple[list[Artist], list[str]]:
 
 def label_decimals(axes: Axes) -> None:
     """Label 1, 2 and 5 of every decade of the abscissa as decimal numbers."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())

@@ -1,4 +1,7 @@
-"""The look of every figure: sizes, colours, fonts, and how a figure is written."""
+"""The look of every figure: sizes, colours, fonts, and how a figure is written.
+
+matplotlib is imported by the functions that draw, so that who only computes does without it.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,11 @@ import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import matplotlib
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 COLUMN, PAGE = 85 / 25.4, 170 / 25.4
 """Widths in print of one column and of a page (Units: inch)."""
@@ -70,6 +72,8 @@ STYLE: dict[Any, Any] = {
 @contextmanager
 def house_style() -> Iterator[None]:
     """Style of all figures, whatever the user's own settings; left as it was found."""
+    import matplotlib
+
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
@@ -78,6 +82,9 @@ def house_style() -> Iterator[None]:
 
 def blank_figure(width: float, height: float) -> Figure:
     """Empty figure on a canvas of its own; width and height in inches."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     return figure

@@ -3,7 +3,7 @@
 PAPER = f"results/figures/{SCALE}"
 
 
-ANIMATED = [name for name, scene in FIGURES.items() if scene.animated]
+ANIMATED = [name for name in FIGURES if figure(name).animate]
 
 
 wildcard_constraints:
@@ -37,7 +37,7 @@ rule figure_data:
     output:
         f"{PAPER}/{{figure}}.nc",
     params:
-        sources=figure_fingerprint(),
+        sources=lambda wildcards: figure_fingerprint(wildcards.figure),
     shell:
         "crackfront figure {input.configuration:q} --scale {SCALE} --output results/figures"
 
@@ -49,7 +49,7 @@ rule figure_of_sweep:
     output:
         f"{PAPER}/si-5.nc",
     params:
-        sources=figure_fingerprint(),
+        sources=figure_fingerprint("si-5"),
     shell:
         "crackfront figure {input[0]:q} --scale {SCALE} --output results/figures"
 

@@ -16,7 +16,6 @@ from crackfront.core.cycle.instabilities import resolved_motion, swept_clusters
 from crackfront.core.records import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.section import Count, Energy, Positive, Section
-from crackfront.studies.paper.checks import Check
 from crackfront.studies.paper.contact import (
     STRONG,
     WEAK,
@@ -24,7 +23,7 @@ from crackfront.studies.paper.contact import (
     refuse_rising,
     rough_contact,
 )
-from crackfront.studies.paper.scene import Progress
+from crackfront.studies.paper.figure import Check, Progress
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crackfront.plots.loop import draw_loop
-from crackfront.plots.parts import ADHESION_LABEL, FIELD_COLOURS, LATERAL_UNIT
+from crackfront.plots.parts import ADHESION_LABEL, LATERAL_UNIT, field_colours
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.studies.paper.pinned_loop import PinnedLoop
 
@@ -38,7 +38,7 @@ def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
         loop.patch.T,
         origin="lower",
         extent=(loop.x[0], loop.x[-1], loop.y[0], loop.y[-1]),
-        cmap=FIELD_COLOURS,
+        cmap=field_colours(),
         vmin=mean - reach,
         vmax=mean + reach,
         interpolation="antialiased",

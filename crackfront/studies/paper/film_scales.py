@@ -11,9 +11,8 @@ from pydantic import model_validator
 
 from crackfront.core.records import variable
 from crackfront.data.section import Positive, refusal
-from crackfront.studies.paper.checks import Check, close_to
+from crackfront.studies.paper.figure import Check, Progress, close_to
 from crackfront.studies.paper.profile_densities import FilmParameters, conformity_energy
-from crackfront.studies.paper.scene import Progress
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from crackfront.core.outcome import Direction
 from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Energy, Positive, Section, refusal
 from crackfront.studies.paper.contact import STRONG, WEAK, RoughContact, rough_contact
-from crackfront.studies.paper.scene import Progress
+from crackfront.studies.paper.figure import Progress
 
 Array = NDArray[np.float64]
 

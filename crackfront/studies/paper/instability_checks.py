@@ -8,8 +8,8 @@ import numpy as np
 
 from crackfront.core.adhesion import correlation_length
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.studies.paper.checks import Check, close_to
 from crackfront.studies.paper.contact import STRONG, WEAK
+from crackfront.studies.paper.figure import Check, close_to
 from crackfront.studies.paper.instabilities import InstabilityRecord
 
 

@@ -19,8 +19,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field, tile_mean_square
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Count, Energy, Positive, Section, refusal
-from crackfront.studies.paper.checks import Check, close_to
-from crackfront.studies.paper.scene import Progress
+from crackfront.studies.paper.figure import Check, Progress, close_to
 
 Array = NDArray[np.float64]
 

@@ -14,9 +14,8 @@ from crackfront.core.outcome import Status
 from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.run import compile_solver
-from crackfront.studies.paper.checks import Check, close_to
+from crackfront.studies.paper.figure import Check, Progress, close_to
 from crackfront.studies.paper.rough import RoughCycleParameters, patch_of
-from crackfront.studies.paper.scene import Progress
 
 Array = NDArray[np.float64]
 

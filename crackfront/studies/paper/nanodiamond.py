@@ -20,10 +20,10 @@ from crackfront.core.units import Scales
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import Simulation
 from crackfront.studies.paper.advances import AdvanceWatch
+from crackfront.studies.paper.figure import Progress
 from crackfront.studies.paper.force_radius import ForceRadius, fitted_adhesion
 from crackfront.studies.paper.nanodiamond_parameters import NanodiamondParameters
 from crackfront.studies.paper.rough import recorded
-from crackfront.studies.paper.scene import Progress
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.core.outcome import Status
-from crackfront.studies.paper.checks import Check, close_to
+from crackfront.studies.paper.figure import Check, close_to
 from crackfront.studies.paper.nanodiamond import NanodiamondContact
 from crackfront.studies.paper.rough import ONE_DIGIT
 

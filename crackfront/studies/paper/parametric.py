@@ -15,8 +15,7 @@ from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
 from crackfront.core.records import ADHESION, LATERAL, variable
 from crackfront.data.section import Section
-from crackfront.studies.paper.checks import Check
-from crackfront.studies.paper.scene import Progress
+from crackfront.studies.paper.figure import Check, Progress
 
 Array = NDArray[np.float64]
 

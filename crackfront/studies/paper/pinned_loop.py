@@ -23,7 +23,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Positive
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import stated_error
-from crackfront.studies.paper.checks import Check, close_to
+from crackfront.studies.paper.figure import Check, Progress, close_to
 from crackfront.studies.paper.rough import (
     ONE_DIGIT,
     RoughCycleParameters,
@@ -31,7 +31,6 @@ from crackfront.studies.paper.rough import (
     recorded,
     rough_spectrum,
 )
-from crackfront.studies.paper.scene import Progress
 
 Array = NDArray[np.float64]
 

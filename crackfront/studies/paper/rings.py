@@ -20,8 +20,8 @@ from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Count, Positive, Section, refusal
-from crackfront.studies.paper.scene import Progress
-from crackfront.studies.paper.smooth import INNERMOST, TOLERANCE
+from crackfront.studies.paper.figure import Progress
+from crackfront.studies.paper.main_1d import INNERMOST, TOLERANCE
 
 Array = NDArray[np.float64]
 

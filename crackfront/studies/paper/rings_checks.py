@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from crackfront.core import jkr
-from crackfront.studies.paper.checks import Check, close_to
+from crackfront.studies.paper.figure import Check, close_to
+from crackfront.studies.paper.main_1d import INNERMOST
 from crackfront.studies.paper.rings import RingLoops, ring_adhesion, ring_penetration
-from crackfront.studies.paper.smooth import INNERMOST
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from crackfront.studies.paper.contact import (
     refuse_rising,
     rough_contact,
 )
-from crackfront.studies.paper.scene import Progress
+from crackfront.studies.paper.figure import Progress
 
 Array = NDArray[np.float64]
 

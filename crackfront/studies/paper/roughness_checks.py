@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
-from crackfront.studies.paper.checks import Check
 from crackfront.studies.paper.contact import STRONG, WEAK
+from crackfront.studies.paper.figure import Check
 from crackfront.studies.paper.roughness import RoughnessRecord
 
 Array = NDArray[np.float64]

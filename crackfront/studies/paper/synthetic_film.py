@@ -15,9 +15,8 @@ from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.records import variable
 from crackfront.core.synthesis import gaussian_field, tile_mean_square
 from crackfront.data.section import Count, Positive, refusal
-from crackfront.studies.paper.checks import Check, close_to
+from crackfront.studies.paper.figure import Check, Progress, close_to
 from crackfront.studies.paper.profile_densities import FilmParameters
-from crackfront.studies.paper.scene import Progress
 
 Array = NDArray[np.float64]
 

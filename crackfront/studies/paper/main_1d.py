@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +19,13 @@ from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Positive, Section, refusal
-from crackfront.studies.paper.checks import Check, close_to
-from crackfront.studies.paper.scene import Progress
+from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL, draw_arrow
+from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
+from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
 
 Array = NDArray[np.float64]
 
@@ -71,15 +77,7 @@ class SmoothLoop:
 
 
 def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothLoop:
-    """Approach with one work of adhesion and retraction with another.
-
-    Parameters
-    ----------
-    parameters : SmoothLoopParameters
-        What to compute.
-    progress : callable
-        Called with a line for every branch.
-    """
+    """Approach with one work of adhesion and retraction with another."""
     schedule = LoadSchedule(parameters.max_penetration, parameters.step)
     front = np.array([INNERMOST])
     states: list[tuple[int, float, float]] = []
@@ -107,13 +105,7 @@ def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothL
 
 
 def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
-    """The closed forms of JKR, which both branches must follow.
-
-    Parameters
-    ----------
-    loop : SmoothLoop
-        Data of the figure.
-    """
+    """The closed forms of JKR, which both branches must follow."""
     retracting = loop.direction < 0
     largest = loop.radius[~retracting].max()
     smooth = [jkr.equilibrium_radius(b, loop.approach) for b in loop.penetration[~retracting]]
@@ -158,3 +150,89 @@ def _constant(adhesion: float, parameters: SmoothLoopParameters) -> RayField:
     largest = jkr.equilibrium_radius(parameters.max_penetration, parameters.retraction)
     ring = np.full(2, adhesion * WORK_OF_ADHESION)
     return polar_field(np.array([INNERMOST, 1.1 * largest]), ring)
+
+
+_LEFT = -0.1
+"""Where the abscissa begins (Units: reduced lateral length)."""
+
+
+def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
+    """Both branches, with arrows in the direction of motion."""
+    with house_style():
+        figure = blank_figure(COLUMN, 0.8 * COLUMN)
+        axes = figure.add_subplot()
+        for direction, colour, name, short, adhesion in (
+            (1, BLUE, "approach", "appr", loop.approach),
+            (-1, VERMILION, "retraction", "retr", loop.retraction),
+        ):
+            branch = loop.direction == direction
+            radius, force = loop.radius[branch], loop.force[branch]
+            label = rf"{name}, $w_\mathrm{{{short}}} = {adhesion:g}\,w_\mathrm{{int}}$"
+            axes.plot(radius, force, color=colour, label=label)
+            middle = radius.size // 2
+            draw_arrow(
+                axes, radius[middle - 1 : middle + 1], force[middle - 1 : middle + 1], colour
+            )
+            end = 0 if direction > 0 else -1
+            _draw_jump(axes, direction, float(radius[end]), float(force[end]), colour)
+        axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
+        _draw_pull_off(axes, loop)
+        axes.set_xlim(left=_LEFT)
+        axes.set_ylim(bottom=1.12 * float(np.min(loop.force)))
+        axes.set_xlabel(RADIUS_LABEL)
+        axes.set_ylabel(FORCE_LABEL)
+        axes.legend(loc="upper left")
+        return figure
+
+
+def _draw_jump(axes: Axes, direction: int, radius: float, force: float, colour: str) -> None:
+    """Thin dashed arrow between no contact and the first or last state."""
+    ends = ((0.0, 0.0), (radius, force))
+    start, end = ends[::direction]
+    axes.annotate(
+        "",
+        xy=end,
+        xytext=start,
+        arrowprops={
+            "arrowstyle": "-|>",
+            "color": colour,
+            "linewidth": 0.7,
+            "linestyle": (0, (4, 2)),
+            "mutation_scale": 6,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
+    )
+    axes.annotate(
+        "jump into contact" if direction > 0 else "jump out\nof contact",
+        (radius / 2, force / 2),
+        xytext=(4 * direction, 4 * direction),
+        textcoords="offset points",
+        ha="left" if direction > 0 else "right",
+        va="bottom" if direction > 0 else "top",
+        color=colour,
+    )
+
+
+def _draw_pull_off(axes: Axes, loop: SmoothLoop) -> None:
+    """Lowest force of all states, the pull-off force where the force is controlled."""
+    lowest = int(np.argmin(loop.force))
+    radius, force = loop.radius[lowest], loop.force[lowest]
+    axes.plot([_LEFT, radius], [force, force], color="0.3", linewidth=0.6, dashes=(1.5, 1.5))
+    axes.plot(radius, force, "o", color=VERMILION, markersize=3.6, zorder=5)
+    axes.annotate(
+        r"pull-off force, $-\frac{3}{2}\,\pi w_\mathrm{retr}R$",
+        (0.0, force),
+        xytext=(0, 2),
+        textcoords="offset points",
+    )
+
+
+FIGURE = Figure(
+    title="Main Fig. 1d: a smooth sphere with two works of adhesion",
+    parameters=SmoothLoopParameters,
+    record=SmoothLoop,
+    compute=smooth_loop,
+    checks=smooth_loop_checks,
+    draw=smooth_loop_figure,
+)
