@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from crackfront.core.spectrum import SelfAffineSpectrum as SelfAffineSpectrum
     from crackfront.core.units import Scales as Scales
-    from crackfront.data.version import __version__ as __version__
+    from crackfront.data.provenance import __version__ as __version__
     from crackfront.plots.library import plot_fronts as plot_fronts
     from crackfront.plots.library import plot_instabilities as plot_instabilities
     from crackfront.plots.library import plot_loop as plot_loop
@@ -25,32 +25,31 @@ if TYPE_CHECKING:
     from crackfront.simulate.surfaces import random_surface as random_surface
 
 _HOMES = {
-    "core.spectrum": ("SelfAffineSpectrum",),
-    "core.units": ("Scales",),
-    "data.version": ("__version__",),
-    "plots.library": (
-        "plot_fronts",
-        "plot_instabilities",
-        "plot_loop",
-        "plot_spectrum",
-        "plot_surface",
-    ),
-    "simulate.loops": ("find_instabilities", "run_loop"),
-    "simulate.si_units": ("in_reduced_units", "in_si_units"),
-    "simulate.surfaces": ("random_surface",),
+    "SelfAffineSpectrum": "core.spectrum",
+    "Scales": "core.units",
+    "__version__": "data.provenance",
+    "plot_fronts": "plots.library",
+    "plot_instabilities": "plots.library",
+    "plot_loop": "plots.library",
+    "plot_spectrum": "plots.library",
+    "plot_surface": "plots.library",
+    "find_instabilities": "simulate.loops",
+    "run_loop": "simulate.loops",
+    "in_reduced_units": "simulate.si_units",
+    "in_si_units": "simulate.si_units",
+    "random_surface": "simulate.surfaces",
 }
 """Where the parts of the library stand."""
 
-__all__ = sorted(name for names in _HOMES.values() for name in names)
+__all__ = sorted(_HOMES)
 
 if not TYPE_CHECKING:
     # Every rank and every `--help` imports the package; xarray alone costs a second.
     def __getattr__(name: str) -> object:
         """A part of the library, imported when it is first used."""
-        for home, names in _HOMES.items():
-            if name in names:
-                return getattr(importlib.import_module(f"crackfront.{home}"), name)
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        if name not in _HOMES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return getattr(importlib.import_module(f"crackfront.{_HOMES[name]}"), name)
 
 
 def __dir__() -> list[str]:

@@ -16,7 +16,7 @@ from click.testing import CliRunner
 import crackfront as cf
 from crackfront import __version__
 from crackfront.cli import main
-from crackfront.cli.report import TRY_AGAIN
+from crackfront.cli.sweep import TRY_AGAIN
 from crackfront.core import jkr
 from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION

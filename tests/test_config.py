@@ -9,7 +9,7 @@ import yaml
 
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.units import Scales
-from crackfront.data.yaml import ConfigurationError
+from crackfront.data.section import ConfigurationError
 from crackfront.simulate.laws import Knobs
 from crackfront.sweep.configuration import load_configuration
 from crackfront.topography.measures import measured_surface

@@ -15,15 +15,12 @@ from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import run_simulation
-from crackfront.sweep import ledger, tasks
+from crackfront.sweep import journal, tasks
 from crackfront.sweep import table as tables
-from crackfront.sweep.archive import write_archive
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.inventory import holdings
 from crackfront.sweep.journal import Entry, Journal
 from crackfront.sweep.store import Store
 from crackfront.sweep.table import read_table
-from crackfront.sweep.tasks import NOT_STORED
 
 SWEEP = load_configuration(Path(__file__).parents[1] / "config/test.yaml")
 FLAT = SWEEP.shard(SWEEP.spectra[0])
@@ -37,7 +34,7 @@ def store(tmp_path):
 
 def fill(store, simulations):
     """Fill a store and return how the simulations ended."""
-    return list(store.fill(simulations, provenance("text")))
+    return list(tasks.fill(store, simulations, provenance("text")))
 
 
 def states(store):
@@ -66,7 +63,7 @@ def test_the_longest_simulations_start_first(store):
 
 
 def test_a_simulation_is_stored_before_the_next_one_starts(store):
-    filling = store.fill(FLAT, provenance())
+    filling = tasks.fill(store, FLAT, provenance())
     first, _ = next(filling)
     assert store.path(first).exists()
     assert len(states(store)) == 1
@@ -143,7 +140,7 @@ def test_spectra_of_one_shape_and_two_names_have_rows_of_their_own(store, monkey
     assert twins[0].key == twins[1].key
     monkeypatch.setattr(tasks, "run_simulation", refuse)
     fill(store, twins)
-    rows = [held.row for held in holdings(store.folder, twins)]
+    rows = [held.row for held in store.holdings(twins)]
     assert [row.status for row in rows] == ["refused", "refused"]
 
 
@@ -177,7 +174,7 @@ def test_a_simulation_that_cannot_be_done_is_a_row_and_is_not_tried_again(store)
     assert store.path(FLAT[0]).exists()
     assert not any(store.path(one).exists() for one in refused)
     assert store.inventory([*energies, FLAT[0]]).missing == ()
-    rows = [held.row for held in holdings(store.folder, refused)]
+    rows = [held.row for held in store.holdings(refused)]
     assert {row.status for row in rows} == {"refused"}
     for row in rows:
         assert "full conformity needs less than w_int" in row.status_sentence
@@ -191,7 +188,7 @@ def test_a_disk_that_is_full_ends_the_run_at_once_with_a_sentence(store, monkeyp
     with monkeypatch.context() as patched:
         patched.setattr(tasks, "write_simulation", fail)
         [(_, finished)] = fill(store, FLAT)
-    assert finished.status == NOT_STORED
+    assert finished.status == tasks.NOT_STORED
     assert "No space left on device" in finished.sentence
     assert store.inventory(FLAT).missing == FLAT
 
@@ -243,7 +240,7 @@ def test_a_sweep_is_aggregated_the_same_whatever_is_held_at_once(store, monkeypa
         path.unlink()
     fill(store, simulations[3:])
     whole = read_dataset(store.aggregate(SWEEP, provenance("text"))[0])
-    monkeypatch.setattr(ledger, "ROWS_AT_ONCE", 3)
+    monkeypatch.setattr(journal, "ROWS_AT_ONCE", 3)
     monkeypatch.setattr(tables, "ROWS_AT_ONCE", 1)
     parts = read_dataset(store.aggregate(SWEEP, provenance("text"))[0])
     assert parts.drop_attrs().identical(whole.drop_attrs())
@@ -258,7 +255,7 @@ def test_an_archive_holds_what_was_archived_under_checksums_that_fit(store, tmp_
     (store.folder / "elsewhere").symlink_to(__file__)
     os.utime(store.folder / "hysteresis.nc", (0, 0))  # written under a clock at 1970
     path = tmp_path / "sweep.zip"
-    n_file = write_archive(store.folder, path, curves=curves)
+    n_file = store.archive(path, curves=curves)
     with zipfile.ZipFile(path) as archive:
         assert len(archive.namelist()) == n_file + 1
         archive.extractall(tmp_path / "unpacked")
@@ -280,7 +277,7 @@ def test_an_archive_holds_what_was_archived_under_checksums_that_fit(store, tmp_
 def test_a_sweep_that_was_not_run_is_not_archived(store, tmp_path):
     fill(store, FLAT[:1])
     with pytest.raises(ValueError, match=r"holds no hysteresis.nc; run the sweep before it is ar"):
-        write_archive(store.folder, tmp_path / "sweep.zip", curves=True)
+        store.archive(tmp_path / "sweep.zip", curves=True)
 
 
 def test_what_a_killed_process_left_half_written_is_removed_by_the_next_run(store):
@@ -313,6 +310,6 @@ def test_memory_that_does_not_suffice_ends_the_run_and_leaves_no_row(store, monk
 
     monkeypatch.setattr(tasks, "run_simulation", devour)
     [(_, finished)] = fill(store, FLAT)
-    assert finished.status == NOT_STORED
+    assert finished.status == tasks.NOT_STORED
     assert "start fewer ranks" in finished.sentence
     assert store.inventory(FLAT).missing == FLAT

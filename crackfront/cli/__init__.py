@@ -1,20 +1,20 @@
-"""The command `crackfront`: one cycle on any field, and the steps of a sweep."""
+"""The command `crackfront`: its sections, and how it refuses input."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import click
+from click.shell_completion import get_completion_class
 
-from crackfront import __version__
 from crackfront.cli.accuracy import accuracy, accuracy_report
-from crackfront.cli.completion import completion
 from crackfront.cli.cycle import cycle
 from crackfront.cli.figure import check_figures, compare_figures, draw_figure, figure, gallery
-from crackfront.cli.outlook import plan, status
 from crackfront.cli.predict import predict
+from crackfront.cli.report import examples
+from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import surface
-from crackfront.cli.sweep import aggregate, archive, figures, fit, simulate, summary
+from crackfront.cli.sweep import plan, simulate, status
 from crackfront.cli.validate import validate
 
 
@@ -54,19 +54,27 @@ def _file_sentence(error: OSError) -> str:
     return f"{error.filename} cannot be used: {error.strerror}; check the path and its permissions"
 
 
+@click.command(
+    epilog=examples(
+        'eval "$(crackfront completion bash)"          # in ~/.bashrc',
+        'eval "$(crackfront completion zsh)"           # in ~/.zshrc',
+        "crackfront completion fish > ~/.config/fish/completions/crackfront.fish",
+    )
+)
+@click.argument("shell", type=click.Choice(("bash", "zsh", "fish")))
+@click.pass_context
+def completion(context: click.Context, shell: str) -> None:
+    """Print the script by which a shell completes commands and options."""
+    kind = get_completion_class(shell)
+    assert kind is not None, "click knows these shells"
+    root = context.find_root().command
+    click.echo(kind(root, {}, "crackfront", "_CRACKFRONT_COMPLETE").source())
+
+
 SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Measured surfaces": (predict, surface),
     "One contact": (cycle,),
-    "Sweeps, in this order": (
-        plan,
-        simulate,
-        status,
-        aggregate,
-        fit,
-        figures,
-        summary,
-        archive,
-    ),
+    "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
     "Figures of the paper": (figure, draw_figure, check_figures, compare_figures, gallery),
     "Numerical errors, validation": (accuracy, accuracy_report, validate),
     "The shell": (completion,),
@@ -90,10 +98,26 @@ Examples:
 """
 
 
+def _tell_version(context: click.Context, parameter: click.Parameter, asked: bool) -> None:
+    """Print the version, which is imported here so that --help does not wait for it, and end."""
+    if asked and not context.resilient_parsing:
+        from crackfront import __version__
+
+        click.echo(f"{context.find_root().info_name}, version {__version__}")
+        context.exit()
+
+
 @click.group(
     cls=_Commands, epilog=_EPILOG, context_settings={"help_option_names": ["-h", "--help"]}
 )
-@click.version_option(__version__)
+@click.option(
+    "--version",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_tell_version,
+    help="Show the version and exit.",
+)
 def main() -> None:
     """Adhesion hysteresis of rough spheres by crack-front pinning."""
 

@@ -7,6 +7,7 @@ import shutil
 import time
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -18,9 +19,18 @@ from crackfront.cli.report import (
     examples,
     refuse_unwritable,
 )
-from crackfront.cli.sweep import fit_of_sweep
+from crackfront.cli.results import fit_of_sweep
 
-_FOLDER = Path("results/figures")
+if TYPE_CHECKING:
+    from crackfront.studies.paper.figure import Figure
+
+_output = click.option(
+    "--output",
+    type=FILE,
+    default=Path("results/figures"),
+    show_default=True,
+    help="Folder of all figures.",
+)
 
 _GALLERY = (
     "# Gallery",
@@ -30,11 +40,7 @@ _GALLERY = (
 )
 
 
-@click.command(
-    epilog=examples(
-        "crackfront figure config/figures/main-3ab.yaml --scale paper",
-    )
-)
+@click.command(epilog=examples("crackfront figure config/figures/main-3ab.yaml --scale paper"))
 @click.argument("configuration", type=FILE)
 @click.option(
     "--scale",
@@ -43,56 +49,42 @@ _GALLERY = (
     show_default=True,
     help="Coarser lengths, minutes on two cores; or those of the paper.",
 )
-@click.option(
-    "--output", type=FILE, default=_FOLDER, show_default=True, help="Folder of all figures."
-)
+@_output
 def figure(configuration: Path, scale: str, output: Path) -> None:
     """Compute the data of one figure, named as its file in config/figures."""
     from crackfront.data.provenance import provenance
     from crackfront.data.records import write_record
-    from crackfront.studies.paper import figure as figures
+    from crackfront.studies.paper.figure import figure, load_figure
 
     started = time.perf_counter(), time.process_time()
-    parameters = figures.load_figure(configuration, scale)
-    scene = figures.figure(configuration.stem)
+    parameters = load_figure(configuration, scale)
+    shown = figure(configuration.stem)
     path = output / scale / f"{configuration.stem}.nc"
     refuse_unwritable(path.parent)
     if (sweep := getattr(parameters, "sweep", None)) is not None:
-        record = scene.compute(parameters, click.echo, fit_of_sweep(Path(sweep)))
+        record = shown.compute(parameters, click.echo, fit_of_sweep(Path(sweep)))
     else:
         announce_compilation()
-        record = scene.compute(parameters, click.echo)
+        record = shown.compute(parameters, click.echo)
     origin = provenance(configuration.read_text(encoding="utf-8"))
-    spent = time.perf_counter() - started[0], time.process_time() - started[1]
-    write_record(
-        path,
-        record,
-        origin,
-        title=scene.title,
-        scale=scale,
-        seconds=spent[0],
-        cpu_seconds=spent[1],
-    )
+    seconds, cpu_seconds = time.perf_counter() - started[0], time.process_time() - started[1]
+    costs = {"seconds": seconds, "cpu_seconds": cpu_seconds}
+    write_record(path, record, origin, title=shown.title, scale=scale, **costs)
     click.echo(f"data: {path}")
 
 
 @click.command(
     "draw-figure",
-    epilog=examples(
-        "crackfront draw-figure results/figures/quick/main-3ab.nc",
-    ),
+    epilog=examples("crackfront draw-figure results/figures/quick/main-3ab.nc"),
 )
 @click.argument("data", type=FILE)
 def draw_figure(data: Path) -> None:
     """Draw a figure from its data, beside them, and its animation where it has one."""
     from crackfront.plots.animation import save_animation
     from crackfront.plots.style import save_figure
-    from crackfront.studies.paper.figure import figure
 
-    record = _record(data)
-    shown = figure(data.stem)
-    drawn = shown.draw(record)
-    for path in save_figure(drawn, data.with_suffix("")):
+    shown, record = _figure_and_record(data)
+    for path in save_figure(shown.draw(record), data.with_suffix("")):
         click.echo(f"figure: {path}")
     if shown.animate is not None:
         animation = shown.animate(record)
@@ -106,25 +98,22 @@ def draw_figure(data: Path) -> None:
         "crackfront check-figures --json",
     ),
 )
-@click.option(
-    "--output", type=FILE, default=_FOLDER, show_default=True, help="Folder of all figures."
-)
+@_output
 @as_json
 def check_figures(output: Path, as_json: bool) -> None:
     """Compare the data of all figures with what the paper states, in checks.md."""
     from crackfront.data.files import write_text
-    from crackfront.studies.paper.figure import FIGURES, SCALES, checks_table, figure
+    from crackfront.studies.paper.figure import FIGURES, SCALES, checks_table
 
     lines, found = ["# Checks of the figures"], []
-    for scale in SCALES:
-        for name in FIGURES:
-            path = output / scale / f"{name}.nc"
-            if not path.exists():
-                continue
-            scene = figure(name)
-            checks = scene.checks(_record(path))
-            found += [{"figure": name, "scale": scale, **asdict(check)} for check in checks]
-            lines += ["", f"## {scene.title} ({scale})", "", *checks_table(checks)]
+    paths = [(scale, output / scale / f"{name}.nc") for scale in SCALES for name in FIGURES]
+    for scale, path in paths:
+        if not path.exists():
+            continue
+        shown, record = _figure_and_record(path)
+        checks = shown.checks(record)
+        found += [{"figure": path.stem, "scale": scale, **asdict(check)} for check in checks]
+        lines += ["", f"## {shown.title} ({scale})", "", *checks_table(checks)]
     if not found:
         raise ValueError(f"{output} holds no data of figures; run crackfront figure first")
     count, failed = len(found), sum(not check["passed"] for check in found)
@@ -161,14 +150,8 @@ def compare_figures(data: Path, reference: Path, as_json: bool) -> None:
         click.echo(f"{name:28} {difference:.1e}")
 
 
-@click.command(
-    epilog=examples(
-        "crackfront gallery --page docs/gallery.md",
-    )
-)
-@click.option(
-    "--output", type=FILE, default=_FOLDER, show_default=True, help="Folder of all figures."
-)
+@click.command(epilog=examples("crackfront gallery --page docs/gallery.md"))
+@_output
 @click.option(
     "--page", type=FILE, default=Path("docs/gallery.md"), show_default=True, help="Page to write."
 )
@@ -180,32 +163,31 @@ def gallery(output: Path, page: Path) -> None:
     """
     from crackfront.data.files import read_attributes, write_text
     from crackfront.plots.style import save_picture
-    from crackfront.studies.paper.figure import FIGURES, checks_table, figure
+    from crackfront.studies.paper.figure import FIGURES, checks_table
 
     parts = []
     for name in FIGURES:
-        scene = figure(name)
         paths = [output / scale / f"{name}.nc" for scale in ("paper", "quick")]
         data = next((path for path in paths if path.exists()), None)
         if data is None:
             continue
-        record = _record(data)
-        picture = page.parent / "figures" / f"{name}.{'gif' if scene.animate else 'png'}"
+        shown, record = _figure_and_record(data)
+        picture = page.parent / "figures" / f"{name}.{'gif' if shown.animate else 'png'}"
         picture.parent.mkdir(parents=True, exist_ok=True)
-        if scene.animate:
+        if shown.animate:
             shutil.copyfile(data.with_suffix(".gif"), picture)
         else:
-            save_picture(scene.draw(record), picture)
+            save_picture(shown.draw(record), picture)
         told = read_attributes(data)
         parts += [
-            f"## {scene.title}",
+            f"## {shown.title}",
             "",
-            f"![{scene.title}](figures/{picture.name})",
+            f"![{shown.title}](figures/{picture.name})",
             "",
             f"Scale {told['scale']}, {float(told['cpu_seconds']):.0f} s of one core, commit "
             f"{str(told['git_commit'])[:12]}: `{told['command']}`",
             "",
-            *checks_table(scene.checks(record)),
+            *checks_table(shown.checks(record)),
             "",
         ]
     if not parts:
@@ -214,8 +196,8 @@ def gallery(output: Path, page: Path) -> None:
     click.echo(f"gallery: {page}")
 
 
-def _record(path: Path) -> object:
-    """Data of a figure."""
+def _figure_and_record(path: Path) -> tuple[Figure, Any]:
+    """Figure that data are of, and the data."""
     from crackfront.data.records import read_record
     from crackfront.studies.paper.figure import FIGURES, figure
 
@@ -223,4 +205,5 @@ def _record(path: Path) -> object:
         raise ValueError(
             f"{path} is no data of a figure; their files are named {', '.join(FIGURES)}"
         )
-    return read_record(path, figure(path.stem).record)
+    shown = figure(path.stem)
+    return shown, read_record(path, shown.record)

@@ -1,25 +1,143 @@
-"""The steps of a sweep: simulate, aggregate, fit, figures."""
+"""A sweep while it runs: what it will cost, its simulations, and how far they are."""
 
 from __future__ import annotations
 
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE, as_json, block, examples, fill_store, launch
+from crackfront.cli.report import FILE, announce_compilation, as_json, echo_json, examples
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
-    from crackfront.analysis.result import SweepFit
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.store import Store
     from crackfront.sweep.sweep import NamedSpectrum, Sweep
+    from crackfront.sweep.tasks import Finished
 
-_configuration = click.argument("configuration", type=FILE)
-_output = click.option(
+TRY_AGAIN = 75
+"""Exit code of a command that was told to end before it was done (EX_TEMPFAIL of sysexits.h)."""
+
+configuration_argument = click.argument("configuration", type=FILE)
+output_option = click.option(
     "--output", type=FILE, help="Folder of the results.  [default: results/<configuration's name>]"
 )
+
+
+def sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, Store]:
+    """Sweep of a configuration file, and its store."""
+    from crackfront.sweep.configuration import load_configuration, results_folder
+    from crackfront.sweep.store import Store
+
+    sweep = load_configuration(configuration)
+    return sweep, Store(results_folder(configuration) if output is None else output)
+
+
+@click.command(
+    epilog=examples(
+        "crackfront plan config/paper.yaml",
+        "crackfront plan config/default.yaml --json",
+    )
+)
+@configuration_argument
+@output_option
+@click.option(
+    "--block", type=click.IntRange(min=1), help="Realisations of a shard.  [default: all]"
+)
+@as_json
+def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
+    """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
+    sweep, store = sweep_and_store(configuration, output)
+    shards = sweep.shards(block)
+    shapes = {item: sweep.shard(item) for item in sweep.spectra}
+    inventory = store.inventory([one for simulations in shapes.values() for one in simulations])
+    if as_json:
+        echo_json(
+            {
+                "results": store.folder,
+                "spectra": [item.name for item in sweep.spectra],
+                "elastic_energies": sweep.elastic_energies,
+                "realisations": sweep.n_realisation,
+                "simulations": sweep.n_simulation,
+                "missing": len(inventory.missing),
+                "shards": [shard.name for shard in shards],
+                **_costs(inventory.missing),
+            }
+        )
+        return
+    click.echo("spectrum          lambda_s  lambda_r     H         angles         points    stored")
+    rows = []
+    for item, simulations in shapes.items():
+        missing = [one for one in inventory.missing if one.spectrum_name == item.name]
+        stored = len(simulations) - len(missing)
+        click.echo(f"{_sizes(item, simulations)}  {stored:5}/{len(simulations)}")
+        rows.append(_row(item.name, sum(shard.item is item for shard in shards), missing))
+    if sentence := inventory.stale_sentence():
+        click.echo(sentence)
+    click.echo(
+        "\nto run            shards  simulations  core hours  longest s  MB a rank   MB disk"
+    )
+    click.echo("\n".join([*rows, _row("all", len(shards), inventory.missing)]))
+    energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
+    click.echo(f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}")
+    click.echo(f"{sweep.n_realisation} realisations; {sweep.n_simulation} simulations")
+    click.echo(f"results in {store.folder}/")
+
+
+def _costs(missing: Sequence[Simulation]) -> dict[str, float]:
+    """What simulations are expected to cost, under the names that machines read."""
+    from crackfront.simulate.costs import expected_cost
+
+    costs = [expected_cost(one) for one in missing]
+    return {
+        "core_seconds": sum(cost.seconds for cost in costs),
+        "longest_seconds": max((cost.seconds for cost in costs), default=0.0),
+        "bytes_a_rank": max((cost.memory for cost in costs), default=0.0),
+        "bytes_on_disk": sum(cost.disk for cost in costs),
+    }
+
+
+def _row(name: str, n_shard: int, missing: Sequence[Simulation]) -> str:
+    """What the missing simulations of a spectrum, or of all, are expected to cost."""
+    costs = _costs(missing)
+    return (
+        f"{name:16}  {n_shard:6}  {len(missing):11}  {costs['core_seconds'] / 3600:10.3g}"
+        f"  {costs['longest_seconds']:9.3g}  {costs['bytes_a_rank'] / 1e6:9.0f}"
+        f"  {costs['bytes_on_disk'] / 1e6:9.3g}"
+    )
+
+
+def _sizes(item: NamedSpectrum, simulations: Sequence[Simulation]) -> str:
+    """Shape and sizes of a spectrum."""
+    shape, sizes = item.spectrum, [one.resolution for one in simulations]
+    return (
+        f"{item.name:16}  {shape.short_cutoff:8.4g}  {shape.roll_off:8.4g}  {shape.hurst:4.2f}"
+        f"  {_span([size.n_angle for size in sizes]):>13}"
+        f"  {_span([size.n_point for size in sizes]):>13}"
+    )
+
+
+def _span(values: Sequence[float]) -> str:
+    """Range of values over the amplitudes, or the one that all have."""
+    low, high = f"{min(values):.0f}", f"{max(values):.0f}"
+    return low if low == high else f"{low}-{high}"
+
+
+def _block(context: click.Context, parameter: click.Parameter, value: str | None) -> range | None:
+    """Range that an option like 0-49 means, both ends included."""
+    if value is None:
+        return None
+    first, dash, last = value.partition("-")
+    if not (dash and first.isdecimal() and last.isdecimal() and int(first) <= int(last)):
+        raise click.BadParameter(
+            f"{value!r} is no range of numbers; write the first and the last, as in 0-49"
+        )
+    return range(int(first), int(last) + 1)
 
 
 @click.command(
@@ -28,12 +146,12 @@ _output = click.option(
         "crackfront simulate config/default.yaml --spectrum flat --realisations 0-1",
     )
 )
-@_configuration
-@_output
+@configuration_argument
+@output_option
 @click.option("--spectrum", help="Only this spectrum.  [default: all]")
 @click.option(
     "--realisations",
-    callback=block,
+    callback=_block,
     help="Only these realisations, as in 0-49.  [default: all]",
 )
 @click.option(
@@ -70,13 +188,13 @@ def simulate(
     SIGTERM is taken as notice: running simulations are kept as far as they are, and the exit code
     is 75. The same command then goes on from there.
     """
-    from crackfront.sweep import notice, parallel
+    from crackfront.sweep import parallel
 
     if not parallel.is_manager(ranks):
-        with notice.heeded():
+        with parallel.heeding_notice():
             parallel.serve_tasks("crackfront.sweep.tasks")
         return
-    sweep, store = _sweep_and_store(configuration, output)
+    sweep, store = sweep_and_store(configuration, output)
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
     chosen = range(sweep.n_realisation) if realisations is None else realisations
     shards = [sweep.named_shard(item, chosen) for item in items]
@@ -88,7 +206,7 @@ def simulate(
         arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
         arguments += [] if spectrum is None else ["--spectrum", spectrum]
         arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
-        launch(arguments, busy, launcher, store.folder)
+        _launch(arguments, busy, launcher, store.folder)
         return
     click.echo(
         f"{configuration}: {len(simulations) - len(inventory.missing)} of {len(simulations)} "
@@ -98,185 +216,111 @@ def simulate(
         click.echo(f"Warning: {sentence}; it is computed anew", err=True)
     if sentence := inventory.stale_sentence():
         click.echo(sentence)
-    fill_store(store, inventory.missing, configuration, checkpoint)
+    _fill(store, inventory.missing, configuration, checkpoint)
     for shard in shards:
         manifest = store.write_manifest(shard, sweep.shard(shard.item, shard.realisations))
     click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
 
 
-@click.command(
-    epilog=examples(
-        "crackfront aggregate config/default.yaml",
-    )
-)
-@_configuration
-@_output
-def aggregate(configuration: Path, output: Path | None) -> None:
-    """Collect the stored simulations of a sweep in hysteresis.nc."""
+def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path) -> None:
+    """Run a command on ranks, and end where they failed."""
+    from crackfront.sweep import parallel
+
+    folder.mkdir(parents=True, exist_ok=True)
+    code = parallel.launch_ranks(arguments, ranks, launcher, folder)
+    if code != 0:
+        click.echo(
+            f"Error: the ranks ended with exit code {code}; finished simulations are stored, and "
+            "the same command continues with the others",
+            err=True,
+        )
+        sys.exit(code if 0 < code < 126 else 1)
+
+
+def _fill(
+    store: Store, missing: tuple[Simulation, ...], configuration: Path, checkpoint_seconds: float
+) -> None:
+    """Run what is missing and report every simulation as it ends."""
     from crackfront.data.provenance import provenance
+    from crackfront.sweep.parallel import heeding_notice
+    from crackfront.sweep.tasks import NOT_STORED, STOPPED, fill
+
+    if missing:
+        announce_compilation()
+    started = time.monotonic()
+    origin = provenance(configuration.read_text(encoding="utf-8"))
+    with heeding_notice():
+        outcomes = fill(store, missing, origin, checkpoint_seconds)
+        for count, (line, finished) in enumerate(_reported(outcomes, len(missing))):
+            if finished.status == NOT_STORED:
+                raise click.ClickException(
+                    f"{line}; {count} of {len(missing)} simulations were stored, and the same "
+                    "command continues with the others"
+                )
+            if finished.status == STOPPED:
+                click.echo(
+                    f"Stopped as told: {count} of {len(missing)} simulations were stored and the "
+                    "running ones kept; the same command continues with the others",
+                    err=True,
+                )
+                sys.exit(TRY_AGAIN)
+    if missing:
+        click.echo(f"{len(missing)} simulations in {time.monotonic() - started:.1f} s")
+
+
+def _reported(
+    outcomes: Iterator[tuple[Simulation, Finished]], total: int
+) -> Iterator[tuple[str, Finished]]:
+    """Outcomes with their lines: a bar on a terminal, else a line each."""
+    from tqdm import tqdm
+
     from crackfront.sweep.table import COMPLETE
 
-    sweep, store = _sweep_and_store(configuration, output)
-    path, statuses = store.aggregate(sweep, provenance(configuration.read_text(encoding="utf-8")))
-    others = {status: count for status, count in statuses.items() if status not in COMPLETE}
-    failed, total = sum(others.values()), sweep.n_simulation
-    told = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
-    sentence = f"{failed} of {total} simulations have no value: {told}"
-    if failed > sweep.failed_fraction * total:
-        raise click.ClickException(
-            f"{sentence}; failed_fraction of the configuration allows {sweep.failed_fraction:g}. "
-            f"What they ended by stands in status_sentence of {path}"
-        )
-    if failed:
-        click.echo(f"Warning: {sentence}", err=True)
-    click.echo(f"hysteresis: {path}")
+    terminal = sys.stderr.isatty()
+    with tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar:
+        for count, (simulation, finished) in enumerate(outcomes, start=1):
+            line = f"{simulation.label}: {finished.status}"
+            line += f", {finished.sentence or f'{finished.seconds:.2f} s'}"
+            if not terminal:
+                click.echo(f"[{count}/{total}] {line}")
+            elif finished.status not in COMPLETE:
+                bar.write(line)
+            bar.update()
+            yield line, finished
 
 
 @click.command(
     epilog=examples(
-        "crackfront fit config/default.yaml",
-        "crackfront fit config/default.yaml --json",
-    )
-)
-@_configuration
-@_output
-@as_json
-def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
-    """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the last."""
-    from crackfront.data.provenance import provenance
-    from crackfront.sweep.fit_files import write_fit
-
-    sweep, store = _sweep_and_store(configuration, output)
-    fitted = _fitted(sweep, store)
-    paths = write_fit(store.folder, fitted, provenance(configuration.read_text(encoding="utf-8")))
-    if as_json:
-        click.echo(paths[1].read_text(encoding="utf-8"))
-        return
-    click.echo(paths[2].read_text(encoding="utf-8"))
-    click.echo(f"fit: {', '.join(map(str, paths))}")
-
-
-@click.command(epilog=examples("crackfront summary config/default.yaml"))
-@_configuration
-@_output
-def summary(configuration: Path, output: Path | None) -> None:
-    """Write summary.html: the fit, how the simulations ended, the configuration, the origin."""
-    from crackfront.data.files import read_attributes, write_text
-    from crackfront.sweep.summary import summary_page
-    from crackfront.sweep.table import read_statuses
-
-    sweep, store = _sweep_and_store(configuration, output)
-    table = store.folder / "hysteresis.nc"
-    attributes = {name: str(value) for name, value in read_attributes(table).items()}
-    page = summary_page(
-        f"Adhesion hysteresis: {configuration.stem}",
-        (store.folder / "fit.md").read_text(encoding="utf-8"),
-        read_statuses(table),
-        attributes.pop("configuration"),
-        attributes | {"seed of the sweep": str(sweep.seed)},
-    )
-    path = store.folder / "summary.html"
-    write_text(path, page)
-    click.echo(f"summary: {path}")
-
-
-@click.command(
-    epilog=examples(
-        "crackfront archive results/default",
-        "crackfront archive results/default --no-curves --output numbers.zip",
+        "crackfront status results/default",
+        "crackfront status results/default --json",
     )
 )
 @click.argument("folder", type=FILE)
-@click.option("--output", type=FILE, help="The archive.  [default: <folder>.zip]")
-@click.option("--no-curves", is_flag=True, help="Without the files of the single simulations.")
-def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
-    """Pack the results of a sweep into a ZIP file with checksums, SHA256SUMS."""
-    from crackfront.sweep.archive import write_archive
-
-    path = folder.with_name(f"{folder.name}.zip") if output is None else output
-    click.echo(f"archive: {path}, {write_archive(folder, path, curves=not no_curves)} files")
-
-
-@click.command(epilog=examples("crackfront figures config/default.yaml"))
-@_configuration
-@_output
-def figures(configuration: Path, output: Path | None) -> None:
-    """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
-    from crackfront.analysis.steady import steady_adhesion
-    from crackfront.plots.loop import loop_figure
-    from crackfront.plots.style import save_figure
-    from crackfront.plots.sweep import factor_figure, hysteresis_figure
-    from crackfront.simulate.files import read_simulation
-
-    sweep, store = _sweep_and_store(configuration, output)
-    fitted = _fitted(sweep, store)
-    item, simulation = _loop_example(sweep)
-    result = read_simulation(store.path(simulation), simulation)
-    steady = steady_adhesion(result.record, sweep.correlation_length(item))
-    loop = loop_figure(
-        result.record.states,
-        (steady.w_appr, steady.w_retr),
-        (steady.lowest_radius, steady.highest_radius),
-        elastic_energy=result.measures.e_el,
-        kind=sweep.kind,
-        title=simulation.label,
-    )
-    drawn = {
-        "hysteresis": hysteresis_figure(fitted.table, fitted),
-        "loop": loop,
-        "factor": factor_figure(fitted.table, fitted),
-    }
-    for name, figure in drawn.items():
-        for path in save_figure(figure, store.folder / "figures" / name):
-            click.echo(f"figure: {path}")
-
-
-def _sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, Store]:
-    """Sweep of a configuration file, and its store."""
-    from crackfront.sweep.configuration import load_configuration, results_folder
+@as_json
+def status(folder: Path, as_json: bool) -> None:
+    """Tell how far the sweep in a folder is; also while it runs, here or elsewhere."""
+    from crackfront.sweep.configuration import load_configuration
     from crackfront.sweep.store import Store
 
-    sweep = load_configuration(configuration)
-    return sweep, Store(results_folder(configuration) if output is None else output)
-
-
-def fit_of_sweep(configuration: Path) -> SweepFit:
-    """Fit of the results of a sweep, in `results/` under the name of its configuration.
-
-    Raises
-    ------
-    ValueError
-        If the sweep has not been run.
-    """
-    sweep, store = _sweep_and_store(configuration, None)
-    if not (store.folder / "hysteresis.nc").exists():
-        raise ValueError(
-            f"{store.folder} holds no hysteresis.nc; run the sweep first: "
-            f"make SWEEP={configuration}"
+    store = Store(folder)
+    if not store.configuration.is_file():
+        raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
+    found = store.progress(load_configuration(store.configuration))
+    if as_json:
+        echo_json({"spectra": [asdict(item) for item in found]})
+        return
+    click.echo("spectrum             done  failed  running  waiting  core hours left")
+    for item in found:
+        click.echo(
+            f"{item.name:16}  {item.done:7}  {item.failed:6}  {item.running:7}  {item.waiting:7}"
+            f"  {item.seconds / 3600:15.3g}"
         )
-    return _fitted(sweep, store)
-
-
-def _fitted(sweep: Sweep, store: Store) -> SweepFit:
-    """Fit of a sweep, always the same for the same table."""
-    from crackfront.analysis.sweep import fit_sweep
-    from crackfront.sweep.table import read_table
-
-    return fit_sweep(
-        read_table(store.folder / "hysteresis.nc"),
-        lowest_elastic_energy=sweep.fit.lowest_elastic_energy,
-        highest_elastic_energy=sweep.fit.highest_elastic_energy,
-        n_bootstrap=sweep.fit.n_bootstrap,
-        seed=sweep.seed,
-        kind=sweep.kind,
-    )
-
-
-def _loop_example(sweep: Sweep) -> tuple[NamedSpectrum, Simulation]:
-    """The simulation that comes nearest to the paper's Fig. 3c."""
-    self_affine = [
-        item for item in sweep.spectra if item.spectrum.roll_off > item.spectrum.short_cutoff
-    ]
-    item = (self_affine or sweep.spectra)[0]
-    energy = min(sweep.elastic_energies, key=lambda value: abs(value - 0.05))
-    return item, sweep.simulation(item, energy, 0)
+    left, at_work = sum(item.seconds for item in found), sum(item.running for item in found)
+    total = sum(item.done + item.failed + item.running + item.waiting for item in found)
+    ended = sum(item.done + item.failed for item in found)
+    sentence = f"{ended} of {total} simulations have ended"
+    if at_work:
+        sentence += f"; about {left / at_work / 60:.3g} minutes are left on {at_work} rank(s)"
+    elif ended < total:
+        sentence += "; nothing runs"
+    click.echo(sentence)

@@ -4,41 +4,26 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Collection, Iterable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Collection
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from crackfront.core.records import Variable, variables
 from crackfront.data.provenance import Provenance, utc_now
 
-_PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
+PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
 """How arrays are compressed."""
-
 
 _SECONDS_TO_WRITE = 3600.0
 """Time after which a file that is not finished will not be."""
 
-
-@dataclass(frozen=True, slots=True)
-class Block:
-    """A part of the values of some variables.
-
-    Attributes
-    ----------
-    place : tuple of int or slice
-        Where in the dimensions of the variables it belongs.
-    columns : sequence of array
-        Values of each variable; texts as objects.
-    """
-
-    place: tuple[int | slice, ...]
-    columns: Sequence[NDArray[Any]]
+_UMASK = os.umask(0)
+os.umask(_UMASK)
+"""Permissions that new files of this process do not get."""
 
 
 class UnreadableFileError(ValueError):
@@ -53,95 +38,35 @@ def labelled(variable: Variable, values: Any) -> tuple[tuple[str, ...], Any, dic
 def labelled_fields(record: Any, *along: str) -> dict[str, Any]:
     """Variables of a record, its fields made by `variable`; None is left out.
 
-    Parameters
-    ----------
-    record : dataclass
-        The record.
-    *along : str
-        Dimensions that its fields have before those that they state.
+    The dimensions in `along` come before those that the fields state.
     """
     values = ((item, getattr(record, item.name)) for item in variables(type(record), *along))
     return {item.name: labelled(item, value) for item, value in values if value is not None}
 
 
-def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
-    """Write a dataset as netCDF with its origin, atomically.
-
-    Parameters
-    ----------
-    path : Path
-        File; its folder is created.
-    dataset : xarray.Dataset
-        What to write.
-    origin : Provenance
-        Where it comes from.
-    """
-    replace_atomically(path, lambda part: _write(part, dataset, origin))
-
-
-def write_dataset_in_blocks(
+def write_dataset(
     path: Path,
     dataset: xr.Dataset,
-    variables: Sequence[Variable],
-    blocks: Iterable[Block],
     origin: Provenance,
+    fill: Callable[[Path], None] | None = None,
 ) -> None:
-    """Write a dataset whose variables come block by block, atomically, holding one block at a time.
+    """Write a dataset as netCDF with its origin, atomically; the folder is created.
 
-    Parameters
-    ----------
-    path : Path
-        File; its folder is created.
-    dataset : xarray.Dataset
-        Coordinates and attributes.
-    variables : sequence of Variable
-        The variables, all of the same dimensions.
-    blocks : iterable of Block
-        All of their values.
-    origin : Provenance
-        Where it comes from.
+    Where `fill` is given, it writes more into the file before that gets its name.
     """
-
-    def write(part: Path) -> None:
-        _write(part, dataset, origin)
-        with netCDF4.Dataset(part, "a") as file:
-            for block in blocks:
-                for variable, values in zip(variables, block.columns, strict=True):
-                    if variable.name not in file.variables:
-                        _create(file, variable, values)
-                    file[variable.name][block.place] = values
-
-    replace_atomically(path, write)
-
-
-def _create(file: netCDF4.Dataset, variable: Variable, values: NDArray[Any]) -> None:
-    """Create a variable for values like those of a block, in chunks of a block's size."""
-    text = values.dtype == object
-    sizes = [len(file.dimensions[name]) for name in variable.dims]
-    created = file.createVariable(
-        variable.name,
-        str if text else values.dtype,
-        variable.dims,
-        fill_value=None if text else False,
-        chunksizes=[1] * (len(sizes) - 1) + [min(sizes[-1], values.size)],
-        chunk_cache=values.nbytes,  # a chunk is written once; the default holds megabytes of them
-        **({} if text else _PACKED),
-    )
-    created.setncatts(variable.attributes)
-
-
-def _write(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
-    """Write a dataset with its origin under a name."""
     stamped = dataset.assign_attrs(asdict(origin), date=utc_now())
     encoding: dict[str, dict[str, Any]] = {
-        str(name): {"_FillValue": None}
+        str(name): {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
         for name, values in stamped.variables.items()
         if np.issubdtype(values.dtype, np.floating)
     }
-    for name, values in stamped.variables.items():
-        if values.ndim > 1 and str(name) in encoding:
-            encoding[str(name)] |= _PACKED
-    stamped.to_netcdf(path, engine="netcdf4", encoding=encoding)
+
+    def write(part: Path) -> None:
+        stamped.to_netcdf(part, engine="netcdf4", encoding=encoding)
+        if fill is not None:
+            fill(part)
+
+    replace_atomically(path, write)
 
 
 def write_text(path: Path, text: str) -> None:
@@ -170,11 +95,6 @@ def leftover_parts(folder: Path) -> list[Path]:
     """Files that writers began in a folder and did not finish within the last hour.
 
     Their age is that against a file which is created now, by the clock of the file system.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder in which files are written.
     """
     with tempfile.NamedTemporaryFile(prefix=".", suffix=".part", dir=folder) as new:
         now = Path(new.name).stat().st_mtime
@@ -183,12 +103,12 @@ def leftover_parts(folder: Path) -> list[Path]:
 
 
 def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset:
-    """Dataset of a file, in memory.
+    """Dataset of a netCDF file, in memory.
 
     Parameters
     ----------
     path : Path
-        netCDF file.
+        The file.
     names : collection of str, optional
         Variables to read beside the coordinates, those that are there; by default all.
 
@@ -210,21 +130,5 @@ def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
-    """What a file says of itself.
-
-    Raises
-    ------
-    UnreadableFileError
-        If there is no such file or it is no complete netCDF file.
-    """
+    """What a file says of itself; refused as by :func:`read_dataset`."""
     return {str(name): value for name, value in read_dataset(path, ()).attrs.items()}
-
-
-def _umask() -> int:
-    """Permissions that new files of this process do not get."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
-_UMASK = _umask()

@@ -1,4 +1,4 @@
-"""Where a result comes from: versions, sources, command and moment."""
+"""Where a result comes from: version, sources, command and moment."""
 
 from __future__ import annotations
 
@@ -9,10 +9,22 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from crackfront.core.fingerprint import PACKAGE, fingerprint, solver_fingerprint
-from crackfront.data.version import __version__
+
+
+def _version() -> str:
+    """Version that setuptools-scm took from git; 0+unknown where the package is not installed."""
+    try:
+        return version("crackfront")
+    except PackageNotFoundError:
+        return "0+unknown"
+
+
+__version__ = _version()
+"""Version of the package."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,10 +33,8 @@ class Provenance:
 
     Attributes
     ----------
-    crackfront_version : str
-        Version of the package.
     git_commit : str
-        Commit of the sources, with "-dirty" where they were changed since; or "unknown".
+        As :func:`git_commit`.
     solver_fingerprint : str
         Changes with every source that determines a result.
     command : str
@@ -44,13 +54,7 @@ class Provenance:
 
 
 def provenance(configuration: str = "") -> Provenance:
-    """Origin of the results of this process.
-
-    Parameters
-    ----------
-    configuration : str, optional
-        Text of the configuration file.
-    """
+    """Origin of the results of this process, which a configuration of this text asked for."""
     return Provenance(
         crackfront_version=__version__,
         git_commit=git_commit(),

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
+import netCDF4
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.core.records import Variable, variables
 from crackfront.data.files import (
+    PACKED,
     UnreadableFileError,
     labelled,
     labelled_fields,
@@ -22,6 +24,9 @@ from crackfront.data.files import (
 from crackfront.data.provenance import Provenance
 
 Record = TypeVar("Record")
+
+Block = tuple[tuple[int | slice, ...], Sequence[Any]]
+"""Some records, and their place in the dimensions that count them."""
 
 
 def write_record(path: Path, record: Any, origin: Provenance, **attributes: str | float) -> None:
@@ -44,112 +49,124 @@ def write_record(path: Path, record: Any, origin: Provenance, **attributes: str 
 def write_records(
     path: Path, rows: Sequence[Any], along: str, origin: Provenance, **attributes: str | float
 ) -> None:
-    """Write records of one kind, along a dimension that counts them.
-
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-    rows : sequence of dataclass
-        One record or more.
-    along : str
-        Name of the dimension.
-    origin : Provenance
-        Where they come from.
-    **attributes : str or float
-        What else the file says of itself.
-    """
+    """Write one record or more of one kind, as :func:`write_record`, along a dimension."""
     write_dataset(path, xr.Dataset(stacked(rows, along), attrs=attributes), origin)
 
 
-def stacked(rows: Sequence[Any], along: str) -> dict[str, tuple[Any, ...]]:
-    """Variables of records of one kind, along a dimension that counts them.
+def write_records_in_blocks(
+    path: Path,
+    dataset: xr.Dataset,
+    known: Sequence[Variable],
+    blocks: Iterable[Block],
+    origin: Provenance,
+) -> None:
+    """Write records block by block, atomically, holding one block at a time.
 
     Parameters
     ----------
-    rows : sequence of dataclass
-        One record or more.
-    along : str
-        Name of the dimension.
-    """
-    return {
-        item.name: labelled(item, np.array([getattr(row, item.name) for row in rows]))
-        for item in variables(type(rows[0]), along)
-    }
-
-
-def unstacked(path: Path, dataset: xr.Dataset, kind: type[Any], along: str) -> list[dict[str, Any]]:
-    """Fields of the records that :func:`stacked` made variables of.
-
-    Parameters
-    ----------
-    path : Path
-        Where the dataset comes from.
+    path, origin
+        As of :func:`write_record`.
     dataset : xarray.Dataset
-        The variables.
-    kind : type
-        Dataclass of the records.
-    along : str
-        Name of the dimension that counts them.
-
-    Raises
-    ------
-    UnreadableFileError
-        If a variable is missing or has other dimensions.
+        Coordinates of the dimensions that count the records, and attributes.
+    known : sequence of Variable
+        Variables of the records, all of these dimensions alone.
+    blocks : iterable of Block
+        All records.
     """
-    columns = _columns(path, dataset, kind, variables(kind, along))
-    return [
-        {name: values[row].item() if values.ndim == 1 else values[row] for name, values in columns}
-        for row in range(dataset.sizes[along])
-    ]
+
+    def fill(part: Path) -> None:
+        with netCDF4.Dataset(part, "a") as file:
+            for place, rows in blocks:
+                for variable in known:
+                    values = _column(variable, rows)
+                    if values.dtype.kind == "U":
+                        values = values.astype(object)
+                    if variable.name not in file.variables:
+                        _create(file, variable, values)
+                    file[variable.name][place] = values
+
+    write_dataset(path, dataset, origin, fill)
 
 
-def read_records(path: Path, kind: type[Record], along: str) -> tuple[Record, ...]:
-    """Records that :func:`write_records` wrote.
+def _create(file: netCDF4.Dataset, variable: Variable, values: NDArray[Any]) -> None:
+    """Create a variable for values like those of a block, in chunks of a block's size."""
+    text = values.dtype == object
+    sizes = [len(file.dimensions[name]) for name in variable.dims]
+    created = file.createVariable(
+        variable.name,
+        str if text else values.dtype,
+        variable.dims,
+        fill_value=None if text else False,
+        chunksizes=[1] * (len(sizes) - 1) + [min(sizes[-1], values.size)],
+        chunk_cache=values.nbytes,  # a chunk is written once; the default holds megabytes of them
+        **({} if text else PACKED),
+    )
+    created.setncatts(variable.attributes)
 
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-    kind : type
-        Their dataclass.
-    along : str
-        Dimension along which they stand.
 
-    Raises
-    ------
-    UnreadableFileError
-        If the file is missing, truncated, or holds no such records.
-    """
-    return tuple(kind(**row) for row in unstacked(path, read_dataset(path), kind, along))
+def stacked(rows: Sequence[Any], along: str) -> dict[str, tuple[Any, ...]]:
+    """Variables of one record or more of one kind, along a dimension that counts them."""
+    known = variables(type(rows[0]), along)
+    return {item.name: labelled(item, _column(item, rows)) for item in known}
+
+
+def _column(variable: Variable, rows: Sequence[Any]) -> NDArray[Any]:
+    """Values of a variable in all records."""
+    return np.array([getattr(row, variable.name) for row in rows])
 
 
 def read_record(path: Path, kind: type[Record]) -> Record:
-    """Record that :func:`write_record` wrote.
-
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-    kind : type
-        Its dataclass.
+    """Record of a kind that :func:`write_record` wrote.
 
     Raises
     ------
     UnreadableFileError
         If the file is missing, truncated, or holds no such record.
     """
-    columns = _columns(path, read_dataset(path), kind, variables(kind))
+    columns = _columns(path, read_dataset(path), kind)
     return kind(**{name: values if values.ndim else values.item() for name, values in columns})
+
+
+def read_records(path: Path, kind: type[Record], along: str) -> tuple[Record, ...]:
+    """Records that :func:`write_records` wrote along a dimension; as :func:`read_record`."""
+    return tuple(kind(**row) for row in unstacked(path, read_dataset(path), kind, along))
+
+
+def unstacked(path: Path, dataset: xr.Dataset, kind: type[Any], along: str) -> list[dict[str, Any]]:
+    """Fields of the records of a kind that :func:`stacked` made variables of.
+
+    Raises
+    ------
+    UnreadableFileError
+        If a variable is missing or has other dimensions; it names the path.
+    """
+    columns = _columns(path, dataset, kind, along)
+    return [
+        {name: values[row].item() if values.ndim == 1 else values[row] for name, values in columns}
+        for row in range(dataset.sizes[along])
+    ]
+
+
+def _columns(
+    path: Path, dataset: xr.Dataset, kind: type[Any], *along: str
+) -> list[tuple[str, NDArray[Any]]]:
+    """Values of all variables of records of a kind."""
+    known = variables(kind, *along)
+    wrong = [
+        item.name
+        for item in known
+        if item.name not in dataset or dataset[item.name].dims != item.dims
+    ]
+    if wrong:
+        raise UnreadableFileError(
+            f"{path} holds no {kind.__name__}: {', '.join(wrong)} is missing or of other "
+            "dimensions; compute it again"
+        )
+    return [(item.name, np.asarray(dataset[item.name])) for item in known]
 
 
 def largest_differences(one: Path, other: Path) -> dict[str, float]:
     """How much two files of one kind of record differ.
-
-    Parameters
-    ----------
-    one, other : Path
-        netCDF files.
 
     Returns
     -------
@@ -185,20 +202,3 @@ def _difference(one: NDArray[Any], other: NDArray[Any]) -> float:
         return 0.0
     scale = float(np.nanmax(np.abs(other))) or 1.0
     return float(np.max(np.nan_to_num(np.abs(one - other), nan=math.inf))) / scale
-
-
-def _columns(
-    path: Path, dataset: xr.Dataset, kind: type[Any], known: Sequence[Variable]
-) -> list[tuple[str, NDArray[Any]]]:
-    """Values of all variables of a record."""
-    wrong = [
-        item.name
-        for item in known
-        if item.name not in dataset or dataset[item.name].dims != item.dims
-    ]
-    if wrong:
-        raise UnreadableFileError(
-            f"{path} holds no {kind.__name__}: {', '.join(wrong)} is missing or of other "
-            "dimensions; compute it again"
-        )
-    return [(item.name, np.asarray(dataset[item.name])) for item in known]

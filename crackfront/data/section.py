@@ -1,12 +1,16 @@
-"""What sections of configurations have in common: strictness, and types of their values."""
+"""Strict YAML: sections of configurations, read from files, and sentences for what they refuse."""
 
 from __future__ import annotations
 
+import difflib
+import re
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import BaseModel, ConfigDict, Field
-from pydantic_core import PydanticCustomError
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import ErrorDetails, PydanticCustomError
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Count = Annotated[int, Field(ge=1)]
@@ -16,12 +20,172 @@ InputFile = Annotated[Path, Field(strict=False)]
 """A file that a configuration names, from the folder in which the command runs."""
 
 
+class ConfigurationError(ValueError):
+    """What is wrong with a configuration, one sentence a line."""
+
+
 class Section(BaseModel):
     """A mapping of a file; unknown keys and conversions are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
+Kind = TypeVar("Kind", bound=Section)
+
+
 def refusal(message: str) -> PydanticCustomError:
     """A refusal that keeps its own sentence."""
     return PydanticCustomError("section", "{message}", {"message": message})
+
+
+def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
+    """Section that the content of a file fills.
+
+    Parameters
+    ----------
+    path : Path
+        The file, which refusals name.
+    content : object
+        What stands in it, as of :func:`content_of`.
+    schema : type
+        The section.
+
+    Raises
+    ------
+    ConfigurationError
+        If anything is unknown, missing or out of range; one sentence for each.
+    """
+    try:
+        return schema.model_validate(content)
+    except ValidationError as error:
+        lines = _sentences(error.errors(), schema)
+        raise ConfigurationError("\n".join(f"{path}: {line}" for line in lines)) from error
+
+
+class _Loader(yaml.SafeLoader):
+    """Safe YAML that reads 1e-6 as a number and refuses repeated keys."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """Mapping of a node, each key once."""
+        keys = [self.construct_object(key) for key, _ in node.value]
+        for key, (mark, _) in zip(keys, node.value, strict=True):
+            if keys.count(key) > 1:
+                raise yaml.constructor.ConstructorError(
+                    None, None, f"key {key!r} stands twice; remove one", mark.start_mark
+                )
+        return super().construct_mapping(node, deep)
+
+
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float",
+    re.compile(r"^[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+$"),
+    list("-+0123456789"),
+)
+
+
+def content_of(path: Path) -> dict[str, Any]:
+    """Mapping that a YAML file holds, with tuples for lists.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file cannot be read, or holds no mapping.
+    """
+    try:
+        content = yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)
+    except OSError as error:
+        raise ConfigurationError(f"{path} cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ConfigurationError(f"{path} is no UTF-8 text; save it as UTF-8") from error
+    except yaml.MarkedYAMLError as error:
+        line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise ConfigurationError(f"{path} is no valid YAML{line}: {error.problem}") from error
+    except yaml.YAMLError as error:
+        raise ConfigurationError(f"{path} is no valid YAML: {error}") from error
+    if content is None:
+        raise ConfigurationError(f"{path} is empty; write a configuration like config/test.yaml")
+    if not isinstance(content, dict):
+        raise ConfigurationError(
+            f"{path} holds a {type(content).__name__}; the top level must be a mapping of keys"
+        )
+    return {str(key): _frozen(value) for key, value in content.items()}
+
+
+def _frozen(value: Any) -> Any:
+    """A YAML value with tuples for lists and text for keys."""
+    if isinstance(value, list):
+        return tuple(_frozen(item) for item in value)
+    if isinstance(value, dict):
+        return {str(key): _frozen(item) for key, item in value.items()}
+    return value
+
+
+def _sentences(errors: list[ErrorDetails], schema: type[Section]) -> Iterator[str]:
+    """What errors of pydantic mean, one sentence each."""
+    for error in errors:
+        # A list whose entries are refused is also called too short.
+        inner = [item["loc"] for item in errors if len(item["loc"]) > len(error["loc"])]
+        if error["type"] != "too_short" or error["loc"] not in [
+            place[: len(error["loc"])] for place in inner
+        ]:
+            yield _sentence(error, schema)
+
+
+def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
+    """What one error of pydantic means."""
+    place = "".join(
+        f"[{part}]" if isinstance(part, int) else f".{part}" for part in error["loc"]
+    ).lstrip(".")
+    if error["type"] == "section":
+        return f"{place}: {error['msg']}" if place else error["msg"]
+    if error["type"] == "extra_forbidden":
+        return f"unknown key {place}; {_known_keys(error['loc'], schema)}"
+    if error["type"] == "missing":
+        return f"key {place} is missing; add it"
+    must = re.sub(r"^(Input|String|Tuple|Value) should", "it must", error["msg"])
+    must = _SHORT.get(error["type"], must)
+    value = list(error["input"]) if isinstance(error["input"], tuple) else error["input"]
+    meaning = "" if error["type"] == "too_short" else _MEANING.get(_field(error["loc"]), "")
+    return f"{place} is {value!r}; {must}{meaning}"
+
+
+_SHORT = {
+    "model_type": "it must be a mapping of keys",
+    "model_attributes_type": "it must be a mapping of keys",
+    "tuple_type": "it must be a list",
+    "too_short": "it must have at least one entry",
+    "string_pattern_mismatch": "it must consist of letters, digits, _ and -",
+    "finite_number": "it must be finite",
+    "path_type": "it must be the name of a file",
+}
+
+_MEANING = {
+    "elastic_energy": " (in units of w_int: full conformity needs an energy below w_int)",
+    "work_of_adhesion_rms": " (in units of w_int: at 2 the energy of full conformity is w_int)",
+    "hurst": " (a Hurst exponent lies in (0, 1])",
+}
+
+
+def _field(location: tuple[int | str, ...]) -> str:
+    """Last key of a location."""
+    return next((part for part in reversed(location) if isinstance(part, str)), "")
+
+
+def _known_keys(location: tuple[int | str, ...], schema: type[BaseModel]) -> str:
+    """The nearest key that would be right at an unknown one."""
+    section = schema
+    for part in location[:-1]:
+        if isinstance(part, str):
+            section = _section_of(section.model_fields[part].annotation)
+    known = list(section.model_fields)
+    near = difflib.get_close_matches(str(location[-1]), known, n=1)
+    return f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known)}"
+
+
+def _section_of(annotation: Any) -> type[BaseModel]:
+    """The section in the type of a field, as in `tuple[Section, ...]` or `Section | None`."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return next(
+        _section_of(part) for part in get_args(annotation) if part not in (Ellipsis, type(None))
+    )

@@ -1,41 +1,357 @@
-"""Configuration files: read, validated in full, and turned into a sweep."""
+"""Configuration files of sweeps: the schema of their sections, and the sweep that they become."""
 
 from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Iterable
 from dataclasses import fields
 from pathlib import Path
+from typing import Annotated, Any, Literal
 
-from pydantic import ValidationError
+from pydantic import BeforeValidator, Field, model_validator
 
+from crackfront.core.adhesion import FieldKind
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.field.fields import Interpolation
+from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
-from crackfront.data.yaml import ConfigurationError, content_of, sentences
+from crackfront.data.section import (
+    ConfigurationError,
+    Count,
+    Energy,
+    InputFile,
+    Positive,
+    Section,
+    content_of,
+    refusal,
+    validated,
+)
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.simulation import Numerics, missed_error
-from crackfront.sweep.sections import (
-    Configuration,
-    LoadSection,
-    NumericsSection,
-    SpectrumSection,
-    SurfaceSection,
-)
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
-from crackfront.topography.files import Treatment
+from crackfront.topography.files import Detrend, Treatment
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.reading import read_measurements
+
+Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
+
+
+class ScalesSection(Section):
+    """Scene in SI units."""
+
+    radius: Positive
+    work_of_adhesion: Positive
+    contact_modulus: Positive
+
+
+def _several(value: Any) -> Any:
+    """The list that a single file stands for."""
+    return (value,) if isinstance(value, str) else value
+
+
+class SurfaceSection(Section):
+    """Measurements of a surface, read as :class:`crackfront.topography.files.Treatment` says."""
+
+    file: Annotated[tuple[InputFile, ...], BeforeValidator(_several), Field(min_length=1)]
+    detrend: Detrend = "curvature"
+    unit: str | None = None
+    size: tuple[Positive, ...] | None = None
+    shortest: Positive | None = None
+
+    def fitted(self) -> tuple[SelfAffineSpectrum, str]:
+        """Spectrum in metres, and eight digits that change with any of the files.
+
+        Five digits of each parameter, so that simulations keep their names whatever the round-off.
+        """
+        treatment = Treatment(self.detrend, self.unit, self.size, self.shortest)
+        surface = measured_surface(read_measurements(self.file, treatment))
+        found = surface.fitted.spectrum
+        short, long, hurst = (
+            float(f"{value:.5g}") for value in (found.short_cutoff, found.roll_off, found.hurst)
+        )
+        return SelfAffineSpectrum(short, max(short, long), hurst), surface.checksum
+
+
+class SpectrumSection(Section):
+    """Shape of one spectrum: its parameters, or the surface that it is fitted to."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
+    short_cutoff: Positive | None = None
+    roll_off: Positive | None = None
+    hurst: Annotated[float, Field(gt=0, le=1)] | None = None
+    surface: SurfaceSection | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> SpectrumSection:
+        if self.surface is not None:
+            _refuse_overruled(self, "surface", ("short_cutoff", "roll_off", "hurst"))
+        elif missing := _missing(self, ("short_cutoff", "hurst")):
+            raise refusal(f"key {', '.join(missing)} is missing; add it, or name a surface")
+        if self.roll_off and self.short_cutoff and self.roll_off < self.short_cutoff:
+            raise refusal(
+                f"roll_off {self.roll_off:g} is shorter than short_cutoff {self.short_cutoff:g}; "
+                "lower the cutoff or raise the roll-off (equal values give a flat spectrum)"
+            )
+        return self
+
+    def named(self, position: int, lateral: float) -> NamedSpectrum:
+        """Spectrum that stands at a position of the list, lengths divided by a unit."""
+        name = self.name
+        if self.surface is None:
+            assert self.short_cutoff is not None, "the schema asks for it"
+            assert self.hurst is not None, "the schema asks for it"
+            long = self.roll_off or self.short_cutoff
+            spectrum = SelfAffineSpectrum(self.short_cutoff, long, self.hurst)
+        else:
+            try:
+                spectrum, checksum = self.surface.fitted()
+            except OSError as error:
+                raise ConfigurationError(
+                    f"spectra[{position}].surface: {error.filename} cannot be read: "
+                    f"{error.strerror}"
+                ) from error
+            except ValueError as error:
+                raise ConfigurationError(f"spectra[{position}].surface: {error}") from error
+            name += f"-{checksum}"
+        short, long = spectrum.short_cutoff / lateral, spectrum.roll_off / lateral
+        return NamedSpectrum(name, SelfAffineSpectrum(short, long, spectrum.hurst))
+
+
+class AmplitudesSection(Section):
+    """Amplitudes relative to w_int, in one of two measures."""
+
+    elastic_energy: Annotated[tuple[Energy, ...], Field(min_length=1)] | None = None
+    work_of_adhesion_rms: Annotated[tuple[Rms, ...], Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _one_measure(self) -> AmplitudesSection:
+        _refuse_unless_one(
+            "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms",
+            (self.elastic_energy, self.work_of_adhesion_rms),
+        )
+        _refuse_repeated("amplitude", self.elastic_energy or self.work_of_adhesion_rms or ())
+        return self
+
+    @property
+    def elastic_energies(self) -> tuple[float, ...]:
+        """e_el / w_int, from w_rms^2 = 4 e_el w_int where the rms is given."""
+        if self.elastic_energy is not None:
+            return self.elastic_energy
+        return tuple(rms**2 / 4 for rms in self.work_of_adhesion_rms or ())
+
+
+class TileSection(Section):
+    """Side of the periodic tile."""
+
+    roll_offs: Positive
+    cutoffs: Annotated[float, Field(ge=1, allow_inf_nan=False)]
+
+
+class NumericsSection(Section):
+    """An error or a resolution, and the solver, as in `Numerics`."""
+
+    error: Annotated[float, Field(gt=0, lt=1)] | None = None
+    angles: Annotated[int, Field(ge=4)] | None = None
+    angles_per_cutoff: Positive | None = None
+    samples_per_cutoff: Positive | None = None
+    interpolation: Interpolation | None = None
+    pixels_per_cutoff: Positive | None = None
+    tile: TileSection
+    tolerance: Annotated[float, Field(gt=0, lt=1)] | None = None
+    max_sweeps: Count
+    solver: str
+
+    @model_validator(mode="after")
+    def _usable(self) -> NumericsSection:
+        knobs = [item.name for item in fields(Knobs)]
+        if self.error is not None:
+            _refuse_overruled(self, "error", knobs)
+        else:
+            needed = ("samples_per_cutoff", "interpolation", "pixels_per_cutoff", "tolerance")
+            if missing := _missing(self, needed):
+                raise refusal(
+                    f"{', '.join(missing)} missing; add what is missing or ask for an error"
+                )
+            _refuse_unless_one(
+                "numerics need exactly one of angles and angles_per_cutoff",
+                (self.angles, self.angles_per_cutoff),
+                otherwise="give one, or ask for an error",
+            )
+        if self.pixels_per_cutoff is not None and self.pixels_per_cutoff < 2:
+            raise refusal(
+                f"pixels_per_cutoff is {self.pixels_per_cutoff:g}, so that short_cutoff is below "
+                "two pixels; it must be 2 or more"
+            )
+        if self.solver not in SOLVERS:
+            raise refusal(
+                f"solver {self.solver!r} is unknown; choose one of {', '.join(sorted(SOLVERS))}"
+            )
+        return self
+
+    def numerics(self) -> Numerics:
+        """Numerics with an error or all knobs."""
+        given = {item.name: getattr(self, item.name) for item in fields(Knobs)}
+        if self.angles is not None:
+            given["angles_per_cutoff"] = 1.0  # without effect
+        return Numerics(
+            knobs=Knobs(**given) if self.error is None else self.error,
+            tile_roll_offs=self.tile.roll_offs,
+            tile_cutoffs=self.tile.cutoffs,
+            max_sweeps=self.max_sweeps,
+            solver=self.solver,
+        )
+
+
+class SteadySection(Section):
+    """Steady parts of the branches only, as in `SteadySchedule`."""
+
+    start: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    travel: Positive
+    error: Positive
+
+
+class LoadSection(Section):
+    """Penetrations to visit."""
+
+    max_penetration: Annotated[float, Field(allow_inf_nan=False)]
+    step: Positive | None = None
+    steady: SteadySection | None = None
+
+    @model_validator(mode="after")
+    def _makes_contact(self) -> LoadSection:
+        if self.max_penetration < 0:
+            raise refusal(
+                f"max_penetration is {self.max_penetration:g}, which never makes contact; the "
+                "sphere touches at 0, so it must be 0 or more"
+            )
+        _refuse_unless_one(
+            "load needs exactly one of step (full cycles) and steady (parts of them)",
+            (self.step, self.steady),
+        )
+        if self.steady is not None and self.steady.start >= self.max_penetration:
+            raise refusal(
+                f"steady.start {self.steady.start:g} is not below max_penetration "
+                f"{self.max_penetration:g}; lower it or penetrate deeper"
+            )
+        return self
+
+    def schedule(self, vertical: float) -> LoadSchedule | SteadySchedule:
+        """Penetrations to visit, lengths divided by a unit."""
+        deepest, steady = self.max_penetration / vertical, self.steady
+        if self.step is not None:
+            return LoadSchedule(deepest, self.step / vertical)
+        assert steady is not None, "the schema asks for one of the two"
+        return SteadySchedule(steady.start / vertical, deepest, steady.travel, steady.error)
+
+
+class FitSection(Section):
+    """Range of the fit."""
+
+    lowest_elastic_energy: Positive
+    highest_elastic_energy: Energy
+    bootstrap: Count
+
+    @model_validator(mode="after")
+    def _ordered(self) -> FitSection:
+        if self.lowest_elastic_energy > self.highest_elastic_energy:
+            raise refusal(
+                f"lowest_elastic_energy {self.lowest_elastic_energy:g} is above "
+                f"highest_elastic_energy {self.highest_elastic_energy:g}; swap them"
+            )
+        return self
+
+
+class Configuration(Section):
+    """The whole file."""
+
+    seed: Annotated[int, Field(ge=0)]
+    field: FieldKind
+    scales: ScalesSection | None = None
+    spectra: Annotated[tuple[SpectrumSection, ...], Field(min_length=1)]
+    amplitudes: AmplitudesSection
+    realisations: Count
+    numerics: NumericsSection
+    load: LoadSection
+    record: tuple[Literal["fronts", "energy"], ...] = ()
+    failed_fraction: Annotated[float, Field(ge=0, le=1)] = 0.1
+    fit: FitSection
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Configuration:
+        _refuse_repeated("spectrum name", [spectrum.name for spectrum in self.spectra])
+        if self.field == "chemical" and self.amplitudes.elastic_energy is not None:
+            raise refusal(
+                "amplitudes.elastic_energy has no meaning for a chemical field; give "
+                "amplitudes.work_of_adhesion_rms"
+            )
+        measured = [item.name for item in self.spectra if item.surface is not None]
+        if measured and self.scales is None:
+            raise refusal(
+                f"spectrum {measured[0]!r} is that of a surface in metres; give the section scales"
+            )
+        if measured and self.field == "chemical":
+            raise refusal(f"spectrum {measured[0]!r} is that of heights; field must be roughness")
+        energies, fit = self.amplitudes.elastic_energies, self.fit
+        if not any(
+            fit.lowest_elastic_energy <= energy <= fit.highest_elastic_energy for energy in energies
+        ):
+            raise refusal(
+                f"no amplitude lies in the range of the fit, e_el from "
+                f"{fit.lowest_elastic_energy:g} to {fit.highest_elastic_energy:g}; widen the range"
+            )
+        return self
+
+    def sweep(self) -> Sweep:
+        """The sweep, in reduced units."""
+        scales = None if self.scales is None else Scales(**dict(self.scales))
+        lateral, vertical = (scales.lateral, scales.vertical) if scales else (1.0, 1.0)
+        fit = self.fit
+        return Sweep(
+            seed=self.seed,
+            kind=self.field,
+            scales=scales,
+            spectra=tuple(item.named(place, lateral) for place, item in enumerate(self.spectra)),
+            elastic_energies=self.amplitudes.elastic_energies,
+            n_realisation=self.realisations,
+            numerics=self.numerics.numerics(),
+            schedule=self.load.schedule(vertical),
+            record=self.record,
+            failed_fraction=self.failed_fraction,
+            fit=FitRange(fit.lowest_elastic_energy, fit.highest_elastic_energy, fit.bootstrap),
+        )
+
+
+def _refuse_repeated(what: str, values: Any) -> None:
+    """Raise if a value stands twice."""
+    for position, value in enumerate(values):
+        if value in values[:position]:
+            raise refusal(f"{what} {value!r} stands twice; remove or change one")
+
+
+def _refuse_overruled(section: Section, decider: str, keys: Iterable[str]) -> None:
+    """Raise if a key is given that another one decides."""
+    missing = _missing(section, keys)
+    if given := [key for key in keys if key not in missing]:
+        raise refusal(f"{decider} already decides {', '.join(given)}; remove one or the other")
+
+
+def _refuse_unless_one(what: str, values: tuple[Any, Any], otherwise: str = "give one") -> None:
+    """Raise if both of two values are given, or none."""
+    given = [value is not None for value in values]
+    if all(given) or not any(given):
+        raise refusal(f"{what}; {'remove one' if all(given) else otherwise}")
+
+
+def _missing(section: Section, keys: Iterable[str]) -> list[str]:
+    """Those of some keys that are not given."""
+    return [key for key in keys if getattr(section, key) is None]
 
 
 def load_configuration(path: Path) -> Sweep:
     """Sweep of a configuration file.
-
-    Parameters
-    ----------
-    path : Path
-        YAML file.
 
     Raises
     ------
@@ -43,19 +359,33 @@ def load_configuration(path: Path) -> Sweep:
         If the file cannot be read, is no YAML mapping, or anything in it is unknown, missing or
         out of range; one sentence for each.
     """
-    content = content_of(path)
+    configuration = validated(path, content_of(path), Configuration)
     try:
-        configuration = Configuration.model_validate(content)
-    except ValidationError as error:
-        raise ConfigurationError(
-            "\n".join(f"{path}: {line}" for line in sentences(error.errors(), Configuration))
-        ) from error
-    try:
-        sweep = _sweep(configuration)
+        sweep = configuration.sweep()
+        _refuse_unreachable(sweep)
     except ConfigurationError as error:
         raise ConfigurationError(f"{path}: {error}") from error
-    _refuse_unreachable(path, sweep)
     return sweep
+
+
+def _refuse_unreachable(sweep: Sweep) -> None:
+    """Raise if numerics leave more than the asked error, or round-off exceeds their tolerance."""
+    asked = sweep.numerics.knobs
+    for item in sweep.spectra:
+        for energy in sweep.elastic_energies:
+            simulation = sweep.simulation(item, energy, 0)
+            n_angle, tolerance = simulation.resolution.n_angle, simulation.solver.tolerance
+            round_off = sys.float_info.epsilon * n_angle
+            if tolerance < round_off:
+                raise ConfigurationError(
+                    f"numerics: tolerance is {tolerance}, below the round-off of the {n_angle} "
+                    f"sites of {item.name} ({round_off:.1e}); raise it"
+                )
+            if isinstance(asked, float) and (left := missed_error(simulation, asked)):
+                raise ConfigurationError(
+                    f"numerics: error is {asked:g}, but the finest numerics leave {left:.2g} for "
+                    f"{item.name} at e_el {energy:g}; ask for that, or give the knobs"
+                )
 
 
 def results_folder(path: Path) -> Path:
@@ -72,111 +402,3 @@ def results_folder(path: Path) -> Path:
             "_, - and dots; rename it"
         )
     return Path("results") / path.stem
-
-
-def _refuse_unreachable(path: Path, sweep: Sweep) -> None:
-    """Raise if numerics leave more than the asked error, or round-off exceeds their tolerance."""
-    asked = sweep.numerics.knobs
-    for item in sweep.spectra:
-        for energy in sweep.elastic_energies:
-            simulation = sweep.simulation(item, energy, 0)
-            n_angle, tolerance = simulation.resolution.n_angle, simulation.solver.tolerance
-            round_off = sys.float_info.epsilon * n_angle
-            if tolerance < round_off:
-                raise ConfigurationError(
-                    f"{path}: numerics: tolerance is {tolerance}, below the round-off of "
-                    f"the {n_angle} sites of {item.name} ({round_off:.1e}); raise it"
-                )
-            if isinstance(asked, float) and (left := missed_error(simulation, asked)):
-                raise ConfigurationError(
-                    f"{path}: numerics: error is {asked:g}, but the finest numerics leave "
-                    f"{left:.2g} for {item.name} at e_el {energy:g}; ask for that, or give the "
-                    "knobs"
-                )
-
-
-def _sweep(configuration: Configuration) -> Sweep:
-    """Frozen parameters in reduced units."""
-    scales = None if configuration.scales is None else Scales(**dict(configuration.scales))
-    lateral, vertical = (scales.lateral, scales.vertical) if scales else (1.0, 1.0)
-    numerics, load, fit = configuration.numerics, configuration.load, configuration.fit
-    return Sweep(
-        seed=configuration.seed,
-        kind=configuration.field,
-        scales=scales,
-        spectra=tuple(
-            _named_spectrum(position, item, lateral)
-            for position, item in enumerate(configuration.spectra)
-        ),
-        elastic_energies=configuration.amplitudes.elastic_energies,
-        n_realisation=configuration.realisations,
-        numerics=_numerics(numerics),
-        schedule=_schedule(load, vertical),
-        record=configuration.record,
-        failed_fraction=configuration.failed_fraction,
-        fit=FitRange(fit.lowest_elastic_energy, fit.highest_elastic_energy, fit.bootstrap),
-    )
-
-
-def _named_spectrum(position: int, section: SpectrumSection, lateral: float) -> NamedSpectrum:
-    """Spectrum of a section, lengths divided by a unit."""
-    if section.surface is None:
-        short, hurst = section.short_cutoff, section.hurst
-        assert short is not None, "the schema asks for it"
-        assert hurst is not None, "the schema asks for it"
-        return NamedSpectrum(
-            section.name,
-            SelfAffineSpectrum(short / lateral, (section.roll_off or short) / lateral, hurst),
-        )
-    try:
-        spectrum, checksum = _fitted(section.surface)
-    except OSError as error:
-        raise ConfigurationError(
-            f"spectra[{position}].surface: {error.filename} cannot be read: {error.strerror}"
-        ) from error
-    except ValueError as error:
-        raise ConfigurationError(f"spectra[{position}].surface: {error}") from error
-    return NamedSpectrum(
-        f"{section.name}-{checksum}",
-        SelfAffineSpectrum(
-            spectrum.short_cutoff / lateral, spectrum.roll_off / lateral, spectrum.hurst
-        ),
-    )
-
-
-def _fitted(section: SurfaceSection) -> tuple[SelfAffineSpectrum, str]:
-    """Spectrum of a surface in metres, and eight digits that change with any of its files.
-
-    Five digits of each parameter, so that simulations keep their names whatever the round-off.
-    """
-    treatment = Treatment(section.detrend, section.unit, section.size, section.shortest)
-    surface = measured_surface(read_measurements(section.file, treatment))
-    found = surface.fitted.spectrum
-    short, long, hurst = (
-        float(f"{value:.5g}") for value in (found.short_cutoff, found.roll_off, found.hurst)
-    )
-    return SelfAffineSpectrum(short, max(short, long), hurst), surface.checksum
-
-
-def _numerics(section: NumericsSection) -> Numerics:
-    """Numerics of a section, which has an error or all knobs."""
-    names = [item.name for item in fields(Knobs)]
-    given = {name: getattr(section, name) for name in names}
-    if section.angles is not None:
-        given["angles_per_cutoff"] = 1.0  # without effect
-    return Numerics(
-        knobs=Knobs(**given) if section.error is None else section.error,
-        tile_roll_offs=section.tile.roll_offs,
-        tile_cutoffs=section.tile.cutoffs,
-        max_sweeps=section.max_sweeps,
-        solver=section.solver,
-    )
-
-
-def _schedule(load: LoadSection, vertical: float) -> LoadSchedule | SteadySchedule:
-    """Penetrations to visit, lengths divided by a unit."""
-    deepest, steady = load.max_penetration / vertical, load.steady
-    if load.step is not None:
-        return LoadSchedule(deepest, load.step / vertical)
-    assert steady is not None, "the schema asks for one of the two"
-    return SteadySchedule(steady.start / vertical, deepest, steady.travel, steady.error)

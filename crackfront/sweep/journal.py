@@ -1,18 +1,29 @@
-"""Journals: files to which one process each appends lines; a line counts where it is whole."""
+"""Journals, files to which one process each appends lines, and where in them the rows stand."""
 
 from __future__ import annotations
 
+import functools
+import hashlib
 import json
 import os
 import secrets
 import socket
 import zlib
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from itertools import islice
 from pathlib import Path
-from typing import BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
 
 from crackfront.analysis.table import SweepRow
+from crackfront.simulate.simulation import Simulation
+from crackfront.sweep.table import ROWS_AT_ONCE, row_fingerprint
+
+_LINE = np.dtype([("identity", "u8"), ("label", "u8"), ("place", "u8"), ("journal", "u4")])
+"""What is held of a line: hashes of key with label and of the label, and where it begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,13 +54,7 @@ class Entry:
 
 
 class Journal:
-    """The journal of this process in a folder; it is created with its first line.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of the journals.
-    """
+    """The journal of this process in a folder; it is created with its first line."""
 
     def __init__(self, folder: Path) -> None:
         name = f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(4)}.jsonl"
@@ -82,8 +87,15 @@ class Journal:
         os.utime(self._path)
 
 
+def journal_paths(folder: Path) -> list[Path]:
+    """Journals of a folder, always in the same order."""
+    return sorted(folder.glob("*.jsonl"))
+
+
 def read_journal(path: Path, definition: str) -> Iterator[tuple[int, Entry]]:
-    """Places and entries of a journal; a line that is torn or changed is left out.
+    """Entries of a journal, each with the byte at which its line begins.
+
+    A line that is torn or changed is left out.
 
     Parameters
     ----------
@@ -91,11 +103,6 @@ def read_journal(path: Path, definition: str) -> Iterator[tuple[int, Entry]]:
         The journal.
     definition : str
         Fingerprint of what a row is now; of another one, the entry comes without its row.
-
-    Yields
-    ------
-    tuple
-        Byte at which the line begins, for :func:`read_entry`, and what it says.
     """
     place = 0
     with path.open("rb") as file:
@@ -104,12 +111,6 @@ def read_journal(path: Path, definition: str) -> Iterator[tuple[int, Entry]]:
             if entry is not None:
                 yield place, entry
             place += len(line)
-
-
-def read_entry(file: BinaryIO, place: int, definition: str) -> Entry | None:
-    """Entry of an open journal at a place; None where the line is torn or changed."""
-    file.seek(place)
-    return _entry(file.readline(), definition)
 
 
 def _entry(line: bytes, definition: str) -> Entry | None:
@@ -123,6 +124,87 @@ def _entry(line: bytes, definition: str) -> Entry | None:
     return Entry(**content, row=SweepRow(**row) if known else None)
 
 
-def journal_paths(folder: Path) -> list[Path]:
-    """Journals of a folder, always in the same order."""
-    return sorted(folder.glob("*.jsonl"))
+class Ledger:
+    """Rows of all journals of a store as they are now, found by simulation.
+
+    It holds 28 bytes of every row; the rows themselves are read when they are asked for.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._curves = folder / "curves"
+        self._journals = journal_paths(folder / "journals")
+        lines = np.fromiter(self._ended(), dtype=_LINE)
+        self._lines = lines[np.argsort(lines["identity"], kind="stable")]
+
+    def rows(
+        self, simulations: Iterable[Simulation]
+    ) -> Iterator[tuple[Simulation, SweepRow | None]]:
+        """Simulations in their order, with the rows of those whose files are as the rows say."""
+        remaining = iter(simulations)
+        while chunk := list(islice(remaining, ROWS_AT_ONCE)):
+            yield from zip(chunk, self._rows(chunk), strict=True)
+
+    def parts(self, label: str) -> dict[str, str] | None:
+        """What the key is made of with which a simulation of a label was stored last, if it was."""
+        labels = self._lines["label"]
+        last = np.searchsorted(labels, _hash(label), side="right", sorter=self._by_label) - 1
+        if last < 0:
+            return None
+        line = self._lines[self._by_label[last]]
+        entries = self._entries(int(line["journal"]), [int(line["place"])])
+        return next((one.parts for one in entries if one.label == label), None)
+
+    @functools.cached_property
+    def _by_label(self) -> NDArray[np.int64]:
+        """Lines in the order of their labels."""
+        return np.argsort(self._lines["label"], kind="stable")
+
+    def _ended(self) -> Iterator[tuple[int, int, int, int]]:
+        """Lines of simulations that have ended."""
+        for number, path in enumerate(self._journals):
+            for place, entry in read_journal(path, row_fingerprint()):
+                if entry.definition:
+                    identity = _hash(f"{entry.key} {entry.label}")
+                    yield identity, _hash(entry.label), place, number
+
+    def _rows(self, simulations: Sequence[Simulation]) -> Iterator[SweepRow | None]:
+        """Rows of a few simulations, journal by journal."""
+        # Spectra of one shape and different names have the same keys.
+        names = [(one.key, one.label) for one in simulations]
+        hashes = np.array([_hash(f"{key} {label}") for key, label in names], dtype="u8")
+        first, last = (
+            np.searchsorted(self._lines["identity"], hashes, side=side)
+            for side in ("left", "right")
+        )
+        wanted: dict[int, list[int]] = defaultdict(list)
+        for start, stop in zip(first, last, strict=True):
+            for line in self._lines[start:stop]:
+                wanted[int(line["journal"])].append(int(line["place"]))
+        found: dict[tuple[str, str], list[Entry]] = defaultdict(list)
+        for number, places in sorted(wanted.items()):
+            for entry in self._entries(number, sorted(places)):
+                found[entry.key, entry.label].append(entry)
+        for name in names:
+            yield next((entry.row for entry in found[name] if self._valid(entry)), None)
+
+    def _entries(self, number: int, places: Sequence[int]) -> Iterator[Entry]:
+        """Whole entries of a journal at given places."""
+        with self._journals[number].open("rb") as file:
+            for place in places:
+                file.seek(place)
+                if (entry := _entry(file.readline(), row_fingerprint())) is not None:
+                    yield entry
+
+    def _valid(self, entry: Entry) -> bool:
+        """Whether an entry has a row, and the file that the row names, if any, has its size."""
+        if entry.row is None or not entry.row.curve:
+            return entry.row is not None
+        try:
+            return (self._curves / entry.row.curve).stat().st_size == entry.size
+        except FileNotFoundError:
+            return False
+
+
+def _hash(text: str) -> int:
+    """64 bits that differ for different texts, but for one in 1e19."""
+    return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=8).digest())

@@ -1,4 +1,9 @@
-"""Tasks over MPI ranks, or one after the other without MPI; the only importer of mpi4py."""
+"""Tasks over MPI ranks, or one after the other without MPI, until notice is given that they end.
+
+This is the only importer of mpi4py. A batch system sends SIGTERM some time before it kills.
+Launchers differ in whether they pass it on to their ranks or kill them, so that whoever started a
+launcher leaves the ranks a file instead: notice is that signal, or that file.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +16,50 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, as_completed
 from pathlib import Path
 from types import FrameType
 from typing import TypeVar, cast
 
-from crackfront.sweep import notice
-
 Task = TypeVar("Task")
 Result = TypeVar("Result")
+
+_NOTICE_FILE = "CRACKFRONT_NOTICE"
+"""Environment variable that names the file of a notice."""
+
+_received = threading.Event()
+
+
+def notice_is_given() -> bool:
+    """Whether this process is to end."""
+    name = os.environ.get(_NOTICE_FILE)
+    return _received.is_set() or (name is not None and Path(name).exists())
+
+
+@contextlib.contextmanager
+def heeding_notice() -> Iterator[None]:
+    """Take SIGTERM as the notice, and not as the end, of this process."""
+    try:
+        with _on_sigterm(_received.set):
+            yield
+    finally:
+        _received.clear()
+
+
+@contextlib.contextmanager
+def _on_sigterm(act: Callable[[], None]) -> Iterator[None]:
+    """Do something else than to end where this process is told to end."""
+
+    def receive(number: int, frame: FrameType | None) -> None:
+        act()
+
+    before = signal.signal(signal.SIGTERM, receive)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def under_mpi() -> bool:
@@ -29,12 +68,7 @@ def under_mpi() -> bool:
 
 
 def is_manager(n_worker: int) -> bool:
-    """Whether this process plans and reports; without MPI it always does.
-
-    Parameters
-    ----------
-    n_worker : int
-        Ranks that shall compute; the manager is one more.
+    """Whether this process plans and reports, beside so many that compute; always without MPI.
 
     Raises
     ------
@@ -62,10 +96,7 @@ def is_manager(n_worker: int) -> bool:
 def serve_tasks(module: str) -> None:
     """Compute what the manager hands out until it has no more.
 
-    Parameters
-    ----------
-    module : str
-        Where the tasks' function stands; it is imported while the manager still plans.
+    The module in which the tasks' function stands is imported while the manager still plans.
     """
     importlib.import_module(module)
     from mpi4py import MPI
@@ -78,7 +109,7 @@ def serve_tasks(module: str) -> None:
 def run_tasks(
     function: Callable[[Task], Result], tasks: Sequence[Task]
 ) -> Iterator[tuple[Task, Result]]:
-    """Results of tasks as they are found; a free rank takes the next task of the list.
+    """Tasks with their results, as they are found; a free rank takes the next task of the list.
 
     Without MPI the tasks run here, one after the other. With MPI this is called by the manager
     while the other ranks are in :func:`serve_tasks`, also where there is no task.
@@ -89,11 +120,6 @@ def run_tasks(
         A module's function of one task; it and the tasks travel by pickle.
     tasks : sequence
         The longest first.
-
-    Yields
-    ------
-    tuple
-        Task and result, in the order in which they finish.
     """
     if not under_mpi():
         for task in tasks:
@@ -113,13 +139,7 @@ def run_tasks(
 
 
 def default_launcher() -> str:
-    """The `mpiexec` beside this Python, or else the one on the path.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
+    """The `mpiexec` beside this Python, or else the one on the path; refused where none is."""
     beside = Path(sys.executable).with_name("mpiexec")
     found = str(beside) if beside.exists() else shutil.which("mpiexec")
     if found is None:
@@ -133,26 +153,18 @@ def default_launcher() -> str:
 def launch_ranks(
     arguments: Sequence[str], n_worker: int, launcher: str | None, folder: Path
 ) -> int:
-    """Run a crackfront command on a manager and a number of workers.
+    """Exit code of a crackfront command that is run on a manager and a number of workers.
 
-    SIGTERM is passed on as a notice, a file that the ranks see, since launchers differ in what
-    they do with it; a second SIGTERM ends the launcher.
+    SIGTERM leaves the ranks the file of a notice; a second SIGTERM ends the launcher.
 
     Parameters
     ----------
-    arguments : sequence of str
-        Arguments of `crackfront`.
-    n_worker : int
-        Ranks that compute.
+    arguments, n_worker
+        Arguments of `crackfront`, and number of ranks that compute.
     launcher : str or None
         Command that takes `-n` and a number, as in "srun -K1 --mpi=pmi2".
     folder : Path
         Folder for the notice, which all ranks see.
-
-    Returns
-    -------
-    int
-        Exit code of the launcher.
 
     Raises
     ------
@@ -167,32 +179,24 @@ def launch_ranks(
         *arguments,
     ]
     file = folder / f".notice-{secrets.token_hex(8)}"
-    environment = {"OMP_NUM_THREADS": "1"} | dict(os.environ) | {notice.VARIABLE: str(file)}
+    environment = {"OMP_NUM_THREADS": "1"} | dict(os.environ) | {_NOTICE_FILE: str(file)}
     try:
         process = subprocess.Popen(command, env=environment)
     except OSError as error:
         raise ValueError(
             f"launcher {command[0]!r} cannot be started ({error.strerror}); name another one"
         ) from error
-    with _notice_passed_on(process, file):
-        return process.wait()
 
-
-@contextlib.contextmanager
-def _notice_passed_on(process: subprocess.Popen[bytes], file: Path) -> Iterator[None]:
-    """Leave a file where this process is told to end; end a child where it is interrupted."""
-
-    def leave_notice(number: int, frame: FrameType | None) -> None:
+    def leave_notice() -> None:
         try:
             file.touch(exist_ok=False)
         except OSError:  # the second time, or where nothing can be written
             process.terminate()
 
-    before = signal.signal(signal.SIGTERM, leave_notice)
     try:
-        yield
+        with _on_sigterm(leave_notice):
+            return process.wait()
     finally:
-        signal.signal(signal.SIGTERM, before)
         if process.poll() is None:
             process.terminate()
             process.wait()

@@ -1,37 +1,94 @@
-"""The folder of a sweep: where its files are, how they are made, and how they become one."""
+"""The folder of a sweep: where its files are, what they hold and lack, and how they become one."""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import statistics
+import time
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 from crackfront.analysis.table import SweepRow
-from crackfront.data.files import leftover_parts, write_text
+from crackfront.data.files import UnreadableFileError, replace_atomically, write_text
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.run import compile_solver
+from crackfront.simulate.files import read_simulation
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep import parallel
-from crackfront.sweep.inventory import Inventory, holdings, inventory
+from crackfront.sweep.journal import Ledger, journal_paths, read_journal
 from crackfront.sweep.sweep import Shard, Sweep, shard_fingerprint
-from crackfront.sweep.table import write_hysteresis
-from crackfront.sweep.tasks import NOT_STORED, STOPPED, Finished, Task, run_task
+from crackfront.sweep.table import COMPLETE, row_fingerprint, sweep_row, write_hysteresis
 
-CHECKPOINT_SECONDS = 60.0
-"""Time between checkpoints of a running simulation, where nothing else is asked for."""
+SECONDS_TO_LIVE = 120.0
+"""Age of a journal, against the newest, from which its process counts as ended."""
+
+SECONDS_OF_CLOCKS = 600.0
+"""Age of the newest journal by this machine's clock from which nothing runs any more."""
+
+_COMPRESSED = {".nc", ".png", ".pdf", ".gif", ".zip"}
+"""Files that become no smaller."""
+
+
+@dataclass(frozen=True, slots=True)
+class Holding:
+    """What a store has of a simulation: its row, or a sentence where its file is of no use."""
+
+    simulation: Simulation
+    row: SweepRow | None
+    unreadable: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Stale:
+    """Label of a simulation that is stored with another key, and which parts of that changed."""
+
+    label: str
+    changed: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Inventory:
+    """What a store lacks, a sentence for every file that is of no use, and what is stale of it."""
+
+    missing: tuple[Simulation, ...]
+    unreadable: tuple[str, ...]
+    stale: tuple[Stale, ...]
+
+    def stale_sentence(self) -> str:
+        """How many are stale for which reason; empty where none is."""
+        reasons = Counter(" and ".join(item.changed) for item in self.stale)
+        told = ", ".join(
+            f"{count} as {reason} changed" for reason, count in sorted(reasons.items())
+        )
+        return f"{len(self.stale)} stored simulations are stale: {told}" if told else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far one spectrum is.
+
+    Attributes
+    ----------
+    done, failed, running, waiting : int
+        Simulations with values; rows without; those that a process is at; all others.
+    seconds : float
+        Processor time that is expected for those that are running or waiting. (Units: s)
+    """
+
+    name: str
+    done: int
+    failed: int
+    running: int
+    waiting: int
+    seconds: float
 
 
 @dataclass(frozen=True, slots=True)
 class Store:
-    """Results of a sweep in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of the sweep.
-    """
+    """Results of a sweep in a folder."""
 
     folder: Path
 
@@ -40,68 +97,97 @@ class Store:
         """Configuration with which the folder was filled last."""
         return self.folder / "configuration.yaml"
 
+    @property
+    def journals(self) -> Path:
+        """Folder of the journals."""
+        return self.folder / "journals"
+
+    @property
+    def hysteresis(self) -> Path:
+        """File of the whole sweep."""
+        return self.folder / "hysteresis.nc"
+
     def path(self, simulation: Simulation) -> Path:
         """File of a simulation."""
         return self.folder / "curves" / f"{simulation.stem}.nc"
 
-    def manifest(self, shard: Shard) -> Path:
-        """File that says that all simulations of a shard are stored."""
-        return self.folder / "shards" / f"{shard.name}.json"
+    def checkpoint(self, simulation: Simulation) -> Path:
+        """File from which a simulation goes on."""
+        return self.folder / "checkpoints" / f"{simulation.stem}.nc"
+
+    def holdings(
+        self, simulations: Iterable[Simulation], ledger: Ledger | None = None
+    ) -> Iterator[Holding]:
+        """What is stored of simulations, by the journals or a ledger that was made of them."""
+        for simulation, row in (ledger or Ledger(self.folder)).rows(simulations):
+            if row is not None or not self.path(simulation).is_file():
+                yield Holding(simulation, row)
+                continue
+            try:
+                result = read_simulation(self.path(simulation), simulation)
+                yield Holding(simulation, sweep_row(result))
+            except UnreadableFileError as error:
+                yield Holding(simulation, None, str(error))
 
     def inventory(self, simulations: Iterable[Simulation]) -> Inventory:
-        """What is missing among simulations, and why.
+        """What is missing among simulations, and why."""
+        ledger = Ledger(self.folder)
+        absent = [one for one in self.holdings(simulations, ledger) if one.row is None]
+        missing = tuple(one.simulation for one in absent)
+        return Inventory(
+            missing,
+            unreadable=tuple(one.unreadable for one in absent if one.unreadable),
+            stale=tuple(
+                Stale(
+                    one.label,
+                    tuple(name for name, part in one.parts.items() if part != known.get(name)),
+                )
+                for one in missing
+                if (known := ledger.parts(one.label)) is not None
+            ),
+        )
 
-        Parameters
-        ----------
-        simulations : iterable of Simulation
-            Simulations to look for.
+    def progress(self, sweep: Sweep) -> list[Progress]:
+        """How far each spectrum of a sweep is, also while it runs elsewhere.
+
+        The expected times are those of the cost model, in proportion to what the stored simulations
+        of the sweep took.
         """
-        return inventory(self.folder, simulations)
+        running, ledger = self._running(), Ledger(self.folder)
+        found, paces = [], []
+        for item in sweep.spectra:
+            counts: Counter[str] = Counter()
+            seconds = 0.0
+            for held in self.holdings(sweep.simulations(item), ledger):
+                expected = expected_cost(held.simulation).seconds
+                if held.row is None:
+                    counts["running" if held.simulation.key in running else "waiting"] += 1
+                    seconds += expected
+                    continue
+                counts["done" if held.row.status in COMPLETE else "failed"] += 1
+                if held.row.cpu_seconds > 0:
+                    paces.append(held.row.cpu_seconds / expected)
+            numbers = {name: counts[name] for name in ("done", "failed", "running", "waiting")}
+            found.append(Progress(item.name, **numbers, seconds=seconds))
+        pace = statistics.median(paces) if paces else 1.0
+        return [replace(one, seconds=pace * one.seconds) for one in found]
 
-    def fill(
-        self,
-        simulations: Sequence[Simulation],
-        origin: Provenance,
-        checkpoint_seconds: float = CHECKPOINT_SECONDS,
-    ) -> Iterator[tuple[Simulation, Finished]]:
-        """Run simulations, the longest first, and store each as soon as it is finished.
-
-        Parameters
-        ----------
-        simulations : sequence of Simulation
-            What to run.
-        origin : Provenance
-            What the files say about their origin.
-        checkpoint_seconds : float, optional
-            Time between checkpoints of a running simulation.
-
-        Yields
-        ------
-        tuple
-            Simulation and how it ended, in the order in which they end. The first that is stopped
-            or cannot be stored is the last.
-
-        Raises
-        ------
-        OSError
-            If nothing can be written in the folder, before anything is run.
-        """
-        for name in ("curves", "journals", "checkpoints"):
-            (self.folder / name).mkdir(parents=True, exist_ok=True)
-            for part in leftover_parts(self.folder / name):
-                part.unlink(missing_ok=True)
-        write_text(self.configuration, origin.configuration)
-        longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
-        tasks = [Task(one, self.folder, origin, checkpoint_seconds) for one in longest_first]
-        for solver in {item.solver.name for item in simulations}:
-            compile_solver(solver)
-        for task, finished in parallel.run_tasks(run_task, tasks):
-            yield task.simulation, finished
-            if finished.status in (STOPPED, NOT_STORED):
-                return
+    def _running(self) -> set[str]:
+        """Keys that the journals of living processes have begun last."""
+        moments = {path: path.stat().st_mtime for path in journal_paths(self.journals)}
+        newest = max(moments.values(), default=0.0)
+        if time.time() - newest > SECONDS_OF_CLOCKS:
+            return set()
+        found = set()
+        for path, moment in moments.items():
+            if newest - moment < SECONDS_TO_LIVE:
+                entries = [entry for _, entry in read_journal(path, row_fingerprint())]
+                if entries and not entries[-1].definition:
+                    found.add(entries[-1].key)
+        return found
 
     def write_manifest(self, shard: Shard, simulations: Sequence[Simulation]) -> Path:
-        """Write the list of the stored simulations of a shard."""
+        """Write the file that says that all simulations of a shard are stored."""
         content = {
             "spectrum": shard.item.name,
             "fingerprint": shard_fingerprint(simulations),
@@ -109,24 +195,12 @@ class Store:
                 {"key": one.key, "file": f"curves/{self.path(one).name}"} for one in simulations
             ],
         }
-        path = self.manifest(shard)
+        path = self.folder / "shards" / f"{shard.name}.json"
         write_text(path, json.dumps(content, indent=1) + "\n")
         return path
 
     def aggregate(self, sweep: Sweep, origin: Provenance) -> tuple[Path, dict[str, int]]:
-        """Write the file of the whole sweep.
-
-        Parameters
-        ----------
-        sweep : Sweep
-            Parameters of the sweep.
-        origin : Provenance
-            What the file says about its origin.
-
-        Returns
-        -------
-        tuple
-            The file, and the number of simulations of every status.
+        """Write the file of the whole sweep; it, and the number of simulations of every status.
 
         Raises
         ------
@@ -134,13 +208,13 @@ class Store:
             If simulations are missing or unreadable. The lists of their shards are removed, so
             that the workflow runs them again.
         """
-        path = self.folder / "hysteresis.nc"
-        return path, dict(write_hysteresis(path, sweep, self._rows(sweep), origin))
+        statuses = write_hysteresis(self.hysteresis, sweep, self._rows(sweep), origin)
+        return self.hysteresis, dict(statuses)
 
     def _rows(self, sweep: Sweep) -> Iterator[SweepRow]:
         """Rows of a whole sweep; where one is missing, all are looked for and none is left."""
         missing: list[Simulation] = []
-        for held in holdings(self.folder, sweep.simulations()):
+        for held in self.holdings(sweep.simulations()):
             if held.row is None:
                 missing.append(held.simulation)
             elif not missing:
@@ -160,3 +234,60 @@ class Store:
             content = json.loads(path.read_text(encoding="utf-8"))
             if not keys.isdisjoint(entry["key"] for entry in content["simulations"]):
                 path.unlink()
+
+    def archive(self, path: Path, *, curves: bool) -> int:
+        """Write the files of the sweep and their checksums into a ZIP file; the number of files.
+
+        Checkpoints and what is only half written are left out. Names in the archive begin with that
+        of the folder, and the list stands in it too: unpack, go there, `sha256sum --check
+        SHA256SUMS`.
+
+        Parameters
+        ----------
+        path : Path
+            The archive.
+        curves : bool
+            Whether the files of the single simulations belong to it.
+
+        Raises
+        ------
+        ValueError
+            If the folder holds no file of a sweep.
+        """
+        if not self.hysteresis.is_file():
+            raise ValueError(
+                f"{self.folder} holds no hysteresis.nc; run the sweep before it is archived"
+            )
+        left_out = {"checkpoints"} if curves else {"checkpoints", "curves"}
+        files = [
+            file
+            for file in sorted(self.folder.rglob("[!.]*"))
+            if file.is_file()
+            and not file.is_symlink()
+            and file.relative_to(self.folder).parts[0] not in left_out
+            and file.resolve() != path.resolve()
+        ]
+
+        def write(part: Path) -> None:
+            root, sums = Path(self.folder.name), []
+            with ZipFile(part, "w") as archive:
+                for file in files:
+                    name = file.relative_to(self.folder)
+                    sums.append(f"{_added(archive, file, str(root / name))}  {name}\n")
+                archive.writestr(str(root / "SHA256SUMS"), "".join(sums))
+
+        replace_atomically(path, write)
+        return len(files)
+
+
+def _added(archive: ZipFile, file: Path, name: str) -> str:
+    """Checksum of a file that is added to an archive, of just what is added."""
+    # A clock may have been wrong: ZIP knows no year before 1980.
+    entry = ZipInfo.from_file(file, name, strict_timestamps=False)
+    entry.compress_type = ZIP_STORED if file.suffix in _COMPRESSED else ZIP_DEFLATED
+    digest = hashlib.sha256()
+    with file.open("rb") as source, archive.open(entry, "w") as target:
+        while content := source.read(2**20):
+            digest.update(content)
+            target.write(content)
+    return digest.hexdigest()

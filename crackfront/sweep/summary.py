@@ -28,10 +28,8 @@ def summary_page(
         Table of the fit, in Markdown.
     statuses : mapping of str to int
         Number of simulations of every status.
-    configuration : str
-        Text of the configuration.
-    origin : mapping of str to str
-        What the results say of their origin.
+    configuration, origin
+        Text of the configuration, and what the results say of their origin.
     """
     return "\n".join(
         [

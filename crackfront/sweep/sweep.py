@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from crackfront.core.adhesion import FieldKind, correlation_length
+from crackfront.core.adhesion import FieldKind
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -18,15 +18,7 @@ from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
 @dataclass(frozen=True, slots=True)
 class NamedSpectrum:
-    """A spectrum and what the configuration calls it.
-
-    Attributes
-    ----------
-    name : str
-        Name of the spectrum.
-    spectrum : SelfAffineSpectrum
-        Its shape. (Units: reduced lateral length)
-    """
+    """A spectrum, lengths in the reduced lateral unit, and what the configuration calls it."""
 
     name: str
     spectrum: SelfAffineSpectrum
@@ -36,14 +28,7 @@ class NamedSpectrum:
 class Shard:
     """What one job runs: a spectrum with all its amplitudes, and a block of its realisations.
 
-    Attributes
-    ----------
-    item : NamedSpectrum
-        The spectrum.
-    realisations : range
-        Numbers of the realisations.
-    name : str
-        The spectrum's name, with the first and last realisation where these are not all.
+    Its name is that of the spectrum, with the first and last realisation where these are not all.
     """
 
     item: NamedSpectrum
@@ -57,15 +42,7 @@ MOST_SHARDS = 1000
 
 @dataclass(frozen=True, slots=True)
 class FitRange:
-    """Amplitudes that enter a fit, and the number of bootstrap samples.
-
-    Attributes
-    ----------
-    lowest_elastic_energy, highest_elastic_energy : float
-        Smallest and largest requested e_el / w_int.
-    n_bootstrap : int
-        Resamplings of the realisations.
-    """
+    """Requested e_el / w_int that enter a fit, and the number of bootstrap samples."""
 
     lowest_elastic_energy: float
     highest_elastic_energy: float
@@ -78,14 +55,10 @@ class Sweep:
 
     Attributes
     ----------
-    seed : int
-        Seed of all noise.
     kind : {"roughness", "chemical"}
         What the spectra describe.
     scales : Scales or None
         Scene that the configuration was written for, where it was in SI units.
-    spectra : tuple of NamedSpectrum
-        Shapes of the spectra.
     elastic_energies : tuple of float
         Requested e_el / w_int.
     n_realisation : int
@@ -98,8 +71,6 @@ class Sweep:
         What to record beside the curves.
     failed_fraction : float
         Part of the simulations that may end without a value.
-    fit : FitRange
-        Amplitudes that enter the fit.
     """
 
     seed: int
@@ -115,13 +86,7 @@ class Sweep:
     fit: FitRange
 
     def named(self, name: str) -> NamedSpectrum:
-        """Spectrum of a name.
-
-        Raises
-        ------
-        ValueError
-            If there is none, with the nearest name.
-        """
+        """Spectrum of a name; a ValueError names the nearest where there is none."""
         for item in self.spectra:
             if item.name == name:
                 return item
@@ -129,10 +94,6 @@ class Sweep:
         near = difflib.get_close_matches(name, names, n=1)
         hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(names)}"
         raise ValueError(f"the sweep has no spectrum {name!r}; {hint}")
-
-    def correlation_length(self, item: NamedSpectrum) -> float:
-        """Wavelength of the mean wavevector of w_loc, in reduced lateral lengths."""
-        return correlation_length(self.kind, item.spectrum)
 
     def simulation(self, item: NamedSpectrum, energy: float, realisation: int) -> Simulation:
         """One simulation of the sweep."""
@@ -151,15 +112,7 @@ class Sweep:
     def simulations(
         self, item: NamedSpectrum | None = None, realisations: range | None = None
     ) -> Iterator[Simulation]:
-        """Simulations one after the other: by spectrum, amplitude and realisation.
-
-        Parameters
-        ----------
-        item : NamedSpectrum, optional
-            The spectrum; by default all.
-        realisations : range, optional
-            Numbers of the realisations; by default all.
-        """
+        """Simulations, by default all: by spectrum, amplitude and realisation."""
         block = range(self.n_realisation) if realisations is None else realisations
         for one in self.spectra if item is None else (item,):
             for energy in self.elastic_energies:
@@ -178,12 +131,7 @@ class Sweep:
         return len(self.spectra) * len(self.elastic_energies) * self.n_realisation
 
     def shards(self, block: int | str | None = None) -> tuple[Shard, ...]:
-        """Shards of the sweep.
-
-        Parameters
-        ----------
-        block : int, optional
-            Realisations of a shard; by default all. Text is refused.
+        """Shards of a number of realisations each, by default of all.
 
         Raises
         ------
@@ -207,13 +155,7 @@ class Sweep:
         )
 
     def named_shard(self, item: NamedSpectrum, realisations: range) -> Shard:
-        """Shard of a spectrum and a block of realisations.
-
-        Raises
-        ------
-        ValueError
-            If the sweep has no such realisations.
-        """
+        """Shard of a spectrum and a block of realisations, which the sweep must have."""
         everything = range(self.n_realisation)
         if not realisations or not set(realisations) <= set(everything):
             raise ValueError(

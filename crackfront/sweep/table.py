@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import asdict, fields
 from itertools import islice
 from pathlib import Path
@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from crackfront.analysis.steady import (
     STEADY_DEFINITION,
@@ -32,22 +31,15 @@ from crackfront.analysis.table import (
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.fingerprint import fingerprint
 from crackfront.core.records import ADHESION, variables
-from crackfront.data.files import (
-    Block,
-    UnreadableFileError,
-    labelled_fields,
-    read_dataset,
-    write_dataset_in_blocks,
-)
+from crackfront.data.files import UnreadableFileError, labelled_fields, read_dataset
 from crackfront.data.provenance import Provenance
+from crackfront.data.records import Block, write_records_in_blocks
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation, stated_error
 from crackfront.sweep.sweep import Sweep
 
 ROWS_AT_ONCE = 4096
-"""Rows that are written at once."""
-
-_ROW = variables(SweepRow, SPECTRUM, AMPLITUDE, REALISATION)
+"""Rows that are in memory at once."""
 
 COMPLETE = ("lost_contact", "steady")
 """Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
@@ -63,20 +55,17 @@ def write_hysteresis(
 
     Parameters
     ----------
-    path : Path
-        netCDF file.
-    sweep : Sweep
-        Its parameters.
+    path, sweep, origin
+        The file, what it is about, and where it comes from.
     rows : iterable of SweepRow
-        One for each simulation: by spectrum, amplitude and realisation, the last the fastest.
-    origin : Provenance
-        Where it comes from.
+        One for each simulation, in the order of :meth:`Sweep.simulations`.
 
     Returns
     -------
     Counter
         Number of simulations of every status.
     """
+    known = variables(SweepRow, SPECTRUM, AMPLITUDE, REALISATION)
     dataset = xr.Dataset(coords=labelled_fields(_axes(sweep)), attrs=_attributes(sweep))
     statuses: Counter[str] = Counter()
 
@@ -87,54 +76,40 @@ def write_hysteresis(
                 stop = min(start + ROWS_AT_ONCE, sweep.n_realisation)
                 block = list(islice(remaining, stop - start))
                 statuses.update(row.status for row in block)
-                yield Block((*cell, slice(start, stop)), _columns(block))
+                yield (*cell, slice(start, stop)), block
 
-    write_dataset_in_blocks(path, dataset, _ROW, blocks(), origin)
+    write_records_in_blocks(path, dataset, known, blocks(), origin)
     return statuses
 
 
-def _columns(rows: Sequence[SweepRow]) -> list[NDArray[Any]]:
-    """Columns of rows in the order of their variables; texts as objects."""
-    columns = [np.array([getattr(row, item.name) for row in rows]) for item in _ROW]
-    return [column.astype(object) if column.dtype.kind == "U" else column for column in columns]
-
-
 def read_table(path: Path) -> SweepTable:
-    """Arrays of a sweep that a fit needs.
-
-    Parameters
-    ----------
-    path : Path
-        File that :func:`write_hysteresis` wrote.
+    """Arrays of a sweep that a fit needs, from a file that :func:`write_hysteresis` wrote.
 
     Raises
     ------
-    ValueError
+    UnreadableFileError
         If the file is missing, truncated or that of something else.
     """
     sources = {name: name for name in SweepTable.__dataclass_fields__}
     sources["e_el_requested"] = AMPLITUDE
-    dataset = read_dataset(path, sources.values())
-    missing = [name for name in sources.values() if name not in dataset]
-    if missing:
-        raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; aggregate the sweep again")
+    dataset = _read(path, sources.values())
     columns = {name: np.asarray(dataset[source]) for name, source in sources.items()}
     columns["spectrum"] = columns["spectrum"].astype(np.str_)
     return SweepTable(**columns)
 
 
 def read_statuses(path: Path) -> Counter[str]:
-    """Number of simulations of every status in the file of a sweep.
+    """Number of simulations of every status in the file of a sweep; as :func:`read_table`."""
+    return Counter(_read(path, ("status",))["status"].values.ravel().tolist())
 
-    Raises
-    ------
-    ValueError
-        If the file is missing, truncated or that of something else.
-    """
-    dataset = read_dataset(path, ("status",))
-    if "status" not in dataset:
-        raise UnreadableFileError(f"{path} lacks status; aggregate the sweep again")
-    return Counter(dataset["status"].values.ravel().tolist())
+
+def _read(path: Path, names: Collection[str]) -> xr.Dataset:
+    """Dataset of a file with variables that it must have."""
+    dataset = read_dataset(path, names)
+    missing = [name for name in names if name not in dataset]
+    if missing:
+        raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; aggregate the sweep again")
+    return dataset
 
 
 def sweep_row(result: SimulationResult) -> SweepRow:
@@ -165,15 +140,7 @@ def sweep_row(result: SimulationResult) -> SweepRow:
 
 
 def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
-    """What the file of a sweep says about a simulation that cannot be done.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        The simulation.
-    status, sentence : str
-        Why, in a word and in a sentence.
-    """
+    """The same about a simulation that cannot be done, and why, in a word and in a sentence."""
     unknown: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
     nothing = dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
     told = {"status": status, "status_sentence": sentence, "seed": simulation.seed, "curve": ""}
@@ -208,7 +175,7 @@ def _axes(sweep: Sweep) -> SweepAxes:
         short_cutoff=np.array([spectrum.short_cutoff for spectrum in spectra]),
         roll_off=np.array([spectrum.roll_off for spectrum in spectra]),
         hurst=np.array([spectrum.hurst for spectrum in spectra]),
-        correlation_length=np.array([sweep.correlation_length(item) for item in sweep.spectra]),
+        correlation_length=np.array([row[0].correlation_length for row in firsts]),
         n_angle=np.array([[tile.n_angle for tile in row] for row in tiles]),
         sample_spacing=np.array([[tile.spacing for tile in row] for row in tiles]),
         tile_side=np.array([row[0].tile_side for row in tiles]),

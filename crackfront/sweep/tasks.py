@@ -1,88 +1,91 @@
-"""A simulation of a sweep as a task: run, checkpointed, stored, and told to the journal."""
+"""Simulations as tasks: run, checkpointed, stored and told to the journal, the longest first."""
 
 from __future__ import annotations
 
 import contextlib
 import functools
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from crackfront.data.files import UnreadableFileError
+from crackfront.data.files import UnreadableFileError, leftover_parts, write_text
 from crackfront.data.provenance import Provenance
+from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_checkpoint, write_checkpoint, write_simulation
-from crackfront.simulate.run import PartialRun, run_simulation
+from crackfront.simulate.run import PartialRun, compile_solver, run_simulation
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep import notice
+from crackfront.sweep import parallel
 from crackfront.sweep.journal import Entry, Journal
+from crackfront.sweep.store import Store
 from crackfront.sweep.table import failed_row, row_fingerprint, sweep_row
 
 STOPPED, NOT_STORED = "stopped", "not_stored"
 """Statuses of tasks after which a run ends; they have no row."""
-
-REFUSED, DEFECT = "refused", "defect"
-"""Statuses of rows: the surface or the load cannot be simulated, or the solver found a defect."""
 
 SECONDS_BETWEEN_BEATS = 20.0
 """Time after which a running simulation shows that it lives."""
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
-    """A simulation, the store that it goes to and what its file says about its origin.
-
-    Attributes
-    ----------
-    simulation : Simulation
-        What to run.
-    folder : Path
-        Folder of the store.
-    origin : Provenance
-        What the files say about their origin.
-    checkpoint_seconds : float
-        Time between checkpoints.
-    """
-
-    simulation: Simulation
-    folder: Path
-    origin: Provenance
-    checkpoint_seconds: float
-
-    @property
-    def curve(self) -> Path:
-        """File of the result."""
-        return self.folder / "curves" / f"{self.simulation.stem}.nc"
-
-    @property
-    def checkpoint(self) -> Path:
-        """File from which a later run goes on."""
-        return self.folder / "checkpoints" / f"{self.simulation.stem}.nc"
-
-
-@dataclass(frozen=True, slots=True)
 class Finished:
-    """How a task ended.
-
-    Attributes
-    ----------
-    status : str
-        Status of its row; `stopped` or `not_stored` where there is none.
-    seconds : float
-        Wall time.
-    sentence : str
-        What was wrong, or empty.
-    """
+    """How a task ended: the status of its row, or that without one; time; and what was wrong."""
 
     status: str
     seconds: float = 0.0
     sentence: str = ""
 
 
+def fill(
+    store: Store,
+    simulations: Sequence[Simulation],
+    origin: Provenance,
+    checkpoint_seconds: float = 60.0,
+) -> Iterator[tuple[Simulation, Finished]]:
+    """Run simulations, the longest first, and store each as soon as it is finished.
+
+    Each is told with how it ended, in the order in which they end. The first that is stopped or
+    cannot be stored is the last.
+
+    Raises
+    ------
+    OSError
+        If nothing can be written in the folder, before anything is run.
+    """
+    for name in ("curves", "journals", "checkpoints"):
+        (store.folder / name).mkdir(parents=True, exist_ok=True)
+        for part in leftover_parts(store.folder / name):
+            part.unlink(missing_ok=True)
+    write_text(store.configuration, origin.configuration)
+    longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
+    tasks = [_Task(one, store, origin, checkpoint_seconds) for one in longest_first]
+    for solver in {item.solver.name for item in simulations}:
+        compile_solver(solver)
+    for task, finished in parallel.run_tasks(_run_task, tasks):
+        yield task.simulation, finished
+        if finished.status in (STOPPED, NOT_STORED):
+            return
+
+
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """A simulation, where it is stored, and what its file says about its origin."""
+
+    simulation: Simulation
+    store: Store
+    origin: Provenance
+    checkpoint_seconds: float
+
+    @property
+    def checkpoint(self) -> Path:
+        """File from which a later run goes on."""
+        return self.store.checkpoint(self.simulation)
+
+
 class _Keeper:
     """What stores the checkpoints of a task, and ends it where notice was given."""
 
-    def __init__(self, task: Task, journal: Journal) -> None:
+    def __init__(self, task: _Task, journal: Journal) -> None:
         self._task, self._journal = task, journal
         self._written = self._beaten = time.monotonic()
 
@@ -95,26 +98,26 @@ class _Keeper:
 
     def keep(self, make: Callable[[], PartialRun]) -> None:
         """Store a checkpoint where it is time to; end where notice was given."""
-        now, stop = time.monotonic(), notice.is_given()
+        now, stop = time.monotonic(), parallel.notice_is_given()
         if stop or now - self._written >= self._task.checkpoint_seconds:
             with _storing():
                 write_checkpoint(self._task.checkpoint, make(), self._task.origin)
             self._written = time.monotonic()
         if stop:
-            raise notice.NoticeGivenError
+            raise _NoticeGivenError
         if now - self._beaten >= SECONDS_BETWEEN_BEATS:
             with _storing():
                 self._journal.beat()
             self._beaten = now
 
 
-def run_task(task: Task) -> Finished:
+def _run_task(task: _Task) -> Finished:
     """Run one simulation and store its result; one that cannot be done becomes a row as well."""
-    if notice.is_given():
+    if parallel.notice_is_given():
         return Finished(STOPPED)
     try:
-        return _run(task, _journal(task.folder / "journals"))
-    except notice.NoticeGivenError:
+        return _run(task, _journal(task.store.journals))
+    except _NoticeGivenError:
         return Finished(STOPPED)
     except MemoryError:
         return Finished(NOT_STORED, sentence="the memory does not suffice; start fewer ranks")
@@ -122,7 +125,7 @@ def run_task(task: Task) -> Finished:
         return Finished(NOT_STORED, sentence=str(error))
 
 
-def _run(task: Task, journal: Journal) -> Finished:
+def _run(task: _Task, journal: Journal) -> Finished:
     """Run one simulation; the journal tells that it began and how it ended."""
     simulation, keeper = task.simulation, _Keeper(task, journal)
     begun = Entry(simulation.key, simulation.label, simulation.parts)
@@ -131,18 +134,24 @@ def _run(task: Task, journal: Journal) -> Finished:
     try:
         result = run_simulation(simulation, resume=keeper.found(), keep=keeper.keep)
     except (ValueError, ArithmeticError, RuntimeError) as error:
-        status = REFUSED if isinstance(error, ValueError) else DEFECT
+        # The surface or the load cannot be simulated, or the solver found a defect in itself.
+        status = "refused" if isinstance(error, ValueError) else "defect"
         sentence = str(error) or type(error).__name__
         row, size, seconds = failed_row(simulation, status, sentence), 0, 0.0
     else:
+        curve = task.store.path(simulation)
         with _storing():
-            write_simulation(task.curve, result, task.origin)
-            size = task.curve.stat().st_size
+            write_simulation(curve, result, task.origin)
+            size = curve.stat().st_size
         row, sentence, seconds = sweep_row(result), "", result.measures.seconds
     with _storing():
         journal.append(replace(begun, size=size, definition=row_fingerprint(), row=row))
     task.checkpoint.unlink(missing_ok=True)
     return Finished(row.status, seconds, sentence)
+
+
+class _NoticeGivenError(Exception):
+    """A simulation was left because of the notice; what was reached is stored."""
 
 
 class _NotStoredError(Exception):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from crackfront.data.quantities import si_value
+from crackfront.data.written_units import si_value
 
 
 @pytest.mark.parametrize(

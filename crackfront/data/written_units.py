@@ -1,4 +1,4 @@
-"""Quantities with units, from texts such as 0.7MPa and to them; the only importer of pint."""
+"""Units as people write them, read from texts such as 0.7MPa; the only importer of pint."""
 
 from __future__ import annotations
 
@@ -62,17 +62,7 @@ def si_value(text: str, unit: str, *, what: str) -> float:
 
 
 def unit_value(given: str, unit: str) -> float:
-    """Value of one unit in another.
-
-    Parameters
-    ----------
-    given, unit : str
-        Two units of the same dimension.
-
-    Raises
-    ------
-    ValueError
-        If one of them is unknown or they differ in their dimensions.
+    """Value of one unit in another of the same dimension; a ValueError where there is none.
 
     Examples
     --------

@@ -1,0 +1,175 @@
+"""What a sweep that has run becomes: one file, its fit, figures, a page and an archive."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from crackfront.cli.report import FILE, as_json, examples
+from crackfront.cli.sweep import configuration_argument, output_option, sweep_and_store
+
+if TYPE_CHECKING:
+    from crackfront.analysis.result import SweepFit
+    from crackfront.simulate.simulation import Simulation
+    from crackfront.sweep.store import Store
+    from crackfront.sweep.sweep import Sweep
+
+
+@click.command(epilog=examples("crackfront aggregate config/default.yaml"))
+@configuration_argument
+@output_option
+def aggregate(configuration: Path, output: Path | None) -> None:
+    """Collect the stored simulations of a sweep in hysteresis.nc."""
+    from crackfront.data.provenance import provenance
+    from crackfront.sweep.table import COMPLETE
+
+    sweep, store = sweep_and_store(configuration, output)
+    path, statuses = store.aggregate(sweep, provenance(configuration.read_text(encoding="utf-8")))
+    others = {status: count for status, count in statuses.items() if status not in COMPLETE}
+    failed, total = sum(others.values()), sweep.n_simulation
+    told = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
+    sentence = f"{failed} of {total} simulations have no value: {told}"
+    if failed > sweep.failed_fraction * total:
+        raise click.ClickException(
+            f"{sentence}; failed_fraction of the configuration allows {sweep.failed_fraction:g}. "
+            f"What they ended by stands in status_sentence of {path}"
+        )
+    if failed:
+        click.echo(f"Warning: {sentence}", err=True)
+    click.echo(f"hysteresis: {path}")
+
+
+@click.command(
+    epilog=examples(
+        "crackfront fit config/default.yaml",
+        "crackfront fit config/default.yaml --json",
+    )
+)
+@configuration_argument
+@output_option
+@as_json
+def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
+    """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the last."""
+    from crackfront.data.provenance import provenance
+    from crackfront.sweep.fit_files import write_fit
+
+    sweep, store = sweep_and_store(configuration, output)
+    fitted = _fitted(sweep, store)
+    paths = write_fit(store.folder, fitted, provenance(configuration.read_text(encoding="utf-8")))
+    if as_json:
+        click.echo(paths[1].read_text(encoding="utf-8"))
+        return
+    click.echo(paths[2].read_text(encoding="utf-8"))
+    click.echo(f"fit: {', '.join(map(str, paths))}")
+
+
+@click.command(epilog=examples("crackfront figures config/default.yaml"))
+@configuration_argument
+@output_option
+def figures(configuration: Path, output: Path | None) -> None:
+    """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
+    from crackfront.analysis.steady import steady_adhesion
+    from crackfront.plots.loop import loop_figure
+    from crackfront.plots.style import save_figure
+    from crackfront.plots.sweep import factor_figure, hysteresis_figure
+    from crackfront.simulate.files import read_simulation
+
+    sweep, store = sweep_and_store(configuration, output)
+    fitted = _fitted(sweep, store)
+    simulation = _loop_example(sweep)
+    result = read_simulation(store.path(simulation), simulation)
+    steady = steady_adhesion(result.record, simulation.correlation_length)
+    loop = loop_figure(
+        result.record.states,
+        (steady.w_appr, steady.w_retr),
+        (steady.lowest_radius, steady.highest_radius),
+        elastic_energy=result.measures.e_el,
+        kind=sweep.kind,
+        title=simulation.label,
+    )
+    drawn = {
+        "hysteresis": hysteresis_figure(fitted.table, fitted),
+        "loop": loop,
+        "factor": factor_figure(fitted.table, fitted),
+    }
+    for name, figure in drawn.items():
+        for path in save_figure(figure, store.folder / "figures" / name):
+            click.echo(f"figure: {path}")
+
+
+@click.command(epilog=examples("crackfront summary config/default.yaml"))
+@configuration_argument
+@output_option
+def summary(configuration: Path, output: Path | None) -> None:
+    """Write summary.html: the fit, how the simulations ended, the configuration, the origin."""
+    from crackfront.data.files import read_attributes, write_text
+    from crackfront.sweep.summary import summary_page
+    from crackfront.sweep.table import read_statuses
+
+    sweep, store = sweep_and_store(configuration, output)
+    attributes = {name: str(value) for name, value in read_attributes(store.hysteresis).items()}
+    page = summary_page(
+        f"Adhesion hysteresis: {configuration.stem}",
+        (store.folder / "fit.md").read_text(encoding="utf-8"),
+        read_statuses(store.hysteresis),
+        attributes.pop("configuration"),
+        attributes | {"seed of the sweep": str(sweep.seed)},
+    )
+    path = store.folder / "summary.html"
+    write_text(path, page)
+    click.echo(f"summary: {path}")
+
+
+@click.command(
+    epilog=examples(
+        "crackfront archive results/default",
+        "crackfront archive results/default --no-curves --output numbers.zip",
+    )
+)
+@click.argument("folder", type=FILE)
+@click.option("--output", type=FILE, help="The archive.  [default: <folder>.zip]")
+@click.option("--no-curves", is_flag=True, help="Without the files of the single simulations.")
+def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
+    """Pack the results of a sweep into a ZIP file with checksums, SHA256SUMS."""
+    from crackfront.sweep.store import Store
+
+    path = folder.with_name(f"{folder.name}.zip") if output is None else output
+    click.echo(f"archive: {path}, {Store(folder).archive(path, curves=not no_curves)} files")
+
+
+def fit_of_sweep(configuration: Path) -> SweepFit:
+    """Fit of the results of a sweep, in `results/` under the name of its configuration.
+
+    Raises
+    ------
+    ValueError
+        If the sweep has not been run.
+    """
+    sweep, store = sweep_and_store(configuration, None)
+    if not store.hysteresis.exists():
+        raise ValueError(
+            f"{store.folder} holds no hysteresis.nc; run the sweep first: "
+            f"make SWEEP={configuration}"
+        )
+    return _fitted(sweep, store)
+
+
+def _fitted(sweep: Sweep, store: Store) -> SweepFit:
+    """Fit of a sweep, always the same for the same table."""
+    from crackfront.analysis.sweep import fit_sweep
+    from crackfront.sweep.table import read_table
+
+    table = read_table(store.hysteresis)
+    return fit_sweep(table, **asdict(sweep.fit), seed=sweep.seed, kind=sweep.kind)
+
+
+def _loop_example(sweep: Sweep) -> Simulation:
+    """The simulation that comes nearest to the paper's Fig. 3c."""
+    self_affine = [
+        item for item in sweep.spectra if item.spectrum.roll_off > item.spectrum.short_cutoff
+    ]
+    energy = min(sweep.elastic_energies, key=lambda value: abs(value - 0.05))
+    return sweep.simulation((self_affine or sweep.spectra)[0], energy, 0)
