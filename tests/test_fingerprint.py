@@ -8,7 +8,7 @@ import pytest
 from crackfront.core import fingerprint as module
 from crackfront.core.fingerprint import fingerprint
 from crackfront.data.provenance import package_fingerprint
-from crackfront.simulate.simulation import scene_fingerprint
+from crackfront.simulate.simulation import simulation_fingerprint
 
 KERNEL = "core/solver/monotone.py"
 
@@ -33,7 +33,7 @@ def edited(path, *changes):
 
 def key_part():
     """What the key of a simulation has of the sources."""
-    return scene_fingerprint.__wrapped__()
+    return simulation_fingerprint.__wrapped__()
 
 
 def test_a_fingerprint_is_twelve_hexadecimal_digits():
@@ -41,7 +41,7 @@ def test_a_fingerprint_is_twelve_hexadecimal_digits():
 
 
 def test_equal_sources_have_equal_fingerprints(package):
-    assert key_part() == scene_fingerprint()
+    assert key_part() == simulation_fingerprint()
 
 
 def test_a_mended_docstring_a_comment_and_an_annotation_change_no_key(package):
