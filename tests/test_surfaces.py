@@ -12,7 +12,7 @@ from crackfront.core.adhesion import half_derivative_mean_square, rough_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
-from crackfront.studies.paper.synthetic_film import profile_periodogram
+from crackfront.studies.paper.si_6 import profile_periodogram
 from crackfront.topography.densities import isotropic_density, profile_density, topography
 from crackfront.topography.files import Treatment, surface_library
 from crackfront.topography.measures import measured_mean_square, measured_surface
