@@ -12,8 +12,7 @@ from crackfront.cli.completion import completion
 from crackfront.cli.cycle import cycle
 from crackfront.cli.figure import check_figures, compare_figures, draw_figure, figure, gallery
 from crackfront.cli.outlook import plan, status
-from crackfront.cli.predict import predict
-from crackfront.cli.surface import surface
+from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import aggregate, archive, figures, fit, simulate, summary
 from crackfront.cli.validate import validate
 

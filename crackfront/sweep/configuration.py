@@ -24,9 +24,8 @@ from crackfront.sweep.sections import (
     SurfaceSection,
 )
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
-from crackfront.topography.files import Treatment
 from crackfront.topography.measures import measured_surface
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.reading import Treatment, read_measurements
 
 
 def load_configuration(path: Path) -> Sweep:

@@ -12,7 +12,7 @@ from crackfront.core.field.fields import Interpolation
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.data.section import Count, Energy, InputFile, Positive, Section, refusal
 from crackfront.simulate.laws import Knobs
-from crackfront.topography.files import Detrend
+from crackfront.topography.reading import Detrend
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 
@@ -31,7 +31,7 @@ def _several(value: Any) -> Any:
 
 
 class SurfaceSection(Section):
-    """Measurements of a surface, read as :class:`crackfront.topography.files.Treatment` says."""
+    """Measurements of a surface, read as :class:`crackfront.topography.reading.Treatment` says."""
 
     file: Annotated[tuple[InputFile, ...], BeforeValidator(_several), Field(min_length=1)]
     detrend: Detrend = "curvature"
