@@ -3,8 +3,8 @@
 make; make SWEEP=config/strong.yaml
 python -m benchmarks.factors config/default.yaml config/strong.yaml --output results/benchmark
 
-Every row of `factors.csv` is a spectrum and an amplitude of :func:`crackfront.analysis`. Copied to
-`crackfront/factors.csv`, it is what the command predicts from.
+Every row of `factors.csv` is a spectrum and an amplitude of a sweep. Copied to
+`crackfront/analysis/factors.csv`, it is what the command predicts from.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import click
 import numpy as np
 
 from crackfront.analysis.estimate import mean_estimate
-from crackfront.analysis.measured_factors import MeasuredFactors
+from crackfront.analysis.factors import MeasuredFactors
 from crackfront.analysis.table import SweepTable
 from crackfront.core import jkr
 from crackfront.core.cycle.steady import SteadySchedule

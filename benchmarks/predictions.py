@@ -18,12 +18,11 @@ import click
 import numpy as np
 
 from benchmarks.scans import al3d
-from crackfront.analysis.factors import Factors
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import Scales
 from crackfront.topography.measures import measured_surface
-from crackfront.topography.prediction import Prediction, predicted, surface_factors
+from crackfront.topography.prediction import Prediction, predicted
 from crackfront.topography.reading import read_measurements
 from crackfront.topography.simulated import Simulated, prediction_simulations, simulated
 
@@ -56,7 +55,6 @@ class Comparison:
     """What was predicted for a film, and what simulations found."""
 
     film: Film
-    factors: Factors
     prediction: Prediction
     found: Simulated
 
@@ -68,11 +66,8 @@ def comparisons() -> Iterator[Comparison]:
             path = Path(folder) / "film.al3d"
             path.write_bytes(_scan(film, np.random.default_rng(seed)))
             surface = measured_surface(read_measurements([path]))
-        factors = surface_factors(surface, SCENE)
         simulations = prediction_simulations(surface, SCENE, REALISATIONS, SEED)
-        yield Comparison(
-            film, factors, predicted(surface, SCENE, factors), simulated(simulations, SCENE)
-        )
+        yield Comparison(film, predicted(surface, SCENE), simulated(simulations, SCENE))
 
 
 def _scan(film: Film, rng: np.random.Generator) -> bytes:
@@ -88,13 +83,12 @@ def _scan(film: Film, rng: np.random.Generator) -> bytes:
 def comparison_row(item: Comparison) -> str:
     """Row of the table."""
     law, found, film = item.prediction, item.found, item.film
-    k = item.factors.both
+    k = law.factors.both
     works = " | ".join(
-        f"{1e3 * value:.1f}"
-        for value in (law.w_appr, found.w_appr.value, law.w_retr, found.w_retr.value)
+        f"{1e3 * work.value:.1f}" for work in (law.w_appr, found.w_appr, law.w_retr, found.w_retr)
     )
     return (
-        f"| {film.hurst:g} | {1e6 * film.roll_off:g} | {law.e_el / law.work_of_adhesion:.3f} "
+        f"| {film.hurst:g} | {1e6 * film.roll_off:g} | {law.e_el.value / law.work_of_adhesion:.3f} "
         f"| {law.correlation_length / law.contact_radius:.4f} | {k.value:.2f} ({k.low:.2f} to "
         f"{k.high:.2f}) | {found.k.value:.2f} ({found.k.low:.2f} to {found.k.high:.2f}) | {works} |"
     )

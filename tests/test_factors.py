@@ -7,8 +7,12 @@ import numpy as np
 import pytest
 
 from benchmarks.factors import factors_text, rows
-from crackfront.analysis.factors import BRANCHES, expected_factors, leave_one_out_error
-from crackfront.analysis.measured_factors import measured_factors
+from crackfront.analysis.factors import (
+    BRANCHES,
+    expected_factors,
+    leave_one_out_error,
+    measured_factors,
+)
 from crackfront.analysis.table import SweepTable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.sweep.configuration import load_configuration

@@ -1,6 +1,11 @@
 """Figures of the paper: their configurations, data, checks, drawings and commands."""
 
+import inspect
 import json
+import re
+import subprocess
+import sys
+import textwrap
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -45,7 +50,28 @@ def smooth():
 
 def test_every_figure_has_a_configuration_and_a_drawing():
     assert {path.stem for path in CONFIGURATIONS.glob("*.yaml")} == set(FIGURES)
-    assert set(FIGURE_MAKERS) == set(FIGURES)
+    assert all(callable(figure(name).draw) for name in FIGURES)
+
+
+def test_a_figure_imports_no_other_figure_whose_changes_its_fingerprint_would_miss():
+    for name in FIGURES:
+        source = Path(inspect.getfile(figure(name).compute)).read_text("utf-8")
+        assert re.findall(r"crackfront\.studies\.paper\.(main|si|beyond)_", source) == []
+
+
+def test_who_computes_and_checks_a_figure_needs_no_matplotlib():
+    script = """
+        import sys
+        from pathlib import Path
+        from crackfront.studies.paper.figure import FIGURES, figure, load_figure
+        figures = {name: figure(name) for name in FIGURES}
+        shown = figures["main-1d"]
+        parameters = load_figure(Path(sys.argv[1]), "quick")
+        assert all(check.passed for check in shown.checks(shown.compute(parameters, print)))
+        assert "matplotlib" not in sys.modules
+    """
+    command = [sys.executable, "-c", textwrap.dedent(script), CONFIGURATIONS / "main-1d.yaml"]
+    subprocess.run(command, check=True)
 
 
 @pytest.mark.parametrize("scale", SCALES)
@@ -182,7 +208,8 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
     tmp_path, monkeypatch
 ):
     (tmp_path / "taken").write_text("a file")
-    monkeypatch.setitem(FIGURES, "main-1d", replace(figure("main-1d"), compute=None))
+    shown = replace(figure("main-1d"), compute=None)
+    monkeypatch.setattr("crackfront.studies.paper.figure.figure", lambda name: shown)
     arguments = [CONFIGURATIONS / "main-1d.yaml", "--output", tmp_path / "taken"]
     result = CliRunner().invoke(main, ["figure", *map(str, arguments)])
     assert result.exit_code == 2

@@ -8,9 +8,9 @@ import pytest
 from matplotlib.figure import Figure
 from pydantic import ValidationError
 
-from crackfront.studies.paper.avalanches import AvalancheRecord, size_law
-from crackfront.studies.paper.contact import STRONG
+from crackfront.studies.paper.beyond_avalanches import AvalancheRecord, size_law
 from crackfront.studies.paper.figure import figure, load_figure
+from crackfront.studies.paper.rough import STRONG
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "beyond-avalanches.yaml"
 SCENE = figure("beyond-avalanches")

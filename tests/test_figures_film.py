@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from pydantic_core import PydanticCustomError
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
@@ -12,10 +13,10 @@ from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.data.yaml import ConfigurationError
 from crackfront.studies.paper.figure import figure, load_figure
-from crackfront.studies.paper.film_scales import FilmScalesParameters, film_scales
-from crackfront.studies.paper.measured import MeasuredFileError
-from crackfront.studies.paper.profile_densities import conformity_energy, read_profile_density
-from crackfront.studies.paper.synthetic_film import (
+from crackfront.studies.paper.film import conformity_energy
+from crackfront.studies.paper.main_5a import FilmScalesParameters, film_scales
+from crackfront.studies.paper.measured import read_profile_density
+from crackfront.studies.paper.si_6 import (
     SyntheticFilmParameters,
     profile_periodogram,
     synthetic_film,
@@ -158,7 +159,7 @@ def test_measured_profiles_are_drawn_and_give_their_own_energy(tmp_path):
     ],
 )
 def test_a_wrong_file_of_profiles_is_refused_with_its_line(tmp_path, text, sentence):
-    with pytest.raises(MeasuredFileError, match=sentence):
+    with pytest.raises(PydanticCustomError, match=sentence):
         read_profile_density(table(tmp_path, text))
 
 

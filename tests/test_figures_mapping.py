@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.studies.paper.figure import figure
-from crackfront.studies.paper.mapping import Mapping, MappingParameters, mapping
+from crackfront.studies.paper.main_4 import Mapping, MappingParameters, mapping
 
 GIVEN = {
     "seed": 1,

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from pydantic_core import PydanticCustomError
 
-from crackfront.studies.paper.measured import MeasuredFileError, Quantity, read_measured
+from crackfront.studies.paper.measured import Quantity, read_measured
 
 LENGTH = Quantity("length", {"m": 1.0, "um": 1e-6}, positive=True)
 LOAD = Quantity("load", {"N": 1.0, "mN": 1e-3})
@@ -44,12 +45,12 @@ def test_a_file_of_a_spreadsheet_with_a_byte_order_mark_is_read(tmp_path):
     ],
 )
 def test_a_wrong_file_is_refused_with_its_line(tmp_path, text, sentence):
-    with pytest.raises(MeasuredFileError, match=sentence):
+    with pytest.raises(PydanticCustomError, match=sentence):
         read_measured(written(tmp_path, text), (LENGTH,))
 
 
 def test_a_file_that_is_no_text_or_missing_is_refused(tmp_path):
-    with pytest.raises(MeasuredFileError, match="is no UTF-8 text; save it as UTF-8"):
+    with pytest.raises(PydanticCustomError, match="is no UTF-8 text; save it as UTF-8"):
         read_measured(written(tmp_path, "length (µm)\n1\n", encoding="latin-1"), (LENGTH,))
-    with pytest.raises(MeasuredFileError, match="cannot be read: No such file"):
+    with pytest.raises(PydanticCustomError, match="cannot be read: No such file"):
         read_measured(tmp_path / "none.csv", (LENGTH,))

@@ -9,9 +9,9 @@ import pytest
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.data.yaml import ConfigurationError
-from crackfront.studies.paper.advances import AdvanceWatch, advances
+from crackfront.studies.paper.advances import Perimeters, advances
 from crackfront.studies.paper.figure import figure, figure_files, load_figure
-from crackfront.studies.paper.nanodiamond_parameters import NanodiamondParameters
+from crackfront.studies.paper.main_5bc import NanodiamondParameters
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "main-5bc.yaml"
 
@@ -96,14 +96,14 @@ def test_an_advance_goes_on_across_the_first_ray():
 
 
 def test_longer_load_steps_see_wider_advances():
-    watch = AdvanceWatch(0.1, (1, 2))
+    perimeters = Perimeters(0.1, highest=1.0, every=1, strides=(1, 2))
     front = np.ones(32)
     for sites in ([], [3, 4], [5, 6, 7], [20], []):
         front = front.copy()
         front[sites] += 0.5
-        watch.follow(front)
-    assert [advance.angle.size for advance in watch.widest.values()] == [3, 5]
-    assert [len(extents) for extents in watch.extents.values()] == [3, 2]
+        perimeters.follow(front)
+    assert [advance.angle.size for advance in perimeters.widest.values()] == [3, 5]
+    assert [len(extents) for extents in perimeters.extents.values()] == [3, 2]
 
 
 def test_the_drawing_of_its_file_has_labelled_axes(contact, tmp_path):

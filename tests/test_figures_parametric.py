@@ -8,11 +8,7 @@ from crackfront.analysis.table import SweepTable
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.studies.paper.figure import figure
-from crackfront.studies.paper.parametric import (
-    ParametricStudy,
-    ParametricStudyParameters,
-    study_fit,
-)
+from crackfront.studies.paper.si_5 import ParametricStudy, ParametricStudyParameters, study_fit
 
 SCENE = figure("si-5")
 AMPLITUDES = np.array([0.002, 0.01, 0.05, 0.15])
@@ -78,6 +74,6 @@ def test_the_fit_from_the_data_of_the_figure_is_that_of_the_sweep(tmp_path):
 
 
 def test_the_page_shows_the_law_and_k_against_disorder_and_size():
-    figure = figure("si-5").draw(study(3.0)[0])
-    assert [axes.get_title(loc="left") for axes in figure.axes][:3] == ["a", "b", "c"]
-    assert figure.axes[1].get_xscale() == figure.axes[2].get_xscale() == "log"
+    drawn = SCENE.draw(study(3.0)[0])
+    assert [axes.get_title(loc="left") for axes in drawn.axes][:3] == ["a", "b", "c"]
+    assert drawn.axes[1].get_xscale() == drawn.axes[2].get_xscale() == "log"

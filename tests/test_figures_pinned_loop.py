@@ -10,7 +10,7 @@ from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.simulate.contact import simulation_field
 from crackfront.studies.paper.figure import figure
-from crackfront.studies.paper.pinned_loop import PinnedLoopParameters
+from crackfront.studies.paper.main_3cd import PinnedLoopParameters
 from crackfront.studies.paper.rough import patch_of
 
 

@@ -9,9 +9,8 @@ from pydantic import ValidationError
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.studies.paper.figure import figure
-from crackfront.studies.paper.main_1d import INNERMOST
-from crackfront.studies.paper.rings import RingLoops, RingsParameters, ring_loops, ring_penetration
-from crackfront.studies.paper.rings_checks import first_stops
+from crackfront.studies.paper.main_2 import RingLoops, RingsParameters
+from crackfront.studies.paper.rings import INNERMOST, Rings, first_stops
 
 GIVEN = {
     "amplitude": 0.4,
@@ -28,7 +27,7 @@ GIVEN = {
 
 @pytest.fixture(scope="module")
 def loops():
-    return ring_loops(RingsParameters(**GIVEN), lambda line: None)
+    return figure("main-2").compute(RingsParameters(**GIVEN), lambda line: None)
 
 
 def failed(record):
@@ -59,17 +58,17 @@ def test_a_hysteresis_that_is_too_small_fails_its_checks(loops):
 
 @pytest.mark.parametrize("direction", [1, -1])
 def test_the_first_stop_is_the_running_extreme_of_the_equilibria(direction):
-    radii = np.linspace(INNERMOST, 2.4, 400_001)[::direction]
-    reached = np.maximum.accumulate(direction * ring_penetration(radii, 0.4, 0.36))
+    rings, radii = Rings(0.4, 0.36), np.linspace(INNERMOST, 2.4, 400_001)[::direction]
+    reached = np.maximum.accumulate(direction * rings.penetration(radii))
     penetration = np.linspace(0.05, 1.15, 7)
     start = radii[0]
     dense = radii[np.searchsorted(reached, direction * penetration)]
-    found = first_stops(penetration, direction, start, 0.4, 0.36)
+    found = first_stops(rings, penetration, direction, start)
     assert found == pytest.approx(dense, abs=2 * abs(radii[1] - radii[0]))
 
 
 def test_a_front_has_no_stop_below_the_deepest_equilibrium():
-    assert np.isnan(first_stops(np.array([-1.5]), -1, 1.6, 0.4, 0.36)).all()
+    assert np.isnan(first_stops(Rings(0.4, 0.36), np.array([-1.5]), -1, 1.6)).all()
 
 
 def test_an_instability_lies_where_the_radius_jumps(loops):

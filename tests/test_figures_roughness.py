@@ -8,10 +8,13 @@ import pytest
 from matplotlib.figure import Figure
 from pydantic import ValidationError
 
-from crackfront.studies.paper.contact import STRONG, WEAK
+from crackfront.studies.paper.beyond_roughness import (
+    RoughnessRecord,
+    fitted_roughness,
+    stiffness_wavevector,
+)
 from crackfront.studies.paper.figure import figure, load_figure
-from crackfront.studies.paper.roughness import RoughnessRecord
-from crackfront.studies.paper.roughness_checks import fitted_roughness, stiffness_wavevector
+from crackfront.studies.paper.rough import STRONG, WEAK
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "beyond-roughness.yaml"
 SCENE = figure("beyond-roughness")

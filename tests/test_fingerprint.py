@@ -8,7 +8,8 @@ import pytest
 from crackfront.core import fingerprint as module
 from crackfront.core.fingerprint import fingerprint
 from crackfront.data.provenance import package_fingerprint
-from crackfront.simulate.simulation import scene_fingerprint
+from crackfront.simulate.simulation import simulation_fingerprint
+from crackfront.studies.paper.figure import figure_fingerprint
 
 KERNEL = "core/solver/monotone.py"
 
@@ -33,7 +34,7 @@ def edited(path, *changes):
 
 def key_part():
     """What the key of a simulation has of the sources."""
-    return scene_fingerprint.__wrapped__()
+    return simulation_fingerprint.__wrapped__()
 
 
 def test_a_fingerprint_is_twelve_hexadecimal_digits():
@@ -41,7 +42,7 @@ def test_a_fingerprint_is_twelve_hexadecimal_digits():
 
 
 def test_equal_sources_have_equal_fingerprints(package):
-    assert key_part() == scene_fingerprint()
+    assert key_part() == simulation_fingerprint()
 
 
 def test_a_mended_docstring_a_comment_and_an_annotation_change_no_key(package):
@@ -102,6 +103,32 @@ def test_what_no_simulation_uses_changes_no_key(package):
         with (package / place).open("a", encoding="utf-8") as file:
             file.write("ADDED = 1\n")
     assert key_part() == before
+
+
+RINGS = "studies/paper/main_2.py"
+
+
+@pytest.mark.parametrize(
+    ("place", "change", "counts"),
+    [
+        (RINGS, ("^_PATH = 257", "_PATH = 513"), True),
+        (RINGS, (r"\+ 0\.5\) / count", "+ 0.4) / count"), True),
+        (RINGS, ('variable\\("contact radius"', 'variable("radius"'), True),
+        (RINGS, (r"0\.8 \* PAGE", "0.9 * PAGE"), False),
+        (RINGS, ("^_REACH = 2.2", "_REACH = 2.3"), False),
+        (RINGS, ("^_ROUND_OFF = 1e-9", "_ROUND_OFF = 1e-8"), False),
+        ("studies/paper/main_1d.py", ("^TOLERANCE = 1e-13", "TOLERANCE = 1e-12"), False),
+        ("studies/paper/rings.py", ("^INNERMOST = 1e-3", "INNERMOST = 2e-3"), True),
+        ("plots/parts.py", ('"mutation_scale": 8', '"mutation_scale": 9'), False),
+    ],
+    ids=lambda value: str(value),
+)
+def test_what_the_data_of_a_figure_come_from_changes_its_fingerprint_alone(
+    package, place, change, counts
+):
+    before = figure_fingerprint.__wrapped__("main-2")
+    edited(package / place, change)
+    assert (figure_fingerprint.__wrapped__("main-2") != before) == counts
 
 
 def test_equal_names_of_two_modules_are_told_apart(package):

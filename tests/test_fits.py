@@ -12,12 +12,11 @@ from crackfront.analysis.estimate import (
     resample_counts,
     student_estimate,
 )
-from crackfront.analysis.notes import fit_notes, trend_sentence
-from crackfront.analysis.report import fit_table
+from crackfront.analysis.report import fit_notes, fit_table, trend_sentence
 from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.analysis.sweep import fit_sweep
-from crackfront.analysis.table import CELL_COLUMNS, SweepTable
+from crackfront.analysis.table import REALISATION, SweepTable
 from crackfront.core import jkr
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.run import run_cycle
@@ -25,6 +24,7 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import polar_field
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
+from crackfront.core.records import variables
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 
@@ -254,7 +254,8 @@ def test_the_notes_tell_the_largest_numerical_error_of_k(rng):
 def test_point_estimates_do_not_depend_on_the_order_of_realisations_or_the_seed(rng):
     table = synthetic_table(rng, constant)
     order = [2, 0, 3, 1]
-    shuffled = replace(table, **{name: getattr(table, name)[..., order] for name in CELL_COLUMNS})
+    cells = [item.name for item in variables(SweepTable) if REALISATION in item.dims]
+    shuffled = replace(table, **{name: getattr(table, name)[..., order] for name in cells})
     first, second = fit_all(table), fit_all(shuffled, seed=5)
     for name in LAW:
         for one, other in ((first.spectra, second.spectra), (first.pooled, second.pooled)):
@@ -381,12 +382,13 @@ def test_the_table_shows_theory_range_and_every_estimate(rng):
 def test_every_array_of_a_fit_comes_out_with_its_dimensions(rng):
     fit = fit_all(synthetic_table(rng, constant))
     size = {"spectrum": 3, "amplitude": 5}
-    columns = {column.name: column for column in fit_columns(fit)}
-    for column in columns.values():
-        assert column.values.shape == tuple(size[dim] for dim in column.dims), column.name
+    columns = dict(fit_columns(fit))
+    for column, values in columns.items():
+        assert values.shape == tuple(size[dim] for dim in column.dims), column.name
         assert column.long_name
-    assert columns["pooled_factor_low"].values == fit.pooled.factor.low
-    np.testing.assert_array_equal(columns["cell_factor"].values, fit.cells.factor.value)
+    columns = {column.name: values for column, values in columns.items()}
+    assert columns["pooled_factor_low"] == fit.pooled.factor.low
+    np.testing.assert_array_equal(columns["cell_factor"], fit.cells.factor.value)
     assert {"exponent_standard_error", "from_force_approach", "size_slope_high"} <= set(columns)
 
 

@@ -7,8 +7,7 @@ import h5py
 import numpy as np
 import pytest
 
-from crackfront.topography.files import Treatment
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.reading import Treatment, read_measurements
 
 SIDE, N_POINT = 20e-6, 32
 PIXEL = SIDE / N_POINT

@@ -11,6 +11,7 @@ from click.testing import CliRunner
 
 from benchmarks import predictions
 from benchmarks.predictions import TABLE_HEAD, comparison_row
+from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.factors import BRANCHES, expected_factors, leave_one_out_error
 from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.cli import main
@@ -19,16 +20,15 @@ from crackfront.core.units import Scales
 from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import read_cycle
 from crackfront.topography.drawing import prediction_figure
-from crackfront.topography.files import Treatment
-from crackfront.topography.limits import prediction_notes, theory_limits
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.prediction import (
     Prediction,
     predicted,
+    prediction_notes,
     reduced_spectrum,
-    surface_factors,
+    theory_limits,
 )
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.reading import Treatment, read_measurements
 from crackfront.topography.tile import zero_load_radius
 
 ROOT = Path(__file__).parents[1]
@@ -49,13 +49,8 @@ def surface():
 
 
 @pytest.fixture(scope="module")
-def factors(surface):
-    return surface_factors(surface, SCENE)
-
-
-@pytest.fixture(scope="module")
-def prediction(surface, factors):
-    return predicted(surface, SCENE, factors)
+def prediction(surface):
+    return predicted(surface, SCENE)
 
 
 def sphere(**changes):
@@ -97,48 +92,48 @@ def predict(tmp_path, monkeypatch):
 
 
 def test_the_law_holds_between_the_predicted_numbers(prediction):
-    w_int, e_el = prediction.work_of_adhesion, prediction.e_el
-    assert prediction.w_appr == pytest.approx(w_int - (1 + prediction.k_appr) * e_el)
-    assert prediction.w_retr == pytest.approx(w_int - (1 - prediction.k_retr) * e_el)
-    hysteresis = prediction.w_retr - prediction.w_appr
-    assert prediction.hysteresis == pytest.approx(hysteresis, rel=1e-3)
+    w_int, e_el = prediction.work_of_adhesion, prediction.e_el.value
+    w_appr, w_retr = prediction.w_appr.value, prediction.w_retr.value
+    assert w_appr == pytest.approx(w_int - (1 + prediction.k_appr.value) * e_el)
+    assert w_retr == pytest.approx(w_int - (1 - prediction.k_retr.value) * e_el)
+    assert prediction.hysteresis.value == pytest.approx(w_retr - w_appr, rel=1e-3)
     assert prediction.w_rms == pytest.approx(2 * np.sqrt(e_el * w_int))
     assert prediction.paper_w_retr - prediction.paper_w_appr == pytest.approx(
         2 * PAPER_FACTOR * e_el
     )
     force = 1.5 * np.pi * SCENE.radius
-    assert prediction.pull_off_force == pytest.approx(force * prediction.w_retr)
+    at_load = prediction.pull_off_force.value
+    assert at_load == pytest.approx(force * w_retr)
     assert prediction.pull_off_force_smooth == pytest.approx(force * w_int)
-    held = prediction.pull_off_force_held / prediction.pull_off_force
-    assert held == pytest.approx(5 / 9)
+    assert prediction.pull_off_force_held.value / at_load == pytest.approx(5 / 9)
 
 
 def test_intervals_hold_those_of_k_and_of_e_el(prediction):
     for name in ("k_appr", "k_retr", "w_appr", "w_retr", "hysteresis", "pull_off_force"):
-        low, value, high = (getattr(prediction, name + end) for end in ("_low", "", "_high"))
-        assert low < value < high
-    e_el = prediction.e_el
-    by_factor = e_el * (prediction.k_appr_high - prediction.k_appr)
-    by_energy = 1.96 * (1 + prediction.k_appr) * prediction.e_el_error
-    below = prediction.w_appr - prediction.w_appr_low
+        found = getattr(prediction, name)
+        assert found.low < found.value < found.high
+    e_el, k = prediction.e_el, prediction.k_appr
+    by_factor = e_el.value * (k.high - k.value)
+    by_energy = 1.96 * (1 + k.value) * e_el.standard_error
+    below = prediction.w_appr.value - prediction.w_appr.low
     assert below == pytest.approx(np.hypot(by_factor, by_energy))
 
 
 def test_nanodiamond_is_predicted_as_it_was_simulated(prediction):
     """Main Fig. 5 at the paper's scale (docs/gallery.md): 32.1 and 71.6 mJ/m2."""
-    assert prediction.w_appr_low < 32.1e-3 < prediction.w_appr_high
-    assert prediction.w_retr_low < 71.6e-3 < prediction.w_retr_high
-    assert prediction.e_el == pytest.approx(11e-3, rel=0.15)
+    assert prediction.w_appr.low < 32.1e-3 < prediction.w_appr.high
+    assert prediction.w_retr.low < 71.6e-3 < prediction.w_retr.high
+    assert prediction.e_el.value == pytest.approx(11e-3, rel=0.15)
 
 
-def test_the_factors_are_those_of_the_table_for_the_reduced_spectrum(surface, factors):
+def test_the_factors_are_those_of_the_table_for_the_reduced_spectrum(surface, prediction):
     shape = reduced_spectrum(surface.fitted.spectrum, SCENE)
     energy = surface.conformity_energy(SCENE.contact_modulus).value / SCENE.work_of_adhesion
     assert shape.elastic_energy == pytest.approx(energy, rel=1e-12)
     expected = expected_factors(shape, energy, zero_load_radius(SCENE) / SCENE.lateral)
-    assert factors.spectra == expected.spectra
+    assert prediction.factors.spectra == expected.spectra
     for branch in BRANCHES:
-        found, known = getattr(factors, branch), getattr(expected, branch)
+        found, known = getattr(prediction.factors, branch), getattr(expected, branch)
         assert (found.value, found.low, found.high) == pytest.approx(
             (known.value, known.low, known.high)
         )
@@ -155,7 +150,7 @@ def test_a_prediction_does_not_depend_on_the_units_of_its_options(predict):
 
 def test_the_limits_say_by_how_much_the_theory_applies(surface, prediction):
     conformity, slopes, features = theory_limits(surface, prediction)
-    assert conformity.margin == pytest.approx(SCENE.work_of_adhesion / prediction.e_el)
+    assert conformity.margin == pytest.approx(SCENE.work_of_adhesion / prediction.e_el.value)
     assert slopes.margin == pytest.approx(1 / surface.measures[2].rms.value)
     assert features.margin == pytest.approx(prediction.contact_radius / surface.measures[1].longest)
     assert all(item.holds for item in (conformity, slopes, features))
@@ -163,12 +158,12 @@ def test_the_limits_say_by_how_much_the_theory_applies(surface, prediction):
 
 def test_a_small_sphere_is_outside_of_the_limits(surface):
     small = replace(SCENE, radius=5e-6)
-    found = predicted(surface, small, surface_factors(surface, small))
+    found = predicted(surface, small)
     assert not theory_limits(surface, found)[2].holds
 
 
-def test_scans_smaller_than_the_contact_are_told(surface, prediction, factors):
-    notes = prediction_notes(surface, prediction, factors)
+def test_scans_smaller_than_the_contact_are_told(surface, prediction):
+    notes = list(prediction_notes(surface, prediction))
     for path in (DETAIL, OVERVIEW):
         assert any(str(path) in note and "smaller than the contact" in note for note in notes)
     assert any("k is interpolated from simulated spectra (flat-coarser" in note for note in notes)
@@ -209,11 +204,19 @@ def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
 
 def test_json_has_units_for_everything_that_is_predicted(predict, surface, prediction):
     content = json.loads(predict("--json").output)
-    assert set(content["prediction"]) == {item.name for item in variables(Prediction)}
+    expected = {}
     for item in variables(Prediction):
-        entry = content["prediction"][item.name]
-        assert entry["units"] == item.units
-        assert entry["value"] == pytest.approx(getattr(prediction, item.name), rel=1e-12)
+        found = getattr(prediction, item.name)
+        numbers = {"": found}
+        if isinstance(found, Estimate):
+            numbers = {"": found.value, "_low": found.low, "_high": found.high}
+        if item.name == "e_el":
+            numbers = {"": found.value, "_error": found.standard_error}
+        expected |= {item.name + end: (number, item.units) for end, number in numbers.items()}
+    assert set(content["prediction"]) == set(expected)
+    for name, (number, units) in expected.items():
+        assert content["prediction"][name]["units"] == units
+        assert content["prediction"][name]["value"] == pytest.approx(number, rel=1e-12)
     assert [item["checksum"] for item in content["measurements"]] == [
         item.checksum for item in surface.measurements
     ]
@@ -262,7 +265,7 @@ def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
         for line, density in zip(axes.lines, densities, strict=False):
             np.testing.assert_array_equal(line.get_ydata(), density.value)
     radius, values = force.lines[1].get_data()
-    assert values.min() == pytest.approx(-1e3 * prediction.pull_off_force, rel=1e-3)
+    assert values.min() == pytest.approx(-1e3 * prediction.pull_off_force.value, rel=1e-3)
     assert radius[np.argmin(values)] < 1e6 * prediction.contact_radius
     assert "mN" in force.get_ylabel()
 
@@ -369,11 +372,12 @@ def test_the_documentation_states_the_errors_of_the_table():
 @pytest.mark.slow
 def test_predictions_hold_for_surfaces_that_the_table_does_not(comparisons):
     for item in comparisons:
-        found, k = item.found.k, item.factors.both
-        assert k.low < found.value < k.high
-        assert abs(found.value - k.value) < 0.3
-        assert item.prediction.w_appr_low < item.found.w_appr.value < item.prediction.w_appr_high
-        assert item.prediction.w_retr_low < item.found.w_retr.value < item.prediction.w_retr_high
+        found, law = item.found, item.prediction
+        k = law.factors.both
+        assert k.low < found.k.value < k.high
+        assert abs(found.k.value - k.value) < 0.3
+        assert law.w_appr.low < found.w_appr.value < law.w_appr.high
+        assert law.w_retr.low < found.w_retr.value < law.w_retr.high
 
 
 @pytest.mark.slow

@@ -102,7 +102,7 @@ def test_the_plateau_of_a_spectrum_is_not_in_the_key():
 
 def test_the_key_changes_with_the_sources_of_the_solver(monkeypatch):
     before = SIMULATION.key
-    monkeypatch.setattr("crackfront.simulate.simulation.scene_fingerprint", lambda: "other")
+    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda: "other")
     assert SIMULATION.key != before
 
 

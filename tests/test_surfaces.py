@@ -12,11 +12,15 @@ from crackfront.core.adhesion import half_derivative_mean_square, rough_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
-from crackfront.studies.paper.synthetic_film import profile_periodogram
+from crackfront.studies.paper.si_6 import profile_periodogram
 from crackfront.topography.densities import isotropic_density, profile_density, topography
-from crackfront.topography.files import Treatment, surface_library
 from crackfront.topography.measures import measured_mean_square, measured_surface
-from crackfront.topography.reading import Measurement, read_measurements
+from crackfront.topography.reading import (
+    Measurement,
+    Treatment,
+    read_measurements,
+    surface_library,
+)
 from crackfront.topography.tile import measured_adhesion, zero_load_radius
 
 SHIPPED = tuple(sorted((Path(__file__).parents[1] / "examples/scans").glob("*.al3d")))
@@ -67,7 +71,7 @@ def scan(tmp_path, heights):
 
 def half(surface):
     """Mean square half-derivative of a surface's spectrum, with its standard error."""
-    return surface.fitted.uncertain(lambda spectrum: spectrum.mean_square(0.5))
+    return surface.fitted.estimate(lambda spectrum: spectrum.mean_square(0.5))
 
 
 def refusal(paths, **treatment):
@@ -101,9 +105,9 @@ def test_the_spectrum_of_the_shipped_scans_is_that_of_nanodiamond():
     fitted = measured_surface(read_measurements(SHIPPED)).fitted
     truth = {"roll_off": 2.1e-6, "hurst": 1.0, "plateau": 8.4e-27}
     for name, value in truth.items():
-        found = fitted.uncertain(lambda spectrum, name=name: getattr(spectrum, name))
-        assert abs(found.value - value) < 2.5 * found.error
-        assert found.error < 0.1 * value
+        found = fitted.estimate(lambda spectrum, name=name: getattr(spectrum, name))
+        assert abs(found.value - value) < 2.5 * found.standard_error
+        assert found.standard_error < 0.1 * value
     assert fitted.has_roll_off
     assert 0.2 < fitted.misfit < 1.5
 
@@ -157,7 +161,7 @@ def test_the_uncertainty_of_a_fit_covers_the_truth(rng, tmp_path):
     for number in range(16):
         path = write_al3d(tmp_path / f"{number}.al3d", map_heights(rng))
         found = half(measured_surface(read_measurements([path])))
-        scores.append((found.value - truth) / found.error)
+        scores.append((found.value - truth) / found.standard_error)
     assert np.mean(np.abs(scores) < 2) > 0.8
     assert np.std(scores) > 0.3
 
@@ -170,9 +174,9 @@ def test_a_second_measurement_widens_the_wavelengths(rng, tmp_path, scan):
     both = measured_surface(read_measurements([scan, detail])).fitted
     assert both.spectrum.short_cutoff == pytest.approx(4 * 5e-6 / 128)
     assert both.longest == alone.longest == pytest.approx(10e-6)
-    hurst = both.uncertain(lambda spectrum: spectrum.hurst)
-    assert abs(hurst.value - 0.8) < 3 * hurst.error
-    assert hurst.error < alone.uncertain(lambda spectrum: spectrum.hurst).error
+    hurst = both.estimate(lambda spectrum: spectrum.hurst)
+    assert abs(hurst.value - 0.8) < 3 * hurst.standard_error
+    assert hurst.standard_error < alone.estimate(lambda spectrum: spectrum.hurst).standard_error
 
 
 def test_the_shortest_wavelength_may_be_named(scan):
@@ -228,8 +232,8 @@ def test_line_scans_stand_for_an_isotropic_surface(rng, tmp_path):
     surface = measured_surface(read_measurements(paths, Treatment(unit="um")))
     assert surface.isotropic == (None,) * 5
     assert all(item.is_line for item in surface.measurements)
-    assert abs(half(surface).value - truth) < 2.5 * half(surface).error
-    assert half(surface).error < 0.5 * truth
+    assert abs(half(surface).value - truth) < 2.5 * half(surface).standard_error
+    assert half(surface).standard_error < 0.5 * truth
 
 
 def test_a_line_scan_is_no_field(rng, tmp_path):

@@ -1,59 +1,77 @@
-"""Estimates with intervals from few realisations: resampling, Student's t, combinations."""
+"""Numbers with intervals, from few realisations: resampling, Student's t, combinations."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import stdtrit
 
 Array = NDArray[np.float64]
+Other = TypeVar("Other")
 
-CONFIDENCE = 0.95
+if TYPE_CHECKING:
+    from typing_extensions import TypeVar as DefaultTypeVar
+
+    Number = DefaultTypeVar("Number", default=Array)
+else:
+    Number = TypeVar("Number")
+
+_CONFIDENCE = 0.95
 """Confidence of every interval."""
+
+REACH = 1.96
+"""Standard errors in half of a 95% interval of the normal distribution."""
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
-    """Values with their uncertainty from the scatter between realisations.
+class Estimate(Generic[Number]):
+    """A number, or an array of numbers, with its uncertainty.
 
     Attributes
     ----------
-    value : array
+    value : array or float
         Point estimate; NaN where the data give none.
-    standard_error : array of the same shape
-        NaN where there is one realisation only.
-    low, high : array of the same shape
-        95% confidence interval; NaN where there is one realisation only.
+    standard_error : array of the same shape, or float
+        NaN where the data give none, as one realisation does, or where an interval is all there is.
+    low, high : array of the same shape, or float
+        95% interval; NaN where the data give none.
     """
 
-    value: Array
-    standard_error: Array
-    low: Array
-    high: Array
+    value: Number
+    standard_error: Number
+    low: Number
+    high: Number
+
+    def each(self, function: Callable[[Number], Other]) -> Estimate[Other]:
+        """The estimate whose four entries are those of a function, as of an index or a unit."""
+        return Estimate(*map(function, (self.value, self.standard_error, self.low, self.high)))
+
+
+def normal_estimate(value: float, standard_error: float) -> Estimate[float]:
+    """Estimate with the interval of the normal distribution."""
+    reach = REACH * standard_error
+    return Estimate(value, standard_error, value - reach, value + reach)
 
 
 def student_estimate(value: ArrayLike, standard_error: ArrayLike, freedom: ArrayLike) -> Estimate:
-    """Estimate with the interval of Student's t.
+    """Estimate with the 95% interval of Student's t, arrays of the common shape.
 
     Parameters
     ----------
     value, standard_error, freedom : array_like
         Point estimate, its standard error and the degrees of freedom of the latter; fewer than
         one give no interval.
-
-    Returns
-    -------
-    Estimate
-        Arrays of the common shape.
     """
     centre, error, degrees = np.broadcast_arrays(
         np.asarray(value, dtype=float), np.asarray(standard_error, dtype=float), freedom
     )
     known = np.isfinite(error) & (degrees >= 1)
     reach = np.full(centre.shape, np.nan)
-    reach[known] = error[known] * stdtrit(degrees[known], (1 + CONFIDENCE) / 2)
+    reach[known] = error[known] * stdtrit(degrees[known], (1 + _CONFIDENCE) / 2)
     return Estimate(
         centre.copy(),
         np.where(known, error, np.nan),
@@ -66,18 +84,6 @@ def mean_estimate(values: Array) -> tuple[Estimate, NDArray[np.int64]]:
     """Mean over the last axis with NaN left out, and how many values it has.
 
     The bootstrap's standard error of a mean is known in closed form and not resampled.
-
-    Parameters
-    ----------
-    values : (..., n) array
-        One value a realisation, NaN where it failed.
-
-    Returns
-    -------
-    Estimate
-        Arrays of shape (...).
-    (...) int array
-        Number of finite values.
     """
     finite = np.isfinite(values)
     count = np.count_nonzero(finite, axis=-1)
@@ -93,17 +99,10 @@ def resample_counts(n_sample: int, n_realisation: int, rng: np.random.Generator)
     samples of a mean is that of the mean, without the factor (n - 1) / n of samples of n, which
     is a quarter for four realisations.
 
-    Parameters
-    ----------
-    n_sample, n_realisation : int
-        Number of samples and, at least 2, of realisations.
-    rng : numpy.random.Generator
-        Source of the draws.
-
     Returns
     -------
     (n_sample, n_realisation) array
-        Counts; each row sums to n_realisation - 1.
+        Counts; each row sums to n_realisation - 1, at least 1.
 
     References
     ----------
@@ -123,7 +122,10 @@ def scatter(draws: Array) -> Array:
 
 
 def combination(parts: Estimate, freedom: ArrayLike, coefficients: Array) -> Estimate:
-    """Linear combination of independent estimates.
+    """Linear combination of independent estimates, arrays without dimensions.
+
+    The degrees of freedom follow Welch and Satterthwaite. NaN where no coefficient differs from
+    zero.
 
     Parameters
     ----------
@@ -133,12 +135,6 @@ def combination(parts: Estimate, freedom: ArrayLike, coefficients: Array) -> Est
         Degrees of freedom of their standard errors.
     coefficients : (n,) array
         Coefficients; parts with zero are left out, NaN included.
-
-    Returns
-    -------
-    Estimate
-        Scalar arrays; the degrees of freedom follow Welch and Satterthwaite. NaN where no
-        coefficient differs from zero.
     """
     used = np.flatnonzero(coefficients)
     if used.size == 0:
@@ -161,12 +157,7 @@ def ratio(numerator: ArrayLike, denominator: ArrayLike) -> Array:
 
 
 def slope(abscissa: Array, ordinate: Array) -> tuple[Array, Array]:
-    """Least-squares slope of a straight line along the last axis, NaN left out.
-
-    Parameters
-    ----------
-    abscissa, ordinate : (..., n) array
-        Points of equal weight.
+    """Least-squares slopes of lines along the last axis, points of equal weight, NaN left out.
 
     Returns
     -------

@@ -1,46 +1,61 @@
-"""Factors k by interpolation in the table, with intervals."""
+"""Factors k by interpolation in the table of measured ones, with intervals."""
 
 from __future__ import annotations
 
+import csv
+import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from importlib.resources import files
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from crackfront.analysis.measured_factors import MeasuredFactors, factor_groups, place_of
-from crackfront.analysis.notes import ONSET
-from crackfront.analysis.report import PERTURBATION_FACTOR
+from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.report import ONSET, PERTURBATION_FACTOR
+from crackfront.core.records import ADHESION, LATERAL, variable
 from crackfront.core.spectrum import SelfAffineSpectrum
 
 Array = NDArray[np.float64]
 
-_POWER = 4
-"""Weights fall with this power of the distance."""
-
 BRANCHES = ("approach", "retraction", "both")
 """Whose factor: k_appr, k_retr and k, their mean."""
 
+_POWER = 4
+"""Weights fall with this power of the distance."""
+
+_ROLL_OFF_OCTAVES = 3.0
+"""Octaves of the roll-off that count as much as one of the correlation length: k depends on the
+whole surface through the latter, on its long waves only weakly."""
+
 
 @dataclass(frozen=True, slots=True)
-class Factor:
-    """A factor k that is expected.
+class MeasuredFactors:
+    """Factors of one spectrum at one amplitude, means over realisations: a row of `factors.csv`."""
 
-    Attributes
-    ----------
-    value : float
-        Its value.
-    low, high : float
-        95% interval: scatter between realisations, numerical error and, by far the largest, the
-        difference between spectra, from how far the table predicts each of its own spectra
-        without it.
-    """
+    spectrum: str = variable("name of the spectrum", "1")
+    short_cutoff: float = variable("shortest wavelength", LATERAL)
+    roll_off: float = variable("roll-off wavelength", LATERAL)
+    hurst: float = variable("Hurst exponent", "1")
+    correlation_length: float = variable("correlation length of w_loc", LATERAL)
+    contact_radius: float = variable("radius in the middle of the steady branches", LATERAL)
+    elastic_energy: float = variable("e_el measured on the tiles", ADHESION)
+    realisations: int = variable("surfaces", "1")
+    approach: float = variable("k_appr", "1")
+    approach_error: float = variable("standard error of k_appr", "1")
+    retraction: float = variable("k_retr", "1")
+    retraction_error: float = variable("standard error of k_retr", "1")
+    both: float = variable("k, the mean of the two", "1")
+    both_error: float = variable("standard error of k", "1")
+    numerical_error: float = variable("standard error of k that the numerics leave", "1")
 
-    value: float
-    low: float
-    high: float
+    @property
+    def place(self) -> tuple[float, float]:
+        """Octaves of the correlation length and, weighted, of the roll-off."""
+        return _place(self.correlation_length, self.roll_off, self.contact_radius)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +64,10 @@ class Factors:
 
     Attributes
     ----------
-    approach, retraction, both : Factor
-        k_appr, k_retr and their mean k.
+    approach, retraction, both : Estimate of a number
+        k_appr, k_retr and their mean k. The 95% intervals hold scatter between realisations,
+        numerical error and, by far the largest, the difference between spectra, from how far the
+        table predicts each of its own spectra without it; there is no standard error.
     spectra : tuple of str
         Measured spectra, that of the largest weight first.
     weights : tuple of float
@@ -65,14 +82,28 @@ class Factors:
         small and the disorder too weak for full hysteresis.
     """
 
-    approach: Factor
-    retraction: Factor
-    both: Factor
+    approach: Estimate[float]
+    retraction: Estimate[float]
+    both: Estimate[float]
     spectra: tuple[str, ...]
     weights: tuple[float, ...]
     size_octaves: float
     amplitude_octaves: float
     near_onset: bool
+
+
+@functools.cache
+def measured_factors() -> tuple[MeasuredFactors, ...]:
+    """Rows of `factors.csv`."""
+    text = files("crackfront.analysis").joinpath("factors.csv").read_text(encoding="utf-8")
+    return tuple(
+        MeasuredFactors(**{item.name: _TYPES[str(item.type)](row[item.name]) for item in _FIELDS})
+        for row in csv.DictReader(text.splitlines())
+    )
+
+
+_FIELDS = fields(MeasuredFactors)
+_TYPES: dict[str, type[Any]] = {"str": str, "int": int, "float": float}
 
 
 def expected_factors(
@@ -111,8 +142,8 @@ def expected_factors(
             f"energy of full conformity is {elastic_energy:.4g} w_int; the factors k need one "
             "between 0 and 1"
         )
-    groups = factor_groups()
-    here = place_of(spectrum.correlation_length, spectrum.roll_off, contact_radius)
+    groups = _groups()
+    here = _place(spectrum.correlation_length, spectrum.roll_off, contact_radius)
     weights = _weights(here, groups)
     order = np.argsort(-weights)
     energies = [row.elastic_energy for group in groups for row in group]
@@ -142,14 +173,9 @@ def expected_factors(
 def leave_one_out_error(elastic_energy: float, branch: str) -> float:
     """Root mean square of how far the table misses a spectrum that it does without.
 
-    Parameters
-    ----------
-    elastic_energy : float
-        e_el / w_int.
-    branch : str
-        A name in :data:`BRANCHES`.
+    At e_el / w_int, for a name in :data:`BRANCHES`.
     """
-    groups = factor_groups()
+    groups = _groups()
     errors = []
     for group in groups:
         others = [other for other in groups if other is not group]
@@ -157,6 +183,20 @@ def leave_one_out_error(elastic_energy: float, branch: str) -> float:
         known = [_at(other, elastic_energy, branch) for other in others]
         errors.append(float(weights @ known) - _at(group, elastic_energy, branch))
     return math.sqrt(float(np.mean(np.square(errors))))
+
+
+@functools.cache
+def _groups() -> tuple[tuple[MeasuredFactors, ...], ...]:
+    """Rows of every spectrum, with increasing amplitude."""
+    found: dict[str, list[MeasuredFactors]] = {}
+    for row in sorted(measured_factors(), key=lambda row: row.elastic_energy):
+        found.setdefault(row.spectrum, []).append(row)
+    return tuple(map(tuple, found.values()))
+
+
+def _place(correlation_length: float, roll_off: float, radius: float) -> tuple[float, float]:
+    """Octaves of two lengths relative to the contact, those of the roll-off weighted less."""
+    return math.log2(correlation_length / radius), math.log2(roll_off / radius) / _ROLL_OFF_OCTAVES
 
 
 def _weights(here: tuple[float, float], groups: Sequence[Sequence[MeasuredFactors]]) -> Array:
@@ -172,7 +212,7 @@ def _factor(
     energy: float,
     branch: str,
     size_octaves: float,
-) -> Factor:
+) -> Estimate[float]:
     """Factor of a branch with its interval."""
     known = np.array([_at(group, energy, branch) for group in groups])
     extrapolated = size_octaves * _size_slope(groups, known)
@@ -188,7 +228,7 @@ def _factor(
     trend = float(weights @ [_last_slope(group, branch) for group in groups])
     reach += beyond * abs(trend) + abs(extrapolated)
     low = 0.0 if energy < lowest else _possible(value - reach)
-    return Factor(value, low, _possible(value + reach))
+    return Estimate(value, math.nan, low, _possible(value + reach))
 
 
 def _possible(factor: float) -> float:

@@ -16,7 +16,7 @@ FEWEST_POINTS = 3
 
 
 def adhesion_from_forces(radius: Array, force: Array) -> Estimate:
-    """Least squares of the force of a smooth sphere over its work of adhesion.
+    """Work of adhesion by least squares of the force of a smooth sphere (Units: w_int).
 
     Parameters
     ----------
@@ -24,11 +24,6 @@ def adhesion_from_forces(radius: Array, force: Array) -> Estimate:
         Contact radii. (Units: reduced lateral length)
     force : (n_point,) array
         Normal forces, whose errors are taken to be equal and independent. (Units: pi w_int R)
-
-    Returns
-    -------
-    Estimate
-        Work of adhesion with its 95% interval, arrays without dimensions. (Units: w_int)
 
     Raises
     ------

@@ -43,13 +43,7 @@ class PowerLaw:
     n_value: int
 
     def density(self, values: ArrayLike) -> Array:
-        """Density at values above the smallest, normalised there.
-
-        Parameters
-        ----------
-        values : array_like
-            Values. (Units: any)
-        """
+        """Density at values above the smallest, normalised there."""
         scaled = np.asarray(values, dtype=float) / self.smallest
         rate = self.smallest / self.cutoff
         log = -self.exponent * np.log(scaled) - rate * scaled - _log_norm(self.exponent, rate)

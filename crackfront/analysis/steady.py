@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,7 +62,7 @@ class SteadyAdhesion(SteadyMeasures):
 
 
 def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdhesion:
-    """Mean apparent work of adhesion over the steady part of each branch.
+    """Mean apparent work of adhesion over the steady part of each branch, or why there is none.
 
     Parameters
     ----------
@@ -70,11 +71,6 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
     correlation_length : float
         Distance that every site must travel before a branch counts as steady; that of w_loc.
         (Units: reduced lateral length)
-
-    Returns
-    -------
-    SteadyAdhesion
-        The two values, or NaN with the reason in `sentence`.
 
     Raises
     ------
@@ -85,22 +81,20 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
         raise ValueError(
             f"correlation length is {correlation_length}; it must be positive and finite"
         )
-    steady = record.states.least_travel >= correlation_length
-    approach = steady & (record.states.direction > 0)
-    retraction = steady & (record.states.direction < 0)
-    counts = int(np.count_nonzero(approach)), int(np.count_nonzero(retraction))
+    states, radius = record.states, record.states.mean_radius
+    steady = states.least_travel >= correlation_length
+    branches = [steady & (sign * states.direction > 0) for sign in (1, -1)]
+    counts = _counts(branches)
     if min(counts) < FEWEST_STATES:
         return _no_value(
             counts,
             f"{counts[0]} steady states in approach and {counts[1]} in retraction; "
             f"{FEWEST_STATES} each are needed, so penetrate deeper or use a smaller load step",
         )
-    radius = record.states.mean_radius
-    lowest = float(max(radius[approach].min(), radius[retraction].min()))
-    highest = float(min(radius[approach].max(), radius[retraction].max()))
-    inside = (radius >= lowest) & (radius <= highest)
-    approach, retraction = approach & inside, retraction & inside
-    counts = int(np.count_nonzero(approach)), int(np.count_nonzero(retraction))
+    lowest = float(max(radius[branch].min() for branch in branches))
+    highest = float(min(radius[branch].max() for branch in branches))
+    branches = [branch & (radius >= lowest) & (radius <= highest) for branch in branches]
+    counts = _counts(branches)
     if min(counts) < FEWEST_STATES:
         return _no_value(
             counts,
@@ -108,18 +102,15 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
             f"retraction at equal mean radii; {FEWEST_STATES} each are needed, so penetrate "
             "deeper or use a smaller load step",
         )
-    values = record.states.apparent_work_of_adhesion
+    values = states.apparent_work_of_adhesion
+    w_appr, w_retr = (float(np.mean(values[branch])) for branch in branches)
     errors = [
         standard_error(
-            values[branch], radius[branch], record.states.rms_radius[branch], correlation_length
+            values[branch], radius[branch], states.rms_radius[branch], correlation_length
         )
-        for branch in (approach, retraction)
+        for branch in branches
     ]
-    w_appr, w_retr = float(np.mean(values[approach])), float(np.mean(values[retraction]))
-    from_force = [
-        _adhesion_from_force(radius[branch], record.states.force[branch])
-        for branch in (approach, retraction)
-    ]
+    from_force = [_adhesion_from_force(radius[branch], states.force[branch]) for branch in branches]
     return SteadyAdhesion(
         w_appr=w_appr,
         w_retr=w_retr,
@@ -134,8 +125,13 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
         n_retraction=counts[1],
         lowest_radius=lowest,
         highest_radius=highest,
-        sentence="",
     )
+
+
+def _counts(branches: Sequence[NDArray[np.bool_]]) -> tuple[int, int]:
+    """Number of states of the approach and of the retraction."""
+    approach, retraction = (int(np.count_nonzero(branch)) for branch in branches)
+    return approach, retraction
 
 
 def _adhesion_from_force(radius: Array, force: Array) -> float:

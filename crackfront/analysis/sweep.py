@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import astuple, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -80,7 +80,7 @@ def fit_sweep(
     Parameters
     ----------
     table : SweepTable
-        Apparent works of adhesion of a sweep.
+        The sweep.
     lowest_elastic_energy, highest_elastic_energy : float
         Range of requested e_el that the fit uses, ends included. (Units: w_int)
     n_bootstrap : int, optional
@@ -95,7 +95,7 @@ def fit_sweep(
     -------
     SweepFit
         Estimates as :data:`FIT_DEFINITION` says. What the data do not give is NaN and has a
-        sentence in :func:`crackfront.analysis.notes.fit_notes`.
+        sentence in :func:`crackfront.analysis.report.fit_notes`.
 
     Raises
     ------
@@ -261,13 +261,13 @@ def _largest_deviation(cells: CellEstimates, in_range: NDArray[np.bool_]) -> tup
 
 def _size_slopes(table: SweepTable, cells: CellEstimates) -> Estimate:
     """Change of k per doubling of the correlation length at every amplitude."""
-    slopes = []
-    for index in range(table.e_el_requested.size):
-        parts = Estimate(*(getattr(cells.factor, item.name)[:, index] for item in fields(Estimate)))
-        slopes.append(_size_slope(table, parts, cells.count[:, index] - 1))
-    return Estimate(
-        *(np.array([getattr(one, item.name) for one in slopes]) for item in fields(Estimate))
-    )
+
+    def slope_at(index: int) -> Estimate:
+        factor = cells.factor.each(lambda values: values[:, index])
+        return _size_slope(table, factor, cells.count[:, index] - 1)
+
+    slopes = [slope_at(index) for index in range(table.e_el_requested.size)]
+    return Estimate(*np.transpose([astuple(one) for one in slopes]))
 
 
 def _size_slope(table: SweepTable, factor: Estimate, freedom: NDArray[np.int64]) -> Estimate:
@@ -284,19 +284,12 @@ def _size_slope(table: SweepTable, factor: Estimate, freedom: NDArray[np.int64])
 
 def _force_difference(table: SweepTable, in_range: NDArray[np.bool_]) -> ForceDifference:
     """Differences of the experimenter's estimates over the simulations in the range."""
-    approach, retraction = (
-        difference[:, in_range].reshape(table.spectrum.size, -1)
-        for difference in (
-            table.w_appr_from_force - table.w_appr,
-            table.w_retr_from_force - table.w_retr,
-        )
+    differences = (
+        table.w_appr_from_force - table.w_appr,
+        table.w_retr_from_force - table.w_retr,
     )
-    return ForceDifference(
-        approach=_mean(approach),
-        approach_largest=_largest(approach),
-        retraction=_mean(retraction),
-        retraction_largest=_largest(retraction),
-    )
+    chosen = [one[:, in_range].reshape(table.spectrum.size, -1) for one in differences]
+    return ForceDifference(*(measure(one) for one in chosen for measure in (_mean, _largest)))
 
 
 def _sum(values: Array) -> Array:

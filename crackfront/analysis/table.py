@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.steady import SteadyMeasures
-from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
 
 Array = NDArray[np.float64]
 
@@ -16,6 +16,9 @@ SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
 """Dimensions of a sweep."""
 
 _SHAPE = SPECTRUM, AMPLITUDE
+_CELL = SPECTRUM, AMPLITUDE, REALISATION
+
+_LENGTH = "reduced lateral length"
 
 
 @dataclass(frozen=True)
@@ -70,43 +73,9 @@ class SweepAxes:
     realisation: NDArray[np.int64] = variable("number of the realisation", "1", REALISATION)
 
 
-CELL_COLUMNS = (
-    "e_el",
-    "w_rms",
-    "w_appr",
-    "w_retr",
-    "w_appr_from_force",
-    "w_retr_from_force",
-    "w_appr_numerical_error",
-    "w_retr_numerical_error",
-)
-"""Columns of a table that have a value for every simulation."""
-
-
 @dataclass(frozen=True, slots=True)
 class SweepTable:
-    """Apparent works of adhesion of a sweep.
-
-    Attributes
-    ----------
-    spectrum : (n_spectrum,) str array
-        Names of the spectra.
-    short_cutoff, roll_off, hurst : (n_spectrum,) array
-        Parameters of the spectra. (Lengths in the reduced lateral unit)
-    correlation_length : (n_spectrum,) array
-        Wavelength of the mean wavevector of w_loc. (Units: reduced lateral length)
-    e_el_requested : (n_amplitude,) array
-        Energy of full conformity of the spectra. (Units: w_int)
-    e_el, w_rms : (n_spectrum, n_amplitude, n_realisation) array
-        Energy of full conformity, for a chemical field its equivalent w_rms^2 / 4, and rms of
-        w_loc, both measured on the tile. (Units: w_int)
-    w_appr, w_retr : (n_spectrum, n_amplitude, n_realisation) array
-        Apparent work of adhesion of the branches; NaN where a simulation failed.
-        (Units: w_int)
-    w_appr_from_force, w_retr_from_force : (n_spectrum, n_amplitude, n_realisation) array
-        The same from a JKR fit of force against mean radius. (Units: w_int)
-    w_appr_numerical_error, w_retr_numerical_error : (n_spectrum, n_amplitude, n_realisation) array
-        Numerical standard errors that the laws state. (Units: w_int)
+    """What a fit reads of a sweep: the apparent works of adhesion, NaN where a simulation failed.
 
     Raises
     ------
@@ -114,33 +83,31 @@ class SweepTable:
         If the shapes disagree, or a measured e_el or w_rms is not positive.
     """
 
-    spectrum: NDArray[np.str_]
-    short_cutoff: Array
-    roll_off: Array
-    hurst: Array
-    correlation_length: Array
-    e_el_requested: Array
-    e_el: Array
-    w_rms: Array
-    w_appr: Array
-    w_retr: Array
-    w_appr_from_force: Array
-    w_retr_from_force: Array
-    w_appr_numerical_error: Array
-    w_retr_numerical_error: Array
+    spectrum: NDArray[np.str_] = variable("name of the spectrum", "", SPECTRUM)
+    short_cutoff: Array = variable("shortest wavelength", _LENGTH, SPECTRUM)
+    roll_off: Array = variable("roll-off wavelength", _LENGTH, SPECTRUM)
+    correlation_length: Array = variable("correlation length of w_loc", _LENGTH, SPECTRUM)
+    hurst: Array = variable("Hurst exponent", "1", SPECTRUM)
+    e_el_requested: Array = variable("requested e_el", ADHESION, AMPLITUDE)
+    e_el: Array = variable("measured e_el (chemical field: w_rms^2/4)", ADHESION, *_CELL)
+    w_rms: Array = variable("measured rms of the local work of adhesion", ADHESION, *_CELL)
+    w_appr: Array = variable("work of adhesion in approach", ADHESION, *_CELL)
+    w_retr: Array = variable("work of adhesion in retraction", ADHESION, *_CELL)
+    w_appr_from_force: Array = variable("that of a JKR fit of the approach", ADHESION, *_CELL)
+    w_retr_from_force: Array = variable("that of a JKR fit of the retraction", ADHESION, *_CELL)
+    w_appr_numerical_error: Array = variable("expected error of w_appr", ADHESION, *_CELL)
+    w_retr_numerical_error: Array = variable("expected error of w_retr", ADHESION, *_CELL)
 
     def __post_init__(self) -> None:
         n_spectrum, n_amplitude = self.spectrum.size, self.e_el_requested.size
-        for name in ("short_cutoff", "roll_off", "hurst", "correlation_length"):
-            shape = getattr(self, name).shape
-            if shape != (n_spectrum,):
-                raise ValueError(f"{name} has shape {shape}; there are {n_spectrum} spectra")
         whole = (n_spectrum, n_amplitude, self.e_el.shape[-1])
-        for name in CELL_COLUMNS:
-            shape = getattr(self, name).shape
-            if shape != whole:
+        for item in variables(SweepTable):
+            shape = getattr(self, item.name).shape
+            if item.dims == (SPECTRUM,) and shape != (n_spectrum,):
+                raise ValueError(f"{item.name} has shape {shape}; there are {n_spectrum} spectra")
+            if item.dims == _CELL and shape != whole:
                 raise ValueError(
-                    f"{name} has shape {shape}; (spectrum, amplitude, realisation) is {whole}"
+                    f"{item.name} has shape {shape}; (spectrum, amplitude, realisation) is {whole}"
                 )
         for name in ("e_el", "w_rms"):
             lowest = np.min(getattr(self, name), where=self.finite, initial=np.inf)

@@ -10,10 +10,9 @@ from click.shell_completion import get_completion_class
 from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.cycle import cycle
 from crackfront.cli.figure import check_figures, compare_figures, draw_figure, figure, gallery
-from crackfront.cli.predict import predict
 from crackfront.cli.report import examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
-from crackfront.cli.surface import surface
+from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.cli.validate import validate
 

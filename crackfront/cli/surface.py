@@ -1,27 +1,199 @@
-"""`crackfront surface`: what measurements of a surface hold, and the very map as a field."""
+"""`crackfront surface` and `crackfront predict`: what scans of a surface hold, and its adhesion."""
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.report import FILE, as_json, echo_json, examples
-from crackfront.cli.scans import (
-    Reading,
-    Sphere,
-    echo_notes,
-    reading_options,
-    scene_of,
-    sphere_options,
-    surface_of,
+from crackfront.cli.report import (
+    FILE,
+    announce_compilation,
+    as_json,
+    echo_json,
+    examples,
+    refuse_unwritable,
 )
 
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
-    from crackfront.topography.measures import Surface
+    from crackfront.topography.measures import MeasuredSurface
+    from crackfront.topography.reading import Detrend
+    from crackfront.topography.simulated import Simulated
     from crackfront.topography.tile import Placement
+
+Command = Callable[..., None]
+
+_RESULTS = Path("results/predict")
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """Files of a surface and how to read them, as options say it."""
+
+    scans: tuple[Path, ...]
+    detrend: Detrend
+    unit: str | None
+    size: str | None
+    shortest: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Sphere:
+    """What is pressed on a surface, as options say it."""
+
+    modulus: str | None
+    poisson: float | None
+    radius: str | None
+    work_of_adhesion: str | None
+
+
+def _bundled(
+    command: Command, name: str, kind: type[Any], options: Sequence[Callable[[Command], Command]]
+) -> Command:
+    """A command whose options reach it as one record."""
+    fields = kind.__dataclass_fields__
+
+    @functools.wraps(command)
+    def bundled(**values: Any) -> None:
+        given = {field: values.pop(field) for field in fields}
+        command(**{name: kind(**given)}, **values)
+
+    wrapped: Command = bundled
+    for option in reversed(options):
+        wrapped = option(wrapped)
+    return wrapped
+
+
+def _reading_options(command: Command) -> Command:
+    """Give a command the argument SCANS and the options of :class:`_Reading`, as `reading`."""
+    options = (
+        click.argument("scans", type=FILE, nargs=-1, required=True),
+        click.option(
+            "--detrend",
+            type=click.Choice(["center", "height", "slope", "curvature"]),
+            default="curvature",
+            show_default=True,
+            help="What is taken off: mean, plane of least height or of least slope, paraboloid.",
+        ),
+        click.option("--unit", help="Unit of length of files that state none, as in um."),
+        click.option(
+            "--size", help="Sides of scans that state none, in that unit, as in 50,50 or 50."
+        ),
+        click.option(
+            "--shortest",
+            help="Shortest wavelength to trust, as in 0.4um.  [default: what the file says of tip "
+            "or resolution, and at least four pixels]",
+        ),
+    )
+    return _bundled(command, "reading", _Reading, options)
+
+
+def _sphere_options(*, required: bool) -> Callable[[Command], Command]:
+    """Give a command the options of :class:`_Sphere`, as `sphere`."""
+    options = (
+        click.option("--modulus", required=required, help="Young's modulus, as in 0.7MPa."),
+        click.option(
+            "--poisson",
+            type=click.FloatRange(-1, 0.5, min_open=True),
+            required=required,
+            help="Poisson's ratio.",
+        ),
+        click.option("--radius", required=required, help="Radius of the sphere, as in 1.25mm."),
+        click.option("--work-of-adhesion", required=required, help="w_int, as in 63mJ/m2."),
+    )
+    return lambda command: _bundled(command, "sphere", _Sphere, options)
+
+
+@click.command(
+    epilog=examples(
+        "crackfront predict examples/scans/nanodiamond-detail.al3d --modulus 0.7MPa \\",
+        "    --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2 --json",
+    )
+)
+@_reading_options
+@_sphere_options(required=True)
+@as_json
+@click.option(
+    "--simulate", is_flag=True, help="Run the simulations that the prediction stands for."
+)
+@click.option(
+    "--realisations",
+    type=click.IntRange(min=1),
+    default=3,
+    show_default=True,
+    help="Synthesised surfaces that --simulate runs.",
+)
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of their noise."
+)
+@click.option(
+    "--figure",
+    type=FILE,
+    help="Figure, without suffix; PDF and PNG.  [default: results/predict/<first scan>]",
+)
+def predict(
+    reading: _Reading,
+    sphere: _Sphere,
+    as_json: bool,
+    simulate: bool,
+    realisations: int,
+    seed: int,
+    figure: Path | None,
+) -> None:
+    """Predict how strongly a soft sphere sticks to a measured surface, from the fitted law.
+
+    SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
+    the surface or several. w = w_int - e_el -+ k e_el with k by the simulations of this project
+    (crackfront/factors.csv).
+    """
+    from crackfront.plots.style import save_figure
+    from crackfront.topography.drawing import prediction_figure
+    from crackfront.topography.prediction import predicted, prediction_notes
+    from crackfront.topography.report import (
+        machine_readable,
+        prediction_text,
+        simulation_text,
+        surface_text,
+    )
+
+    scene = _scene_of(sphere)
+    stem = _RESULTS / reading.scans[0].stem if figure is None else figure
+    refuse_unwritable(stem.parent)
+    found = _surface_of(reading)
+    if not as_json:
+        click.echo(surface_text(found) + "\n")
+    prediction = predicted(found, scene)
+    if not as_json:
+        click.echo(prediction_text(found, prediction))
+        _echo_notes(prediction_notes(found, prediction))
+    paths = save_figure(prediction_figure(found, prediction), stem)
+    outcome = _simulated(found, scene, realisations, seed, as_json) if simulate else None
+    if as_json:
+        echo_json(machine_readable(found, scene, prediction, outcome))
+        return
+    for path in paths:
+        click.echo(f"figure: {path}")
+    if outcome is not None:
+        click.echo(simulation_text(outcome))
+
+
+def _simulated(
+    surface: MeasuredSurface, scene: Scales, realisations: int, seed: int, quiet: bool
+) -> Simulated:
+    """Run the simulations behind a prediction."""
+    from crackfront.topography.simulated import expected_seconds, prediction_simulations, simulated
+
+    simulations = prediction_simulations(surface, scene, realisations, seed)
+    if not quiet:
+        announce_compilation()
+        seconds = expected_seconds(simulations)
+        click.echo(f"simulating {realisations} surface(s), about {seconds:.3g} s ...")
+    return simulated(simulations, scene)
 
 
 @click.command(
@@ -31,8 +203,8 @@ if TYPE_CHECKING:
         "    --work-of-adhesion 63mJ/m2 --field field.nc",
     )
 )
-@reading_options
-@sphere_options(required=False)
+@_reading_options
+@_sphere_options(required=False)
 @as_json
 @click.option("--field", type=FILE, help="Write the very map as a field for crackfront cycle.")
 @click.option(
@@ -43,8 +215,8 @@ if TYPE_CHECKING:
     help="Field: let the contact go on to mirror images of the scan, or refuse that.",
 )
 def surface(
-    reading: Reading,
-    sphere: Sphere,
+    reading: _Reading,
+    sphere: _Sphere,
     as_json: bool,
     field: Path | None,
     place: Placement,
@@ -54,31 +226,29 @@ def surface(
     SCANS are files of instruments in any format that SurfaceTopography reads. With the sphere,
     e_el and w_rms too.
     """
-    from crackfront.topography.limits import surface_notes
-    from crackfront.topography.machine import machine_readable
-    from crackfront.topography.report import conformity_text, surface_text
+    from crackfront.topography.prediction import surface_notes
+    from crackfront.topography.report import conformity_text, machine_readable, surface_text
 
-    named = sphere != Sphere(None, None, None, None)
-    scene = scene_of(sphere) if named or field is not None else None
+    named = sphere != _Sphere(None, None, None, None)
+    scene = _scene_of(sphere) if named or field is not None else None
     if field is not None and len(reading.scans) > 1:
         raise ValueError(
             f"--field takes one scan, not {len(reading.scans)}; name the one to press on"
         )
-    found = surface_of(reading)
-    notes = tuple(surface_notes(found))
+    found = _surface_of(reading)
     if as_json:
-        echo_json(machine_readable(found, scene, notes=notes))
+        echo_json(machine_readable(found, scene))
     else:
         click.echo(surface_text(found))
         if scene is not None:
             click.echo("\n" + conformity_text(found, scene))
-        echo_notes(notes)
+        _echo_notes(surface_notes(found))
     if field is not None and scene is not None:
         _write_field(found, scene, place, field, quiet=as_json)
 
 
 def _write_field(
-    surface: Surface, scene: Scales, place: Placement, path: Path, quiet: bool
+    surface: MeasuredSurface, scene: Scales, place: Placement, path: Path, quiet: bool
 ) -> None:
     """Write the map of a surface as a field."""
     from crackfront.data.provenance import provenance
@@ -97,3 +267,55 @@ def _write_field(
     )
     if not quiet:
         click.echo(f"field: {path}, e_el {adhesion.elastic_energy:.4g} w_int on the tile")
+
+
+def _surface_of(reading: _Reading) -> MeasuredSurface:
+    """Surface of the files that a command names."""
+    from crackfront.data.quantities import si_value
+    from crackfront.topography.measures import measured_surface
+    from crackfront.topography.reading import Treatment, read_measurements
+
+    limit, size = reading.shortest, reading.size
+    treatment = Treatment(
+        reading.detrend,
+        reading.unit,
+        None if size is None else _sides(size),
+        None if limit is None else si_value(limit, "m", what="--shortest"),
+    )
+    return measured_surface(read_measurements(reading.scans, treatment))
+
+
+def _sides(text: str) -> tuple[float, ...]:
+    """Sides that an option like 50,50 names."""
+    try:
+        return tuple(float(side) for side in text.split(","))
+    except ValueError as error:
+        raise ValueError(
+            f"--size is {text!r}; write one number for each direction, as in 50,50"
+        ) from error
+
+
+def _scene_of(sphere: _Sphere) -> Scales:
+    """Scene of a sphere, in SI units."""
+    from crackfront.core.units import Scales
+    from crackfront.data.quantities import si_value
+
+    modulus, poisson, radius = sphere.modulus, sphere.poisson, sphere.radius
+    adhesion = sphere.work_of_adhesion
+    if modulus is None or poisson is None or radius is None or adhesion is None:
+        raise ValueError(
+            "the sphere is incomplete; name all of --modulus, --poisson, --radius and "
+            "--work-of-adhesion"
+        )
+    young = si_value(modulus, "Pa", what="--modulus")
+    return Scales(
+        radius=si_value(radius, "m", what="--radius"),
+        work_of_adhesion=si_value(adhesion, "J/m^2", what="--work-of-adhesion"),
+        contact_modulus=young / (1 - poisson**2),
+    )
+
+
+def _echo_notes(notes: Iterable[str]) -> None:
+    """Print what a reader must know."""
+    for number, note in enumerate(notes):
+        click.echo(f"  {note}" if number else f"\nNotes\n  {note}")

@@ -20,19 +20,7 @@ _FRAMES_PER_SECOND = 12
 
 @dataclass(frozen=True, slots=True)
 class Animation:
-    """A figure of which a few parts move.
-
-    Attributes
-    ----------
-    figure : Figure
-        The figure, which looks like its still.
-    moving : tuple of Artist
-        Parts that move; all others look the same in every frame.
-    n_frame : int
-        Number of frames.
-    show : callable
-        Puts all parts where they are in a frame, by its number.
-    """
+    """A figure of which parts are `moving`; `show` puts them where they are in a frame."""
 
     figure: Figure
     moving: tuple[Artist, ...]
@@ -41,20 +29,7 @@ class Animation:
 
 
 def save_animation(animation: Animation, stem: Path) -> Path:
-    """Write an animation as GIF that runs for ever; equal animations give equal bytes.
-
-    Parameters
-    ----------
-    animation : Animation
-        An animation.
-    stem : Path
-        Path without suffix; its folder is made where it is missing.
-
-    Returns
-    -------
-    Path
-        The GIF (100 dpi, 12 frames a second).
-    """
+    """Write a GIF (100 dpi, 12 frames a second) that runs for ever; equal ones give equal bytes."""
     stem.parent.mkdir(parents=True, exist_ok=True)
     path = stem.with_name(stem.name + ".gif")
     with house_style():

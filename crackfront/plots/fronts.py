@@ -24,16 +24,12 @@ _MARGIN = 1.15
 def draw_field(
     axes: Axes, x: Array, y: Array, adhesion: NDArray[np.floating], mean: float, reach: float
 ) -> None:
-    """Work of adhesion in a few shades, with a colour bar.
+    """Work of adhesion in a few shades, mean - reach to mean + reach, with a colour bar.
 
     Parameters
     ----------
-    axes : Axes
-        Where to draw.
-    x : (n_x,) array
-        Abscissae. (Units: reduced lateral length)
-    y : (n_y,) array
-        Ordinates. (Units: reduced lateral length)
+    x, y : (n_x,), (n_y,) arrays
+        Abscissae and ordinates. (Units: reduced lateral length)
     adhesion : (n_x, n_y) array
         Work of adhesion. (Units: w_int)
     mean, reach : float
@@ -54,19 +50,7 @@ def draw_field(
 
 
 def draw_heights(axes: Axes, x: Array, y: Array, heights: Array) -> None:
-    """Heights in colours, peaks bright, with a colour bar.
-
-    Parameters
-    ----------
-    axes : Axes
-        Where to draw.
-    x : (n_x,) array
-        Abscissae. (Units: reduced lateral length)
-    y : (n_y,) array
-        Ordinates. (Units: reduced lateral length)
-    heights : (n_x, n_y) array
-        Heights. (Units: reduced vertical length)
-    """
+    """Heights in colours, peaks bright, with a colour bar; arrays as of :func:`draw_field`."""
     image = axes.imshow(
         heights.T,
         origin="lower",
@@ -82,20 +66,16 @@ def draw_heights(axes: Axes, x: Array, y: Array, heights: Array) -> None:
 def draw_fronts(
     axes: Axes, angle: Array, radius: Array, direction: NDArray[np.int64], most: int = 24
 ) -> None:
-    """Fronts of both branches as closed curves, not more of a branch than asked for.
+    """Fronts of both branches as closed curves, at most so many of a branch, its last among them.
 
     Parameters
     ----------
-    axes : Axes
-        Where to draw.
     angle : (n_angle,) array
         Angles of the sites. (Units: rad)
     radius : (n_step, n_angle) array
         The fronts. (Units: reduced lateral length)
     direction : (n_step,) int array
         +1 in approach, -1 in retraction.
-    most : int, optional
-        Fronts of a branch that are drawn, at most; the last is one of them.
     """
     for sign, colour, label in ((1, BLUE, "approach"), (-1, VERMILION, "retraction")):
         branch = radius[direction == sign]

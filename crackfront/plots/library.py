@@ -39,12 +39,7 @@ def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     surface : xarray.DataArray
         A surface in reduced units.
     axes : matplotlib.axes.Axes, optional
-        Where to draw; by default axes of a new figure.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        Where it was drawn.
+        Where to draw; by default axes of a new figure, which are returned.
 
     Raises
     ------
@@ -66,19 +61,7 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     """Isotropic power spectrum of a rough surface, with the scales that dominate it.
 
     A bar spans the wavevectors that carry 80% of the mean square of heights, half-derivatives (and
-    with them e_el) or slopes.
-
-    Parameters
-    ----------
-    surface : xarray.DataArray
-        `height(x, y)` in reduced units.
-    axes : matplotlib.axes.Axes, optional
-        Where to draw; by default axes of a new figure.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        Where it was drawn.
+    with them e_el) or slopes. Parameters are those of :func:`plot_surface`.
 
     Raises
     ------
@@ -109,17 +92,7 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
 def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     """Force against mean radius, between the JKR curves of both branches and those of the paper.
 
-    Parameters
-    ----------
-    loop : xarray.Dataset
-        What :func:`run_loop` has returned.
-    axes : matplotlib.axes.Axes, optional
-        Where to draw; by default axes of a new figure.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        Where it was drawn.
+    `loop` is what :func:`run_loop` has returned, `axes` as of :func:`plot_surface`.
 
     Raises
     ------
@@ -142,21 +115,8 @@ def plot_fronts(
 ) -> Axes:
     """Fronts of both branches, over the work of adhesion that pins them if the surface is given.
 
-    Parameters
-    ----------
-    loop : xarray.Dataset
-        What :func:`run_loop` has returned, with its fronts.
-    surface : xarray.DataArray, optional
-        The surface of the loop.
-    axes : matplotlib.axes.Axes, optional
-        Where to draw; by default axes of a new figure.
-    most : int, optional
-        Fronts of a branch, at most.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        Where it was drawn.
+    `loop` and `axes` are as of :func:`plot_loop`; the loop holds its fronts, at most `most` of
+    which are drawn of a branch.
 
     Raises
     ------
@@ -183,17 +143,7 @@ def plot_fronts(
 def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     """What each instability of a branch has swept, coloured by the energy that it dissipated.
 
-    Parameters
-    ----------
-    jumps : xarray.Dataset
-        What :func:`find_instabilities` has returned.
-    axes : matplotlib.axes.Axes, optional
-        Where to draw; by default axes of a new figure.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        Where it was drawn.
+    `jumps` is what :func:`find_instabilities` has returned, `axes` as of :func:`plot_surface`.
 
     Raises
     ------

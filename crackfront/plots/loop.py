@@ -50,17 +50,7 @@ def loop_figure(
 ) -> Figure:
     """Force against mean radius of one cycle between its two JKR curves (main Fig. 3c).
 
-    Parameters
-    ----------
-    states, works, window, elastic_energy, kind
-        As of :func:`draw_loop`.
-    title : str, optional
-        Title of the figure.
-
-    Returns
-    -------
-    Figure
-        One column wide.
+    Parameters are those of :func:`draw_loop`; the figure is one column wide.
     """
     with house_style():
         figure = blank_figure(COLUMN, 0.82 * COLUMN)

@@ -105,20 +105,7 @@ def shown_axes() -> Iterator[Axes]:
 
 
 def save_figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
-    """Write a figure as PDF and PNG; equal figures give equal bytes.
-
-    Parameters
-    ----------
-    figure : Figure
-        A figure.
-    stem : Path
-        Path without suffix; its folder is made where it is missing.
-
-    Returns
-    -------
-    tuple of Path
-        The PDF and the PNG (300 dpi).
-    """
+    """Write a figure as PDF and PNG (300 dpi), its folder too; equal figures give equal bytes."""
     stem.parent.mkdir(parents=True, exist_ok=True)
     pdf, png = (stem.with_name(stem.name + suffix) for suffix in (".pdf", ".png"))
     with house_style(), _fonts_without_dates():
@@ -128,15 +115,7 @@ def save_figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
 
 
 def save_picture(figure: Figure, path: Path) -> None:
-    """Write a figure as a PNG for a screen, a third as large as that for print.
-
-    Parameters
-    ----------
-    figure : Figure
-        A figure.
-    path : Path
-        File.
-    """
+    """Write a figure as a PNG for a screen, a third as large as that for print."""
     with house_style():
         figure.savefig(path, dpi=_SCREEN, metadata={"Software": None})
 

@@ -33,20 +33,7 @@ from crackfront.plots.style import COLUMN, PAGE, blank_figure, house_style
 
 
 def hysteresis_figure(table: SweepTable, fit: SweepFit) -> Figure:
-    """Hysteresis against the variance of w_loc, with the spectra in an inset (SI Fig. S-5).
-
-    Parameters
-    ----------
-    table : SweepTable
-        The sweep.
-    fit : SweepFit
-        Its fit.
-
-    Returns
-    -------
-    Figure
-        One column wide.
-    """
+    """Hysteresis against the variance of w_loc, with the spectra in an inset (SI Fig. S-5)."""
     with house_style():
         figure = blank_figure(COLUMN, 0.98 * COLUMN)
         axes = figure.add_subplot()
@@ -57,20 +44,7 @@ def hysteresis_figure(table: SweepTable, fit: SweepFit) -> Figure:
 
 
 def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
-    """Dependence of k on disorder and on size.
-
-    Parameters
-    ----------
-    table : SweepTable
-        The sweep.
-    fit : SweepFit
-        Its fit.
-
-    Returns
-    -------
-    Figure
-        A page wide: k against e_el, and its mean over the range against correlation length.
-    """
+    """Dependence of k on disorder and, averaged over the range, on correlation length."""
     with house_style():
         figure = blank_figure(PAGE, 0.42 * PAGE)
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
@@ -85,32 +59,14 @@ def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
 
 
 def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
-    """Limits of an ordinate that shows all k of a sweep and those of the theories.
-
-    Parameters
-    ----------
-    axes : Axes
-        Where k is drawn.
-    fit : SweepFit
-        Its fit.
-    """
+    """Limits of an ordinate that shows all k of a sweep and those of the theories."""
     factor = fit.cells.factor.value
     highest = max(PERTURBATION_FACTOR, float(np.nanmax(factor)))
     axes.set_ylim(min(0.0, float(np.nanmin(factor))) - 0.05 * highest, 1.1 * highest)
 
 
 def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
-    """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the fit and the theory.
-
-    Parameters
-    ----------
-    axes : Axes
-        Where to draw.
-    table : SweepTable
-        The sweep.
-    fit : SweepFit
-        Its fit.
-    """
+    """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the fit and the theory."""
     variance, hysteresis = fit.cells.w_rms**2, fit.cells.hysteresis
     ends = np.array([np.nanmin(variance) / 1.8, np.nanmax(variance) * 1.8])
     # Below its onset hysteresis falls to nothing; such points must not stretch the axes.
@@ -137,17 +93,7 @@ def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
 
 
 def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -> None:
-    """Draw the spectra, all scaled to one variance of w_loc.
-
-    Parameters
-    ----------
-    axes : Axes
-        Where to draw.
-    table : SweepTable
-        The sweep, of which only the spectra are used.
-    kind : {"roughness", "chemical"}, optional
-        Whether they are spectra of heights or of w_loc.
-    """
+    """Draw the spectra (of heights or of w_loc), all scaled to one variance of w_loc."""
     lowest = np.pi / np.max(table.roll_off)
     densities = []
     for index in range(table.spectrum.size):
@@ -185,15 +131,6 @@ def draw_factor_by_disorder(axes: Axes, table: SweepTable, fit: SweepFit) -> Non
 
     Points of different spectra are set off sideways by up to 6% so that their bars do not hide
     each other.
-
-    Parameters
-    ----------
-    axes : Axes
-        Where to draw.
-    table : SweepTable
-        The sweep.
-    fit : SweepFit
-        Its fit.
     """
     energy, n_spectrum = fit.cells.e_el, table.spectrum.size
     aside = 1 + 0.12 * (np.arange(n_spectrum) - (n_spectrum - 1) / 2) / max(n_spectrum - 1, 1)
@@ -218,15 +155,6 @@ def draw_factor_by_length(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     """Draw k, averaged over the range, against the correlation length.
 
     Spectra of one shape are joined by a line.
-
-    Parameters
-    ----------
-    axes : Axes
-        Where to draw.
-    table : SweepTable
-        The sweep.
-    fit : SweepFit
-        Its fit.
     """
     length, factor = table.correlation_length, fit.spectra.factor
     for shape in np.unique(table.shape):

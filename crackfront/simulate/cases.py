@@ -39,19 +39,7 @@ def option(text: str, *, flag: str | None = None, default: Any = MISSING) -> Any
 
 
 class Problem(NamedTuple):
-    """What a cycle is run on.
-
-    Attributes
-    ----------
-    field : Field
-        Work of adhesion along the rays.
-    front : (n_site,) array
-        Where the front begins.
-    loads : iterable of Load
-        Where it goes.
-    sites : (n_site,) array or None
-        Coordinates of its sites, if not those of the geometry.
-    """
+    """What a cycle is run on; `sites` are coordinates that are not those of the geometry."""
 
     field: Field
     front: Array
@@ -61,17 +49,7 @@ class Problem(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
-    """How a given field is resolved; None leaves the choice to the case.
-
-    Attributes
-    ----------
-    angles : int or None
-        Sites of the front.
-    samples_per_pixel : float or None
-        Samples along a ray per pixel of a tile.
-    interpolation : {"cubic", "linear"} or None
-        Pieces between samples.
-    """
+    """How a given field is resolved; None leaves the choice to the case."""
 
     angles: int | None
     samples_per_pixel: float | None

@@ -59,20 +59,8 @@ def contact_field(
     """Field of a tile that no front can leave up to a penetration.
 
     By no passing, a front stays inside the circle in equilibrium with the tile's largest work of
-    adhesion; a tenth more allows for the overshoot of the splines between the points.
-
-    Parameters
-    ----------
-    adhesion : AdhesionMap
-        Work of adhesion on the tile.
-    n_angle : int
-        Sites of the front.
-    spacing : float
-        Distance of samples along a ray. (Units: reduced lateral length)
-    max_penetration : float
-        Largest penetration. (Units: reduced vertical length)
-    interpolation, band_limited
-        As in :func:`crackfront.core.field.fields.tile_field`.
+    adhesion; a tenth more allows for the overshoot of the splines between the points. The other
+    arguments are as of :func:`crackfront.core.field.fields.tile_field`.
     """
     values = adhesion.work_of_adhesion
     # The refusal of values that are not finite, with their place, is tile_field's.

@@ -52,10 +52,6 @@ class Features:
 
     Attributes
     ----------
-    n_angle, n_point : int
-        Sites of the front; points along a side of the tile.
-    elastic_energy, tolerance : float
-        As in :class:`crackfront.simulate.simulation.Simulation`.
     breadth : float
         Roll-off over short cutoff.
     travel : float
@@ -78,21 +74,7 @@ class Features:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A run that was measured.
-
-    Attributes
-    ----------
-    name : str
-        Label of the simulation.
-    held_out : bool
-        Whether the fit does without it.
-    features : Features
-        What its time depends on.
-    n_state : int
-        States that it found.
-    cpu_seconds : float
-        Processor time.
-    """
+    """A run that was measured, with its states; the fit does without what is held out."""
 
     name: str
     held_out: bool
@@ -103,17 +85,7 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """What a simulation is expected to cost.
-
-    Attributes
-    ----------
-    seconds : float
-        Processor time. (Units: s)
-    memory : float
-        Memory of the rank that runs it. (Units: bytes)
-    disk : float
-        What is stored. (Units: bytes)
-    """
+    """Expected processor time (s), memory of the rank and disk (bytes) of a simulation."""
 
     seconds: float
     memory: float
@@ -121,13 +93,7 @@ class Cost:
 
 
 def expected_cost(simulation: Simulation) -> Cost:
-    """What a simulation is expected to cost, with the processor of the measured runs.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        A simulation.
-    """
+    """What a simulation is expected to cost, with the processor of the measured runs."""
     return _cost(replace(simulation, realisation=0))
 
 
@@ -196,11 +162,6 @@ def integral_breadth(simulation: Simulation) -> float:
 
     The mean of w_loc along a front varies by its longest waves, the mean of 1/q, and the
     correlation length is that of the mean of q.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        A simulation; what counts is its spectrum and the kind of its field.
     """
     spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
     flat = SelfAffineSpectrum(1.0, 1.0, hurst=1.0)

@@ -27,15 +27,7 @@ _HEIGHT = SURFACES["roughness"].name
 
 @dataclass(frozen=True, slots=True)
 class PolarSamples:
-    """Samples on rays, and the angles of the rays.
-
-    Attributes
-    ----------
-    field : RayField
-        The samples.
-    angles : (n_angle,) array
-        Angles of the rays. (Units: rad)
-    """
+    """Samples on rays, and the angles of the rays (Units: rad)."""
 
     field: RayField
     angles: Array
@@ -88,19 +80,7 @@ def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionM
 def write_field(
     path: Path, adhesion: AdhesionMap, origin: Provenance, **attributes: str | float
 ) -> None:
-    """Write a periodic tile as :func:`read_field` reads it.
-
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-    adhesion : AdhesionMap
-        Work of adhesion on the tile.
-    origin : Provenance
-        Where it comes from.
-    **attributes : str or float
-        What else the file says of itself.
-    """
+    """Write a periodic tile as :func:`read_field` reads it, with what else it says of itself."""
     values = adhesion.work_of_adhesion / WORK_OF_ADHESION
     about = {"units": ADHESION, "long_name": "local work of adhesion"}
     axis = {"units": LATERAL}

@@ -40,34 +40,12 @@ def write_cycle(
     geometry: Geometry | None = None,
     sites: Array | None = None,
 ) -> None:
-    """Write the record of one cycle.
-
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-    record : CycleRecord
-        What to write.
-    origin : Provenance
-        Where it comes from.
-    geometry, sites
-        As of :func:`cycle_dataset`.
-    """
+    """Write the record of one cycle; arguments as of :func:`cycle_dataset`."""
     write_dataset(path, cycle_dataset(record, geometry, sites), origin)
 
 
 def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> None:
-    """Write what one simulation of a sweep found and what it cost.
-
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-    result : SimulationResult
-        What to write.
-    origin : Provenance
-        Where it comes from.
-    """
+    """Write what one simulation of a sweep found and what it cost."""
     simulation = result.simulation
     dataset = cycle_dataset(result.record).assign(labelled_fields(result.measures))
     dataset.attrs |= {
@@ -87,30 +65,12 @@ def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -
 
 
 def read_cycle(path: Path) -> CycleRecord:
-    """Record of one cycle.
-
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-
-    Raises
-    ------
-    UnreadableFileError
-        If the file is missing, truncated or holds no cycle.
-    """
+    """Record of one cycle, or `UnreadableFileError`."""
     return cycle_record(read_dataset(path), path)
 
 
 def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
     """Stored result of a simulation.
-
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-    simulation : Simulation
-        Whose result it must be.
 
     Raises
     ------
@@ -129,17 +89,7 @@ def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
 
 
 def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> None:
-    """Write what a simulation needs to go on later.
-
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-    partial : PartialRun
-        What to write.
-    origin : Provenance
-        Where it comes from.
-    """
+    """Write what a simulation needs to go on later."""
     checkpoint = partial.checkpoint
     dataset = cycle_dataset(checkpoint.record).assign(
         {
@@ -157,20 +107,7 @@ def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> Non
 
 
 def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
-    """What a simulation needs to go on.
-
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-    simulation : Simulation
-        Whose checkpoint it must be.
-
-    Raises
-    ------
-    UnreadableFileError
-        If the file is missing, truncated or that of another simulation.
-    """
+    """What a simulation needs to go on; refusals as of :func:`read_simulation`."""
     dataset = read_dataset(path)
     if dataset.attrs.get("key") != simulation.key or LAST_FRONT.name not in dataset:
         raise UnreadableFileError(f"{path} is no checkpoint of {simulation.label}; remove it")
@@ -212,20 +149,7 @@ def cycle_dataset(
 
 
 def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> CycleRecord:
-    """Record that a dataset holds.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What :func:`cycle_dataset` made.
-    place : Path or str, optional
-        What an error calls it.
-
-    Raises
-    ------
-    UnreadableFileError
-        If it holds no cycle.
-    """
+    """Record that a dataset of :func:`cycle_dataset` holds, or `UnreadableFileError`."""
     names = [item.name for item in variables(ContactState)]
     missing = [name for name in names if name not in dataset]
     name = str(dataset.attrs.get("status", "")).upper()

@@ -88,11 +88,6 @@ class Law:
     ----------
     shape : str
         Shape of the spectrum, as :func:`spectral_shape` names it.
-    elastic_energy : float
-        e_el / w_int.
-    knob : {"sites", "cubic", "linear", "pixels", "tolerance"}
-        Sites and pixels per short cutoff, samples of cubic and linear pieces per short cutoff,
-        tolerance.
     direction : {1, -1}
         +1 for w_appr, -1 for w_retr.
     bias, scatter : tuple of float
@@ -128,7 +123,7 @@ def spectral_shape(kind: FieldKind, spectrum: SelfAffineSpectrum) -> str:
 def chosen_knobs(
     error: float, kind: FieldKind, spectrum: SelfAffineSpectrum, elastic_energy: float
 ) -> Knobs:
-    """Knobs that leave an asked error in w_appr and w_retr.
+    """Knobs that leave an asked error in w_appr and w_retr: the coarsest that the laws allow.
 
     Parameters
     ----------
@@ -141,11 +136,6 @@ def chosen_knobs(
         Its shape.
     elastic_energy : float
         e_el / w_int.
-
-    Returns
-    -------
-    Knobs
-        Coarsest resolution and tolerance that the laws allow.
     """
     shape = spectral_shape(kind, spectrum)
     found = {
@@ -169,7 +159,7 @@ def combined_error(
     values: Mapping[Knob, float],
     size: float,
 ) -> tuple[float, float]:
-    """Standard errors that values of all knobs are expected to leave.
+    """Standard errors (w_appr, w_retr) that values of all knobs leave (Units: w_int).
 
     Parameters
     ----------
@@ -179,11 +169,6 @@ def combined_error(
         Values of the knobs; of interpolations the one that is used.
     size : float
         Number of states times circumference of the front over the short cutoff.
-
-    Returns
-    -------
-    tuple of float
-        Standard errors of w_appr and of w_retr. (Units: w_int)
     """
     shape = spectral_shape(kind, spectrum)
     approach, retraction = (

@@ -218,20 +218,10 @@ _TOLERANCE = 1e-8
 
 @dataclass(frozen=True, slots=True)
 class SurfaceContact:
-    """A sphere on a surface.
+    """A sphere on a surface: the field, the tolerance of its solver, and what its tile measures.
 
-    Attributes
-    ----------
-    field : TileField
-        Work of adhesion along the rays.
-    tolerance : float
-        Force that may be left, relative to w_int per front length.
-    elastic_energy, rms : float
-        e_el and w_rms measured on the tile. (Units: w_int)
-    correlation_length : float
-        That of w_loc, measured on the tile. (Units: reduced lateral length)
-    simulation : Simulation or None
-        The numerics and their expected errors, where the spectrum is known.
+    e_el and w_rms are in units of w_int, the correlation length in reduced lateral lengths; the
+    simulation, with its expected errors, is there where the spectrum is known.
     """
 
     field: TileField
@@ -245,19 +235,7 @@ class SurfaceContact:
 def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) -> SurfaceContact:
     """Contact of a surface, resolved by the measured laws or else by its pixels.
 
-    Parameters
-    ----------
-    surface : xarray.DataArray
-        A surface in reduced units.
-    schedule : LoadSchedule
-        Penetrations to visit.
-    error : float
-        Standard error of the factor k of either branch that the numerics may leave.
-
-    Raises
-    ------
-    ValueError
-        If surface or error cannot be used, or the pixels are too coarse for the error.
+    Arguments and errors are as of :func:`run_loop`.
     """
     refuse_no_fraction("error", error)
     adhesion = surface_adhesion(surface)

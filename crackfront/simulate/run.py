@@ -24,17 +24,7 @@ from crackfront.simulate.simulation import Simulation
 
 @dataclass(frozen=True, slots=True)
 class SimulationResult:
-    """What one simulation found and what it cost.
-
-    Attributes
-    ----------
-    simulation : Simulation
-        What was simulated.
-    record : CycleRecord
-        The states of the cycle, with the status that ended it.
-    measures : RunMeasures
-        What was measured on its tile, and its costs.
-    """
+    """What one simulation found, and what was measured on its tile and of its costs."""
 
     simulation: Simulation
     record: CycleRecord
@@ -43,17 +33,7 @@ class SimulationResult:
 
 @dataclass(frozen=True, slots=True)
 class PartialRun:
-    """A simulation that has not ended yet.
-
-    Attributes
-    ----------
-    simulation : Simulation
-        What is simulated.
-    checkpoint : Checkpoint
-        What it takes to go on from the last state.
-    seconds, cpu_seconds : float
-        Cost so far, as in :class:`RunMeasures`.
-    """
+    """A simulation that has not ended yet, with its costs so far, as in :class:`RunMeasures`."""
 
     simulation: Simulation
     checkpoint: Checkpoint

@@ -52,25 +52,7 @@ _ATTRIBUTES = {
 
 
 def in_si_units(data: Labelled, scales: Scales) -> Labelled:
-    """The same surface or cycle in SI units.
-
-    Parameters
-    ----------
-    data : xarray.DataArray or xarray.Dataset
-        What is in reduced units.
-    scales : Scales
-        The sphere: what one reduced unit is in SI.
-
-    Returns
-    -------
-    xarray.DataArray or xarray.Dataset
-        A copy.
-
-    Raises
-    ------
-    ValueError
-        If a variable is unknown or not in reduced units.
-    """
+    """A copy of a surface or cycle in SI units; arguments as of :func:`in_reduced_units`."""
     refuse_other_units(data)
 
     def physical(name: str, part: xr.DataArray) -> tuple[float, str]:
@@ -117,18 +99,7 @@ def in_reduced_units(data: Labelled, scales: Scales) -> Labelled:
 
 
 def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
-    """Raise if a variable is not in reduced units.
-
-    Parameters
-    ----------
-    data : xarray.DataArray or xarray.Dataset
-        A surface or a cycle.
-
-    Raises
-    ------
-    ValueError
-        If a variable is unknown or not in reduced units.
-    """
+    """Raise ValueError if a variable is unknown or not in reduced units."""
     for name, part in _parts(_dataset(data)).items():
         if (given := part.attrs.get("units")) != _units(name):
             raise ValueError(

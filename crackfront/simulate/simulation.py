@@ -62,20 +62,9 @@ class Numerics:
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
-    """Sizes that the numerics give to one spectrum.
+    """Sizes that the numerics give to one spectrum: sites, samples along a ray, points of the tile.
 
-    Attributes
-    ----------
-    n_angle : int
-        Sites of the front.
-    spacing : float
-        Distance of samples along a ray. (Units: reduced lateral length)
-    interpolation : {"cubic", "linear"}
-        Pieces between samples.
-    tile_side : float
-        Side of the periodic tile. (Units: reduced lateral length)
-    n_point : int
-        Points along a side of the tile.
+    `spacing` is the distance of samples, `tile_side` the side. (Units: reduced lateral length)
     """
 
     n_angle: int
@@ -89,17 +78,6 @@ def resolution(
     spectrum: SelfAffineSpectrum, numerics: Numerics, knobs: Knobs, max_penetration: float
 ) -> Resolution:
     """Sizes of the front and of the tile for one spectrum.
-
-    Parameters
-    ----------
-    spectrum : SelfAffineSpectrum
-        Spectrum of the surface. (Units: reduced lateral length)
-    numerics : Numerics
-        Size of the tile.
-    knobs : Knobs
-        Resolution relative to the short cutoff.
-    max_penetration : float
-        Largest penetration. (Units: reduced vertical length)
 
     Examples
     --------
@@ -186,7 +164,7 @@ class Simulation:
             "load": astuple(self.schedule),
             "numerics": (self.solver.tolerance, self.solver.max_sweeps, self.solver.name),
             "record": (self.record_fronts, self.record_energy),
-            "sources": scene_fingerprint(),
+            "sources": simulation_fingerprint(),
         }
 
     @property
@@ -231,29 +209,13 @@ def simulation_of(
     *,
     seed: int,
     realisation: int = 0,
-    name: str = "asked",
+    name: str = "single",
     record: Collection[Literal["fronts", "energy"]] = (),
 ) -> Simulation:
-    """The simulation of a surface.
+    """The simulation of a surface; the largest penetration of the schedule decides its sites.
 
-    Parameters
-    ----------
-    kind : {"roughness", "chemical"}
-        What the spectrum describes.
-    spectrum : SelfAffineSpectrum
-        Its shape. (Units: reduced lateral length)
-    elastic_energy : float
-        Energy of full conformity. (Units: w_int)
-    schedule : LoadSchedule or SteadySchedule
-        Penetrations; the largest decides the number of sites.
-    numerics : Numerics
-        How it is resolved and solved.
-    seed, realisation : int
-        Which surface.
-    name : str, optional
-        Name of the spectrum.
-    record : collection of {"fronts", "energy"}, optional
-        What to record beside the curves.
+    The name is that of the spectrum, the numerics are how it is resolved and solved, and `record`
+    is what is kept beside the curves; the rest is as in :class:`Simulation`.
     """
     knobs = numerics.knobs_of(kind, spectrum, elastic_energy)
     return Simulation(
@@ -281,7 +243,7 @@ def missed_error(simulation: Simulation, asked: float) -> float:
 def numerical_error(
     simulation: Simulation, size: float = LAW_SIZE, largest_radius: float | None = None
 ) -> tuple[float, float]:
-    """Standard errors that the numerics of a simulation are expected to leave.
+    """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
 
     Parameters
     ----------
@@ -292,11 +254,6 @@ def numerical_error(
     largest_radius : float, optional
         Largest mean radius of the states; by default that of a smooth sphere at the largest
         penetration. (Units: reduced lateral length)
-
-    Returns
-    -------
-    tuple of float
-        Standard errors of w_appr and of w_retr. (Units: w_int)
     """
     sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
     if largest_radius is None:
@@ -316,21 +273,9 @@ def numerical_error(
 def stated_error(
     simulation: Simulation, steady: SteadyAdhesion, correlation_length: float
 ) -> tuple[float, float]:
-    """Numerical standard errors of the w_appr and w_retr that a simulation has found.
+    """Numerical standard errors of the w_appr and w_retr that a simulation found (Units: w_int).
 
-    Parameters
-    ----------
-    simulation : Simulation
-        A simulation.
-    steady : SteadyAdhesion
-        What it has found; states closer than a correlation length count as one.
-    correlation_length : float
-        That of w_loc. (Units: reduced lateral length)
-
-    Returns
-    -------
-    tuple of float
-        Standard errors of w_appr and of w_retr. (Units: w_int)
+    States closer than a correlation length of w_loc count as one.
     """
     low, high = steady.lowest_radius, steady.highest_radius
     cutoffs = math.pi * (low + high) / simulation.spectrum.short_cutoff
@@ -347,7 +292,7 @@ def _digest(content: Any) -> str:
 
 
 @functools.cache
-def scene_fingerprint() -> str:
+def simulation_fingerprint() -> str:
     """Twelve hexadecimal digits that change with what determines a simulation."""
     return fingerprint(*SOLVER, *_SOURCES, without=NO_PART)
 

@@ -118,27 +118,7 @@ def chosen_simulation(
 ) -> Simulation:
     """Simulation of a surface that a user asks for, refused where there is none.
 
-    Parameters
-    ----------
-    kind : {"roughness", "chemical"}
-        What the spectrum describes.
-    spectrum : SelfAffineSpectrum
-        Its shape. (Units: reduced lateral length)
-    elastic_energy : float
-        Energy of full conformity. (Units: w_int)
-    schedule : LoadSchedule
-        Penetrations to visit.
-    error : float
-        Standard error of the factor k of either branch that the numerics may leave.
-    side : float, optional
-        Side of the tile. (Units: reduced lateral length)
-    seed, realisation : int, optional
-        Which surface.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of range.
+    Parameters are those of :func:`random_surface`; the schedule says which penetrations to visit.
     """
     if kind not in get_args(FieldKind):
         raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
@@ -205,18 +185,7 @@ def surface_array(
 
 
 def surface_kind(surface: xr.DataArray) -> FieldKind:
-    """What the values of a surface are, by its name.
-
-    Parameters
-    ----------
-    surface : xarray.DataArray
-        A surface.
-
-    Raises
-    ------
-    ValueError
-        If the name is none of a surface.
-    """
+    """What the values of a surface are, by its name; ValueError if it is none of a surface."""
     for kind, item in SURFACES.items():
         if surface.name == item.name:
             return kind

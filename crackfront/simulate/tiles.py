@@ -82,15 +82,7 @@ class Modes:
 
 
 def tile_modes(values: Array, pixel: float) -> Modes:
-    """Modes of a periodic tile, but for its mean and what is round-off.
-
-    Parameters
-    ----------
-    values : (n_x, n_y) array
-        Values of the tile.
-    pixel : float
-        Grid spacing. (Units: length)
-    """
+    """Modes of a periodic tile (n_x, n_y), but for its mean and what is round-off."""
     n_x, n_y = values.shape
     power = np.abs(rfft2(values, norm="forward")) ** 2
     round_off = _ROUND_OFF * float(np.sum(power))

@@ -32,9 +32,8 @@ from crackfront.data.section import (
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.simulation import Numerics, missed_error
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
-from crackfront.topography.files import Detrend, Treatment
 from crackfront.topography.measures import measured_surface
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.reading import Detrend, Treatment, read_measurements
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 
@@ -53,7 +52,7 @@ def _several(value: Any) -> Any:
 
 
 class SurfaceSection(Section):
-    """Measurements of a surface, read as :class:`crackfront.topography.files.Treatment` says."""
+    """Measurements of a surface, read as :class:`crackfront.topography.reading.Treatment` says."""
 
     file: Annotated[tuple[InputFile, ...], BeforeValidator(_several), Field(min_length=1)]
     detrend: Detrend = "curvature"

@@ -10,48 +10,24 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from crackfront.analysis.notes import fit_notes
-from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR, fit_table
+from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR, fit_notes, fit_table
 from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import FIT_DEFINITION
-from crackfront.data.files import write_dataset, write_text
+from crackfront.data.files import labelled, write_dataset, write_text
 from crackfront.data.provenance import Provenance, utc_now
 
 
 def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Path, Path]:
-    """Write `fit.nc`, `fit.json` and `fit.md`.
-
-    Parameters
-    ----------
-    folder : Path
-        Where to write.
-    fit : SweepFit
-        What to write.
-    origin : Provenance
-        Where it comes from.
-
-    Returns
-    -------
-    tuple of Path
-        The three files.
-    """
+    """Write `fit.nc`, `fit.json` and `fit.md`, and return their paths."""
     paths = folder / "fit.nc", folder / "fit.json", folder / "fit.md"
     columns = list(fit_columns(fit))
     about = _about(fit)
-    variables = {
-        item.name: (item.dims, item.values, {"units": item.units, "long_name": item.long_name})
-        for item in columns
-    }
+    variables = {item.name: labelled(item, values) for item, values in columns}
     write_dataset(paths[0], xr.Dataset(variables, attrs=about), origin)
     entries = {
-        item.name: {
-            "dims": item.dims,
-            "values": _plain(item.values),
-            "units": item.units,
-            "long_name": item.long_name,
-        }
-        for item in columns
+        item.name: {"dims": item.dims, "values": _plain(values), **item.attributes}
+        for item, values in columns
     }
     content = {
         "about": about,

@@ -14,12 +14,11 @@ from scipy.fft import fftfreq, fftn
 from scipy.signal import get_window
 from scipy.special import digamma, polygamma
 
-from crackfront.topography.files import surface_library
-from crackfront.topography.reading import Measurement
+from crackfront.topography.reading import Measurement, surface_library
 
 Array = NDArray[np.float64]
 
-BINS_PER_DECADE = 20
+_BINS_PER_DECADE = 20
 
 _NEIGHBOURS = 2
 """Distance in modes up to which the window makes their noise dependent."""
@@ -63,11 +62,6 @@ class Density:
 def isotropic_density(measurement: Measurement) -> Density:
     """Isotropic density of a map over its trusted wavevectors.
 
-    Parameters
-    ----------
-    measurement : Measurement
-        A map.
-
     Raises
     ------
     ValueError
@@ -84,13 +78,7 @@ def isotropic_density(measurement: Measurement) -> Density:
 
 
 def profile_density(measurement: Measurement) -> Density:
-    """Density of a line scan, or mean of those of the lines along x of a map.
-
-    Parameters
-    ----------
-    measurement : Measurement
-        A line scan or a map.
-    """
+    """Density of a line scan, or mean of those of the lines along x of a map."""
     level = topography(measurement)
     count = measurement.heights.shape[0]
     wavevectors = 2 * np.pi * np.abs(fftfreq(count, measurement.pixels[0]))
@@ -114,7 +102,7 @@ def _density(
 ) -> Density:
     """Density in logarithmic bins that hold a mode or more."""
     ends = 2 * np.pi / measurement.longest, 2 * np.pi / measurement.shortest
-    count = max(2, math.ceil(math.log10(ends[1] / ends[0]) * BINS_PER_DECADE))
+    count = max(2, math.ceil(math.log10(ends[1] / ends[0]) * _BINS_PER_DECADE))
     edges = np.geomspace(*ends, count + 1)
     _, values = spectrum(reliable=False, collocation=edges)
     place = np.digitize(wavevectors, edges) - 1

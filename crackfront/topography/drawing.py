@@ -31,7 +31,7 @@ from crackfront.plots.style import (
     house_style,
 )
 from crackfront.topography.densities import Density
-from crackfront.topography.measures import Surface
+from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import Prediction
 
 Array = NDArray[np.float64]
@@ -40,16 +40,8 @@ _ROOM = 3.0
 """How far beyond the trusted wavelengths the fit is shown."""
 
 
-def prediction_figure(surface: Surface, prediction: Prediction) -> Figure:
-    """Densities with the fitted spectrum, and predicted forces of both branches.
-
-    Parameters
-    ----------
-    surface : Surface
-        The measured surface.
-    prediction : Prediction
-        What is predicted for it.
-    """
+def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figure:
+    """Densities with the fitted spectrum, and predicted forces of both branches."""
     with house_style():
         figure = blank_figure(PAGE, 0.56 * PAGE)
         panels = figure.subplot_mosaic([["a", "c"], ["b", "c"]], height_ratios=(1.35, 1))
@@ -66,7 +58,7 @@ def prediction_figure(surface: Surface, prediction: Prediction) -> Figure:
         return figure
 
 
-def _draw_isotropic(axes: Axes, surface: Surface) -> None:
+def _draw_isotropic(axes: Axes, surface: MeasuredSurface) -> None:
     """Isotropic densities, the spectrum and the scales that dominate."""
     fitted, wavevector = surface.fitted, _wavevectors(surface)
     set_density_scales(axes, wavevector)
@@ -92,7 +84,7 @@ def _draw_isotropic(axes: Axes, surface: Surface) -> None:
     axes.legend(loc="lower left")
 
 
-def _draw_profiles(axes: Axes, surface: Surface) -> None:
+def _draw_profiles(axes: Axes, surface: MeasuredSurface) -> None:
     """Densities of profiles and the projection of the spectrum."""
     fitted, wavevector = surface.fitted, _wavevectors(surface)
     for index, density in enumerate(surface.profiles):
@@ -130,17 +122,11 @@ def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
 def _draw_forces(axes: Axes, prediction: Prediction) -> None:
     """Force against contact radius of both branches with their intervals, and of a smooth one."""
     scales = Scales(prediction.radius, prediction.work_of_adhesion, prediction.contact_modulus)
-    adhesions = (
-        ("approach", BLUE, prediction.w_appr, prediction.w_appr_low, prediction.w_appr_high),
-        (
-            "retraction",
-            VERMILION,
-            prediction.w_retr,
-            prediction.w_retr_low,
-            prediction.w_retr_high,
-        ),
+    branches = (
+        ("approach", BLUE, prediction.w_appr),
+        ("retraction", VERMILION, prediction.w_retr),
     )
-    strongest = max(prediction.w_retr_high, prediction.work_of_adhesion)
+    strongest = max(prediction.w_retr.high, prediction.work_of_adhesion)
     largest = 1.15 * jkr.radius_at_force(0.0, strongest / prediction.work_of_adhesion)
     radius = np.linspace(1e-3, largest, 400)
     unit, power = _force_unit(scales.force)
@@ -150,10 +136,11 @@ def _draw_forces(axes: Axes, prediction: Prediction) -> None:
         return jkr.equilibrium_force(radius, relative) * scales.force / power
 
     place = 1e6 * radius * scales.lateral
-    for name, colour, value, low, high in adhesions:
-        label = rf"{name}, $w = {1e3 * value:.3g}$ mJ m$^{{-2}}$"
-        axes.plot(place, force(value), color=colour, label=label, zorder=3)
-        axes.fill_between(place, force(low), force(high), color=colour, alpha=0.2, linewidth=0)
+    for name, colour, found in branches:
+        label = rf"{name}, $w = {1e3 * found.value:.3g}$ mJ m$^{{-2}}$"
+        axes.plot(place, force(found.value), color=colour, label=label, zorder=3)
+        ends = force(found.low), force(found.high)
+        axes.fill_between(place, *ends, color=colour, alpha=0.2, linewidth=0)
     smooth = rf"smooth, $w_\mathrm{{int}} = {1e3 * prediction.work_of_adhesion:.3g}$ mJ m$^{{-2}}$"
     axes.plot(place, force(prediction.work_of_adhesion), color="0.35", dashes=(4, 2), label=smooth)
     axes.axhline(0.0, color="0.6", linewidth=0.5, zorder=1)
@@ -170,7 +157,7 @@ def _force_unit(force: float) -> tuple[Literal["mN", "µN", "nN"], float]:
     return ("µN", 1e-6) if force > 1e-8 else ("nN", 1e-9)
 
 
-def _wavevectors(surface: Surface) -> Array:
+def _wavevectors(surface: MeasuredSurface) -> Array:
     """Wavevectors that are shown."""
     fitted = surface.fitted
     ends = fitted.longest * _ROOM, fitted.spectrum.short_cutoff / _ROOM

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, least_squares
 
+from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.topography.densities import Density
 
@@ -30,14 +31,6 @@ _SEED = np.random.SeedSequence(20240229, spawn_key=(0x5F17,))
 _PROJECTED = 100.0
 """How far below the trusted wavelengths the power law goes on in the density of a line, which
 holds all shorter waves across it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Uncertain:
-    """A number with its standard error."""
-
-    value: float
-    error: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,28 +62,14 @@ class FittedSpectrum:
     def projected_density(self, wavevector: Array) -> Array:
         """Density of lines of the surface, whose power law goes on below the trusted wavelengths.
 
-        Parameters
-        ----------
-        wavevector : (n,) array
-            Along a line. (Units: 1 / m)
-
-        Returns
-        -------
-        (n,) array
-            C_1D. (Units: m^3)
+        At wavevectors along a line (Units: 1 / m) it is C_1D. (Units: m^3)
         """
         return _projected(self.spectrum, wavevector)
 
-    def uncertain(self, quantity: Callable[[SelfAffineSpectrum], float]) -> Uncertain:
-        """A quantity of the spectrum with its standard error.
-
-        Parameters
-        ----------
-        quantity : callable
-            From a spectrum to a number.
-        """
+    def estimate(self, quantity: Callable[[SelfAffineSpectrum], float]) -> Estimate[float]:
+        """A quantity of the spectrum with its uncertainty."""
         drawn = [quantity(item) for item in self.draws]
-        return Uncertain(quantity(self.spectrum), float(np.std(drawn)))
+        return normal_estimate(quantity(self.spectrum), float(np.std(drawn)))
 
 
 def fitted_spectrum(
@@ -119,7 +98,10 @@ def fitted_spectrum(
             f"{count} values of a density do not determine a spectrum; use a larger or finer scan"
         )
     best = min(
-        (_fit(densities, shortest, longest, start) for start in _starts(shortest, longest)),
+        (
+            _fit(densities, shortest, longest, float(start))
+            for start in np.geomspace(shortest, longest, _STARTS + 2)[1:-1]
+        ),
         key=lambda result: float(result.cost),
     )
     misfit = 2 * float(best.cost) / (count - 3)
@@ -130,11 +112,6 @@ def fitted_spectrum(
         misfit=misfit,
         has_roll_off=bool(best.x[1] <= math.log(longest / _PLATEAU)),
     )
-
-
-def _starts(shortest: float, longest: float) -> list[float]:
-    """Roll-offs to begin with."""
-    return [float(item) for item in np.geomspace(shortest, longest, _STARTS + 2)[1:-1]]
 
 
 def _fit(

@@ -11,17 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import beta
 
+from crackfront.analysis.estimate import Estimate
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.topography.densities import Density, isotropic_density, profile_density, topography
-from crackfront.topography.fitting import FittedSpectrum, Uncertain, fitted_spectrum
+from crackfront.topography.fitting import FittedSpectrum, fitted_spectrum
 from crackfront.topography.reading import Measurement
 
 Array = NDArray[np.float64]
 
-ORDERS = (0.0, 0.5, 1.0)
+_ORDERS = (0.0, 0.5, 1.0)
 """Orders of the derivatives: heights, half-derivatives, slopes."""
 
-SHARE = 0.8
+_SHARE = 0.8
 """Part of a mean square that lies within the scales that dominate it."""
 
 _DECADES = 2
@@ -37,7 +38,7 @@ class RmsMeasure:
     ----------
     order : float
         Order of the derivative.
-    rms : Uncertain
+    rms : Estimate of a number
         Of the fitted spectrum. (Units: m^(1 - order))
     shortest, longest : float
         Wavelengths that dominate it: a tenth lies below, a tenth above. (Units: m)
@@ -49,7 +50,7 @@ class RmsMeasure:
     """
 
     order: float
-    rms: Uncertain
+    rms: Estimate[float]
     shortest: float
     longest: float
     measured: tuple[float, ...]
@@ -57,8 +58,8 @@ class RmsMeasure:
 
 
 @dataclass(frozen=True, slots=True)
-class Surface:
-    """A measured surface.
+class MeasuredSurface:
+    """What was measured of a surface, and what follows from it.
 
     Attributes
     ----------
@@ -71,7 +72,7 @@ class Surface:
     fitted : FittedSpectrum
         Its spectrum; maps enter by their isotropic density, lines by that of profiles.
     measures : tuple of RmsMeasure
-        One for each of :data:`ORDERS`.
+        Of the heights, their half-derivative and their slopes.
     anisotropy : tuple of float
         Of every map the rms slope along x over that along y; 1 for lines.
     """
@@ -89,21 +90,10 @@ class Surface:
         text = "".join(item.checksum for item in self.measurements)
         return hashlib.sha256(text.encode()).hexdigest()[:8]
 
-    def conformity_energy(self, contact_modulus: float) -> Uncertain:
-        """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2.
-
-        Parameters
-        ----------
-        contact_modulus : float
-            E'. (Units: Pa)
-
-        Returns
-        -------
-        Uncertain
-            e_el. (Units: J / m^2)
-        """
-        found = self.fitted.uncertain(lambda spectrum: spectrum.mean_square(0.5))
-        return Uncertain(contact_modulus / 4 * found.value, contact_modulus / 4 * found.error)
+    def conformity_energy(self, contact_modulus: float) -> Estimate[float]:
+        """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2, of E' in Pa (Units: J / m^2)."""
+        found = self.fitted.estimate(lambda spectrum: spectrum.mean_square(0.5))
+        return found.each(lambda number: contact_modulus / 4 * number)
 
     @property
     def unmeasured_share(self) -> float:
@@ -113,13 +103,8 @@ class Surface:
         return longer.mean_square(0.5) / spectrum.mean_square(0.5) - 1
 
 
-def measured_surface(measurements: Sequence[Measurement]) -> Surface:
-    """Spectrum and measures of a surface.
-
-    Parameters
-    ----------
-    measurements : sequence of Measurement
-        One measurement or several of one surface.
+def measured_surface(measurements: Sequence[Measurement]) -> MeasuredSurface:
+    """Spectrum and measures of a surface of which there is one measurement or several.
 
     Raises
     ------
@@ -133,12 +118,12 @@ def measured_surface(measurements: Sequence[Measurement]) -> Surface:
         min(item.shortest for item in measurements),
         max(item.longest for item in measurements),
     )
-    return Surface(
+    return MeasuredSurface(
         measurements=tuple(measurements),
         isotropic=isotropic,
         profiles=profiles,
         fitted=fitted,
-        measures=tuple(_measure(order, fitted, measurements) for order in ORDERS),
+        measures=tuple(_measure(order, fitted, measurements) for order in _ORDERS),
         anisotropy=tuple(_anisotropy(item) for item in measurements),
     )
 
@@ -146,17 +131,7 @@ def measured_surface(measurements: Sequence[Measurement]) -> Surface:
 def measured_mean_square(measurement: Measurement, order: float) -> float:
     """Mean square of a derivative of a measurement over its trusted wavelengths.
 
-    Parameters
-    ----------
-    measurement : Measurement
-        A map, or a line of an isotropic surface.
-    order : float
-        Order of the derivative.
-
-    Returns
-    -------
-    float
-        Mean square. (Units: m^(2 - 2 order))
+    A line counts as one of an isotropic surface. (Units: m^(2 - 2 order))
     """
     low, high = 2 * np.pi / measurement.longest, 2 * np.pi / measurement.shortest
 
@@ -173,10 +148,10 @@ def _measure(
     order: float, fitted: FittedSpectrum, measurements: Sequence[Measurement]
 ) -> RmsMeasure:
     """Measure of one order."""
-    ends = fitted.spectrum.dominant_wavelengths(order, SHARE)
+    ends = fitted.spectrum.dominant_wavelengths(order, _SHARE)
     return RmsMeasure(
         order,
-        fitted.uncertain(lambda spectrum: spectrum.mean_square(order) ** 0.5),
+        fitted.estimate(lambda spectrum: spectrum.mean_square(order) ** 0.5),
         *ends,
         measured=tuple(measured_mean_square(item, order) ** 0.5 for item in measurements),
         expected=tuple(

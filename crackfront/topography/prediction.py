@@ -1,59 +1,50 @@
-"""What the law w = w_int - e_el -+ k e_el predicts for a measured surface under a sphere."""
+"""What the law w = w_int - e_el -+ k e_el predicts for a measured surface, and where it applies."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from crackfront.analysis.factors import Factor, Factors, expected_factors
+from crackfront.analysis.estimate import REACH, Estimate
+from crackfront.analysis.factors import Factors, expected_factors
 from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.core import jkr
 from crackfront.core.records import variable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
-from crackfront.topography.measures import Surface
+from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.tile import zero_load_radius
 
-REACH = 1.96
-"""Standard errors in half of a 95% interval."""
+_MOST_MISFIT = 3.0
+_MOST_ANISOTROPY = 1.25
+_MOST_UNMEASURED = 0.1
+"""Chi-squared per degree of freedom, ratio of slopes and part of e_el from which on it is said."""
 
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """Adhesion that is predicted, in SI units; `low` and `high` end 95% intervals.
+    """Adhesion that is predicted, in SI units, and the factors k that it rests on.
 
-    The intervals of the works of adhesion hold those of k and of e_el.
+    The intervals of the works of adhesion hold those of k and of e_el. Only e_el has a standard
+    error.
     """
 
+    factors: Factors
     radius: float = variable("radius of the sphere", "m")
     contact_modulus: float = variable("contact modulus E'", "Pa")
     work_of_adhesion: float = variable("intrinsic work of adhesion w_int", "J m-2")
     contact_radius: float = variable("radius of the smooth contact at zero load", "m")
-    e_el: float = variable("energy of full conformity", "J m-2")
-    e_el_error: float = variable("its standard error", "J m-2")
+    e_el: Estimate[float] = variable("energy of full conformity", "J m-2")
     w_rms: float = variable("rms of the local work of adhesion, 2 sqrt(e_el w_int)", "J m-2")
     correlation_length: float = variable("correlation length of the local work of adhesion", "m")
-    k_appr: float = variable("factor k of the approach", "1")
-    k_appr_low: float = variable("lower end of its interval", "1")
-    k_appr_high: float = variable("upper end of its interval", "1")
-    k_retr: float = variable("factor k of the retraction", "1")
-    k_retr_low: float = variable("lower end of its interval", "1")
-    k_retr_high: float = variable("upper end of its interval", "1")
-    w_appr: float = variable("work of adhesion of the approach", "J m-2")
-    w_appr_low: float = variable("lower end of its interval", "J m-2")
-    w_appr_high: float = variable("upper end of its interval", "J m-2")
-    w_retr: float = variable("work of adhesion of the retraction", "J m-2")
-    w_retr_low: float = variable("lower end of its interval", "J m-2")
-    w_retr_high: float = variable("upper end of its interval", "J m-2")
-    hysteresis: float = variable("w_retr - w_appr", "J m-2")
-    hysteresis_low: float = variable("lower end of its interval", "J m-2")
-    hysteresis_high: float = variable("upper end of its interval", "J m-2")
-    pull_off_force: float = variable("pull-off force at a given load", "N")
-    pull_off_force_low: float = variable("smaller end of its interval", "N")
-    pull_off_force_high: float = variable("larger end of its interval", "N")
-    pull_off_force_held: float = variable("pull-off force at a given displacement", "N")
-    pull_off_force_held_low: float = variable("smaller end of its interval", "N")
-    pull_off_force_held_high: float = variable("larger end of its interval", "N")
+    k_appr: Estimate[float] = variable("factor k of the approach", "1")
+    k_retr: Estimate[float] = variable("factor k of the retraction", "1")
+    w_appr: Estimate[float] = variable("work of adhesion of the approach", "J m-2")
+    w_retr: Estimate[float] = variable("work of adhesion of the retraction", "J m-2")
+    hysteresis: Estimate[float] = variable("w_retr - w_appr", "J m-2")
+    pull_off_force: Estimate[float] = variable("pull-off force at a given load", "N")
+    pull_off_force_held: Estimate[float] = variable("pull-off force at a given displacement", "N")
     pull_off_force_smooth: float = variable("pull-off force of a smooth surface at a load", "N")
     paper_factor: float = variable("factor k of the paper", "1")
     paper_w_appr: float = variable("work of adhesion of the approach by that factor", "J m-2")
@@ -61,29 +52,27 @@ class Prediction:
 
 
 @dataclass(frozen=True, slots=True)
-class Range:
-    """A number with the ends of its 95% interval."""
+class Limit:
+    """A condition of the theory: a value that must stay below a largest one, in SI units."""
 
+    condition: str
     value: float
-    low: float
-    high: float
+    largest: float
+    units: str
+
+    @property
+    def margin(self) -> float:
+        """Largest allowed value over the value; above 1 inside."""
+        return self.largest / self.value
+
+    @property
+    def holds(self) -> bool:
+        """Whether the condition holds."""
+        return self.value < self.largest
 
 
 def reduced_spectrum(spectrum: SelfAffineSpectrum, scales: Scales) -> SelfAffineSpectrum:
-    """A spectrum of heights in metres as the model takes it.
-
-    Parameters
-    ----------
-    spectrum : SelfAffineSpectrum
-        Lengths in metres.
-    scales : Scales
-        The scene.
-
-    Returns
-    -------
-    SelfAffineSpectrum
-        The same in reduced units, so that its `elastic_energy` is e_el / w_int.
-    """
+    """A spectrum of heights in metres in reduced units: its `elastic_energy` is e_el / w_int."""
     plateau = spectrum.plateau / (scales.vertical * scales.lateral) ** 2
     return SelfAffineSpectrum(
         spectrum.short_cutoff / scales.lateral,
@@ -93,21 +82,48 @@ def reduced_spectrum(spectrum: SelfAffineSpectrum, scales: Scales) -> SelfAffine
     )
 
 
-def surface_factors(surface: Surface, scales: Scales) -> Factors:
-    """Factors k that are expected of a surface.
-
-    Parameters
-    ----------
-    surface : Surface
-        A measured surface.
-    scales : Scales
-        The scene, in SI units.
+def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
+    """Prediction for a surface under a sphere, of scales in SI units.
 
     Raises
     ------
     ValueError
         If no contact conforms, e_el >= w_int.
     """
+    factors = _factors(surface, scales)
+    adhesion = scales.work_of_adhesion
+    energy = surface.conformity_energy(scales.contact_modulus)
+    e_el, error = energy.value, REACH * energy.standard_error
+    appr = _range(adhesion - e_el, -e_el, factors.approach, (1 + factors.approach.value) * error)
+    retr = _range(adhesion - e_el, e_el, factors.retraction, (factors.retraction.value - 1) * error)
+    hysteresis = _range(0.0, 2 * e_el, factors.both, 2 * factors.both.value * error)
+    return Prediction(
+        factors=factors,
+        radius=scales.radius,
+        contact_modulus=scales.contact_modulus,
+        work_of_adhesion=adhesion,
+        contact_radius=zero_load_radius(scales),
+        e_el=energy,
+        w_rms=2 * math.sqrt(e_el * adhesion),
+        correlation_length=surface.fitted.spectrum.correlation_length,
+        k_appr=factors.approach,
+        k_retr=factors.retraction,
+        w_appr=appr,
+        w_retr=retr,
+        hysteresis=replace(hysteresis, low=max(0.0, hysteresis.low)),
+        pull_off_force=_forces(retr, jkr.pull_off_force(), scales),
+        pull_off_force_held=_forces(
+            retr, float(jkr.equilibrium_force(jkr.pull_off_radius())), scales
+        ),
+        pull_off_force_smooth=-jkr.pull_off_force() * scales.force,
+        paper_factor=PAPER_FACTOR,
+        paper_w_appr=adhesion - (1 + PAPER_FACTOR) * e_el,
+        paper_w_retr=adhesion - (1 - PAPER_FACTOR) * e_el,
+    )
+
+
+def _factors(surface: MeasuredSurface, scales: Scales) -> Factors:
+    """Factors k that are expected of a surface."""
     shape = reduced_spectrum(surface.fitted.spectrum, scales)
     energy = shape.elastic_energy
     if not energy < 1:
@@ -118,63 +134,125 @@ def surface_factors(surface: Surface, scales: Scales) -> Factors:
     return expected_factors(shape, energy, zero_load_radius(scales) / scales.lateral)
 
 
-def predicted(surface: Surface, scales: Scales, factors: Factors) -> Prediction:
-    """Prediction for a surface.
-
-    Parameters
-    ----------
-    surface : Surface
-        A measured surface.
-    scales : Scales
-        The scene, in SI units.
-    factors : Factors
-        Factors k of the surface.
-    """
-    adhesion = scales.work_of_adhesion
-    energy = surface.conformity_energy(scales.contact_modulus)
-    e_el, error = energy.value, REACH * energy.error
-    appr = _range(adhesion - e_el, -e_el, factors.approach, (1 + factors.approach.value) * error)
-    retr = _range(adhesion - e_el, e_el, factors.retraction, (factors.retraction.value - 1) * error)
-    hysteresis = _range(0.0, 2 * e_el, factors.both, 2 * factors.both.value * error)
-    at_load = _forces(retr, jkr.pull_off_force(), scales)
-    held = _forces(retr, float(jkr.equilibrium_force(jkr.pull_off_radius())), scales)
-    return Prediction(
-        radius=scales.radius,
-        contact_modulus=scales.contact_modulus,
-        work_of_adhesion=adhesion,
-        contact_radius=zero_load_radius(scales),
-        e_el=e_el,
-        e_el_error=energy.error,
-        w_rms=2 * math.sqrt(e_el * adhesion),
-        correlation_length=surface.fitted.spectrum.correlation_length,
-        **_named("k_appr", factors.approach),
-        **_named("k_retr", factors.retraction),
-        **_named("w_appr", appr),
-        **_named("w_retr", retr),
-        **_named("hysteresis", replace(hysteresis, low=max(0.0, hysteresis.low))),
-        **_named("pull_off_force", at_load),
-        **_named("pull_off_force_held", held),
-        pull_off_force_smooth=-jkr.pull_off_force() * scales.force,
-        paper_factor=PAPER_FACTOR,
-        paper_w_appr=adhesion - (1 + PAPER_FACTOR) * e_el,
-        paper_w_retr=adhesion - (1 - PAPER_FACTOR) * e_el,
-    )
-
-
-def _range(centre: float, slope: float, factor: Factor, reach: float) -> Range:
+def _range(centre: float, slope: float, factor: Estimate[float], reach: float) -> Estimate[float]:
     """`centre + slope k` with the interval of k and, in quadrature, another reach."""
     value = centre + slope * factor.value
     ends = sorted((centre + slope * factor.low, centre + slope * factor.high))
     low, high = value - ends[0], ends[1] - value
-    return Range(value, value - math.hypot(low, reach), value + math.hypot(high, reach))
+    return Estimate(
+        value, math.nan, value - math.hypot(low, reach), value + math.hypot(high, reach)
+    )
 
 
-def _forces(retraction: Range, reduced: float, scales: Scales) -> Range:
+def _forces(retraction: Estimate[float], reduced: float, scales: Scales) -> Estimate[float]:
     """Pull-off forces, positive; by JKR they are linear in the work of adhesion."""
     slope = -reduced * scales.force / scales.work_of_adhesion
-    return Range(slope * retraction.value, slope * retraction.low, slope * retraction.high)
+    return retraction.each(lambda adhesion: slope * adhesion)
 
 
-def _named(name: str, found: Range | Factor) -> dict[str, float]:
-    """Fields of a number with an interval."""
-    return {name: found.value, f"{name}_low": found.low, f"{name}_high": found.high}
+def theory_limits(surface: MeasuredSurface, prediction: Prediction) -> tuple[Limit, ...]:
+    """Conditions of the theory for a surface under a sphere."""
+    _, half, slope = surface.measures
+    return (
+        Limit(
+            "full conformity: e_el below w_int",
+            prediction.e_el.value,
+            prediction.work_of_adhesion,
+            "J/m2",
+        ),
+        Limit("small slopes: rms slope below 1", slope.rms.value, 1.0, "1"),
+        Limit(
+            "features small against the contact: the longest wave that matters to e_el below the "
+            "radius at zero load",
+            half.longest,
+            prediction.contact_radius,
+            "m",
+        ),
+    )
+
+
+def prediction_notes(surface: MeasuredSurface, prediction: Prediction) -> Iterator[str]:
+    """What a reader of a prediction must know, one sentence each."""
+    yield from surface_notes(surface, prediction.contact_radius)
+    yield from _factor_notes(prediction.factors)
+    if prediction.w_appr.value <= 0:
+        yield (
+            "w_appr is not positive: the sphere is not drawn into contact, it has to be pressed on."
+        )
+
+
+def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None) -> Iterator[str]:
+    """Treatments and doubts of the measurements, against the radius of a contact (Units: m)."""
+    fitted = surface.fitted
+    for item, ratio in zip(surface.measurements, surface.anisotropy, strict=True):
+        if item.missing > 0:
+            yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
+        if item.is_line:
+            yield (
+                f"{item.path} is a line scan: its density is fitted by the projection of an "
+                "isotropic surface."
+            )
+        elif max(item.pixels) > 1.001 * min(item.pixels):
+            yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
+        if max(ratio, 1 / ratio) > _MOST_ANISOTROPY:
+            yield (
+                f"{item.path}: the rms slope along x is {ratio:.2g} times that along y; the theory "
+                "is for isotropic surfaces."
+            )
+        if contact_radius is not None and min(item.size) < 2 * contact_radius:
+            yield (
+                f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
+                f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
+                "spectrum."
+            )
+    if not fitted.has_roll_off:
+        yield (
+            "The density shows no plateau within the trusted wavelengths: the roll-off stands near "
+            "their longest, and longer waves may add to e_el; add a larger scan."
+        )
+    if fitted.misfit > _MOST_MISFIT:
+        yield (
+            f"The self-affine spectrum misses the densities by {fitted.misfit:.1f} in chi-squared "
+            "per degree of freedom, and the uncertainties are widened accordingly; look at the "
+            "figure."
+        )
+    if surface.unmeasured_share > _MOST_UNMEASURED:
+        yield (
+            "Waves shorter than can be trusted are left out: two more decades of the power law "
+            f"would add {surface.unmeasured_share:.0%} to e_el; add a finer scan."
+        )
+
+
+def _factor_notes(factors: Factors) -> Iterator[str]:
+    """Where the factors come from, and where they are weak."""
+    used = ", ".join(
+        f"{name} {weight:.0%}"
+        for name, weight in zip(factors.spectra, factors.weights, strict=True)
+        if weight >= 0.05
+    )
+    yield (
+        f"k is interpolated from simulated spectra ({used}); its interval holds how far they miss "
+        "each other."
+    )
+    if factors.near_onset:
+        yield (
+            "The disorder is near the onset of hysteresis for a contact of this size, where k "
+            "falls towards zero with e_el; there may be no hysteresis at all."
+        )
+    if factors.amplitude_octaves < 0:
+        yield (
+            f"e_el is {2**-factors.amplitude_octaves:.2g} times below the weakest disorder that "
+            "was simulated: k is that of the weakest, and its interval reaches down to zero."
+        )
+    if factors.amplitude_octaves > 0:
+        yield (
+            f"e_el is {2**factors.amplitude_octaves:.2g} times above the strongest disorder that "
+            "was simulated: k is that of the strongest, and its interval is widened by the trend."
+        )
+    if factors.size_octaves:
+        outside = "longer" if factors.size_octaves > 0 else "shorter"
+        yield (
+            "The correlation length relative to the contact is "
+            f"{2 ** abs(factors.size_octaves):.2g} times {outside} than any that was simulated: k "
+            "follows the trend of the spectra, and its interval is widened by as much."
+        )

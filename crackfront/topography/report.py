@@ -1,84 +1,122 @@
-"""A surface and its prediction as texts."""
+"""A surface and its prediction as texts, and as a mapping for machines in SI units."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from dataclasses import asdict, replace
+from typing import Any
 
+from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.factors import BRANCHES
+from crackfront.core.records import Variable, variables
 from crackfront.core.units import Scales
 from crackfront.data.quantities import prefixed
-from crackfront.topography.fitting import Uncertain
-from crackfront.topography.limits import Limit
-from crackfront.topography.machine import spectrum_parameters
-from crackfront.topography.measures import RmsMeasure, Surface
-from crackfront.topography.prediction import REACH, Prediction
+from crackfront.topography.densities import Density
+from crackfront.topography.measures import MeasuredSurface, RmsMeasure
+from crackfront.topography.prediction import (
+    Prediction,
+    prediction_notes,
+    surface_notes,
+    theory_limits,
+)
+from crackfront.topography.reading import Measurement
 from crackfront.topography.simulated import Simulated
+
+Number = Estimate[float]
 
 _ENERGY = "J/m2"
 _ORDER_NAMES = {0.0: "heights", 0.5: "half-derivative", 1.0: "slopes"}
 _UNITS = {0.0: "m", 0.5: "m^1/2", 1.0: ""}
+_ADHESIONS = ("w_appr", "w_retr", "hysteresis")
 
 
-def surface_text(surface: Surface) -> str:
-    """Measurements, spectrum and measures of a surface.
-
-    Parameters
-    ----------
-    surface : Surface
-        A measured surface.
-    """
+def surface_text(surface: MeasuredSurface) -> str:
+    """Measurements, spectrum and measures of a surface."""
     return "\n".join(_surface_lines(surface))
 
 
-def conformity_text(surface: Surface, scales: Scales) -> str:
-    """Energy of full conformity and the fluctuation that goes with it.
-
-    Parameters
-    ----------
-    surface : Surface
-        A measured surface.
-    scales : Scales
-        The scene, in SI units.
-    """
+def conformity_text(surface: MeasuredSurface, scales: Scales) -> str:
+    """Energy of full conformity and the fluctuation that goes with it, for scales in SI units."""
     energy = surface.conformity_energy(scales.contact_modulus)
     return "\n".join(_conformity_lines(energy, scales.work_of_adhesion))
 
 
-def prediction_text(prediction: Prediction, limits: Sequence[Limit]) -> str:
-    """A prediction, and where the theory applies.
-
-    Parameters
-    ----------
-    prediction : Prediction
-        What is predicted.
-    limits : sequence of Limit
-        Conditions of the theory.
-    """
-    return "\n".join([*_prediction_lines(prediction), "", *_limit_lines(limits)])
+def prediction_text(surface: MeasuredSurface, prediction: Prediction) -> str:
+    """A prediction, and where the theory applies."""
+    lines = _prediction_lines(prediction)
+    return "\n".join([*lines, "", *_limit_lines(surface, prediction)])
 
 
 def simulation_text(found: Simulated) -> str:
-    """What simulations found.
-
-    Parameters
-    ----------
-    found : Simulated
-        Their means.
-    """
+    """What simulations found."""
     lines = [f"Simulated on {found.realisations} synthesised surface(s)"]
-    for name, item in (
-        ("w_appr", found.w_appr),
-        ("w_retr", found.w_retr),
-        ("hysteresis", found.hysteresis),
-    ):
-        lines.append(f"  {name:22}{prefixed(_ENERGY, item.value, item.low, item.high)}")
-    factor = _factor(found.k.value, found.k.low, found.k.high)
-    lines.append(f"  {'k':22}{factor}, numerical error {found.numerical_error:.2g}")
+    lines += [f"  {name:22}{_shown(_ENERGY, getattr(found, name))}" for name in _ADHESIONS]
+    lines.append(f"  {'k':22}{_factor(found.k)}, numerical error {found.numerical_error:.2g}")
     lines += [f"  Without a value: {sentence}" for sentence in found.failed]
     return "\n".join(lines)
 
 
-def _surface_lines(surface: Surface) -> Iterator[str]:
+def machine_readable(
+    surface: MeasuredSurface,
+    scales: Scales | None = None,
+    prediction: Prediction | None = None,
+    found: Simulated | None = None,
+) -> dict[str, Any]:
+    """What the texts and notes say, for JSON; SI units, null where there is nothing."""
+    energy = None if scales is None else surface.conformity_energy(scales.contact_modulus)
+    limits = () if prediction is None else theory_limits(surface, prediction)
+    notes = surface_notes(surface) if prediction is None else prediction_notes(surface, prediction)
+    return {
+        "measurements": [
+            _measurement_entry(item)
+            | {
+                "isotropic_density": None if density is None else _density_entry(density, "m^4"),
+                "profile_density": _density_entry(profile, "m^3"),
+            }
+            for item, density, profile in zip(
+                surface.measurements, surface.isotropic, surface.profiles, strict=True
+            )
+        ],
+        "spectrum": {
+            **{
+                name: {**_uncertain_entry(value), "units": units}
+                for name, value, units in _spectrum_parameters(surface)
+            },
+            "shortest": _number(surface.fitted.spectrum.short_cutoff, "m"),
+            "longest": _number(surface.fitted.longest, "m"),
+            "chi_squared_per_freedom": _number(surface.fitted.misfit, "1"),
+            "has_roll_off": surface.fitted.has_roll_off,
+            "unmeasured_share_of_e_el": _number(surface.unmeasured_share, "1"),
+        },
+        "measures": [
+            asdict(item) | {"rms": _uncertain_entry(item.rms)} for item in surface.measures
+        ],
+        "anisotropy": list(surface.anisotropy),
+        "e_el": None if energy is None else {**_uncertain_entry(energy), "units": "J m-2"},
+        "prediction": None
+        if prediction is None
+        else {
+            item.name: {"value": value, **item.attributes} for item, value in _columns(prediction)
+        },
+        "factors": None if prediction is None else _with_intervals(prediction.factors, *BRANCHES),
+        "limits": [asdict(item) | {"margin": item.margin, "holds": item.holds} for item in limits],
+        "notes": list(notes),
+        "simulation": None if found is None else _with_intervals(found, *_ADHESIONS, "k"),
+    }
+
+
+def _spectrum_parameters(surface: MeasuredSurface) -> tuple[tuple[str, Number, str], ...]:
+    """Parameters of the fitted spectrum with their uncertainties and units."""
+    estimate = surface.fitted.estimate
+    return (
+        ("roll_off", estimate(lambda spectrum: spectrum.roll_off), "m"),
+        ("hurst", estimate(lambda spectrum: spectrum.hurst), "1"),
+        ("plateau", estimate(lambda spectrum: spectrum.plateau), "m^4"),
+    )
+
+
+def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
     """Lines of a surface."""
     for item in surface.measurements:
         points = " x ".join(map(str, item.heights.shape))
@@ -89,8 +127,8 @@ def _surface_lines(surface: Surface) -> Iterator[str]:
             yield f"  comment               {item.comment}"
     yield ""
     yield "Fitted self-affine spectrum (± standard error)"
-    for name, value, units in spectrum_parameters(surface):
-        shown = f"{value.value:.3g} ± {value.error:.1g} {units}"
+    for name, value, units in _spectrum_parameters(surface):
+        shown = f"{value.value:.3g} ± {value.standard_error:.1g} {units}"
         if name == "roll_off":
             shown = f"{_pair(value, units)}" + (
                 "" if surface.fitted.has_roll_off else ", not resolved"
@@ -113,7 +151,8 @@ def _measure_line(measure: RmsMeasure) -> str:
         for found, expected in zip(measure.measured, measure.expected, strict=True)
     )
     unit, rms = _UNITS[measure.order], measure.rms
-    shown = _pair(rms, unit) if unit == "m" else f"{rms.value:.3g} ± {rms.error:.1g} {unit}".strip()
+    plain = f"{rms.value:.3g} ± {rms.standard_error:.1g} {unit}".strip()
+    shown = _pair(rms, unit) if unit == "m" else plain
     scales = _span(measure.shortest, measure.longest)
     return f"  rms of {_ORDER_NAMES[measure.order]:16}{shown:24}{scales:22}{compared}"
 
@@ -121,32 +160,16 @@ def _measure_line(measure: RmsMeasure) -> str:
 def _prediction_lines(item: Prediction) -> Iterator[str]:
     """Lines of a prediction."""
     yield "Prediction (95% intervals)"
-    yield from _conformity_lines(Uncertain(item.e_el, item.e_el_error), item.work_of_adhesion)
+    yield from _conformity_lines(item.e_el, item.work_of_adhesion)
+    smooth = prefixed("N", item.pull_off_force_smooth)
     named = (
         ("correlation length", prefixed("m", item.correlation_length)),
         ("contact radius, F = 0", prefixed("m", item.contact_radius)),
-        ("k of the approach", _factor(item.k_appr, item.k_appr_low, item.k_appr_high)),
-        ("k of the retraction", _factor(item.k_retr, item.k_retr_low, item.k_retr_high)),
-        ("w_appr", prefixed(_ENERGY, item.w_appr, item.w_appr_low, item.w_appr_high)),
-        ("w_retr", prefixed(_ENERGY, item.w_retr, item.w_retr_low, item.w_retr_high)),
-        (
-            "hysteresis",
-            prefixed(_ENERGY, item.hysteresis, item.hysteresis_low, item.hysteresis_high),
-        ),
-        (
-            "pull-off, given load",
-            prefixed("N", item.pull_off_force, item.pull_off_force_low, item.pull_off_force_high)
-            + f"; smooth {prefixed('N', item.pull_off_force_smooth)}",
-        ),
-        (
-            "pull-off, displacement",
-            prefixed(
-                "N",
-                item.pull_off_force_held,
-                item.pull_off_force_held_low,
-                item.pull_off_force_held_high,
-            ),
-        ),
+        ("k of the approach", _factor(item.k_appr)),
+        ("k of the retraction", _factor(item.k_retr)),
+        *((name, _shown(_ENERGY, getattr(item, name))) for name in _ADHESIONS),
+        ("pull-off, given load", f"{_shown('N', item.pull_off_force)}; smooth {smooth}"),
+        ("pull-off, displacement", _shown("N", item.pull_off_force_held)),
         (
             f"with the paper's k = {item.paper_factor:g}",
             f"w_appr {prefixed(_ENERGY, item.paper_w_appr)}, "
@@ -157,19 +180,19 @@ def _prediction_lines(item: Prediction) -> Iterator[str]:
         yield f"  {name:25}{text}"
 
 
-def _conformity_lines(energy: Uncertain, work_of_adhesion: float) -> Iterator[str]:
+def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
     """Lines of e_el and w_rms."""
-    value, reach = energy.value, REACH * energy.error
-    rms = 2 * math.sqrt(value * work_of_adhesion)
+    rms = 2 * math.sqrt(energy.value * work_of_adhesion)
     for name, text, part in (
-        ("e_el", prefixed(_ENERGY, value, value - reach, value + reach), value),
+        ("e_el", _shown(_ENERGY, energy), energy.value),
         ("w_rms", prefixed(_ENERGY, rms), rms),
     ):
         yield f"  {name:25}{text} = {part / work_of_adhesion:.3g} w_int"
 
 
-def _limit_lines(limits: Sequence[Limit]) -> Iterator[str]:
+def _limit_lines(surface: MeasuredSurface, prediction: Prediction) -> Iterator[str]:
     """Lines of the conditions."""
+    limits = theory_limits(surface, prediction)
     yield "The theory applies" if all(item.holds for item in limits) else "THE THEORY FAILS"
     for item in limits:
         word = f"inside by a factor of {item.margin:.2g}" if item.holds else "OUTSIDE"
@@ -180,18 +203,87 @@ def _limit_lines(limits: Sequence[Limit]) -> Iterator[str]:
         yield f"  {item.condition}: {found} against {largest}, {word}"
 
 
-def _factor(value: float, low: float, high: float) -> str:
+def _shown(unit: str, found: Number) -> str:
+    """A number with its interval, if it has one, in a unit with a prefix."""
+    return prefixed(unit, found.value, found.low, found.high)
+
+
+def _factor(found: Number) -> str:
     """A factor k with its interval, if it has one."""
-    return f"{value:.2f}" + (f" ({low:.2f} to {high:.2f})" if math.isfinite(low) else "")
+    interval = f" ({found.low:.2f} to {found.high:.2f})" if math.isfinite(found.low) else ""
+    return f"{found.value:.2f}{interval}"
 
 
-def _pair(found: Uncertain, unit: str) -> str:
+def _pair(found: Number, unit: str) -> str:
     """A number with its standard error, in the prefix of the number."""
     shown, prefix = prefixed(unit, found.value).split(" ")
     scale = found.value / float(shown)
-    return f"{shown} ± {found.error / scale:.1g} {prefix}"
+    return f"{shown} ± {found.standard_error / scale:.1g} {prefix}"
 
 
 def _span(shortest: float, longest: float) -> str:
     """A range of wavelengths."""
     return f"{prefixed('m', shortest)} to {prefixed('m', longest)}"
+
+
+def _measurement_entry(item: Measurement) -> dict[str, Any]:
+    """A measurement without its heights."""
+    return {
+        "path": str(item.path),
+        "format": item.format,
+        "comment": item.comment,
+        "checksum": item.checksum,
+        "points": list(item.heights.shape),
+        "size": {"value": list(item.size), "units": "m"},
+        "missing": item.missing,
+        "shortest": _number(item.shortest, "m"),
+        "longest": _number(item.longest, "m"),
+    }
+
+
+def _density_entry(density: Density, units: str) -> dict[str, Any]:
+    """A density in its bins."""
+    return {
+        "wavevector": {"value": density.wavevector.tolist(), "units": "1/m"},
+        "density": {"value": density.value.tolist(), "units": units},
+        "modes": density.modes.tolist(),
+    }
+
+
+def _columns(prediction: Prediction) -> Iterator[tuple[Variable, float]]:
+    """Numbers of a prediction, with standard errors or else the ends of intervals."""
+    for item in variables(Prediction):
+        found = getattr(prediction, item.name)
+        if not isinstance(found, Estimate):
+            yield item, found
+            continue
+        yield item, found.value
+        low, high = ("smaller", "larger") if item.units == "N" else ("lower", "upper")
+        for ending, value, text in (
+            ("error", found.standard_error, "its standard error"),
+            ("low", found.low, f"{low} end of its interval"),
+            ("high", found.high, f"{high} end of its interval"),
+        ):
+            if (ending == "error") == math.isfinite(found.standard_error):
+                yield replace(item, name=f"{item.name}_{ending}", long_name=text), value
+
+
+def _with_intervals(record: Any, *names: str) -> dict[str, Any]:
+    """Entries of a record, those of some names as numbers with intervals."""
+    return asdict(record) | {name: _interval_entry(getattr(record, name)) for name in names}
+
+
+def _interval_entry(found: Number) -> dict[str, float | None]:
+    """A number with its interval, null where there is none, as JSON needs it."""
+    entries = {"value": found.value, "low": found.low, "high": found.high}
+    return {name: None if math.isnan(entry) else entry for name, entry in entries.items()}
+
+
+def _uncertain_entry(found: Number) -> dict[str, Any]:
+    """A number with its standard error."""
+    return {"value": found.value, "error": found.standard_error}
+
+
+def _number(value: float, units: str) -> dict[str, Any]:
+    """A number with its units."""
+    return {"value": value, "units": units}

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
-from crackfront.analysis.estimate import mean_estimate
+from crackfront.analysis.estimate import Estimate, mean_estimate
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.steady import SteadySchedule
@@ -21,10 +21,10 @@ from crackfront.simulate.simulation import (
     numerical_error,
     simulation_of,
 )
-from crackfront.topography.measures import Surface
-from crackfront.topography.prediction import Range, reduced_spectrum
+from crackfront.topography.measures import MeasuredSurface
+from crackfront.topography.prediction import reduced_spectrum
 
-ERROR = 0.03
+_ERROR = 0.03
 """Standard error of k that the numerics may leave."""
 
 _START, _DEEPEST, _TRAVEL, _STEADY_ERROR = 1.0, 1.5, 1.5, 0.1
@@ -42,10 +42,10 @@ class Simulated:
     ----------
     realisations : int
         Surfaces with a value.
-    w_appr, w_retr, hysteresis : Range
+    w_appr, w_retr, hysteresis : Estimate of a number
         Works of adhesion; without an interval (NaN) where there is one surface.
         (Units: J / m^2)
-    k : Range
+    k : Estimate of a number
         Their k.
     numerical_error : float
         Standard error of k that the numerics leave.
@@ -54,29 +54,18 @@ class Simulated:
     """
 
     realisations: int
-    w_appr: Range
-    w_retr: Range
-    hysteresis: Range
-    k: Range
+    w_appr: Estimate[float]
+    w_retr: Estimate[float]
+    hysteresis: Estimate[float]
+    k: Estimate[float]
     numerical_error: float
-    failed: tuple[str, ...] = field(default=())
+    failed: tuple[str, ...]
 
 
 def prediction_simulations(
-    surface: Surface, scales: Scales, realisations: int, seed: int
+    surface: MeasuredSurface, scales: Scales, realisations: int, seed: int
 ) -> tuple[Simulation, ...]:
-    """Simulations of surfaces with the fitted spectrum and its amplitude.
-
-    Parameters
-    ----------
-    surface : Surface
-        A measured surface.
-    scales : Scales
-        The scene, in SI units.
-    realisations : int
-        Surfaces.
-    seed : int
-        Seed of their noise.
+    """Simulations of surfaces with the fitted spectrum and its amplitude, and noise of a seed.
 
     Raises
     ------
@@ -88,7 +77,7 @@ def prediction_simulations(
     if not energy < 1:
         raise ValueError(f"e_el is {energy:.3g} w_int; no simulation conforms fully at 1 or more")
     schedule = _schedule(spectrum.correlation_length)
-    first = simulation_of("roughness", spectrum, energy, schedule, Numerics(ERROR), seed=seed)
+    first = simulation_of("roughness", spectrum, energy, schedule, Numerics(_ERROR), seed=seed)
     name = f"measured-{surface.checksum}"
     return tuple(
         replace(first, spectrum_name=name, realisation=number) for number in range(realisations)
@@ -101,14 +90,7 @@ def expected_seconds(simulations: Sequence[Simulation]) -> float:
 
 
 def simulated(simulations: Sequence[Simulation], scales: Scales) -> Simulated:
-    """Run simulations, one after the other, and average what they find.
-
-    Parameters
-    ----------
-    simulations : sequence of Simulation
-        One or more of one surface.
-    scales : Scales
-        The scene, in SI units.
+    """Run simulations of one surface, one after the other, and average what they find.
 
     Raises
     ------
@@ -128,17 +110,16 @@ def simulated(simulations: Sequence[Simulation], scales: Scales) -> Simulated:
     if not rows:
         raise ValueError(f"no simulation has a value; {failed[0]}")
     means = mean_estimate(np.transpose(rows))[0]
-    appr, retr, hysteresis, factor = (
-        Range(*map(float, numbers))
-        for numbers in zip(means.value, means.low, means.high, strict=True)
+    *works, factor = (Estimate(*map(float, one)) for one in np.transpose(astuple(means)))
+    appr, retr, hysteresis = (
+        work.each(lambda number: number * scales.work_of_adhesion) for work in works
     )
-    unit = scales.work_of_adhesion
     first = simulations[0]
     return Simulated(
         realisations=len(rows),
-        w_appr=_scaled(appr, unit),
-        w_retr=_scaled(retr, unit),
-        hysteresis=_scaled(hysteresis, unit),
+        w_appr=appr,
+        w_retr=retr,
+        hysteresis=hysteresis,
         k=factor,
         numerical_error=math.hypot(*numerical_error(first)) / (2 * first.elastic_energy),
         failed=tuple(failed),
@@ -150,8 +131,3 @@ def _schedule(correlation_length: float) -> SteadySchedule:
     largest = jkr.equilibrium_radius(_START) + _WAY * correlation_length
     deepest = max(_DEEPEST, float(jkr.equilibrium_penetration(largest)))
     return SteadySchedule(_START, deepest, _TRAVEL, _STEADY_ERROR)
-
-
-def _scaled(found: Range, unit: float) -> Range:
-    """A range in another unit."""
-    return Range(found.value * unit, found.low * unit, found.high * unit)

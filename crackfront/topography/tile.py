@@ -14,8 +14,7 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.units import Scales
 from crackfront.topography.densities import topography
-from crackfront.topography.files import surface_library
-from crackfront.topography.reading import Measurement
+from crackfront.topography.reading import Measurement, surface_library
 
 Placement = Literal["tiled", "within"]
 """Whether the contact may go on to mirror images of the scan, or must fit in the scan itself."""
@@ -27,7 +26,7 @@ _EQUAL = 1e-6
 def measured_adhesion(
     measurement: Measurement, scales: Scales, placement: Placement = "tiled"
 ) -> AdhesionMap:
-    """Work of adhesion of the very map, on a periodic tile with the scan in its middle.
+    """Reduced field of the very map, on a periodic tile with the scan in its middle.
 
     The scan is mirrored at its edges, which leaves no steps there, on a tile of twice its sides;
     waves shorter than can be trusted are taken away. The apex of the sphere is the centre of the
@@ -42,11 +41,6 @@ def measured_adhesion(
         The scene, in SI units.
     placement : {"tiled", "within"}, optional
         Whether a contact larger than the scan meets its mirror images, or is refused.
-
-    Returns
-    -------
-    AdhesionMap
-        Field of mean w_int - e_el. (Units: reduced)
 
     Raises
     ------

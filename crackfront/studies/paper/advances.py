@@ -1,4 +1,4 @@
-"""Parts of a front that jump between the states of consecutive loads, and how wide they are."""
+"""Perimeters of an approach, the parts that jump between two of them, and how wide these are."""
 
 from __future__ import annotations
 
@@ -9,19 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import find_objects, label
 
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.geometry.sphere import ContactState
+
 Array = NDArray[np.float64]
+
+_MOST_SITES = 4096
+"""Sites of a perimeter that are kept for drawing."""
 
 
 @dataclass(frozen=True, slots=True)
 class Advance:
-    """A connected part of a front that has advanced.
+    """A connected part of a front that has advanced: its sites, (n_site,) each.
 
-    Attributes
-    ----------
-    angle : (n_site,) array
-        Angles of its sites, without a jump at 2 pi. (Units: rad)
-    inner, outer : (n_site,) array
-        Radii before and after. (Units: length)
+    The angles (rad) make no jump at 2 pi; the radii are those before and after.
     """
 
     angle: Array
@@ -38,14 +39,7 @@ class Advance:
 
 
 def advances(before: Array, after: Array, threshold: float) -> list[Advance]:
-    """Connected parts of a front that have advanced by more than a threshold.
-
-    Parameters
-    ----------
-    before, after : (n_angle,) array
-        Fronts. (Units: length)
-    threshold : float
-        Distance. (Units: length)
+    """Connected parts of a front, (n_angle,) radii, that have advanced by more than a threshold.
 
     Examples
     --------
@@ -66,51 +60,67 @@ def advances(before: Array, after: Array, threshold: float) -> list[Advance]:
     return parts
 
 
-class AdvanceWatch:
-    """The advances of a front, for the load step of its states and for multiples of it.
+class Perimeters:
+    """What is kept of the fronts of an approach after jump-in: an observer of its states.
 
     A state does not depend on the load step that led there (no passing), so that every second state
     is what twice the step would find.
 
     Parameters
     ----------
-    threshold : float
-        As in :func:`advances`.
+    passed : float
+        Distance that all sites have travelled after jump-in, and beyond which a site has jumped.
+        (Units: reduced lateral length)
+    highest : float
+        Force up to which fronts are looked at. (Units: pi w_int R)
+    every : int
+        Load steps between the fronts in `lines`.
     strides : sequence of int
-        Multiples of the load step.
+        Multiples of the load step over which advances are found.
 
     Attributes
     ----------
-    widest : dict of int to Advance
-        The widest for each multiple; without sites where there was none.
-    extents : dict of int to list of float
-        Widths of all. (Units: length)
-    count : int
-        States so far.
+    widest, extents : dict
+        For each multiple the widest advance, without sites where there was none, and the widths of
+        all.
+    states, lines, angle : list, list of (n_site,) array, (n_site,) array
+        States and radii of some fronts, at few enough angles for a drawing.
     """
 
-    def __init__(self, threshold: float, strides: Sequence[int]) -> None:
-        self._threshold = threshold
+    def __init__(self, passed: float, highest: float, every: int, strides: Sequence[int]) -> None:
+        self._passed, self._highest, self._every = passed, highest, every
         self._before: dict[int, Array | None] = dict.fromkeys(strides)
-        self.count = 0
+        self._count = 0
         self.widest = {stride: Advance(*(np.empty(0),) * 3) for stride in strides}
         self.extents: dict[int, list[float]] = {stride: [] for stride in strides}
+        self.states: list[ContactState[float]] = []
+        self.lines: list[Array] = []
+        self.angle = np.empty(0)
+
+    def __call__(self, recorder: Recorder) -> None:
+        """Compare a front with the ones before, and keep every few of them."""
+        state, front = recorder.states[-1], recorder.front
+        # Before it jumps into contact, the sphere rests on a few places about its apex.
+        if state.direction < 0 or state.least_travel <= self._passed:
+            return
+        if state.force > self._highest:
+            return
+        self.follow(front)
+        if self._count % self._every == 1 % self._every:
+            kept = slice(None, None, -(-front.size // _MOST_SITES))
+            self.angle = (2 * np.pi * np.arange(front.size) / front.size)[kept]
+            self.states.append(state)
+            self.lines.append(front[kept])
 
     def follow(self, front: Array) -> None:
-        """Compare the next state with earlier ones.
-
-        Parameters
-        ----------
-        front : (n_angle,) array
-            Its radii. (Units: length)
-        """
+        """Compare the front of the next state, (n_angle,) radii, with earlier ones."""
         for stride, before in self._before.items():
-            if self.count % stride:
+            if self._count % stride:
                 continue
             if before is not None:
-                found = advances(before, front, self._threshold)
+                found = advances(before, front, self._passed)
                 self.extents[stride] += [part.extent for part in found]
                 candidates = [self.widest[stride], *found]
                 self.widest[stride] = max(candidates, key=lambda part: part.extent)
             self._before[stride] = front
-        self.count += 1
+        self._count += 1

@@ -1,4 +1,7 @@
-"""Measured points from CSV files: read whole, or refused with the number of the line."""
+"""Measured points from CSV files: read whole, or refused with the number of the line.
+
+Two kinds of file are known: forces with contact radii, and spectral densities of profiles.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.analysis.force import FEWEST_POINTS
+from crackfront.data.section import refusal
+
 Array = NDArray[np.float64]
 
 _HEADER = re.compile(r"^(?P<name>[^()]*?)\s*(\((?P<unit>[^()]*)\))?$")
@@ -19,40 +25,16 @@ _HEADER = re.compile(r"^(?P<name>[^()]*?)\s*(\((?P<unit>[^()]*)\))?$")
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A column of numbers.
-
-    Attributes
-    ----------
-    name : str
-        Its name in the header, which the unit follows in brackets: `force (mN)`.
-    units : mapping
-        Units that are understood, each with the factor that leads to SI.
-    positive : bool
-        Whether only positive numbers have a meaning.
-    """
+    """A column of numbers: `name (unit)` in the header, with units that lead to SI by a factor."""
 
     name: str
     units: Mapping[str, float]
     positive: bool = False
 
 
-class MeasuredFileError(ValueError):
-    """What is wrong with a file of measured points, with the number of the line."""
-
-
 @dataclass(frozen=True, slots=True)
 class MeasuredTable:
-    """Rows of a file.
-
-    Attributes
-    ----------
-    lines : (n_row,) int array
-        Number of each row's line in the file.
-    numbers : (n_quantity, n_row) array
-        Values in SI units, in the order of the quantities.
-    words : (n_word, n_row) array of str
-        Columns of words, in the order in which they were asked for.
-    """
+    """Rows of a file: their lines, (n_row,), and a row a column that was asked for, in SI units."""
 
     lines: NDArray[np.int64]
     numbers: Array
@@ -64,39 +46,29 @@ def read_measured(
 ) -> MeasuredTable:
     """Columns of a CSV file; empty lines, those that begin with # and other columns are left out.
 
-    Parameters
-    ----------
-    path : Path
-        CSV file with a header.
-    quantities : sequence of Quantity
-        Columns of numbers.
-    words : sequence of str, optional
-        Columns of words.
-
     Raises
     ------
-    MeasuredFileError
+    PydanticCustomError
         If the file cannot be read, a column is missing or stands twice, a unit is missing or not
         understood, a value is missing or no finite number, or there is no row.
     """
     rows = _rows(path)
     place, header = next(rows, (1, []))
     if not header:
-        raise MeasuredFileError(f"{path} is empty; it needs a header and rows")
-    columns = [_column(f"{path}, line {place}", header, item) for item in quantities]
-    named = [(_position(f"{path}, line {place}", header, name), name) for name in words]
+        raise refusal(f"{path} is empty; it needs a header and rows")
+    top = f"{path}, line {place}"
+    columns = [_column(top, header, item) for item in quantities]
+    places = [_position(top, header, name) for name in words]
     lines, numbers, texts = [], [], []
     for number, row in rows:
         where = f"{path}, line {number}"
         if len(row) != len(header):
-            raise MeasuredFileError(
-                f"{where} has {len(row)} values for {len(header)} columns; complete it"
-            )
+            raise refusal(f"{where} has {len(row)} values for {len(header)} columns; complete it")
         numbers.append([_number(where, row[index], item, si) for index, item, si in columns])
-        texts.append([row[index].strip() for index, _ in named])
+        texts.append([row[index].strip() for index in places])
         lines.append(number)
     if not lines:
-        raise MeasuredFileError(f"{path} has a header but no rows; add the points")
+        raise refusal(f"{path} has a header but no rows; add the points")
     return MeasuredTable(np.array(lines), np.array(numbers).T, np.array(texts, dtype=str).T)
 
 
@@ -109,11 +81,11 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
                 if any(row) and not row[0].lstrip().startswith("#"):
                     yield reader.line_num, row
     except OSError as error:
-        raise MeasuredFileError(f"{path} cannot be read: {error.strerror}") from error
+        raise refusal(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise MeasuredFileError(f"{path} is no UTF-8 text; save it as UTF-8") from error
+        raise refusal(f"{path} is no UTF-8 text; save it as UTF-8") from error
     except csv.Error as error:
-        raise MeasuredFileError(f"{path}, line {reader.line_num}: {error}") from error
+        raise refusal(f"{path}, line {reader.line_num}: {error}") from error
 
 
 def _position(where: str, header: list[str], name: str) -> int:
@@ -121,7 +93,7 @@ def _position(where: str, header: list[str], name: str) -> int:
     names = [_parts(item)[0] for item in header]
     if names.count(name) != 1:
         what = "stands twice; remove one" if name in names else "is missing"
-        raise MeasuredFileError(f"{where}: column {name} {what}; the header has {', '.join(names)}")
+        raise refusal(f"{where}: column {name} {what}; the header has {', '.join(names)}")
     return names.index(name)
 
 
@@ -131,9 +103,7 @@ def _column(where: str, header: list[str], item: Quantity) -> tuple[int, Quantit
     unit, known = _parts(header[index])[1], ", ".join(item.units)
     if unit not in item.units:
         what = f"is in {unit}" if unit else "has no unit"
-        raise MeasuredFileError(
-            f"{where}: {item.name} {what}; write {item.name} (unit) with one of {known}"
-        )
+        raise refusal(f"{where}: {item.name} {what}; write {item.name} (unit) with one of {known}")
     return index, item, item.units[unit]
 
 
@@ -151,5 +121,104 @@ def _number(where: str, text: str, item: Quantity, factor: float) -> float:
         value = math.nan
     if not math.isfinite(value) or (item.positive and value <= 0):
         must = "a positive number" if item.positive else "a finite number"
-        raise MeasuredFileError(f"{where}: {item.name} is {text.strip()!r}; it must be {must}")
+        raise refusal(f"{where}: {item.name} is {text.strip()!r}; it must be {must}")
     return value * factor
+
+
+_BRANCHES = {"approach": 1, "retraction": -1}
+
+_FORCE = Quantity("force", {"N": 1.0, "mN": 1e-3, "uN": 1e-6})
+_RADIUS = Quantity("radius", {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}, positive=True)
+
+
+@dataclass(frozen=True, slots=True)
+class ForceRadius:
+    """Forces (N), contact radii (m), and +1 in approach, -1 in retraction, of (n_point,) each."""
+
+    force: Array
+    radius: Array
+    direction: NDArray[np.int64]
+
+
+def read_force_radius(path: Path | None) -> ForceRadius:
+    """Points from a CSV file with the columns force (mN), radius (um) and branch, as measured.
+
+    The units are N, mN or uN, and m, mm, um or nm; the branch is approach or retraction. Without a
+    file there are no points.
+
+    Raises
+    ------
+    PydanticCustomError
+        If it cannot be read or holds no such columns; if a branch is unknown, an approach follows
+        a retraction, the approach has fewer than three points, or ends at no larger force than it
+        begins. The sentence names the line.
+    """
+    if path is None:
+        return ForceRadius(np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
+    table = read_measured(path, (_FORCE, _RADIUS), words=("branch",))
+    for line, name in zip(table.lines, table.words[0], strict=True):
+        if name not in _BRANCHES:
+            raise refusal(
+                f"{path}, line {line}: branch is {str(name)!r}; it must be {' or '.join(_BRANCHES)}"
+            )
+    direction = np.array([_BRANCHES[name] for name in table.words[0]])
+    force, radius = table.numbers
+    back = np.flatnonzero(np.diff(direction) > 0)
+    if back.size:
+        raise refusal(
+            f"{path}, line {table.lines[back[0] + 1]}: an approach follows the retraction; the "
+            "rows must be one approach and then its retraction"
+        )
+    approach = force[direction > 0]
+    last = table.lines[max(approach.size - 1, 0)]
+    if approach.size < FEWEST_POINTS:
+        raise refusal(
+            f"{path}, line {last}: the approach has {approach.size} points; the fit needs "
+            f"{FEWEST_POINTS}"
+        )
+    if approach[-1] <= approach[0]:
+        raise refusal(
+            f"{path}, line {last}: the approach ends at {approach[-1]:g} N and begins at "
+            f"{approach[0]:g} N; its force must grow, so put the rows in the order of measurement"
+        )
+    return ForceRadius(force, radius, direction)
+
+
+_WAVEVECTOR = Quantity("q", {"1/m": 1.0, "1/um": 1e6, "1/nm": 1e9}, positive=True)
+_DENSITY = Quantity("C1D", {"m^3": 1.0, "um^3": 1e-18, "nm^3": 1e-27}, positive=True)
+
+
+@dataclass(frozen=True, slots=True)
+class ProfileDensity:
+    """Increasing wavevectors (1 / m) and C_1D (m^3) of profiles, of (n_point,) each."""
+
+    wavevector: Array
+    density: Array
+
+
+def read_profile_density(path: Path | None) -> ProfileDensity:
+    """Profile density from a CSV file with the columns q (1/m) and C1D (m^3).
+
+    The units are 1/m, 1/um or 1/nm, and m^3, um^3 or nm^3. The mean square height is the integral
+    of C1D over q > 0, divided by pi. Without a file there are no points.
+
+    Raises
+    ------
+    PydanticCustomError
+        If it cannot be read, holds no such columns, units or numbers, has a single row, or if the
+        wavevectors do not increase. The sentence names the line.
+    """
+    if path is None:
+        return ProfileDensity(np.empty(0), np.empty(0))
+    table = read_measured(path, (_WAVEVECTOR, _DENSITY))
+    wavevector, density = table.numbers
+    wrong = np.flatnonzero(np.diff(wavevector) <= 0)
+    if wrong.size:
+        before, here = wavevector[wrong[0] : wrong[0] + 2]
+        raise refusal(
+            f"{path}, line {table.lines[wrong[0] + 1]}: q is {here:g} 1/m after {before:g} 1/m; "
+            "wavevectors must increase"
+        )
+    if wavevector.size < 2:
+        raise refusal(f"{path}, line {table.lines[0]} is the only row; a density needs two or more")
+    return ProfileDensity(wavevector, density)

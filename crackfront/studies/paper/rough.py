@@ -1,34 +1,47 @@
-"""Rough contacts of figures: the surface, the numerics for an asked error, and first touch."""
+"""Rough contacts of figures: their parameters, the surface, the numerics, fronts on it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 from scipy.ndimage import map_coordinates
 
-from crackfront.core.cycle.follow import Load
+from crackfront.core import jkr
+from crackfront.core.cycle.follow import Load, front_at
+from crackfront.core.cycle.instabilities import larkin_length
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import first_touch, refuse_outgrown
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import TileField
+from crackfront.core.outcome import Direction, Status
+from crackfront.core.solver.relax import Newton, Solver
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.data.section import Energy, Positive, Section, refusal
+from crackfront.data.section import Count, Energy, Positive, Section, refusal
+from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error, simulation_of
+from crackfront.studies.paper.figure import Check
 
 Array = NDArray[np.float64]
 
 ONE_DIGIT = 0.5
 """How far k may be from a value that is given with one digit."""
 
+STRONG, WEAK = 0, 1
+"""Places of the two amplitudes that figures of single fronts compare."""
+
+_SIDE = 2.4
+"""Side of their tiles over the radius of the smooth contact, so that no place is met twice."""
+
 
 class RoughParameters(Section):
-    """What the rough contact of every figure needs.
+    """What the rough contact of a figure of whole cycles needs.
 
     Attributes
     ----------
@@ -49,15 +62,6 @@ class RoughParameters(Section):
     ) -> Simulation:
         """Simulation of the first surface of the seed.
 
-        Parameters
-        ----------
-        spectrum : SelfAffineSpectrum
-            Shape of the spectrum. (Units: reduced lateral length)
-        elastic_energy : float
-            Energy of full conformity. (Units: w_int)
-        schedule : LoadSchedule
-            Penetrations; the largest decides the number of sites.
-
         Raises
         ------
         PydanticCustomError
@@ -75,7 +79,7 @@ class RoughParameters(Section):
 
 
 class RoughCycleParameters(RoughParameters):
-    """What a figure of a whole cycle needs beside the shape of its spectrum.
+    """What a figure of one cycle needs beside the shape of its spectrum.
 
     Attributes
     ----------
@@ -100,7 +104,7 @@ class RoughCycleParameters(RoughParameters):
     @property
     def spectrum(self) -> SelfAffineSpectrum:
         """Shape of the spectrum, flat where nothing else is said."""
-        return SelfAffineSpectrum(self.short_cutoff, self.short_cutoff, hurst=1.0)
+        return flat_spectrum(self.short_cutoff)
 
     @property
     def schedule(self) -> LoadSchedule:
@@ -112,20 +116,175 @@ class RoughCycleParameters(RoughParameters):
         return self.simulation_of(self.spectrum, self.elastic_energy, self.schedule)
 
 
+class DisorderParameters(Section):
+    """What a figure needs that follows single fronts in strong and in weak disorder.
+
+    Attributes
+    ----------
+    short_cutoff : float
+        Shortest wavelength of the flat spectrum. (Units: reduced lateral length)
+    strong, weak : float
+        e_el of the two kinds of surfaces. (Units: w_int)
+    max_penetration : float
+        Where a retraction begins. (Units: reduced vertical length)
+    error : float
+        Error of the factor k that the resolution may leave.
+    seed : int
+        Seed of the surfaces; both kinds have the same.
+    """
+
+    short_cutoff: Positive
+    strong: Energy
+    weak: Energy
+    max_penetration: Positive
+    error: Positive
+    seed: Count
+
+    def contact(
+        self, elastic_energy: float, tolerance: float, realisation: int = 0, least_angles: int = 4
+    ) -> RoughContact:
+        """Contact with one surface.
+
+        Parameters
+        ----------
+        elastic_energy : float
+            e_el. (Units: w_int)
+        tolerance : float
+            Largest force along the motion that may be left, relative to w_int per front length.
+        realisation : int, optional
+            Number of the surface.
+        least_angles : int, optional
+            Fewest sites of the front.
+        """
+        spectrum = flat_spectrum(self.short_cutoff)
+        side = _SIDE * jkr.equilibrium_radius(self.max_penetration)
+        simulation = simulation_of(
+            "roughness",
+            spectrum,
+            elastic_energy,
+            LoadSchedule(self.max_penetration, max(self.max_penetration, 1.0)),
+            Numerics(self.error, side / self.short_cutoff, tile_cutoffs=1.0, max_sweeps=10_000_000),
+            seed=self.seed,
+            realisation=realisation,
+            name="flat",
+        )
+        sizes = simulation.resolution
+        simulation = replace(
+            simulation, resolution=replace(sizes, n_angle=max(sizes.n_angle, least_angles))
+        )
+        compile_solver(simulation.solver.name)
+        adhesion = simulation_adhesion(simulation)
+        return RoughContact(
+            field=simulation_field(simulation, adhesion),
+            solver=Newton(min(tolerance, simulation.solver.tolerance)),
+            rms=adhesion.rms,
+            larkin_length=larkin_length(spectrum.correlation_length, adhesion.rms),
+        )
+
+
+class RetractionParameters(DisorderParameters):
+    """What a figure needs that measures a part of the retraction on several surfaces.
+
+    Attributes
+    ----------
+    n_surface : int
+        Surfaces of each kind.
+    first_penetration, last_penetration : float
+        Between them the retraction is measured. (Units: reduced vertical length)
+    """
+
+    n_surface: Count
+    first_penetration: float
+    last_penetration: float
+
+    @model_validator(mode="after")
+    def _falling(self) -> RetractionParameters:
+        largest, first, last = self.max_penetration, self.first_penetration, self.last_penetration
+        if not last < first < largest:
+            raise refusal(
+                "penetrations must fall from max_penetration over first_penetration to "
+                f"last_penetration; they are {largest:g}, {first:g} and {last:g}"
+            )
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class RoughContact:
+    """A sphere whose roughness has a flat spectrum.
+
+    Attributes
+    ----------
+    field : TileField
+        Work of adhesion along the rays.
+    solver : Solver
+        How its fronts are found.
+    rms : float
+        w_rms measured on the tile. (Units: w_int)
+    larkin_length : float
+        Larkin length. (Units: reduced lateral length)
+    """
+
+    field: TileField
+    solver: Solver
+    rms: float
+    larkin_length: float
+
+    def touched(self, penetration: float) -> Array:
+        """Front of an approach from first contact to a penetration."""
+        return self.moved(first_touch(self.field), penetration, 1)
+
+    def moved(self, front: Array, penetration: float, direction: Direction) -> Array:
+        """Next metastable front; a ValueError says why there is none."""
+        return front_at(self.field, front, Load(penetration, direction), self.solver)
+
+
+def surface_means(kinds: Sequence[Sequence[object]], name: str) -> Array:
+    """Means over the surfaces of each kind of what was measured on each surface."""
+    return np.array([np.mean([getattr(one, name) for one in kind]) for kind in kinds])
+
+
+def circle_stiffness(radius: ArrayLike, penetration: ArrayLike) -> Array:
+    """Stiffness of a contact's circle at fixed penetration, a dG/da; mode n of the line adds n.
+
+    Parameters
+    ----------
+    radius : array_like
+        Mean radius of a front. (Units: reduced lateral length)
+    penetration : array_like
+        Rigid body penetration, below radius^2. (Units: reduced vertical length)
+
+    Returns
+    -------
+    array
+        Stiffness. (Units: w_int)
+
+    Examples
+    --------
+    It vanishes where a smooth contact is pulled off:
+
+    >>> from crackfront.core.jkr import pull_off_penetration, pull_off_radius
+    >>> abs(float(circle_stiffness(pull_off_radius(), pull_off_penetration()))) < 1e-9
+    True
+    """
+    square = np.square(radius)
+    release = jkr.energy_release_rate(radius, penetration) / WORK_OF_ADHESION
+    return np.asarray(release * (4 * square / (square - penetration) - 1))
+
+
+def flat_spectrum(short_cutoff: float) -> SelfAffineSpectrum:
+    """Spectrum of the same power at all wavelengths down to the shortest."""
+    return SelfAffineSpectrum(short_cutoff, short_cutoff, hurst=1.0)
+
+
 def rough_spectrum(
     short_cutoff: float, roll_off: float, hurst: float, plateau: float = 1.0
 ) -> SelfAffineSpectrum:
-    """Spectrum of the parameters of a figure.
+    """Spectrum of the parameters of a figure; a refusal says why there is none.
 
     Parameters
     ----------
     short_cutoff, roll_off, hurst, plateau
-        As in :class:`crackfront.core.spectrum.SelfAffineSpectrum`.
-
-    Raises
-    ------
-    PydanticCustomError
-        If there is no such spectrum.
+        As of :class:`crackfront.core.spectrum.SelfAffineSpectrum`.
     """
     try:
         return SelfAffineSpectrum(short_cutoff, roll_off, hurst, plateau)
@@ -138,17 +297,6 @@ def recorded(
 ) -> CycleRecord:
     """States of a front that begins in contact that is just made and follows loads.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        What is simulated.
-    field : TileField
-        Its field.
-    loads : iterable of Load
-        Where it goes.
-    recorder : Recorder
-        What is kept, and who is told.
-
     Raises
     ------
     ValueError
@@ -160,6 +308,12 @@ def recorded(
     return recorder.record()
 
 
+def whole_cycle(status: str) -> Check:
+    """Check of what ended a cycle."""
+    lost = Status.LOST_CONTACT.value
+    return Check("the cycle is whole: it ends by losing contact", lost, status, status == lost)
+
+
 def patch_of(field: TileField, x: Array, y: Array) -> NDArray[np.float32]:
     """Work of adhesion around the apex, as the front feels it.
 
@@ -167,10 +321,8 @@ def patch_of(field: TileField, x: Array, y: Array) -> NDArray[np.float32]:
     ----------
     field : TileField
         Field on a tile.
-    x : (n_x,) array
-        Abscissae. (Units: reduced lateral length)
-    y : (n_y,) array
-        Ordinates. (Units: reduced lateral length)
+    x, y : (n_x,) and (n_y,) arrays
+        Abscissae and ordinates. (Units: reduced lateral length)
 
     Returns
     -------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +11,19 @@ from numpy.typing import NDArray
 from crackfront.core import jkr
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.outcome import Status
 from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
+from crackfront.plots.parts import FORCE_LABEL, PENETRATION_LABEL, RADIUS_LABEL
+from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.run import compile_solver
-from crackfront.studies.paper.figure import Check, Progress, close_to
-from crackfront.studies.paper.rough import RoughCycleParameters, patch_of
+from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
+from crackfront.studies.paper.rough import RoughCycleParameters, patch_of, whole_cycle
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+    from crackfront.plots.animation import Animation
 
 Array = NDArray[np.float64]
 
@@ -23,10 +31,6 @@ _STATE, _ANGLE, _X, _Y = "state", "angle", "x", "y"
 
 _PATCH_POINTS = 400
 """Points along a side of the field that is shown."""
-
-
-class MotionParameters(RoughCycleParameters):
-    """What the animation shows: a contact on a flat spectrum, whose instabilities can be seen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,15 +53,8 @@ class Motion:
     patch: NDArray[np.float32] = variable("local work of adhesion", ADHESION, _X, _Y)
 
 
-def motion(parameters: MotionParameters, progress: Progress) -> Motion:
+def motion(parameters: RoughCycleParameters, progress: Progress) -> Motion:
     """A full cycle with all its fronts.
-
-    Parameters
-    ----------
-    parameters : MotionParameters
-        What to compute.
-    progress : callable
-        Called with a line at the end.
 
     Raises
     ------
@@ -94,25 +91,14 @@ def motion(parameters: MotionParameters, progress: Progress) -> Motion:
 
 
 def motion_checks(shown: Motion) -> tuple[Check, ...]:
-    """What must be true of every frame.
-
-    Parameters
-    ----------
-    shown : Motion
-        Data of the animation.
-    """
+    """What must be true of every frame."""
     approach = shown.direction > 0
     moved = shown.direction[1:, None] * np.diff(shown.front, axis=0)
     smallest, work = float(shown.dissipated_energy.min()), _loop_work(shown)
     dissipated = float(shown.dissipated_energy.sum()) + shown.pull_off_energy
     mean = np.mean(jkr.force(shown.front, shown.penetration[:, None]), axis=1)
     return (
-        Check(
-            "the cycle is whole: it ends by losing contact",
-            Status.LOST_CONTACT.value,
-            shown.status,
-            shown.status == Status.LOST_CONTACT.value,
-        ),
+        whole_cycle(shown.status),
         Check(
             "no site of the front moves back, neither in approach nor in retraction",
             "the least way forward is 0 or more",
@@ -148,3 +134,75 @@ def _loop_work(shown: Motion) -> float:
     ends = np.append(shown.penetration[1:], shown.end_penetration)
     held = np.mean(jkr.force(shown.front, ends[:, None]), axis=1)
     return float(np.sum((shown.force + held) / 2 * (ends - shown.penetration)))
+
+
+_LAST_FRAMES = 10
+"""Frames without contact at the end."""
+
+
+def motion_figure(shown: Motion) -> Drawing:
+    """The last frame with contact, and the whole loop."""
+    animation = motion_animation(shown)
+    with house_style():
+        animation.show(shown.direction.size - 1)
+        return animation.figure
+
+
+def motion_animation(shown: Motion) -> Animation:
+    """The front over the field beside the loop: one frame a state, and some without contact."""
+    from crackfront.plots.animation import Animation
+    from crackfront.plots.fronts import closed_front, draw_field
+
+    with house_style():
+        figure = blank_figure(PAGE, 0.47 * PAGE)
+        left, right = figure.subplots(1, 2)
+        mean, reach = 1 - shown.elastic_energy, 4 * np.sqrt(shown.elastic_energy)
+        draw_field(left, shown.x, shown.y, shown.patch, mean, reach)
+        _draw_axes(right, shown)
+        (line,) = left.plot([], [], linewidth=1.2)
+        title = left.set_title(f"{PENETRATION_LABEL} = $+0.00$")
+        branches = {
+            direction: right.plot([], [], color=colour, label=label)[0]
+            for direction, colour, label in ((1, BLUE, "approach"), (-1, VERMILION, "retraction"))
+        }
+        (point,) = right.plot([], [], "o", color=BLACK, zorder=4)
+        right.legend(loc="upper left")
+    last = shown.direction.size
+
+    def show(frame: int) -> None:
+        state, touching = min(frame, last - 1), frame < last
+        line.set_color(BLUE if shown.direction[state] > 0 else VERMILION)
+        line.set_data(*closed_front(shown.angle, shown.front[state]) if touching else ([], []))
+        b = shown.penetration[state] if touching else shown.end_penetration
+        title.set_text(f"{PENETRATION_LABEL} = ${b:+.2f}${'' if touching else ': contact lost'}")
+        for direction, drawn in branches.items():
+            branch = np.flatnonzero(shown.direction[: state + 1] == direction)
+            drawn.set_data(shown.mean_radius[branch], shown.force[branch])
+        seen = slice(state, state + 1) if touching else slice(0, 0)
+        point.set_data(shown.mean_radius[seen], shown.force[seen])
+
+    return Animation(figure, (line, title, *branches.values(), point), last + _LAST_FRAMES, show)
+
+
+def _draw_axes(axes: Axes, shown: Motion) -> None:
+    """Axes that hold the whole loop."""
+    axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
+    for values, setter, above in (
+        (shown.mean_radius, axes.set_xlim, 0.06),
+        (shown.force, axes.set_ylim, 0.2),
+    ):
+        low, high = values.min(), values.max()
+        setter(low - 0.06 * (high - low), high + above * (high - low))
+    axes.set_xlabel(f"mean {RADIUS_LABEL}")
+    axes.set_ylabel(FORCE_LABEL)
+
+
+FIGURE = Figure(
+    title="Animation: the fronts of a cycle over the field, beside its loop",
+    parameters=RoughCycleParameters,
+    record=Motion,
+    compute=motion,
+    checks=motion_checks,
+    draw=motion_figure,
+    animate=motion_animation,
+)

@@ -4,54 +4,45 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import model_validator
 
 from crackfront.analysis.power_law import PowerLaw, truncated_power_law
-from crackfront.core.adhesion import correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.instabilities import resolved_motion, swept_clusters
 from crackfront.core.records import ADHESION, ENERGY, LATERAL, VERTICAL, variable
-from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.data.section import Count, Energy, Positive, Section
-from crackfront.studies.paper.contact import (
+from crackfront.data.section import Positive
+from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.studies.paper.figure import Check, Figure, Progress
+from crackfront.studies.paper.rough import (
     STRONG,
     WEAK,
+    RetractionParameters,
     circle_stiffness,
-    refuse_rising,
-    rough_contact,
+    flat_spectrum,
+    surface_means,
 )
-from crackfront.studies.paper.figure import Check, Progress
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+    from matplotlib.legend import Legend
 
 Array = NDArray[np.float64]
 
 _DISORDER, _EVENT = "disorder", "avalanche"
 
-SIZE_EXPONENT = 1.28
-"""Exponent of avalanche sizes of a line with long-range elasticity (Laurson, Santucci, Zapperi,
-Phys. Rev. E 81, 046116)."""
 
-_TOLERANCE = 0.1
-"""Largest deviation of the exponent."""
-
-
-class AvalancheParameters(Section):
+class AvalancheParameters(RetractionParameters):
     """Surfaces, the part of their retraction that is resolved, and the range of the fit.
+
+    The closer the penetrations are to pull-off, the softer is the circle, and the larger may
+    avalanches become.
 
     Attributes
     ----------
-    short_cutoff : float
-        Shortest wavelength of the flat spectrum. (Units: reduced lateral length)
-    strong, weak : float
-        e_el of the two kinds of surfaces. (Units: w_int)
-    n_surface : int
-        Surfaces of each kind.
-    max_penetration, first_penetration, last_penetration : float
-        Where the retraction begins, and between which penetrations it is resolved: the closer to
-        pull-off, the softer is the circle, and the larger may avalanches become.
-        (Units: reduced vertical length)
     load_step : float
         Penetrations that are visited in any case. (Units: reduced vertical length)
     travel : float
@@ -62,30 +53,12 @@ class AvalancheParameters(Section):
     smallest_area : float
         Where the power law begins, over the area of a Larkin length (or a correlation length, if
         that is longer) times a correlation length.
-    error : float
-        Error of the factor k that the resolution may leave.
-    seed : int
-        Seed of the surfaces.
     """
 
-    short_cutoff: Positive
-    strong: Energy
-    weak: Energy
-    n_surface: Count
-    max_penetration: Positive
-    first_penetration: float
-    last_penetration: float
     load_step: Positive
     travel: Positive
     precision: Positive
     smallest_area: Positive
-    error: Positive
-    seed: Count
-
-    @model_validator(mode="after")
-    def _usable(self) -> AvalancheParameters:
-        refuse_rising(self.max_penetration, self.first_penetration, self.last_penetration)
-        return self
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +90,7 @@ class AvalancheRecord:
 class _Avalanche:
     """One instability."""
 
+    surface: int
     penetration: float
     area: float
     extent: float
@@ -136,15 +110,7 @@ class _Surface:
 
 
 def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> AvalancheRecord:
-    """Avalanches of steady retraction on several surfaces of two amplitudes.
-
-    Parameters
-    ----------
-    parameters : AvalancheParameters
-        What to compute.
-    progress : callable
-        Called with a line for every surface.
-    """
+    """Avalanches of steady retraction on several surfaces of two amplitudes."""
     surfaces: list[list[_Surface]] = []
     for name, energy in (("strong", parameters.strong), ("weak", parameters.weak)):
         surfaces.append([])
@@ -152,50 +118,37 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
             surfaces[-1].append(_surface(parameters, energy, realisation))
             count = len(surfaces[-1][-1].avalanches)
             progress(f"{name} disorder, surface {realisation}: {count} avalanches")
-    spectrum = SelfAffineSpectrum(parameters.short_cutoff, parameters.short_cutoff, hurst=1.0)
-    correlation = correlation_length("roughness", spectrum)
-    rms, larkin, circle, smooth = (
-        np.array([np.mean([getattr(one, name) for one in kind]) for kind in surfaces])
-        for name in ("rms", "larkin_length", "circle_length", "smooth_area")
-    )
-    rows = [
-        (index, realisation, event)
-        for index, kind in enumerate(surfaces)
-        for realisation, one in enumerate(kind)
-        for event in one.avalanches
-    ]
+    correlation = flat_spectrum(parameters.short_cutoff).correlation_length
+    larkin = surface_means(surfaces, "larkin_length")
+    events = [[event for one in kind for event in one.avalanches] for kind in surfaces]
+
+    def each(name: str) -> NDArray[Any]:
+        return np.array([getattr(event, name) for kind in events for event in kind])
+
     return AvalancheRecord(
         short_cutoff=parameters.short_cutoff,
         correlation_length=correlation,
         precision=parameters.precision,
         seed=parameters.seed,
         elastic_energy=np.array([parameters.strong, parameters.weak]),
-        rms=rms,
+        rms=surface_means(surfaces, "rms"),
         larkin_length=larkin,
         smallest_area=parameters.smallest_area * correlation * np.maximum(larkin, correlation),
-        circle_length=circle,
-        smooth_area=smooth,
-        disorder_index=np.array([index for index, _, _ in rows]),
-        surface=np.array([realisation for _, realisation, _ in rows]),
-        penetration=np.array([event.penetration for _, _, event in rows]),
-        area=np.array([event.area for _, _, event in rows]),
-        extent=np.array([event.extent for _, _, event in rows]),
-        n_patch=np.array([event.n_patch for _, _, event in rows]),
-        energy=np.array([event.energy for _, _, event in rows]),
+        circle_length=surface_means(surfaces, "circle_length"),
+        smooth_area=surface_means(surfaces, "smooth_area"),
+        disorder_index=np.repeat([STRONG, WEAK], [len(kind) for kind in events]),
+        surface=each("surface"),
+        penetration=each("penetration"),
+        area=each("area"),
+        extent=each("extent"),
+        n_patch=each("n_patch"),
+        energy=each("energy"),
     )
 
 
 def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -> _Surface:
     """Retraction on one surface, resolved."""
-    contact = rough_contact(
-        parameters.short_cutoff,
-        energy,
-        parameters.max_penetration,
-        realisation=realisation,
-        seed=parameters.seed,
-        error=parameters.error,
-        tolerance=parameters.precision / 4,
-    )
+    contact = parameters.contact(energy, parameters.precision / 4, realisation)
     start, stop = parameters.first_penetration, parameters.last_penetration
     travel = parameters.travel * parameters.short_cutoff
     front = contact.moved(contact.touched(parameters.max_penetration), start, -1)
@@ -218,7 +171,9 @@ def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -
         if step.unstable:
             patches = swept_clusters(step.before, step.after, travel)
             lost = dissipated_energy(step.before, step.after, step.end, contact.field)
-            avalanches.append(_Avalanche(step.end, area, patches[0].extent, len(patches), lost))
+            avalanches.append(
+                _Avalanche(realisation, step.end, area, patches[0].extent, len(patches), lost)
+            )
     middle = float(np.mean([front, last]))
     return _Surface(
         avalanches=avalanches,
@@ -229,29 +184,23 @@ def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -
     )
 
 
-def size_law(record: AvalancheRecord, index: int) -> PowerLaw:
-    """Power law of the swept areas of one disorder.
+SIZE_EXPONENT = 1.28
+"""Exponent of avalanche sizes of a line with long-range elasticity (Laurson, Santucci, Zapperi,
+Phys. Rev. E 81, 046116)."""
 
-    Parameters
-    ----------
-    record : AvalancheRecord
-        Data of the figure.
-    index : {0, 1}
-        Strong or weak disorder.
-    """
+_TOLERANCE = 0.1
+"""Largest deviation of the exponent."""
+
+
+def size_law(record: AvalancheRecord, index: int) -> PowerLaw:
+    """Power law of the swept areas of one disorder."""
     rng = np.random.default_rng(np.random.SeedSequence(record.seed, spawn_key=(index,)))
     areas = record.area[record.disorder_index == index]
     return truncated_power_law(areas, float(record.smallest_area[index]), rng)
 
 
 def avalanche_checks(record: AvalancheRecord) -> tuple[Check, ...]:
-    """Exponents, and the lengths between which avalanches lie.
-
-    Parameters
-    ----------
-    record : AvalancheRecord
-        Data of the figure.
-    """
+    """Exponents, and the lengths between which avalanches lie."""
     checks = [
         check
         for index, name in ((STRONG, "strong"), (WEAK, "weak"))
@@ -307,3 +256,129 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
         longest < record.circle_length[index],
         "perimeter over a dG/da; the upper cut-off is that of the sphere, not of the disorder",
     )
+
+
+_KINDS = ((STRONG, "strong", BLUE, "o"), (WEAK, "weak", VERMILION, "s"))
+
+_BINS_A_DECADE = 5
+
+
+def avalanche_figure(record: AvalancheRecord) -> Drawing:
+    """Densities of areas with their power laws, of extents, and of energies."""
+    with house_style():
+        figure = blank_figure(PAGE, 0.38 * PAGE)
+        panels = figure.subplots(1, 3)
+        _draw_areas(panels[0], record)
+        _draw_extents(panels[1], record)
+        # The reduced unit of energy is pi times w_int times the lateral unit squared.
+        energies = record.energy / (record.short_cutoff**2 / np.pi)
+        label = r"dissipated energy $/\,w_\mathrm{int}\lambda_\mathrm{s}^2$"
+        _draw_densities(panels[2], record, energies, label)
+        for axes, letter in zip(panels, "abc", strict=True):
+            axes.set_xscale("log")
+            axes.set_yscale("log")
+            axes.set_title(letter, loc="left", fontweight="bold")
+        handles, labels = panels[2].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=2)
+        return figure
+
+
+def _draw_densities(axes: Axes, record: AvalancheRecord, values: Array, what: str) -> None:
+    """Densities of both disorders in logarithmic bins, with the error of counting."""
+    low, high = np.log10(values.min()), np.log10(values.max())
+    edges = np.logspace(low, high, max(int((high - low) * _BINS_A_DECADE), 4) + 1)
+    edges[-1] *= 1 + 1e-9
+    for index, name, colour, marker in _KINDS:
+        chosen = values[record.disorder_index == index]
+        counts, _ = np.histogram(chosen, edges)
+        filled = counts > 0
+        density = counts / np.diff(edges) / chosen.size
+        disorder = rf"$w_\mathrm{{rms}} = {record.rms[index]:.2f}\,w_\mathrm{{int}}$"
+        axes.errorbar(
+            np.sqrt(edges[1:] * edges[:-1])[filled],
+            density[filled],
+            # A bar that reached zero would have no end on a logarithmic axis.
+            yerr=0.98 * (density / np.sqrt(np.maximum(counts, 1)))[filled],
+            linestyle="none",
+            marker=marker,
+            markersize=2.6,
+            elinewidth=0.6,
+            color=colour,
+            label=f"{name} disorder, {disorder}, {chosen.size} avalanches",
+        )
+    axes.set_xlabel(what)
+    axes.set_ylabel("probability density")
+
+
+def _draw_areas(axes: Axes, record: AvalancheRecord) -> None:
+    """Swept areas with the laws that were fitted, and a line of the exponent of the theory."""
+    unit = record.short_cutoff**2
+    _draw_densities(axes, record, record.area / unit, r"swept area $S/\lambda_\mathrm{s}^2$")
+    for index, _, colour, _ in _KINDS:
+        chosen = record.area[record.disorder_index == index]
+        law = size_law(record, index)
+        areas = np.geomspace(law.smallest, chosen.max(), 100)
+        axes.plot(
+            areas / unit,
+            law.density(areas) * unit * law.n_value / chosen.size,
+            color=colour,
+            label=rf"$\tau = {law.exponent:.2f}$ ({law.low:.2f} to {law.high:.2f})",
+        )
+    start = record.smallest_area[STRONG] / unit
+    ends = start * np.array([1.0, 40.0])
+    level = 4 * float(size_law(record, STRONG).density(record.smallest_area[STRONG])) * unit
+    axes.plot(
+        ends,
+        level * (ends / start) ** -SIZE_EXPONENT,
+        color="0.35",
+        linewidth=0.7,
+        dashes=(4, 2),
+        label=rf"$\tau = {SIZE_EXPONENT}$",
+    )
+    _legend_of(axes, "tau")
+
+
+def _draw_extents(axes: Axes, record: AvalancheRecord) -> None:
+    """Extents, with the Larkin lengths below and the length of the circle above."""
+    unit, label = record.short_cutoff, r"extent along the perimeter $/\lambda_\mathrm{s}$"
+    _draw_densities(axes, record, record.extent / unit, label)
+    for index, _, colour, _ in _KINDS:
+        axes.axvline(
+            record.larkin_length[index] / unit,
+            color=colour,
+            linewidth=0.8,
+            linestyle=(0, (1, 1.5)),
+            zorder=0,
+            label=r"Larkin length $\ell$" if index == STRONG else None,
+        )
+    axes.axvline(
+        record.correlation_length / unit,
+        color="0.5",
+        linewidth=0.7,
+        dashes=(4, 2),
+        zorder=0,
+        label=r"correlation length of $w_\mathrm{loc}$",
+    )
+    legend = _legend_of(axes, "length")
+    legend.set_frame_on(True)
+    legend.get_frame().set(facecolor="white", alpha=1.0, edgecolor="none")
+
+
+def _legend_of(axes: Axes, word: str) -> Legend:
+    """Legend of what bears a word in its label."""
+    lines = [
+        (handle, label)
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+        if word in label
+    ]
+    return axes.legend(*zip(*lines, strict=True), loc="lower left")
+
+
+FIGURE = Figure(
+    title="Beyond the paper: avalanches",
+    parameters=AvalancheParameters,
+    record=AvalancheRecord,
+    compute=avalanche_record,
+    checks=avalanche_checks,
+    draw=avalanche_figure,
+)

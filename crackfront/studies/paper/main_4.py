@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,13 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field, tile_mean_square
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Count, Energy, Positive, Section, refusal
-from crackfront.studies.paper.figure import Check, Progress, close_to
+from crackfront.plots.parts import HEIGHT_LABEL, LENGTH_LABEL, label_panel
+from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
 
 Array = NDArray[np.float64]
 
@@ -113,15 +119,7 @@ class Mapping:
 
 
 def mapping(parameters: MappingParameters, progress: Progress) -> Mapping:
-    """Synthesise a surface and map it.
-
-    Parameters
-    ----------
-    parameters : MappingParameters
-        What to compute.
-    progress : callable
-        Called with a line when the surface is mapped.
-    """
+    """Synthesise a surface and map it."""
     spectrum, pixel = parameters.spectrum, parameters.side / parameters.n_point
     rng = np.random.default_rng(np.random.SeedSequence(parameters.seed))
     heights = gaussian_field(spectrum, parameters.n_point, parameters.side, rng)
@@ -154,15 +152,46 @@ def mapping(parameters: MappingParameters, progress: Progress) -> Mapping:
     )
 
 
-def mapping_checks(record: Mapping) -> tuple[Check, ...]:
-    """Parseval, the mean, and that peaks raise the work of adhesion.
+def _band_correlations(
+    heights: Array, tile: AdhesionMap, spectrum: SelfAffineSpectrum
+) -> tuple[Array, NDArray[np.int64], Array]:
+    """Middle wavelength, modes and correlation of the octaves below the short cutoff's."""
+    n_point = len(heights)
+    along = 2 * np.pi * fftfreq(n_point, tile.pixel)
+    wavevector = np.hypot(along[:, None], along)
+    # On one scale the half-derivative is the heights; an octave is not quite one scale.
+    one, other = np.sqrt(wavevector) * fft2(heights), fft2(tile.work_of_adhesion)
+    longest = tile.pixel * n_point
+    n_band = max(1, math.floor(math.log2(longest / spectrum.short_cutoff)))
+    edges = 2 * np.pi / spectrum.short_cutoff * 2.0 ** -np.arange(n_band + 1)
+    rows = []
+    for high, low in pairwise(edges):
+        band = (wavevector > low) & (wavevector <= high * (1 + 1e-12))
+        shared = np.sum((one[band] * np.conj(other[band])).real)
+        norms = np.sum(np.abs(one[band]) ** 2) * np.sum(np.abs(other[band]) ** 2)
+        rows.append(
+            (2 * np.pi / math.sqrt(low * high), np.count_nonzero(band), shared / norms**0.5)
+        )
+    middle, modes, correlation = np.array(rows).T
+    return middle, modes.astype(np.int64), correlation
 
-    Parameters
-    ----------
-    record : Mapping
-        Data of the figure.
-    """
+
+def _maxima(heights: Array) -> NDArray[np.bool_]:
+    """Points of a periodic map that no neighbour exceeds."""
+    return np.asarray(heights == maximum_filter(heights, size=3, mode="wrap"))
+
+
+def _highest(patch: Array) -> NDArray[np.int64]:
+    """Indices of the highest point away from the rim, where a profile along x has room."""
+    margins = len(patch) // 5, len(patch) // 20
+    inner = patch[tuple(slice(margin, len(patch) - margin) for margin in margins)]
+    return np.array(np.unravel_index(np.argmax(inner), inner.shape)) + margins
+
+
+def mapping_checks(record: Mapping) -> tuple[Check, ...]:
+    """Parseval, the mean, and that peaks raise the work of adhesion."""
     many = record.band_modes >= _FEWEST_MODES
+    valley, peak = record.adhesion[tuple(record.valley)], record.adhesion[tuple(record.peak)]
     furthest = np.argmax(np.abs(record.band_correlation[many] - _ALIGNMENT))
     return (
         close_to(
@@ -206,44 +235,113 @@ def mapping_checks(record: Mapping) -> tuple[Check, ...]:
         Check(
             "w_loc at the valley and at the peak that are shown",
             "increasing",
-            f"{record.adhesion[tuple(record.valley)]:.4f}, "
-            f"{record.adhesion[tuple(record.peak)]:.4f} w_int",
-            bool(record.adhesion[tuple(record.valley)] < record.adhesion[tuple(record.peak)]),
+            f"{valley:.4f}, {peak:.4f} w_int",
+            bool(valley < peak),
         ),
     )
 
 
-def _band_correlations(
-    heights: Array, tile: AdhesionMap, spectrum: SelfAffineSpectrum
-) -> tuple[Array, NDArray[np.int64], Array]:
-    """Middle wavelength, modes and correlation of the octaves below the short cutoff's."""
-    n_point = len(heights)
-    along = 2 * np.pi * fftfreq(n_point, tile.pixel)
-    wavevector = np.hypot(along[:, None], along)
-    # On one scale the half-derivative is the heights; an octave is not quite one scale.
-    one, other = np.sqrt(wavevector) * fft2(heights), fft2(tile.work_of_adhesion)
-    longest = tile.pixel * n_point
-    n_band = max(1, math.floor(math.log2(longest / spectrum.short_cutoff)))
-    edges = 2 * np.pi / spectrum.short_cutoff * 2.0 ** -np.arange(n_band + 1)
-    rows = []
-    for high, low in pairwise(edges):
-        band = (wavevector > low) & (wavevector <= high * (1 + 1e-12))
-        shared = np.sum((one[band] * np.conj(other[band])).real)
-        norms = np.sum(np.abs(one[band]) ** 2) * np.sum(np.abs(other[band]) ** 2)
-        rows.append(
-            (2 * np.pi / math.sqrt(low * high), np.count_nonzero(band), shared / norms**0.5)
+_ADHESION_LABEL = r"$w_\mathrm{loc}/w_\mathrm{int}$"
+_PLACES = (("peak", "^", VERMILION), ("valley", "v", BLUE))
+
+
+def mapping_figure(record: Mapping) -> Drawing:
+    """Heights and work of adhesion on a patch, and profiles across a peak and a valley."""
+    with house_style():
+        figure = blank_figure(PAGE, 0.79 * PAGE)
+        grid = figure.add_gridspec(2, 2, height_ratios=(1.45, 1))
+        maps = [figure.add_subplot(grid[0, column]) for column in (0, 1)]
+        _draw_map(maps[0], record, record.heights, "cividis", HEIGHT_LABEL.format("height $h$"))
+        _draw_map(maps[1], record, record.adhesion, "viridis", _ADHESION_LABEL)
+        for axes, name in zip(maps, "ab", strict=True):
+            label_panel(axes, name)
+            axes.set_title("front along $y$, contact at smaller $x$", fontsize=7)
+        for column, (place, _, colour) in enumerate(_PLACES):
+            parts = grid[1, column].subgridspec(2, 1, hspace=0.0)
+            upper = figure.add_subplot(parts[0])
+            lower = figure.add_subplot(parts[1], sharex=upper)
+            _draw_profile(upper, lower, record, place, colour)
+            label_panel(upper, "cd"[column])
+        return figure
+
+
+def _draw_map(axes: Axes, record: Mapping, values: Array, colours: str, label: str) -> None:
+    """Map with the places of the two profiles."""
+    from matplotlib.ticker import MaxNLocator
+
+    side = float(record.position[-1])
+    image = axes.imshow(
+        values.T,
+        extent=(0, side, 0, side),
+        origin="lower",
+        cmap=colours,
+        interpolation="bilinear",
+    )
+    reach = _reach(record)
+    for place, marker, _ in _PLACES:
+        x, y = record.position[getattr(record, place)]
+        axes.plot([x - reach, x + reach], [y, y], color="white", linewidth=0.8)
+        axes.plot(x, y, marker, color="white", markeredgecolor="black", markersize=5)
+        axes.annotate(
+            place,
+            (x, y),
+            xytext=(0, 6),
+            textcoords="offset points",
+            ha="center",
+            color="black",
+            bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0, "alpha": 0.8},
         )
-    middle, modes, correlation = np.array(rows).T
-    return middle, modes.astype(np.int64), correlation
+    axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(4))
+    axes.set_xlabel(LENGTH_LABEL.format("$x$"))
+    axes.set_ylabel(LENGTH_LABEL.format("$y$"))
 
 
-def _maxima(heights: Array) -> NDArray[np.bool_]:
-    """Points of a periodic map that no neighbour exceeds."""
-    return np.asarray(heights == maximum_filter(heights, size=3, mode="wrap"))
+def _draw_profile(upper: Axes, lower: Axes, record: Mapping, place: str, colour: str) -> None:
+    """Heights and work of adhesion along x through a peak or a valley."""
+    from matplotlib.ticker import MaxNLocator
+
+    index = getattr(record, place)
+    distance = record.position - record.position[index[0]]
+    heights, adhesion = record.heights[:, index[1]], record.adhesion[:, index[1]]
+    upper.fill_between(distance, heights, heights.min() - 1, color="0.88", linewidth=0)
+    upper.plot(distance, heights, color="0.2")
+    lower.plot(distance, adhesion, color=colour)
+    lower.axhline(1.0, color="0.6", linewidth=0.4, zorder=1)
+    lower.axhline(record.mean, color="0.2", linewidth=0.6, dashes=(4, 2), zorder=1)
+    for axes in (upper, lower):
+        axes.axvline(0.0, color=colour, linewidth=0.6, dashes=(1.5, 1.5), zorder=1)
+    reach = _reach(record)
+    upper.set_xlim(-reach, reach)
+    for axes, every, room in ((upper, record.heights, 0.1), (lower, record.adhesion, 0.05)):
+        low, high = float(every.min()), float(every.max())
+        axes.set_ylim(low - room * (high - low), high + room * (high - low))
+    lower.annotate(
+        r"$w_\mathrm{int}-e_\mathrm{el}$",
+        (reach, record.mean),
+        xytext=(3, 0),
+        textcoords="offset points",
+        va="center",
+        annotation_clip=False,
+    )
+    lower.xaxis.set_major_locator(MaxNLocator(5))
+    upper.tick_params(labelbottom=False)
+    upper.set_ylabel(HEIGHT_LABEL.format("$h$").replace(" / ", " /\n"), fontsize=6.5)
+    lower.set_ylabel(_ADHESION_LABEL)
+    lower.set_xlabel(LENGTH_LABEL.format(f"distance from the {place} along $x$"))
 
 
-def _highest(patch: Array) -> NDArray[np.int64]:
-    """Indices of the highest point away from the rim, where a profile along x has room."""
-    margins = len(patch) // 5, len(patch) // 20
-    inner = patch[tuple(slice(margin, len(patch) - margin) for margin in margins)]
-    return np.array(np.unravel_index(np.argmax(inner), inner.shape)) + margins
+def _reach(record: Mapping) -> float:
+    """Half the length of a profile (Units: reduced lateral length)."""
+    return float(record.position[-1]) / 5
+
+
+FIGURE = Figure(
+    title="Main Fig. 4: roughness, and the work of adhesion that it is equivalent to",
+    parameters=MappingParameters,
+    record=Mapping,
+    compute=mapping,
+    checks=mapping_checks,
+    draw=mapping_figure,
+)

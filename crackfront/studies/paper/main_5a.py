@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,15 +12,28 @@ from pydantic import model_validator
 
 from crackfront.core.records import variable
 from crackfront.data.section import Positive, refusal
-from crackfront.studies.paper.figure import Check, Progress, close_to
-from crackfront.studies.paper.profile_densities import FilmParameters, conformity_energy
+from crackfront.plots.densities import (
+    CONVERTED_LABEL,
+    ISOTROPIC_LABEL,
+    PROFILE_LABEL,
+    WAVEVECTOR_LABEL,
+    add_wavelengths,
+    draw_dominant_scales,
+    set_density_scales,
+)
+from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
+from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
+from crackfront.studies.paper.film import FilmParameters, conformity_energy, shown_wavevectors
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
 
 Array = NDArray[np.float64]
 
 _WAVE, _ORDER, _POINT = "wavevector", "order", "point"
 
 _ORDERS = (0.0, 0.5, 1.0)
-_POINTS_PER_DECADE = 100
 
 _SHARE = 0.8
 """Part of a mean square that the bar of a figure stands for."""
@@ -71,22 +85,12 @@ class FilmScales:
 
 
 def film_scales(parameters: FilmScalesParameters, progress: Progress) -> FilmScales:
-    """Densities of the film from its spectrum.
-
-    Parameters
-    ----------
-    parameters : FilmScalesParameters
-        What to compute.
-    progress : callable
-        Called with a line when it is done.
-    """
+    """Densities of the film from its spectrum."""
     spectrum, points = parameters.spectrum, parameters.points()
-    ends = 2 * np.pi / parameters.longest, 2 * np.pi / parameters.short_cutoff
-    count = math.ceil(math.log10(ends[1] / ends[0]) * _POINTS_PER_DECADE) + 1
-    wavevector = np.geomspace(*ends, count)
+    wavevector = shown_wavevectors(parameters.longest, parameters.short_cutoff)
     isotropic = spectrum.density(wavevector)
     ranges = np.array([spectrum.dominant_wavelengths(order, _SHARE) for order in _ORDERS])
-    progress(f"{count} wavevectors, {points.wavevector.size} measured points")
+    progress(f"{wavevector.size} wavevectors, {points.wavevector.size} measured points")
     return FilmScales(
         contact_modulus=parameters.contact_modulus,
         work_of_adhesion=parameters.work_of_adhesion,
@@ -105,15 +109,10 @@ def film_scales(parameters: FilmScalesParameters, progress: Progress) -> FilmSca
 
 
 def film_scales_checks(record: FilmScales) -> tuple[Check, ...]:
-    """The paper's numbers, the ranges, and its conversion of profiles.
-
-    Parameters
-    ----------
-    record : FilmScales
-        Data of the figure.
-    """
+    """The paper's numbers, the ranges, and its conversion of profiles."""
     energy = record.contact_modulus / 4 * record.mean_square[1]
     relative = energy / record.work_of_adhesion
+    middles = 1e6 * np.sqrt(record.shortest * record.longest)
     checks = [
         close_to("e_el", 1e3 * energy, 11.1, 0.05, units="mJ/m2", remark=_NO_DATA),
         close_to("e_el / w_int", relative, 0.177, 5e-4),
@@ -128,8 +127,8 @@ def film_scales_checks(record: FilmScales) -> tuple[Check, ...]:
         Check(
             "the ranges move to shorter wavelengths with the order of the derivative",
             "decreasing middles",
-            ", ".join(f"{1e6 * middle:.3g}" for middle in _middles(record)) + " um",
-            bool(np.all(np.diff(_middles(record)) < 0)),
+            ", ".join(f"{middle:.3g}" for middle in middles) + " um",
+            bool(np.all(np.diff(middles) < 0)),
         ),
         *(_range_check(record, index) for index in range(record.order.size)),
         close_to(
@@ -150,11 +149,6 @@ def film_scales_checks(record: FilmScales) -> tuple[Check, ...]:
     return tuple(checks)
 
 
-def _middles(record: FilmScales) -> Array:
-    """Middles of the ranges on a logarithmic scale (Units: m)."""
-    return np.sqrt(record.shortest * record.longest)
-
-
 def _range_check(record: FilmScales, index: int) -> Check:
     """Share of a mean square in its range, from the density that is drawn."""
     order, q = record.order[index], record.wavevector
@@ -172,3 +166,53 @@ def _range_check(record: FilmScales, index: int) -> Check:
         _SHARE,
         2e-3,
     )
+
+
+def film_scales_figure(record: FilmScales) -> Drawing:
+    """Isotropic density with the dominating scales, and density of profiles below."""
+    with house_style():
+        figure, q = blank_figure(COLUMN, 1.35 * COLUMN), record.wavevector
+        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.25, 1))
+        for axes in (upper, lower):
+            set_density_scales(axes, q)
+        upper.plot(q, record.isotropic, color=BLACK)
+        draw_dominant_scales(upper, record.mean_square, record.shortest, record.longest)
+        _draw_roll_off(upper, record)
+        lower.plot(q, record.profile, color=BLACK, label="exact projection")
+        lower.plot(q, record.converted, color=BLUE, dashes=(4, 2), label=CONVERTED_LABEL)
+        if record.measured_wavevector.size:
+            points, density = record.measured_wavevector, record.measured_profile
+            upper.plot(points, np.pi / points * density, ".", color=VERMILION, markersize=2)
+            lower.plot(points, density, ".", color=VERMILION, markersize=2, label="measured")
+        lower.axvline(2 * np.pi / record.roll_off, color="0.6", linewidth=0.6, zorder=1)
+        lower.legend(loc="lower left")
+        upper.set_ylabel(ISOTROPIC_LABEL)
+        lower.set_ylabel(PROFILE_LABEL)
+        add_wavelengths(upper)
+        lower.set_xlabel(WAVEVECTOR_LABEL)
+        return figure
+
+
+def _draw_roll_off(axes: Axes, record: FilmScales) -> None:
+    """Line at the roll-off with its wavelength."""
+    place = 2 * np.pi / record.roll_off
+    axes.axvline(place, color="0.6", linewidth=0.6, zorder=1)
+    axes.annotate(
+        f"roll-off {1e6 * record.roll_off:.3g} µm",
+        (place, 0.03),
+        xycoords=axes.get_xaxis_transform(),
+        xytext=(-3, 0),
+        textcoords="offset points",
+        ha="right",
+        color="0.35",
+    )
+
+
+FIGURE = Figure(
+    title="Main Fig. 5a: spectrum of nanodiamond, and the scales that dominate its measures",
+    parameters=FilmScalesParameters,
+    record=FilmScales,
+    compute=film_scales,
+    checks=film_scales_checks,
+    draw=film_scales_figure,
+)

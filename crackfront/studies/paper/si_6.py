@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,20 @@ from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.records import variable
 from crackfront.core.synthesis import gaussian_field, tile_mean_square
 from crackfront.data.section import Count, Positive, refusal
-from crackfront.studies.paper.figure import Check, Progress, close_to
-from crackfront.studies.paper.profile_densities import FilmParameters
+from crackfront.plots.densities import (
+    CONVERTED_LABEL,
+    PROFILE_LABEL,
+    WAVEVECTOR_LABEL,
+    add_wavelengths,
+    set_density_scales,
+)
+from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
+from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
+from crackfront.studies.paper.film import POINTS_PER_DECADE, FilmParameters, shown_wavevectors
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
 
 Array = NDArray[np.float64]
 
@@ -24,8 +36,6 @@ _WAVE, _MODE, _POINT = "wavevector", "mode", "point"
 
 _PIXELS = 4
 """Points of a tile in its shortest wavelength."""
-
-_POINTS_PER_DECADE = 100
 
 _ROOM = 20
 """How far below the shortest wavelength of the surfaces the film is shown."""
@@ -98,15 +108,7 @@ class SyntheticFilm:
 
 
 def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> SyntheticFilm:
-    """Synthesise surfaces of the film's spectrum and average the periodograms of their lines.
-
-    Parameters
-    ----------
-    parameters : SyntheticFilmParameters
-        What to compute.
-    progress : callable
-        Called with a line for every surface.
-    """
+    """Synthesise surfaces of the film's spectrum and average the periodograms of their lines."""
     film, side, points = parameters.spectrum, parameters.side, parameters.points()
     included, stiffness = film.longer_than(parameters.shortest), parameters.contact_modulus / 4
     n_point = 2 * math.ceil(_PIXELS * side / parameters.shortest / 2)
@@ -122,7 +124,8 @@ def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> S
     mode = np.asarray(2 * np.pi / side * np.arange(1, n_point // 2), dtype=float)
     # A mode on the cutoff itself belongs to the surfaces, as in the spectrum.
     kept = mode <= 2 * np.pi / parameters.shortest * (1 + 1e-12)
-    wavevector = _shown(parameters)
+    finest = max(parameters.short_cutoff, parameters.shortest / _ROOM)
+    wavevector = shown_wavevectors(parameters.longest, finest)
     expected, deviation = tile_mean_square(included, side, 0.5)
     dominant = film.dominant_wavelengths(0.5)
     return SyntheticFilm(
@@ -171,13 +174,7 @@ def profile_periodogram(heights: Array, pixel: float) -> Array:
 
 
 def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
-    """Whether the surfaces have the densities of their spectrum, and enough of its scales.
-
-    Parameters
-    ----------
-    record : SyntheticFilm
-        Data of the figure.
-    """
+    """Whether the surfaces have the densities of their spectrum, and enough of its scales."""
     spacing = 2 * math.pi / record.side
     contributions = record.mode * record.synthetic
     converted = record.contact_modulus / 8 * spacing * float(np.sum(contributions))
@@ -186,7 +183,7 @@ def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
     carried = float(np.sum(contributions[dominant]))
     projected = float(np.sum((record.mode * record.included)[dominant]))
     ends = 2 * np.pi / record.dominant_longest, 2 * np.pi / record.dominant_shortest
-    q = np.geomspace(*ends, _POINTS_PER_DECADE)
+    q = np.geomspace(*ends, POINTS_PER_DECADE)
     film = np.exp(np.interp(np.log(q), np.log(record.wavevector), np.log(record.profile)))
     scatter = 3 * record.energy_error / record.mode_energy
     share = record.mode_energy / record.film_energy
@@ -238,14 +235,58 @@ def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
     )
 
 
-def _shown(parameters: SyntheticFilmParameters) -> Array:
-    """Wavevectors at which the film's densities are drawn."""
-    shortest = max(parameters.short_cutoff, parameters.shortest / _ROOM)
-    ends = 2 * np.pi / parameters.longest, 2 * np.pi / shortest
-    count = math.ceil(math.log10(ends[1] / ends[0]) * _POINTS_PER_DECADE) + 1
-    return np.geomspace(*ends, count)
-
-
 def _micrometres(low: float, high: float) -> str:
     """A range of wavelengths."""
     return f"{1e6 * low:.3g} to {1e6 * high:.3g} um"
+
+
+def synthetic_film_figure(record: SyntheticFilm) -> Drawing:
+    """Profile densities of the film and of the synthetic surfaces, with the included scales."""
+    with house_style():
+        figure, q = blank_figure(COLUMN, 0.9 * COLUMN), record.wavevector
+        axes = figure.add_subplot()
+        set_density_scales(axes, q)
+        axes.plot(q, record.profile, color=VERMILION, label="nanodiamond, ideal spectrum")
+        axes.plot(q, record.converted, color="0.5", dashes=(4, 2), label=CONVERTED_LABEL)
+        if record.measured_wavevector.size:
+            points, density = record.measured_wavevector, record.measured_profile
+            axes.plot(
+                points, density, ".", color=BLACK, markersize=2, label="nanodiamond, measured"
+            )
+        label = f"synthetic surfaces, mean of {record.realisations}"
+        axes.plot(record.mode, record.synthetic, color=BLUE, linewidth=0.8, label=label)
+        _draw_end(axes, f"tile {1e6 * record.side:.3g} µm", record.side, "left")
+        _draw_end(axes, f"cutoff {1e6 * record.shortest:.3g} µm", record.shortest, "right")
+        axes.set_ylabel(PROFILE_LABEL)
+        axes.set_xlabel(WAVEVECTOR_LABEL)
+        axes.set_ylim(top=20 * float(record.profile.max()))
+        add_wavelengths(axes)
+        axes.legend(
+            loc="lower left", frameon=True, facecolor="white", framealpha=1, edgecolor="none"
+        )
+        return figure
+
+
+def _draw_end(axes: Axes, name: str, length: float, alignment: Literal["left", "right"]) -> None:
+    """Line at an end of the included scales, with a text inside them."""
+    axes.axvline(2 * np.pi / length, color=BLUE, linewidth=0.6, dashes=(1.5, 1.5))
+    axes.annotate(
+        name,
+        (2 * np.pi / length, 0.97),
+        xycoords=axes.get_xaxis_transform(),
+        xytext=(3 if alignment == "left" else -3, 0),
+        textcoords="offset points",
+        ha=alignment,
+        va="top",
+        color=BLUE,
+    )
+
+
+FIGURE = Figure(
+    title="SI Fig. S-6: profile densities of nanodiamond and of synthetic surfaces",
+    parameters=SyntheticFilmParameters,
+    record=SyntheticFilm,
+    compute=synthetic_film,
+    checks=synthetic_film_checks,
+    draw=synthetic_film_figure,
+)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,21 +16,27 @@ from crackfront.core import jkr
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.schedule import loads
 from crackfront.core.field.rays import front_adhesion
-from crackfront.core.outcome import Status
 from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Positive
+from crackfront.plots.parts import ADHESION_LABEL, field_colours
+from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import stated_error
-from crackfront.studies.paper.figure import Check, Progress, close_to
+from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
 from crackfront.studies.paper.rough import (
     ONE_DIGIT,
     RoughCycleParameters,
     patch_of,
     recorded,
     rough_spectrum,
+    whole_cycle,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
 
 Array = NDArray[np.float64]
 
@@ -100,13 +106,6 @@ class PinnedLoop:
 def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedLoop:
     """One full cycle of a finely rough sphere.
 
-    Parameters
-    ----------
-    parameters : PinnedLoopParameters
-        What to compute.
-    progress : callable
-        Called with a line for the surface and for every branch.
-
     Raises
     ------
     ValueError
@@ -162,13 +161,7 @@ def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedL
 
 
 def pinned_loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
-    """The works of adhesion of the paper's k = 3, and what the fronts sample.
-
-    Parameters
-    ----------
-    loop : PinnedLoop
-        Data of the figure.
-    """
+    """The works of adhesion of the paper's k = 3, and what the fronts sample."""
     return (*_loop_checks(loop), *_front_checks(loop))
 
 
@@ -178,7 +171,6 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
     factor = (loop.retraction - loop.approach) / (2 * energy)
     factor_error = math.hypot(loop.approach_error, loop.retraction_error) / (2 * energy)
     spread = 3 * math.hypot(loop.approach_error, loop.retraction_error) / 2
-    tolerance = ONE_DIGIT * energy
     spectrum = SelfAffineSpectrum(loop.short_cutoff, loop.roll_off, loop.hurst)
     numbers = (
         f"k of this loop is {factor:.2f} ± {factor_error:.2f}; k grows with the size, here "
@@ -186,27 +178,20 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
         f"what one digit of k leaves, {ONE_DIGIT:g} e_el, with {energy:.4f} w_int on the tile"
     )
     return (
-        Check(
-            "the cycle is whole: it ends by losing contact",
-            Status.LOST_CONTACT.value,
-            loop.status,
-            loop.status == Status.LOST_CONTACT.value,
-        ),
-        close_to(
-            "w_appr = w_int - e_el - 3 e_el (main text)",
-            loop.approach,
-            1 - (1 + PAPER_FACTOR) * energy,
-            tolerance,
-            units=ADHESION,
-            remark=numbers,
-        ),
-        close_to(
-            "w_retr = w_int - e_el + 3 e_el (main text)",
-            loop.retraction,
-            1 - (1 - PAPER_FACTOR) * energy,
-            tolerance,
-            units=ADHESION,
-            remark=numbers,
+        whole_cycle(loop.status),
+        *(
+            close_to(
+                f"{name} = w_int - e_el {sign} 3 e_el (main text)",
+                found,
+                1 - (1 + further) * energy,
+                ONE_DIGIT * energy,
+                units=ADHESION,
+                remark=numbers,
+            )
+            for name, sign, found, further in (
+                ("w_appr", "-", loop.approach, PAPER_FACTOR),
+                ("w_retr", "+", loop.retraction, -PAPER_FACTOR),
+            )
         ),
         close_to(
             "the branches lie symmetrically about w_int - e_el",
@@ -255,3 +240,68 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
             remark="tolerance: the largest force that the numerics may leave",
         ),
     )
+
+
+def pinned_loop_figure(loop: PinnedLoop) -> Drawing:
+    """The loop beside the fronts of both branches at b = 0."""
+    from crackfront.plots.loop import draw_loop
+
+    with house_style():
+        figure = blank_figure(PAGE, 0.46 * PAGE)
+        left, right = figure.subplots(1, 2, width_ratios=[1, 1])
+        works, window = (loop.approach, loop.retraction), (loop.lowest_radius, loop.highest_radius)
+        draw_loop(left, loop, works, window, elastic_energy=loop.elastic_energy)
+        _draw_fronts(right, loop)
+        for axes, letter in ((left, "c"), (right, "d")):
+            axes.set_title(letter, loc="left", fontweight="bold")
+        return figure
+
+
+def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
+    """The part of the fronts that crosses the patch of the field."""
+    from crackfront.plots.fronts import label_plane
+
+    mean, reach = 1 - loop.elastic_energy, 4 * np.sqrt(loop.elastic_energy)
+    image = axes.imshow(
+        loop.patch.T,
+        origin="lower",
+        extent=(loop.x[0], loop.x[-1], loop.y[0], loop.y[-1]),
+        cmap=field_colours(),
+        vmin=mean - reach,
+        vmax=mean + reach,
+        interpolation="antialiased",
+    )
+    bar = axes.figure.colorbar(image, ax=axes, extend="both", pad=0.02)
+    bar.set_label(rf"local {ADHESION_LABEL}")
+    # From -pi to pi, so that the part about the first ray is one line.
+    half = loop.angle.size // 2
+    angle = np.roll(np.where(loop.angle < np.pi, loop.angle, loop.angle - 2 * np.pi), half)
+    for line, colour, style, label in (
+        (0, BLUE, "-", "approach"),
+        (1, VERMILION, "-", "retraction"),
+        (2, BLACK, (0, (4, 2)), "rigid circle"),
+    ):
+        radius = np.roll(loop.front[line], half)
+        near = np.abs(angle) < 2 * loop.y[-1] / loop.x[0]
+        axes.plot(
+            (radius * np.cos(angle))[near],
+            (radius * np.sin(angle))[near],
+            color=colour,
+            linestyle=style,
+            linewidth=1.0,
+            label=label,
+        )
+    axes.set_xlim(loop.x[0], loop.x[-1])
+    axes.set_ylim(loop.y[0], loop.y[-1])
+    label_plane(axes)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.2)
+
+
+FIGURE = Figure(
+    title="Main Fig. 3c, d: the smooth loop of a finely rough sphere, and its fronts at b = 0",
+    parameters=PinnedLoopParameters,
+    record=PinnedLoop,
+    compute=pinned_loop,
+    checks=pinned_loop_checks,
+    draw=pinned_loop_figure,
+)
