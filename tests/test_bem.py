@@ -13,10 +13,14 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
-from crackfront.studies.boundary_elements.contact import half_space_contact
-from crackfront.studies.boundary_elements.cycle import LOST_CONTACT, boundary_cycle, contact_loads
-from crackfront.studies.boundary_elements.minimise import equilibrium
-from crackfront.studies.boundary_elements.perimeter import EDGE, perimeter
+from crackfront.studies.boundary_elements.contact import equilibrium, half_space_contact
+from crackfront.studies.boundary_elements.cycle import (
+    EDGE,
+    LOST_CONTACT,
+    boundary_cycle,
+    contact_loads,
+    perimeter,
+)
 
 SIDE, RANGE = 5.12, 0.61
 """Domain, and the range of attraction that 64 points resolve."""

@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
 
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule, loads
 from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
-from crackfront.studies.boundary_elements.contact import HalfSpaceContact
-from crackfront.studies.boundary_elements.minimise import equilibrium
-from crackfront.studies.boundary_elements.perimeter import EDGE, N_ANGLE, perimeter
+from crackfront.studies.boundary_elements.contact import HalfSpaceContact, equilibrium
 
 Array = NDArray[np.float64]
 
@@ -28,6 +27,16 @@ _LEAST_RADIUS = 1e-2
 """Trust radius that every load step may begin with."""
 
 RUNNING, LOST_CONTACT = "running", "lost contact"
+
+N_ANGLE = 720
+"""Rays on which the perimeter of a contact is looked for."""
+
+EDGE = 0.25
+"""Gap at the edge of the contact, relative to the range of attraction.
+
+The crack of linear elasticity that is equivalent to a cohesive zone has its tip within the zone, at
+a gap that scales with the range.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,9 +70,6 @@ class BoundaryCycle:
         return np.asarray(np.pi * np.mean(self.radius**2, axis=1))
 
 
-Keep = Callable[[BoundaryCycle], None]
-
-
 def boundary_cycle(
     contact: HalfSpaceContact,
     schedule: LoadSchedule,
@@ -72,7 +78,7 @@ def boundary_cycle(
     *,
     tolerance: float,
     resume: BoundaryCycle | None = None,
-    keep: Keep | None = None,
+    keep: Callable[[BoundaryCycle], None] | None = None,
 ) -> BoundaryCycle:
     """Quasi-static approach from before first contact to the largest penetration, and to pull-off.
 
@@ -82,12 +88,10 @@ def boundary_cycle(
         The contact.
     schedule : LoadSchedule
         Penetrations; before them, those in steps of the same size from the range of the attraction.
-    elastic_energy : float
-        Energy of full conformity of the roughness, for the record. (Units: w_int)
-    shown_penetration : float
-        Penetration whose pressures are kept, of both branches. (Units: reduced vertical length)
+    elastic_energy, shown_penetration : float
+        As the record holds them.
     tolerance : float
-        Largest pressure out of balance that may be left, relative to the largest tension.
+        As of :func:`crackfront.studies.boundary_elements.contact.equilibrium`.
     resume : BoundaryCycle, optional
         An unfinished cycle of the same contact and loads.
     keep : callable, optional
@@ -101,7 +105,7 @@ def boundary_cycle(
     so_far = resume or _no_states(contact, elastic_energy, shown_penetration)
     known = so_far.penetration.size
     side = contact.n_point
-    displacement = contact.elastic_displacement(_padded(so_far.pressure))
+    displacement = contact.elastic_displacement(np.pad(so_far.pressure, (0, side)))
     for number, load in enumerate(contact_loads(schedule, contact.interaction_range)):
         penetration, direction = load.value, load.direction
         if so_far.status != RUNNING:
@@ -168,11 +172,6 @@ def contact_loads(schedule: LoadSchedule, interaction_range: float) -> Iterator[
     yield from loads(schedule)
 
 
-def _padded(pressure: Array) -> Array:
-    """Pressures on the doubled grid."""
-    return np.pad(pressure, ((0, len(pressure)), (0, len(pressure))))
-
-
 def _no_states(
     contact: HalfSpaceContact, elastic_energy: float, shown_penetration: float
 ) -> BoundaryCycle:
@@ -207,3 +206,39 @@ def _appended(so_far: BoundaryCycle, **state: Any) -> dict[str, Any]:
         name: np.append(getattr(so_far, name), np.asarray(value)[None], axis=0)
         for name, value in state.items()
     }
+
+
+def perimeter(gap: Array, pixel: float, edge: float) -> Array:
+    """Outermost distance from the apex at which the gap is below that of the edge, ray by ray.
+
+    Parameters
+    ----------
+    gap : (n_point, n_point) array
+        Gap between the surfaces. (Units: reduced vertical length)
+    pixel : float
+        Grid spacing. (Units: reduced lateral length)
+    edge : float
+        Gap at the edge of the contact. (Units: reduced vertical length)
+
+    Returns
+    -------
+    (N_ANGLE,) array
+        Distance, 0 where a ray has no contact. (Units: reduced lateral length)
+    """
+    centre = len(gap) // 2
+    angle = 2 * np.pi * np.arange(N_ANGLE) / N_ANGLE
+    distance = np.arange(0.0, centre - 1, 0.25)
+    rays = map_coordinates(
+        gap,
+        centre + distance * np.stack([np.cos(angle), np.sin(angle)])[:, :, None],
+        order=1,
+        mode="nearest",
+    )
+    within = rays < edge
+    last = distance.size - 1 - np.argmax(within[:, ::-1], axis=1)
+    last = np.minimum(last, distance.size - 2)
+    ray = np.arange(N_ANGLE)
+    near, far = rays[ray, last], rays[ray, last + 1]
+    opening = far - near
+    part = np.divide(edge - near, opening, out=np.zeros(N_ANGLE), where=opening > 0)
+    return np.where(np.any(within, axis=1), (distance[last] + 0.25 * part) * pixel, 0.0)
