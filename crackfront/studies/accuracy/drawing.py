@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
-from numpy.typing import NDArray
 
 from crackfront.plots.style import BLACK, COLOURS, COLUMN, MARKERS, PAGE, blank_figure, house_style
 from crackfront.simulate.laws import KNOBS, LAW_SIZE, Knob, Law
-from crackfront.studies.accuracy.report import hysteresis_errors, pareto_front
-from crackfront.studies.accuracy.study import SceneErrors
+from crackfront.studies.accuracy.study import SceneErrors, pareto_front, rms
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _NAMES: dict[str, str] = {
     "sites": "sites of the front",
@@ -36,13 +34,7 @@ _AXES: dict[str, str] = {
 
 
 def work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
-    """Error of the hysteresis against time, a panel a scene; the Pareto front is marked.
-
-    Parameters
-    ----------
-    studies : sequence of SceneErrors
-        Up to four scenes.
-    """
+    """Error of the hysteresis against time of up to four scenes; the Pareto front is marked."""
     with house_style():
         figure = blank_figure(PAGE, 1.25 * COLUMN)
         rows = (len(studies) + 1) // 2
@@ -62,12 +54,11 @@ def work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
 
 def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
     """One scene."""
-    seconds = np.array([errors.seconds.mean() for errors in study.errors])
-    error = 100 * np.array(
-        [np.sqrt(np.mean(hysteresis_errors(study, errors) ** 2)) for errors in study.errors]
-    )
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    seconds, relative = study.work_and_precision()
+    error, best = 100 * relative, pareto_front(seconds, relative)
     knobs = np.array([errors.knob for errors in study.errors])
-    best = pareto_front(seconds, error)
     axes.plot(seconds[best], error[best], color="0.8", linewidth=4, zorder=1, label="Pareto front")
     for knob, colour, marker in zip(_NAMES, COLOURS, MARKERS, strict=False):
         chosen = knobs == knob
@@ -93,15 +84,7 @@ def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
 
 
 def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
-    """Measured errors of k of w_retr against every knob, and the fitted laws.
-
-    Parameters
-    ----------
-    studies : sequence of SceneErrors
-        Scenes of one shape at several amplitudes.
-    laws : sequence of Law
-        All laws.
-    """
+    """Measured errors of k of w_retr of one shape against every knob, and the fitted laws."""
     with house_style():
         figure = blank_figure(PAGE, 1.1 * COLUMN)
         panels = figure.subplots(2, 3).ravel()
@@ -119,14 +102,16 @@ def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
 
 def _draw_laws(axes: Axes, knob: Knob, studies: Sequence[SceneErrors], laws: Sequence[Law]) -> None:
     """One knob."""
+    from matplotlib.ticker import NullFormatter
+
     for study, colour, marker in zip(studies, COLOURS, MARKERS, strict=False):
         scene = study.scene
         tried = [errors for errors in study.errors if errors.knob == knob]
         values = np.array([errors.value for errors in tried])
-        rms = [np.sqrt(np.mean(errors.adhesion[:, 1] ** 2)) for errors in tried]
+        found = np.array([rms(errors.adhesion[:, 1]) for errors in tried])
         axes.plot(
             values,
-            np.array(rms) / scene.elastic_energy,
+            found / scene.elastic_energy,
             marker=marker,
             linestyle="none",
             color=colour,

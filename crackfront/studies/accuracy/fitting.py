@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -38,11 +40,6 @@ def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[Law]:
 
     A bias counts where it is twice its standard error; elsewhere only scatter is seen, that of
     both branches together. Both are fitted by least squares of their logarithms.
-
-    Parameters
-    ----------
-    studies : iterable of SceneErrors
-        Scenes in which every knob was varied by itself.
     """
     for study in studies:
         for knob in KNOBS:
@@ -58,20 +55,14 @@ def _laws(study: SceneErrors, knob: Knob, tried: list[Errors]) -> Iterator[Law]:
     bias = np.abs(values.mean(axis=1))
     uncertainty = values.std(axis=1, ddof=1) / np.sqrt(n_realisation)
     scatter = np.sqrt(np.mean(values.var(axis=1, ddof=1), axis=1))
-    line = _falling_line(x, scatter, _SLOWEST[knob])
+    slowest = _SLOWEST[knob]
+    scatter_line = _falling_line(x, scatter, slowest)
     for branch, direction in enumerate((1, -1)):
         certain = bias[:, branch] > 2 * uncertainty[:, branch]
         seen = np.count_nonzero(certain) > 1
-        yield Law(
-            shape=study.scene.shape,
-            elastic_energy=study.scene.elastic_energy,
-            knob=knob,
-            direction=direction,
-            bias=_falling_line(x[certain], bias[certain, branch], _SLOWEST[knob])
-            if seen
-            else _NO_BIAS,
-            scatter=line,
-        )
+        bias_line = _falling_line(x[certain], bias[certain, branch], slowest) if seen else _NO_BIAS
+        scene = study.scene
+        yield Law(scene.shape, scene.elastic_energy, knob, direction, bias_line, scatter_line)
 
 
 def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
@@ -81,3 +72,15 @@ def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float
     if slope / slowest < 1:
         return float(np.mean(y - slowest * x)), slowest
     return float(start), float(slope)
+
+
+def laws_text(laws: Iterable[Law]) -> str:
+    """Laws as the lines of `laws.csv`, five digits each."""
+    text = io.StringIO()
+    columns = ("shape", "elastic_energy", "knob", "direction")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([*columns, "bias_0", "bias_1", "scatter_0", "scatter_1"])
+    for law in laws:
+        coefficients = [f"{value:.4f}" for value in (*law.bias, *law.scatter)]
+        writer.writerow([*(getattr(law, name) for name in columns), *coefficients])
+    return text.getvalue()
