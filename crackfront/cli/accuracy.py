@@ -59,10 +59,7 @@ def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
 
 
 @click.command(
-    "accuracy-report",
-    epilog=examples(
-        "crackfront accuracy-report --page docs/accuracy.md",
-    ),
+    "accuracy-report", epilog=examples("crackfront accuracy-report --page docs/accuracy.md")
 )
 @_output
 @click.option("--page", type=FILE, help="Page whose tables are written anew, as docs/accuracy.md.")

@@ -14,7 +14,7 @@ from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.records import ADHESION, variable
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Simulation, numerical_error, stated_error
-from crackfront.studies.accuracy.scenes import Progress, Scene, silent
+from crackfront.studies.accuracy.scenes import Progress, Scene
 from crackfront.studies.accuracy.study import measured_branches
 
 Array = NDArray[np.float64]
@@ -98,24 +98,17 @@ class Coverage:
 
 
 def sampling_errors(
-    scene: Scene, realisations: range, progress: Progress = silent
+    scene: Scene, surfaces: range, progress: Progress = lambda line: None
 ) -> tuple[Sample, ...]:
     """Hysteresis of a scene with other schedules and tiles.
 
     By path independence the states of a coarse schedule are among those of a fine one, so that
     travel and step change the mean alone; another tile is another surface.
-
-    Parameters
-    ----------
-    realisations : range
-        Numbers of the surfaces.
-    progress : callable, optional
-        Called with a line for every value.
     """
     samples = []
     for knob, values in _TRIED.items():
         for value in values:
-            rows = [_sampled(scene, knob, value, number) for number in realisations]
+            rows = [_sampled(scene, knob, value, number) for number in surfaces]
             samples.append(Sample(knob, value, *np.array(rows).T))
             progress(f"{knob} {value:g}: {samples[-1].hysteresis.mean():.5g} w_int")
     return tuple(samples)
@@ -139,16 +132,12 @@ def _sampled(scene: Scene, knob: str, value: float, number: int) -> tuple[float,
 
 
 def held_out_coverage(
-    scene: Scene, asked: tuple[float, ...], n_realisation: int, progress: Progress = silent
+    scene: Scene,
+    asked: tuple[float, ...],
+    n_realisation: int,
+    progress: Progress = lambda line: None,
 ) -> tuple[Coverage, ...]:
-    """True and stated errors on surfaces that no law was fitted to.
-
-    Parameters
-    ----------
-    asked : tuple of float
-        Errors of k.
-    progress : callable, optional
-        Called with a line for every error.
+    """True and stated errors on surfaces that no law was fitted to, for errors of k.
 
     Raises
     ------

@@ -1,24 +1,37 @@
-"""Measured errors as a person reads them: tables, and what is written beside them."""
+"""Measured errors as a person reads them: tables, and time against error."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.data.files import write_text
-from crackfront.plots.style import save_figure
+from crackfront.plots.style import (
+    COLOURS,
+    COLUMN,
+    MARKERS,
+    PAGE,
+    blank_figure,
+    house_style,
+    save_figure,
+)
 from crackfront.studies.accuracy.averages import Coverage, Sample
-from crackfront.studies.accuracy.drawing import laws_figure, work_precision_figure
 from crackfront.studies.accuracy.files import read_errors, read_study
-from crackfront.studies.accuracy.fitting import fit_laws, laws_text
+from crackfront.studies.accuracy.fitting import fit_laws, laws_figure, laws_text
 from crackfront.studies.accuracy.scenes import SCENES, Progress, Scene
 from crackfront.studies.accuracy.study import Errors, SceneErrors, joined, pareto_front, rms
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 Array = NDArray[np.float64]
+Found = TypeVar("Found")
 
 _TABLE = re.compile(r"<!-- table: (?P<name>.*?) -->.*?<!-- end -->", re.DOTALL)
 
@@ -27,6 +40,15 @@ _TARGETS = (0.1, 0.03, 0.01, 0.003)
 
 _SHOWN = ("chemical-0.0025", "chemical-0.04", "flat-0.16", "h03-0.04")
 """Scenes of the figure of time against error."""
+
+_NAMES = {
+    "sites": "sites of the front",
+    "cubic": "samples, cubic pieces",
+    "linear": "samples, linear pieces",
+    "pixels": "pixels of the tile",
+    "tolerance": "tolerance of the force",
+    "asked": "chosen for an error",
+}
 
 
 def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
@@ -45,15 +67,7 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     ValueError
         If there are no errors of numerics, or the page asks for a table that was not measured.
     """
-
-    def stored(study: str) -> dict[str, Path]:
-        paths = {name: folder / f"{study}-{name}.nc" for name in SCENES}
-        return {name: path for name, path in paths.items() if path.exists()}
-
-    knobs, asked = (
-        {name: read_errors(path) for name, path in stored(study).items()}
-        for study in ("knobs", "asked")
-    )
+    knobs, asked = (_stored(folder, study, read_errors) for study in ("knobs", "asked"))
     studies = {
         name: joined(*(part[name] for part in (knobs, asked) if name in part))
         for name in SCENES
@@ -61,11 +75,11 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     }
     if not studies:
         raise ValueError(f"{folder} holds no measured errors; run crackfront accuracy first")
-    samples = [read_study(path, Sample) for path in stored("averages").values()]
-    coverages = [read_study(path, Coverage) for path in stored("coverage").values()]
+    samples = _stored(folder, "averages", lambda path: read_study(path, Sample))
+    coverages = _stored(folder, "coverage", lambda path: read_study(path, Coverage))
     laws = list(fit_laws(study for study in knobs.values() if study.scene.single_knobs))
     write_text(folder / "laws.csv", laws_text(laws))
-    tables = _tables(list(studies.values()), samples, coverages)
+    tables = _tables(list(studies.values()), samples.values(), coverages.values())
     parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
     write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]))
     if page is not None:
@@ -74,7 +88,7 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     flat = [study for study in knobs.values() if study.scene.shape == "flat"]
     drawn = {}
     if shown:
-        drawn["work-precision"] = work_precision_figure(shown)
+        drawn["work-precision"] = _work_precision_figure(shown)
     if flat:
         drawn["laws"] = laws_figure(flat, laws)
     for name, figure in drawn.items():
@@ -84,10 +98,16 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     progress(f"tables: {folder / 'accuracy.md'}")
 
 
+def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str, Found]:
+    """What a folder holds of a study, by the names of its scenes."""
+    paths = {name: folder / f"{study}-{name}.nc" for name in SCENES}
+    return {name: read(path) for name, path in paths.items() if path.exists()}
+
+
 def _tables(
     studies: Sequence[SceneErrors],
     samples: Iterable[tuple[Scene, tuple[Sample, ...]]],
-    coverages: Sequence[tuple[Scene, tuple[Coverage, ...]]],
+    coverages: Collection[tuple[Scene, tuple[Coverage, ...]]],
 ) -> dict[str, str]:
     """Markdown tables of all scenes; their names are the headings of the report."""
     tables = {
@@ -180,7 +200,7 @@ def _asked_rows(studies: Sequence[SceneErrors]) -> Iterator[str]:
     return _markdown("scene | asked for | numerics | CPU s | k of w_appr | k of w_retr", rows)
 
 
-def _coverage_rows(coverages: Sequence[tuple[Scene, tuple[Coverage, ...]]]) -> Iterator[str]:
+def _coverage_rows(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> Iterator[str]:
     """How often intervals of the stated errors cover the true ones, and how wide they are."""
     rows = []
     pooled: tuple[list[Array], list[Array]] = [], []
@@ -265,4 +285,54 @@ def _sample_rows(samples: tuple[Sample, ...]) -> Iterator[str]:
         "varied | CPU s | mean hysteresis | one realisation, rms | stated by the runs, rms "
         "| against the first, mean | rms",
         rows,
+    )
+
+
+def _work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
+    """Error of the hysteresis against time of up to four scenes; the Pareto front is marked."""
+    with house_style():
+        figure = blank_figure(PAGE, 1.25 * COLUMN)
+        rows = (len(studies) + 1) // 2
+        panels = figure.subplots(rows, 2, squeeze=False).ravel()
+        for axes, study in zip(panels, studies, strict=False):
+            _draw_work_precision(axes, study)
+        for axes in panels[len(studies) :]:
+            axes.set_axis_off()
+        for axes in panels[len(studies) - 2 : len(studies)]:
+            axes.set_xlabel("CPU time of one realisation / s")
+        for axes in panels[::2]:
+            axes.set_ylabel("rms error of the hysteresis / %")
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside right upper", title="varied")
+        return figure
+
+
+def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
+    """One scene."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    seconds, relative = study.work_and_precision()
+    error, best = 100 * relative, pareto_front(seconds, relative)
+    knobs = np.array([errors.knob for errors in study.errors])
+    axes.plot(seconds[best], error[best], color="0.8", linewidth=4, zorder=1, label="Pareto front")
+    for knob, colour, marker in zip(_NAMES, COLOURS, MARKERS, strict=False):
+        chosen = knobs == knob
+        axes.plot(
+            seconds[chosen],
+            error[chosen],
+            marker=marker,
+            linewidth=0.8,
+            color=colour,
+            label=_NAMES[knob],
+            zorder=3 if knob == "asked" else 2,
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
+    scene = study.scene
+    axes.set_title(
+        rf"{scene.shape}, $e_\mathrm{{el}} = {scene.elastic_energy:g}\,w_\mathrm{{int}}$"
     )

@@ -17,6 +17,7 @@ from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
+"""What is called with a line when a part of a study is done."""
 
 ASKED = (0.1, 0.03, 0.02, 0.01, 0.003)
 """Errors of k for which the laws choose numerics that are then tried."""
@@ -32,6 +33,8 @@ _FINER = Knobs(
     pixels_per_cutoff=8,
     tolerance=1e-8,
 )
+"""What shows that the reference has converged, where single knobs are varied."""
+
 _REFERENCE = replace(
     _FINER, angles_per_cutoff=6, samples_per_cutoff=8, pixels_per_cutoff=6, tolerance=1e-7
 )
@@ -72,8 +75,6 @@ class Scene:
         (Units: reduced vertical length)
     reference : Knobs
         What errors are measured against.
-    finer : Knobs
-        What shows that the reference has converged, where single knobs are varied.
     single_knobs : bool
         Whether laws are fitted to the errors of single knobs.
     authors_seconds : float or None
@@ -87,7 +88,6 @@ class Scene:
     tile_cutoffs: float
     step: float = 0.1
     reference: Knobs = _REFERENCE
-    finer: Knobs = _FINER
     single_knobs: bool = True
     authors_seconds: float | None = None
 
@@ -105,7 +105,7 @@ class Scene:
     def single_settings(self) -> list[Setting]:
         """The finer numerics, and those that differ from the reference in one knob."""
         return [
-            Setting("finer", 0.0, self.finer),
+            Setting("finer", 0.0, _FINER),
             *(
                 Setting(knob, value, with_knob(self.reference, knob, value))
                 for knob in KNOBS
@@ -134,10 +134,6 @@ class Scene:
             realisation=realisation,
             name=self.name,
         )
-
-
-def silent(line: str) -> None:
-    """Tell nobody of progress."""
 
 
 def with_knob(knobs: Knobs, knob: Knob, value: float) -> Knobs:

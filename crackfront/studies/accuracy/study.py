@@ -19,7 +19,7 @@ from crackfront.core.records import ADHESION, FORCE, variable
 from crackfront.core.solver.relax import Solver
 from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.laws import Knobs
-from crackfront.studies.accuracy.scenes import Progress, Scene, Setting, silent
+from crackfront.studies.accuracy.scenes import Progress, Scene, Setting
 
 Array = NDArray[np.float64]
 
@@ -98,20 +98,10 @@ class SceneErrors:
 
 
 def scene_errors(
-    scene: Scene, settings: list[Setting], realisations: range, progress: Progress = silent
+    scene: Scene, settings: list[Setting], surfaces: range, progress: Progress = lambda line: None
 ) -> SceneErrors:
-    """Errors of settings of the numerics on a scene.
-
-    Parameters
-    ----------
-    settings : list of Setting
-        :attr:`Scene.single_settings` or :attr:`Scene.asked_settings`.
-    realisations : range
-        Numbers of the surfaces.
-    progress : callable, optional
-        Called with a line for the reference and every setting.
-    """
-    exact = [measured_branches(scene, scene.reference, number) for number in realisations]
+    """Errors of settings of the numerics on surfaces of a scene, which have numbers."""
+    exact = [measured_branches(scene, scene.reference, number) for number in surfaces]
     study = SceneErrors(
         scene=scene,
         errors=(),
@@ -122,7 +112,7 @@ def scene_errors(
     progress(f"reference: hysteresis {study.hysteresis:.5g} w_int, {seconds:.2f} s")
     errors = []
     for setting in settings:
-        found = [measured_branches(scene, setting.knobs, number) for number in realisations]
+        found = [measured_branches(scene, setting.knobs, number) for number in surfaces]
         errors.append(_errors(scene, setting, found, exact))
         of_k, seconds = rms(errors[-1].adhesion) / scene.elastic_energy, errors[-1].seconds.mean()
         progress(f"{setting.knob} {setting.value:g}: rms error of k {of_k:.2g}, {seconds:.2f} s")

@@ -139,17 +139,9 @@ def shared_jumps(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Shar
 def jumps(
     penetration: Array, direction: NDArray[np.int64], radius: Array, least: float
 ) -> list[Jump]:
-    """Jumps of a cycle.
+    """Jumps of a cycle, whose perimeters are (n_step, n_angle) and whose branches are whole.
 
-    Parameters
-    ----------
-    penetration, direction : (n_step,) array
-        States of the cycle; those of one branch follow each other.
-    radius : (n_step, n_angle) array
-        Perimeters. (Units: reduced lateral length)
-    least : float
-        Distance from which on a motion is a jump; arcs that move half of it belong to one.
-        (Units: reduced lateral length)
+    A motion is a jump from the least distance on; arcs that move half of it belong to one.
     """
     found = []
     n_angle = radius.shape[1]
@@ -173,15 +165,7 @@ def jumps(
 def matched_jumps(
     ours: list[Jump], theirs: list[Jump], angle: float, penetration: float
 ) -> list[tuple[Jump, Jump]]:
-    """Pairs of jumps at one place, those closest in penetration first.
-
-    Parameters
-    ----------
-    ours, theirs : list of Jump
-        Jumps of two models.
-    angle, penetration : float
-        Largest differences in a pair. (Units: rad, reduced vertical length)
-    """
+    """Pairs of jumps that differ by no more than these, those closest in penetration first."""
     near = [
         (abs(one.penetration - other.penetration), i, j)
         for i, one in enumerate(ours)

@@ -124,10 +124,8 @@ def half_space_contact(
     ----------
     roughness : (n_point, n_point) array
         Heights on the sphere, zero for a smooth one. (Units: reduced vertical length)
-    pixel : float
-        Grid spacing. (Units: reduced lateral length)
-    interaction_range : float
-        Gap g_c at which the attraction ends. (Units: reduced vertical length)
+    pixel, interaction_range : float
+        As of :class:`HalfSpaceContact`.
     max_penetration : float
         Largest penetration that the domain must hold. (Units: reduced vertical length)
 

@@ -15,7 +15,8 @@ from scipy.ndimage import map_coordinates
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule, loads
 from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
-from crackfront.studies.boundary_elements.contact import HalfSpaceContact, equilibrium
+from crackfront.studies.boundary_elements.contact import equilibrium
+from crackfront.studies.boundary_elements.parameters import Case
 
 Array = NDArray[np.float64]
 
@@ -71,12 +72,7 @@ class BoundaryCycle:
 
 
 def boundary_cycle(
-    contact: HalfSpaceContact,
-    schedule: LoadSchedule,
-    elastic_energy: float,
-    shown_penetration: float,
-    *,
-    tolerance: float,
+    case: Case,
     resume: BoundaryCycle | None = None,
     keep: Callable[[BoundaryCycle], None] | None = None,
 ) -> BoundaryCycle:
@@ -84,16 +80,8 @@ def boundary_cycle(
 
     Parameters
     ----------
-    contact : HalfSpaceContact
-        The contact.
-    schedule : LoadSchedule
-        Penetrations; before them, those in steps of the same size from the range of the attraction.
-    elastic_energy, shown_penetration : float
-        As the record holds them.
-    tolerance : float
-        As of :func:`crackfront.studies.boundary_elements.contact.equilibrium`.
     resume : BoundaryCycle, optional
-        An unfinished cycle of the same contact and loads.
+        An unfinished cycle of the same case.
     keep : callable, optional
         Called with the cycle so far after every load step.
 
@@ -102,11 +90,10 @@ def boundary_cycle(
     ValueError
         If a state does not come to rest, or the cycle to resume is another one.
     """
-    so_far = resume or _no_states(contact, elastic_energy, shown_penetration)
-    known = so_far.penetration.size
-    side = contact.n_point
+    contact, so_far = case.contact(), resume or _no_states(case)
+    known, side = so_far.penetration.size, case.n_point
     displacement = contact.elastic_displacement(np.pad(so_far.pressure, (0, side)))
-    for number, load in enumerate(contact_loads(schedule, contact.interaction_range)):
+    for number, load in enumerate(contact_loads(case.schedule, case.interaction_range)):
         penetration, direction = load.value, load.direction
         if so_far.status != RUNNING:
             break
@@ -122,18 +109,18 @@ def boundary_cycle(
             contact,
             displacement,
             penetration,
-            tolerance=tolerance,
+            tolerance=case.tolerance,
             radius=max(so_far.trust_radius, _LEAST_RADIUS),
         )
         displacement = found.displacement
         pressure = contact.elastic_pressure(displacement)[:side, :side]
         gap = contact.gap(displacement, penetration)
-        radius = perimeter(gap, contact.pixel, EDGE * contact.interaction_range)
+        radius = perimeter(gap, case.pixel, EDGE * case.interaction_range)
         shown = so_far.shown_pressure
-        if math.isclose(penetration, shown_penetration, abs_tol=1e-9):
+        if math.isclose(penetration, case.shown_penetration, abs_tol=1e-9):
             shown = shown.copy()
             shown[0 if direction > 0 else 1] = pressure
-        lost = direction < 0 and not np.any(gap < contact.interaction_range)
+        lost = direction < 0 and not np.any(gap < case.interaction_range)
         so_far = replace(
             so_far,
             status=LOST_CONTACT if lost else RUNNING,
@@ -144,8 +131,8 @@ def boundary_cycle(
                 so_far,
                 penetration=penetration,
                 direction=direction,
-                force=float(np.sum(pressure)) * contact.pixel**2,
-                closed_area=np.count_nonzero(gap <= 0) * contact.pixel**2,
+                force=float(np.sum(pressure)) * case.pixel**2,
+                closed_area=np.count_nonzero(gap <= 0) * case.pixel**2,
                 radius=radius,
                 iterations=found.iterations,
                 products=found.products,
@@ -172,19 +159,17 @@ def contact_loads(schedule: LoadSchedule, interaction_range: float) -> Iterator[
     yield from loads(schedule)
 
 
-def _no_states(
-    contact: HalfSpaceContact, elastic_energy: float, shown_penetration: float
-) -> BoundaryCycle:
+def _no_states(case: Case) -> BoundaryCycle:
     """A cycle that has not begun."""
-    side = contact.n_point
+    side = case.n_point
     numbers, counts = np.empty(0), np.empty(0, dtype=np.int64)
     return BoundaryCycle(
         status=RUNNING,
         n_point=side,
-        pixel=contact.pixel,
-        interaction_range=contact.interaction_range,
-        elastic_energy=elastic_energy,
-        shown_penetration=shown_penetration,
+        pixel=case.pixel,
+        interaction_range=case.interaction_range,
+        elastic_energy=case.elastic_energy,
+        shown_penetration=case.shown_penetration,
         penetration=numbers,
         direction=counts,
         force=numbers,
@@ -211,19 +196,8 @@ def _appended(so_far: BoundaryCycle, **state: Any) -> dict[str, Any]:
 def perimeter(gap: Array, pixel: float, edge: float) -> Array:
     """Outermost distance from the apex at which the gap is below that of the edge, ray by ray.
 
-    Parameters
-    ----------
-    gap : (n_point, n_point) array
-        Gap between the surfaces. (Units: reduced vertical length)
-    pixel : float
-        Grid spacing. (Units: reduced lateral length)
-    edge : float
-        Gap at the edge of the contact. (Units: reduced vertical length)
-
-    Returns
-    -------
-    (N_ANGLE,) array
-        Distance, 0 where a ray has no contact. (Units: reduced lateral length)
+    The gap is (n_point, n_point), the distance (N_ANGLE,) and 0 where a ray has no contact.
+    (Units: reduced vertical length, reduced lateral length)
     """
     centre = len(gap) // 2
     angle = 2 * np.pi * np.arange(N_ANGLE) / N_ANGLE

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Annotated
 
@@ -19,7 +19,11 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.data.section import Energy, Positive, Section, refusal
 from crackfront.data.yaml import ConfigurationError, content_of, sentences
-from crackfront.studies.boundary_elements.contact import refuse_unresolved
+from crackfront.studies.boundary_elements.contact import (
+    HalfSpaceContact,
+    half_space_contact,
+    refuse_unresolved,
+)
 
 Array = NDArray[np.float64]
 
@@ -166,31 +170,28 @@ class Case:
     def heights(self) -> Array:
         """Roughness of the sphere, the same surface for all grids and amplitudes of a seed.
 
-        The noise belongs to wavevectors, not to the points of a grid.
-
-        Returns
-        -------
-        (n_point, n_point) array
-            Heights. (Units: reduced vertical length)
+        The noise belongs to wavevectors, not to the points of a grid. (Units: reduced vertical
+        length)
         """
         flat = SelfAffineSpectrum(self.short_cutoff, self.short_cutoff, hurst=1.0)
         rng = np.random.default_rng(np.random.SeedSequence(self.seed))
         unit = gaussian_field(flat.with_elastic_energy(1.0), self.n_point, self.side, rng)
         return unit * math.sqrt(self.elastic_energy)
 
+    def contact(self) -> HalfSpaceContact:
+        """Contact of the sphere with the half-space, on a grid that resolves its attraction."""
+        return half_space_contact(
+            self.heights(), self.pixel, self.interaction_range, self.schedule.max_penetration
+        )
+
 
 def validation_cases(parameters: ValidationParameters) -> tuple[Case, ...]:
     """Cases of a validation, in their order."""
+    names = {item.name for item in fields(Case)}
     return tuple(
         Case(
-            seed=parameters.seed,
-            short_cutoff=parameters.short_cutoff,
-            side=parameters.side,
-            shown_penetration=parameters.shown_penetration,
-            tolerance=parameters.tolerance,
-            n_point=case.n_point,
-            interaction_range=case.interaction_range,
-            elastic_energy=case.elastic_energy,
+            **parameters.model_dump(include=names),
+            **case.model_dump(include=names),
             schedule=LoadSchedule(parameters.max_penetration, case.step or parameters.step),
         )
         for case in parameters.cases

@@ -21,7 +21,6 @@ from crackfront.studies.boundary_elements.comparison import (
     comparison,
     shared_jumps,
 )
-from crackfront.studies.boundary_elements.contact import half_space_contact
 from crackfront.studies.boundary_elements.cycle import RUNNING, BoundaryCycle, boundary_cycle
 from crackfront.studies.boundary_elements.front import (
     FrontCycle,
@@ -80,20 +79,12 @@ class RotationEffect:
 
 @dataclass(frozen=True, slots=True)
 class Validation:
-    """Differences, costs and averages of a validation, and the picture of its last rough case.
+    """Differences, costs and averages of a validation.
 
-    Attributes
-    ----------
-    differences : tuple of Comparison
-        Every case, and what is extrapolated to a vanishing range of attraction.
-    speeds : tuple of Speed
-        Rough cases that have a smooth one on the same grid.
-    effects : tuple of RotationEffect
-        One for each surface of the statistics; none where none were asked for.
-    picture : ValidationPicture or None
-        The last rough case.
-    jumps : tuple of (Jump, Jump)
-        Its large jumps that both models share: those of the boundary elements and of the front.
+    The differences are those of every case and of what is extrapolated to a vanishing range of
+    attraction, the speeds those of rough cases that have a smooth one on the same grid, the effects
+    one for each surface of the statistics. Picture and jumps, of the boundary elements and of the
+    front, are those of the last rough case.
     """
 
     differences: tuple[Comparison, ...]
@@ -105,12 +96,11 @@ class Validation:
 
 @dataclass(frozen=True, slots=True)
 class _Compared:
-    """A case, its cycles and their differences; a smooth one does not know where a crack points."""
+    """A case, its cycles and their differences, the second front of a crack that does not turn."""
 
     case: Case
     boundary: BoundaryCycle
-    turning: FrontCycle
-    fixed: FrontCycle | None
+    fronts: list[FrontCycle]
     rows: list[Comparison]
 
 
@@ -152,25 +142,23 @@ def validation(
             f"{case.label}: rms difference of the force {first.force_rms:.4f}, of the perimeter "
             f"{first.perimeter_all:.4f} short cutoffs"
         )
-    rough = [one for one in compared if one.fixed is not None]
+    rough = [one for one in compared if one.case.elastic_energy > 0]
     smooth = {
         (one.case.n_point, one.case.interaction_range): one.rows[0].force_rms
         for one in compared
-        if one.fixed is None
+        if one.case.elastic_energy == 0
     }
     last = rough[-1] if rough else None
     return Validation(
         differences=tuple(row for one in compared for row in one.rows) + _limits(compared),
         speeds=tuple(
-            _speed(one.case, one.boundary, smooth[key], one.turning)
+            _speed(one.case, one.boundary, smooth[key], one.fronts[0])
             for one in rough
             if (key := (one.case.n_point, one.case.interaction_range)) in smooth
         ),
         effects=_rotation_effects(parameters),
-        picture=None
-        if last is None or last.fixed is None
-        else validation_picture(last.case, last.boundary, last.turning, last.fixed),
-        jumps=() if last is None else shared_jumps(last.case, last.boundary, last.turning).pairs,
+        picture=validation_picture(last.case, last.boundary, *last.fronts) if last else None,
+        jumps=shared_jumps(last.case, last.boundary, last.fronts[0]).pairs if last else (),
     )
 
 
@@ -188,29 +176,17 @@ def _stored_cycle(case: Case, path: Path, origin: Provenance, progress: Progress
     known = read_record(path, BoundaryCycle) if path.exists() else None
     if known is not None and known.status != RUNNING:
         return known
-    contact = half_space_contact(
-        case.heights(), case.pixel, case.interaction_range, case.schedule.max_penetration
-    )
-    return boundary_cycle(
-        contact,
-        case.schedule,
-        case.elastic_energy,
-        case.shown_penetration,
-        tolerance=case.tolerance,
-        resume=known,
-        keep=keep,
-    )
+    return boundary_cycle(case, known, keep)
 
 
 def _compared(parameters: ValidationParameters, case: Case, boundary: BoundaryCycle) -> _Compared:
-    """A case beside the front."""
+    """A case beside the front; that of a smooth sphere does not know where the crack points."""
     front = parameters.front
-    turning, fixed = front_cycle(case, front.n_angle, front.spacing), None
-    rows = [comparison(case, boundary, turning)]
-    if case.elastic_energy > 0:
-        fixed = front_cycle(case, front.n_angle, front.spacing, rotated=False)
-        rows.append(comparison(case, boundary, fixed))
-    return _Compared(case, boundary, turning, fixed, rows)
+    fronts = [
+        front_cycle(case, front.n_angle, front.spacing, rotated=rotated)
+        for rotated in ((True, False) if case.elastic_energy > 0 else (True,))
+    ]
+    return _Compared(case, boundary, fronts, [comparison(case, boundary, one) for one in fronts])
 
 
 def _limits(compared: list[_Compared]) -> tuple[Comparison, ...]:
@@ -224,7 +200,7 @@ def _limits(compared: list[_Compared]) -> tuple[Comparison, ...]:
         fine, coarse = alike[:2]
         limit = extrapolated(coarse.boundary, fine.boundary)
         case = replace(fine.case, interaction_range=0.0)
-        rows.append(comparison(case, limit, fine.turning))
+        rows.append(comparison(case, limit, fine.fronts[0]))
     return tuple(rows)
 
 
