@@ -14,10 +14,8 @@ import click
 import numpy as np
 from NuMPI.Optimization import tr_newton_bounded
 
-from crackfront.studies.boundary_elements.configuration import load_validation
-from crackfront.studies.boundary_elements.contact import half_space_contact
-from crackfront.studies.boundary_elements.minimise import equilibrium
-from crackfront.studies.boundary_elements.parameters import Case, validation_cases
+from crackfront.studies.boundary_elements.contact import equilibrium
+from crackfront.studies.boundary_elements.parameters import Case, load_validation, validation_cases
 
 _CONFIGURATION = Path("config/validation.yaml")
 _FROM, _TO, _TOLERANCE = 0.30, 0.31, 1e-4
@@ -25,9 +23,7 @@ _FROM, _TO, _TOLERANCE = 0.30, 0.31, 1e-4
 
 def row(case: Case) -> str:
     """Row of the table for one case."""
-    contact = half_space_contact(
-        case.heights(), case.pixel, case.interaction_range, case.schedule.max_penetration
-    )
+    contact = case.contact()
     side = 2 * case.n_point
     zero = np.zeros((side, side))
     start = equilibrium(contact, zero, _FROM, tolerance=_TOLERANCE, radius=1.0)

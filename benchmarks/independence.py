@@ -20,7 +20,6 @@ from crackfront.core.adhesion import correlation_length
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.outcome import Direction
-from crackfront.simulate.laws import chosen_knobs
 from crackfront.simulate.run import run_simulation
 from crackfront.studies.accuracy.scenes import SCENES, Scene
 
@@ -38,7 +37,7 @@ NAMES = [name for name in SCENES if name.startswith(("chemical", "flat", "h08", 
 
 def records(scene: Scene) -> list[CycleRecord]:
     """Steady branches on all surfaces, states half a correlation length apart."""
-    knobs = chosen_knobs(0.03, scene.kind, scene.spectrum, scene.elastic_energy)
+    knobs = scene.chosen_knobs(0.03)
     simulations = (
         replace(scene.simulation(knobs, number), schedule=_SCHEDULE)
         for number in range(_FIRST, _FIRST + N_REALISATION)

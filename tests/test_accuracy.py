@@ -1,7 +1,7 @@
 """The study of numerical errors: orders of convergence, laws, coverage, averages, report."""
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, fields, replace
 
 import numpy as np
 import pytest
@@ -14,32 +14,30 @@ from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.laws import LAW_SIZE, chosen_knobs, read_laws
-from crackfront.studies.accuracy.coverage import (
+from crackfront.studies.accuracy.averages import (
+    Coverage,
+    Sample,
     held_out_coverage,
-    numerical_interval,
-    total_interval,
+    sampling_errors,
 )
 from crackfront.studies.accuracy.files import (
-    laws_text,
-    read_coverage,
+    errors_dataset,
     read_errors,
-    read_samples,
-    write_coverage,
-    write_errors,
-    write_samples,
+    read_study,
+    records_dataset,
 )
-from crackfront.studies.accuracy.fitting import fit_laws
-from crackfront.studies.accuracy.report import hysteresis_errors, pareto_front
-from crackfront.studies.accuracy.sampling import sampling_errors
+from crackfront.studies.accuracy.fitting import fit_laws, laws_text
 from crackfront.studies.accuracy.scenes import SCENES, with_knob
 from crackfront.studies.accuracy.study import (
     Errors,
     SceneErrors,
     front_difference,
     measured_branches,
+    pareto_front,
     scene_errors,
 )
 
@@ -182,19 +180,20 @@ def test_errors_fall_with_the_error_that_is_asked_for_and_time_grows(small_study
 
 def test_errors_are_relative_to_the_mean_hysteresis(small_study):
     errors = replace(small_study.errors[0], adhesion=np.array([[0.0, 0.01]] * 3))
-    mean = np.mean(small_study.adhesion[:, 1] - small_study.adhesion[:, 0])
-    assert hysteresis_errors(small_study, errors) == pytest.approx(0.01 / mean)
+    mean = np.mean(small_study.reference_adhesion[:, 1] - small_study.reference_adhesion[:, 0])
+    assert small_study.hysteresis_errors(errors) == pytest.approx(0.01 / mean)
 
 
 def test_a_study_is_read_as_it_was_written(small_study, tmp_path):
     path = tmp_path / "numerics.nc"
-    write_errors(path, small_study, provenance())
+    write_dataset(path, errors_dataset(small_study), provenance())
     again = read_errors(path)
     assert again.scene == SMALL
-    assert np.array_equal(again.adhesion, small_study.adhesion)
+    assert np.array_equal(again.reference_adhesion, small_study.reference_adhesion)
+    assert np.array_equal(again.reference_seconds, small_study.reference_seconds)
     for one, other in zip(again.errors, small_study.errors, strict=True):
-        assert (one.knob, one.value, one.knobs) == (other.knob, other.value, other.knobs)
-        assert np.array_equal(one.front_max, other.front_max)
+        for item in fields(Errors):
+            assert np.array_equal(getattr(one, item.name), getattr(other, item.name)), item.name
     with pytest.raises(ValueError, match="does not exist; check the name"):
         read_errors(tmp_path / "none.nc")
 
@@ -220,9 +219,10 @@ def synthetic_study(bias, scatter):
         noise = scatter(knob, value) * rng.standard_normal((400, 2))
         adhesion = MODERATE.elastic_energy * (noise + np.array([-1, 1]) * bias(knob, value))
         one = np.ones(400)
-        errors.append(Errors(numerics, knob, value, one, adhesion, adhesion**2, one, one, one))
+        knobs = {name: of for name, of in asdict(numerics).items() if name != "angles"}
+        errors.append(Errors(knob, value, one, adhesion, adhesion**2, one, one, one, **knobs))
     reference = np.tile([0.9, 1.0], (400, 1))
-    return SceneErrors(MODERATE, reference, np.ones(400), tuple(errors))
+    return SceneErrors(MODERATE, tuple(errors), reference, np.ones(400))
 
 
 def test_the_fit_finds_the_law_behind_the_errors():
@@ -270,15 +270,15 @@ def coverage():
 
 def check_stated_errors(items):
     """Intervals cover nine errors in ten; standard errors are not three times the median error."""
-    for name, interval_of, standard_error_of in (
-        ("total", total_interval, lambda item: np.hypot(item.run_numerical, item.run_statistical)),
-        ("numerical", numerical_interval, lambda item: item.numerical_stated + 0 * item.numerical),
+    for name, standard_error_of in (
+        ("total", lambda item: np.hypot(item.run_numerical, item.run_statistical)),
+        ("numerical", lambda item: item.numerical_stated + 0 * item.numerical),
     ):
         error, interval, stated = (
             np.concatenate([np.ravel(part(item)) for item in items])
             for part in (
                 lambda item, name=name: abs(getattr(item, name)),
-                interval_of,
+                lambda item, name=name: getattr(item, f"{name}_interval"),
                 standard_error_of,
             )
         )
@@ -306,8 +306,9 @@ def test_the_stated_errors_cover_nine_in_ten_over_shapes_and_amplitudes():
 
 def test_coverage_is_read_as_it_was_written(coverage, tmp_path):
     path = tmp_path / "coverage.nc"
-    write_coverage(path, SCENES["flat-0.04"], coverage, provenance())
-    scene, again = read_coverage(path)
+    dataset = records_dataset("true and stated errors", SCENES["flat-0.04"], coverage)
+    write_dataset(path, dataset, provenance())
+    scene, again = read_study(path, Coverage)
     assert scene == SCENES["flat-0.04"]
     assert np.array_equal(again[0].total, coverage[0].total)
     assert again[0].asked == 0.1
@@ -318,19 +319,20 @@ def test_student_intervals_are_wider_than_normal_ones_where_states_are_few(cover
     none = np.zeros_like(item.total)
     exact = replace(item, run_numerical=none, truth_error=none)
     few, many = (
-        total_interval(replace(exact, n_state=np.full(item.total.shape, count)))
+        replace(exact, n_state=np.full(item.total.shape, count)).total_interval
         for count in (3.0, 1e9)
     )
     assert few / many == pytest.approx(stats.t.ppf(0.96, 2) / stats.norm.ppf(0.96))
-    assert np.all(total_interval(item) > item.run_numerical)
+    assert np.all(item.total_interval > item.run_numerical)
 
 
 @pytest.mark.slow
 def test_schedules_change_the_mean_within_its_error(tmp_path):
     samples = sampling_errors(SCENES["flat-0.04"], range(3))
     path = tmp_path / "averages.nc"
-    write_samples(path, SCENES["flat-0.04"], samples, provenance())
-    scene, again = read_samples(path)
+    dataset = records_dataset("errors of averaging", SCENES["flat-0.04"], samples)
+    write_dataset(path, dataset, provenance())
+    scene, again = read_study(path, Sample)
     assert scene == SCENES["flat-0.04"]
     assert [item.knob for item in again] == [item.knob for item in samples]
     schedules = [item for item in again if item.knob != "tile"]

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,27 +10,38 @@ from NuMPI.Optimization import tr_newton_bounded
 
 from crackfront.core import jkr
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.core.synthesis import gaussian_field
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
-from crackfront.studies.boundary_elements.contact import half_space_contact
-from crackfront.studies.boundary_elements.cycle import LOST_CONTACT, boundary_cycle, contact_loads
-from crackfront.studies.boundary_elements.minimise import equilibrium
-from crackfront.studies.boundary_elements.perimeter import EDGE, perimeter
+from crackfront.studies.boundary_elements.contact import equilibrium, half_space_contact
+from crackfront.studies.boundary_elements.cycle import (
+    EDGE,
+    LOST_CONTACT,
+    boundary_cycle,
+    contact_loads,
+    perimeter,
+)
+from crackfront.studies.boundary_elements.parameters import Case
 
 SIDE, RANGE = 5.12, 0.61
 """Domain, and the range of attraction that 64 points resolve."""
 
 
-def rough_heights(n_point, energy=0.03):
-    spectrum = SelfAffineSpectrum(0.4, 0.4, hurst=1.0).with_elastic_energy(energy)
-    return gaussian_field(spectrum, n_point, SIDE, np.random.default_rng(5))
+CASE = Case(
+    seed=5,
+    short_cutoff=0.4,
+    side=SIDE,
+    shown_penetration=0.15,
+    tolerance=1e-4,
+    n_point=64,
+    interaction_range=RANGE,
+    elastic_energy=0.03,
+    schedule=LoadSchedule(0.3, 0.15),
+)
 
 
 @pytest.fixture(scope="module")
 def rough():
-    return half_space_contact(rough_heights(64), SIDE / 64, RANGE, max_penetration=1.0)
+    return CASE.contact()
 
 
 @pytest.fixture(scope="module")
@@ -109,10 +121,15 @@ def test_a_coarse_smooth_sphere_has_the_force_and_the_radius_of_jkr(smooth):
 def test_the_force_of_a_smooth_sphere_is_that_of_jkr_to_a_part_of_the_pull_off_force(
     n_point, interaction_range, bound
 ):
-    contact = half_space_contact(
-        np.zeros((n_point, n_point)), SIDE / n_point, interaction_range, max_penetration=1.0
+    smooth = replace(
+        CASE,
+        n_point=n_point,
+        interaction_range=interaction_range,
+        elastic_energy=0.0,
+        shown_penetration=0.5,
+        schedule=LoadSchedule(1.0, 0.1),
     )
-    found = boundary_cycle(contact, LoadSchedule(1.0, 0.1), 0.0, 0.5, tolerance=1e-4)
+    found = boundary_cycle(smooth)
     stable = (found.penetration > -0.75) & (found.force < -1e-9) & (found.penetration >= -0.2)
     expected = [
         float(jkr.equilibrium_force(jkr.equilibrium_radius(b))) for b in found.penetration[stable]
@@ -137,13 +154,10 @@ def test_loads_begin_before_the_surfaces_attract_each_other():
     assert [load.direction for load in visited] == [1, 1, 1, 1, 1, 1, -1, -1]
 
 
-SCHEDULE = LoadSchedule(0.3, 0.15)
-
-
 @pytest.fixture(scope="module")
-def cycle_and_parts(rough):
+def cycle_and_parts():
     parts = []
-    cycle = boundary_cycle(rough, SCHEDULE, 0.03, 0.15, tolerance=1e-4, keep=parts.append)
+    cycle = boundary_cycle(CASE, keep=parts.append)
     return cycle, parts
 
 
@@ -161,21 +175,21 @@ def test_a_cycle_begins_and_ends_without_contact(cycle_and_parts):
     np.testing.assert_allclose(forces, cycle.force[shown], rtol=1e-4)
 
 
-def test_a_cycle_goes_on_from_the_file_of_any_load_step(rough, cycle_and_parts, tmp_path):
+def test_a_cycle_goes_on_from_the_file_of_any_load_step(cycle_and_parts, tmp_path):
     whole, parts = cycle_and_parts
     path = tmp_path / "part.nc"
     write_record(path, parts[4], provenance())
     part = read_record(path, type(whole))
-    again = boundary_cycle(rough, SCHEDULE, 0.03, 0.15, tolerance=1e-4, resume=part)
+    again = boundary_cycle(CASE, resume=part)
     np.testing.assert_array_equal(again.penetration, whole.penetration)
     np.testing.assert_allclose(again.force, whole.force, atol=1e-3)
     assert again.status == whole.status
 
 
-def test_a_cycle_of_another_load_is_not_resumed(rough, cycle_and_parts):
+def test_a_cycle_of_another_load_is_not_resumed(cycle_and_parts):
     _, parts = cycle_and_parts
     with pytest.raises(ValueError, match=r"penetration -0.75 where -0.7 is asked for"):
-        boundary_cycle(rough, LoadSchedule(0.3, 0.1), 0.03, 0.2, tolerance=1e-4, resume=parts[0])
+        boundary_cycle(replace(CASE, schedule=LoadSchedule(0.3, 0.1)), resume=parts[0])
 
 
 @pytest.mark.parametrize(

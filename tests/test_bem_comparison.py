@@ -16,22 +16,28 @@ from crackfront.core import jkr
 from crackfront.data.files import read_attributes
 from crackfront.data.records import read_record, read_records
 from crackfront.data.yaml import ConfigurationError
-from crackfront.studies.boundary_elements.comparison import Comparison, comparison
-from crackfront.studies.boundary_elements.configuration import load_validation
-from crackfront.studies.boundary_elements.cycle import BoundaryCycle
-from crackfront.studies.boundary_elements.drawing import validation_figure
+from crackfront.studies.boundary_elements.comparison import (
+    Comparison,
+    Jump,
+    comparison,
+    jumps,
+    matched_jumps,
+)
+from crackfront.studies.boundary_elements.cycle import N_ANGLE, BoundaryCycle
 from crackfront.studies.boundary_elements.front import (
     force_error,
     front_cycle,
     perimeter_at,
     shared_states,
 )
-from crackfront.studies.boundary_elements.jumps import Jump, jumps, matched_jumps
-from crackfront.studies.boundary_elements.parameters import ValidationParameters, validation_cases
-from crackfront.studies.boundary_elements.perimeter import N_ANGLE
-from crackfront.studies.boundary_elements.picture import ValidationPicture
+from crackfront.studies.boundary_elements.parameters import (
+    ValidationParameters,
+    load_validation,
+    validation_cases,
+)
+from crackfront.studies.boundary_elements.picture import ValidationPicture, validation_figure
 from crackfront.studies.boundary_elements.report import power_of, validation_report
-from crackfront.studies.boundary_elements.trends import RotationEffect, Speed, extrapolated
+from crackfront.studies.boundary_elements.study import RotationEffect, Speed, extrapolated
 
 CONFIGURATIONS = Path(__file__).parents[1] / "config"
 
@@ -72,9 +78,8 @@ def front(case):
 @pytest.fixture(scope="module")
 def boundary(case, front):
     """A cycle that is that of the front, as boundary elements would record it."""
-    record = front.record
-    count = record.states.penetration.size
-    modes = np.fft.rfft(record.fronts, norm="forward")
+    states = front.states
+    count = states.penetration.size
     nothing = np.zeros((case.n_point, case.n_point))
     return BoundaryCycle(
         status="lost contact",
@@ -83,11 +88,11 @@ def boundary(case, front):
         interaction_range=case.interaction_range,
         elastic_energy=case.elastic_energy,
         shown_penetration=case.shown_penetration,
-        penetration=record.states.penetration,
-        direction=record.states.direction,
-        force=record.states.force,
-        closed_area=record.states.contact_area,
-        radius=np.fft.irfft(modes, n=N_ANGLE, norm="forward"),
+        penetration=states.penetration,
+        direction=states.direction,
+        force=states.force,
+        closed_area=states.contact_area,
+        radius=front.radius,
         iterations=np.ones(count, dtype=np.int64),
         products=np.ones(count, dtype=np.int64),
         residual=np.zeros(count),
@@ -135,7 +140,7 @@ def test_jumps_are_matched_once_at_one_place_the_closest_first():
 
 
 def test_a_front_does_not_differ_from_itself(case, boundary, front):
-    found = comparison(case, boundary, front, rotated=True)
+    found = comparison(case, boundary, front)
     assert found.force_largest == 0
     assert found.perimeter_all == pytest.approx(0, abs=1e-12)
     assert found.area_rms == pytest.approx(0, abs=1e-8)
@@ -145,32 +150,34 @@ def test_a_front_does_not_differ_from_itself(case, boundary, front):
 
 def test_differences_are_those_of_the_boundary_elements_minus_the_front(case, boundary, front):
     shifted = replace(boundary, force=boundary.force - 0.1, radius=1.01 * boundary.radius)
-    found = comparison(case, shifted, front, rotated=True)
+    found = comparison(case, shifted, front)
     assert found.force_mean == pytest.approx(-0.1)
     assert found.force_rms == pytest.approx(0.1)
     assert found.area_mean == pytest.approx(0.0201)
     assert found.pull_off_force == pytest.approx(-0.1)
-    radius = front.record.states.mean_radius[np.isclose(front.record.states.penetration, 0.3)][0]
+    radius = front.states.mean_radius[np.isclose(front.states.penetration, 0.3)][0]
     assert found.perimeter_approach == pytest.approx(0.01 * radius / 0.6, rel=1e-6)
 
 
 def test_a_crack_that_does_not_turn_gives_another_front(case, boundary):
-    found = comparison(case, boundary, front_cycle(case, 64, 0.05, rotated=False), rotated=False)
+    found = comparison(case, boundary, front_cycle(case, 64, 0.05, rotated=False))
     assert found.perimeter_all > 0.01
 
 
 def test_approach_is_compared_where_the_jump_into_contact_is_forgotten(case, boundary, front):
     held = boundary.radius.copy()
     held[1, 100] = held[0, 100]  # one ray that has not moved yet
-    found = comparison(case, replace(boundary, radius=held), front, rotated=True)
+    found = comparison(case, replace(boundary, radius=held), front)
     assert found.begin == pytest.approx(0.3)
 
 
 def test_the_front_of_a_smooth_sphere_is_jkr(configuration):
     smooth = validation_cases(load_validation(configuration))[0]
-    record = front_cycle(smooth, 64, 0.05).record
-    expected = [jkr.equilibrium_radius(b) for b in record.states.penetration]
-    np.testing.assert_allclose(record.states.mean_radius, expected, rtol=1e-4)
+    found = front_cycle(smooth, 64, 0.05)
+    expected = [jkr.equilibrium_radius(b) for b in found.states.penetration]
+    np.testing.assert_allclose(found.states.mean_radius, expected, rtol=1e-4)
+    everywhere = np.repeat(np.array(expected)[:, None], N_ANGLE, axis=1)
+    np.testing.assert_allclose(found.radius, everywhere, rtol=1e-4)
 
 
 def test_what_two_ranges_have_in_common_is_extrapolated_by_their_squares(boundary):
@@ -184,10 +191,9 @@ def test_what_two_ranges_have_in_common_is_extrapolated_by_their_squares(boundar
 
 
 def test_states_are_shared_by_penetration_and_direction(front):
-    record = front.record
-    states = record.states
+    states = front.states
     fewer = replace(
-        record,
+        front,
         states=replace(
             states,
             penetration=states.penetration[1:],
@@ -198,11 +204,11 @@ def test_states_are_shared_by_penetration_and_direction(front):
     one, other = shared_states(states, fewer.states)
     np.testing.assert_array_equal(one, np.arange(1, states.penetration.size))
     np.testing.assert_array_equal(other, one - 1)
-    assert force_error(fewer, record) == pytest.approx(0.5)
+    assert force_error(fewer, front) == pytest.approx(0.5)
 
 
 def test_perimeters_are_asked_for_where_there_is_contact(front):
-    states, fronts = front.record.states, front.record.fronts
+    states, fronts = front.states, front.radius
     here = perimeter_at(0.3, -1, states, fronts)
     np.testing.assert_array_equal(
         here, fronts[(states.direction == -1) & np.isclose(states.penetration, 0.3)][0]

@@ -1,14 +1,22 @@
-"""From measured errors to laws."""
+"""From measured errors to laws: how they are fitted, written and drawn."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.simulate.laws import KNOBS, Knob, Law, abscissa
-from crackfront.studies.accuracy.study import Errors, SceneErrors
+from crackfront.plots.style import BLACK, COLOURS, COLUMN, MARKERS, PAGE, blank_figure, house_style
+from crackfront.simulate.laws import KNOBS, LAW_SIZE, Knob, Law, abscissa
+from crackfront.studies.accuracy.study import Errors, SceneErrors, rms
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -32,17 +40,20 @@ single such event can hide the slope.
 _NO_BIAS = (-99.0, 0.0)
 """Coefficients of a bias that is not seen."""
 
+_AXES: dict[Knob, str] = {
+    "sites": "sites per short cutoff",
+    "cubic": "cubic samples per short cutoff",
+    "linear": "linear samples per short cutoff",
+    "pixels": "pixels per short cutoff",
+    "tolerance": r"tolerance / $w_\mathrm{int}$",
+}
+
 
 def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[Law]:
     """Law of every knob, amplitude and branch, fitted to the errors of scenes.
 
     A bias counts where it is twice its standard error; elsewhere only scatter is seen, that of
     both branches together. Both are fitted by least squares of their logarithms.
-
-    Parameters
-    ----------
-    studies : iterable of SceneErrors
-        Scenes in which every knob was varied by itself.
     """
     for study in studies:
         for knob in KNOBS:
@@ -58,20 +69,14 @@ def _laws(study: SceneErrors, knob: Knob, tried: list[Errors]) -> Iterator[Law]:
     bias = np.abs(values.mean(axis=1))
     uncertainty = values.std(axis=1, ddof=1) / np.sqrt(n_realisation)
     scatter = np.sqrt(np.mean(values.var(axis=1, ddof=1), axis=1))
-    line = _falling_line(x, scatter, _SLOWEST[knob])
+    slowest = _SLOWEST[knob]
+    scatter_line = _falling_line(x, scatter, slowest)
     for branch, direction in enumerate((1, -1)):
         certain = bias[:, branch] > 2 * uncertainty[:, branch]
         seen = np.count_nonzero(certain) > 1
-        yield Law(
-            shape=study.scene.shape,
-            elastic_energy=study.scene.elastic_energy,
-            knob=knob,
-            direction=direction,
-            bias=_falling_line(x[certain], bias[certain, branch], _SLOWEST[knob])
-            if seen
-            else _NO_BIAS,
-            scatter=line,
-        )
+        bias_line = _falling_line(x[certain], bias[certain, branch], slowest) if seen else _NO_BIAS
+        scene = study.scene
+        yield Law(scene.shape, scene.elastic_energy, knob, direction, bias_line, scatter_line)
 
 
 def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
@@ -81,3 +86,67 @@ def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float
     if slope / slowest < 1:
         return float(np.mean(y - slowest * x)), slowest
     return float(start), float(slope)
+
+
+def laws_text(laws: Iterable[Law]) -> str:
+    """Laws as the lines of `laws.csv`, five digits each."""
+    text = io.StringIO()
+    columns = ("shape", "elastic_energy", "knob", "direction")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([*columns, "bias_0", "bias_1", "scatter_0", "scatter_1"])
+    for law in laws:
+        coefficients = [f"{value:.4f}" for value in (*law.bias, *law.scatter)]
+        writer.writerow([*(getattr(law, name) for name in columns), *coefficients])
+    return text.getvalue()
+
+
+def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
+    """Measured errors of k of w_retr of one shape against every knob, and the fitted laws."""
+    with house_style():
+        figure = blank_figure(PAGE, 1.1 * COLUMN)
+        panels = figure.subplots(2, 3).ravel()
+        for axes, knob in zip(panels, KNOBS, strict=False):
+            _draw_laws(axes, knob, studies, laws)
+        for axes in panels[::3]:
+            axes.set_ylabel(r"rms error of $w_\mathrm{retr}$ / $e_\mathrm{el}$")
+        panels[-1].set_axis_off()
+        handles, labels = panels[0].get_legend_handles_labels()
+        panels[-1].legend(
+            handles, labels, loc="center left", title=r"$e_\mathrm{el}/w_\mathrm{int}$"
+        )
+        return figure
+
+
+def _draw_laws(axes: Axes, knob: Knob, studies: Sequence[SceneErrors], laws: Sequence[Law]) -> None:
+    """One knob."""
+    from matplotlib.ticker import NullFormatter
+
+    for study, colour, marker in zip(studies, COLOURS, MARKERS, strict=False):
+        scene = study.scene
+        tried = [errors for errors in study.errors if errors.knob == knob]
+        values = np.array([errors.value for errors in tried])
+        found = np.array([rms(errors.adhesion[:, 1]) for errors in tried])
+        axes.plot(
+            values,
+            found / scene.elastic_energy,
+            marker=marker,
+            linestyle="none",
+            color=colour,
+            label=f"{scene.elastic_energy:g}",
+        )
+        law = next(
+            law
+            for law in laws
+            if (law.shape, law.elastic_energy, law.knob, law.direction)
+            == (scene.shape, scene.elastic_energy, knob, -1)
+        )
+        between = np.geomspace(values.min(), values.max(), 60)
+        axes.plot(between, [law.error(x, LAW_SIZE) for x in between], color=colour)
+    axes.axhline(0.01, color=BLACK, linewidth=0.4, dashes=(4, 2))
+    axes.set_yscale("log")
+    if knob != "sites":
+        axes.set_xscale("log")
+    if knob not in ("sites", "tolerance"):
+        axes.set_xticks(values, [f"{value:g}" for value in values])
+        axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_xlabel(_AXES[knob])

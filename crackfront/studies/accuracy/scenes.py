@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +16,8 @@ from crackfront.simulate.laws import KNOBS, Knob, Knobs, chosen_knobs
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
 Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+"""What is called with a line when a part of a study is done."""
 
 ASKED = (0.1, 0.03, 0.02, 0.01, 0.003)
 """Errors of k for which the laws choose numerics that are then tried."""
@@ -29,6 +33,8 @@ _FINER = Knobs(
     pixels_per_cutoff=8,
     tolerance=1e-8,
 )
+"""What shows that the reference has converged, where single knobs are varied."""
+
 _REFERENCE = replace(
     _FINER, angles_per_cutoff=6, samples_per_cutoff=8, pixels_per_cutoff=6, tolerance=1e-7
 )
@@ -44,6 +50,14 @@ _VALUES: dict[Knob, tuple[float, ...]] = {
 """What is tried of each knob while the others are those of the reference."""
 
 
+class Setting(NamedTuple):
+    """What is varied, its value, and all numerics."""
+
+    knob: str
+    value: float
+    knobs: Knobs
+
+
 @dataclass(frozen=True, slots=True)
 class Scene:
     """Surfaces, and the penetrations at which both branches are measured.
@@ -52,12 +66,8 @@ class Scene:
     ----------
     name : str
         What the tables call it: shape and amplitude.
-    kind : {"roughness", "chemical"}
-        What the spectrum describes.
-    spectrum : SelfAffineSpectrum
-        Its shape. (Units: reduced lateral length)
-    elastic_energy : float
-        e_el / w_int; for a chemical field the equivalent (w_rms / w_int)^2 / 4.
+    kind, spectrum, elastic_energy
+        As of :class:`crackfront.simulate.simulation.Simulation`.
     tile_cutoffs : float
         Side of the tile in short cutoffs.
     step : float
@@ -65,8 +75,6 @@ class Scene:
         (Units: reduced vertical length)
     reference : Knobs
         What errors are measured against.
-    finer : Knobs
-        What shows that the reference has converged, where single knobs are varied.
     single_knobs : bool
         Whether laws are fitted to the errors of single knobs.
     authors_seconds : float or None
@@ -80,7 +88,6 @@ class Scene:
     tile_cutoffs: float
     step: float = 0.1
     reference: Knobs = _REFERENCE
-    finer: Knobs = _FINER
     single_knobs: bool = True
     authors_seconds: float | None = None
 
@@ -95,24 +102,25 @@ class Scene:
         return 1.0 - self.step * np.arange(7, -1, -1.0)
 
     @property
-    def single_settings(self) -> list[tuple[str, float, Knobs]]:
-        """The finer numerics, and those that differ from the reference in one knob.
-
-        Each is the name of what is varied, its value, and all numerics.
-        """
-        found: list[tuple[str, float, Knobs]] = [("finer", 0.0, self.finer)]
-        found += [
-            (knob, value, with_knob(self.reference, knob, value))
-            for knob in KNOBS
-            for value in _VALUES[knob]
+    def single_settings(self) -> list[Setting]:
+        """The finer numerics, and those that differ from the reference in one knob."""
+        return [
+            Setting("finer", 0.0, _FINER),
+            *(
+                Setting(knob, value, with_knob(self.reference, knob, value))
+                for knob in KNOBS
+                for value in _VALUES[knob]
+            ),
         ]
-        return found
 
     @property
-    def asked_settings(self) -> list[tuple[str, float, Knobs]]:
-        """Numerics that the laws choose: `asked`, the error of k, all of them."""
-        kind, spectrum, energy = self.kind, self.spectrum, self.elastic_energy
-        return [("asked", error, chosen_knobs(error, kind, spectrum, energy)) for error in ASKED]
+    def asked_settings(self) -> list[Setting]:
+        """Numerics that the laws choose for errors of k."""
+        return [Setting("asked", error, self.chosen_knobs(error)) for error in ASKED]
+
+    def chosen_knobs(self, error: float) -> Knobs:
+        """Numerics that the laws choose for an error of k."""
+        return chosen_knobs(error, self.kind, self.spectrum, self.elastic_energy)
 
     def simulation(self, knobs: Knobs, realisation: int) -> Simulation:
         """One realisation; its surface is the same for all knobs."""

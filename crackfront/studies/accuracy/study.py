@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +19,11 @@ from crackfront.core.records import ADHESION, FORCE, variable
 from crackfront.core.solver.relax import Solver
 from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.laws import Knobs
-from crackfront.studies.accuracy.scenes import Scene
+from crackfront.studies.accuracy.scenes import Progress, Scene, Setting
 
 Array = NDArray[np.float64]
 
-_RUN, _BRANCH = "realisation", "branch"
+_RUN, _BRANCH, _PER_CUTOFF = "realisation", "branch", "1 / short cutoff"
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +32,8 @@ class Branches:
 
     Attributes
     ----------
-    apparent_work_of_adhesion : (2, n_state) array
-        At the same loads in both. (Units: w_int)
-    force : (2, n_state) array
-        Normal force. (Units: pi w_int R)
+    apparent_work_of_adhesion, force : (2, n_state) array
+        At the same loads in both. (Units: w_int, pi w_int R)
     radius : (2, n_state, n_angle) array
         Fronts. (Units: reduced lateral length)
     seconds : float
@@ -48,32 +45,19 @@ class Branches:
     radius: Array
     seconds: float
 
+    @property
+    def adhesion(self) -> Array:
+        """Means over the loads, w_appr and w_retr (Units: w_int)."""
+        return self.apparent_work_of_adhesion.mean(axis=1)
+
 
 @dataclass(frozen=True, slots=True)
 class Errors:
     """Errors of one setting against the reference on the same surfaces at the same loads.
 
-    Attributes
-    ----------
-    numerics : Numerics
-        All of them.
-    knob : str
-        What is varied: a knob of :data:`crackfront.simulate.laws.KNOBS`, `finer` or `asked`.
-    value : float
-        Its value; of `asked` the error of k.
-    seconds : (n_realisation,) array
-        Processor time of both branches. (Units: s)
-    adhesion : (n_realisation, 2) array
-        Error of w_appr and w_retr, means over the loads. (Units: w_int)
-    state : (n_realisation, 2) array
-        Rms over the loads of the error of one state's apparent work of adhesion. (Units: w_int)
-    force : (n_realisation,) array
-        Rms over all states of the error of the force. (Units: pi w_int R)
-    front_rms, front_max : (n_realisation,) array
-        Rms and largest error of the radius over all sites and states. (Units: short cutoff)
+    What is varied is a knob of :data:`crackfront.simulate.laws.KNOBS`, `finer` or `asked`.
     """
 
-    knobs: Knobs
     knob: str = variable("what is varied", "1")
     value: float = variable("its value; of asked the error of k", "1")
     seconds: Array = variable("processor time of both branches, synthesis included", "s", _RUN)
@@ -82,85 +66,66 @@ class Errors:
     force: Array = variable("rms error of the normal force", FORCE, _RUN)
     front_rms: Array = variable("rms error of the radius", "short cutoff", _RUN)
     front_max: Array = variable("largest error of the radius", "short cutoff", _RUN)
+    angles_per_cutoff: float = variable("sites of the front", _PER_CUTOFF)
+    samples_per_cutoff: float = variable("samples along a ray", _PER_CUTOFF)
+    interpolation: str = variable("pieces between samples", "1")
+    pixels_per_cutoff: float = variable("points of the tile", _PER_CUTOFF)
+    tolerance: float = variable("force that may be left, per front length", ADHESION)
 
 
 @dataclass(frozen=True, slots=True)
 class SceneErrors:
-    """All settings of a scene.
-
-    Attributes
-    ----------
-    scene : Scene
-        What was simulated.
-    adhesion : (n_realisation, 2) array
-        w_appr and w_retr of the reference. (Units: w_int)
-    seconds : (n_realisation,) array
-        Processor time of the reference. (Units: s)
-    errors : tuple of Errors
-        Those of all settings.
-    """
+    """Errors of all settings of a scene, and what its reference found."""
 
     scene: Scene
-    adhesion: Array
-    seconds: Array
     errors: tuple[Errors, ...]
+    reference_adhesion: Array = variable("w_appr and w_retr", ADHESION, _RUN, _BRANCH)
+    reference_seconds: Array = variable("processor time of the reference", "s", _RUN)
+
+    @property
+    def hysteresis(self) -> float:
+        """Mean hysteresis of the reference (Units: w_int)."""
+        return float(np.mean(self.reference_adhesion[:, 1] - self.reference_adhesion[:, 0]))
+
+    def hysteresis_errors(self, errors: Errors) -> Array:
+        """Errors of the hysteresis of all realisations, relative to the mean of the reference."""
+        return (errors.adhesion[:, 1] - errors.adhesion[:, 0]) / self.hysteresis
+
+    def work_and_precision(self) -> tuple[Array, Array]:
+        """Mean processor time and rms relative error of the hysteresis of every setting."""
+        seconds = [errors.seconds.mean() for errors in self.errors]
+        return np.array(seconds), np.array([rms(self.hysteresis_errors(e)) for e in self.errors])
 
 
 def scene_errors(
-    scene: Scene,
-    settings: list[tuple[str, float, Knobs]],
-    realisations: range,
-    progress: Callable[[str], None] | None = None,
+    scene: Scene, settings: list[Setting], surfaces: range, progress: Progress = lambda line: None
 ) -> SceneErrors:
-    """Errors of settings of the numerics on a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        What to simulate.
-    settings : list of tuple
-        What is varied, its value, and the numerics; :attr:`Scene.single_settings` or
-        :attr:`Scene.asked_settings`.
-    realisations : range
-        Numbers of the surfaces.
-    progress : callable, optional
-        Called with a line for the reference and every setting.
-    """
-    tell = progress or (lambda line: None)
-    exact = [measured_branches(scene, scene.reference, number) for number in realisations]
-    adhesion = np.array([item.apparent_work_of_adhesion.mean(axis=1) for item in exact])
-    mean = np.mean(adhesion[:, 1] - adhesion[:, 0])
-    seconds = np.array([item.seconds for item in exact])
-    tell(f"reference: hysteresis {mean:.5g} w_int, {seconds.mean():.2f} s")
+    """Errors of settings of the numerics on surfaces of a scene, which have numbers."""
+    exact = [measured_branches(scene, scene.reference, number) for number in surfaces]
+    study = SceneErrors(
+        scene=scene,
+        errors=(),
+        reference_adhesion=np.array([item.adhesion for item in exact]),
+        reference_seconds=np.array([item.seconds for item in exact]),
+    )
+    seconds = study.reference_seconds.mean()
+    progress(f"reference: hysteresis {study.hysteresis:.5g} w_int, {seconds:.2f} s")
     errors = []
-    for knob, value, knobs in settings:
-        found = [measured_branches(scene, knobs, number) for number in realisations]
-        errors.append(_errors(scene, knob, value, knobs, found, exact))
-        rms = np.sqrt(np.mean(errors[-1].adhesion ** 2)) / scene.elastic_energy
-        tell(f"{knob} {value:g}: rms error of k {rms:.2g}, {errors[-1].seconds.mean():.2f} s")
-    return SceneErrors(scene, adhesion, seconds, tuple(errors))
+    for setting in settings:
+        found = [measured_branches(scene, setting.knobs, number) for number in surfaces]
+        errors.append(_errors(scene, setting, found, exact))
+        of_k, seconds = rms(errors[-1].adhesion) / scene.elastic_energy, errors[-1].seconds.mean()
+        progress(f"{setting.knob} {setting.value:g}: rms error of k {of_k:.2g}, {seconds:.2f} s")
+    return replace(study, errors=tuple(errors))
 
 
 def joined(*studies: SceneErrors) -> SceneErrors:
-    """Studies of one scene, on the same surfaces, as one.
-
-    Parameters
-    ----------
-    *studies : SceneErrors
-        One or more.
-    """
+    """Studies of one scene, on the same surfaces, as one."""
     errors = tuple(errors for study in studies for errors in study.errors)
     return replace(studies[0], errors=errors)
 
 
-def _errors(
-    scene: Scene,
-    knob: str,
-    value: float,
-    knobs: Knobs,
-    found: list[Branches],
-    exact: list[Branches],
-) -> Errors:
+def _errors(scene: Scene, setting: Setting, found: list[Branches], exact: list[Branches]) -> Errors:
     """Differences of the found branches from the exact ones, surface by surface."""
     pairs = list(zip(found, exact, strict=True))
     adhesion = np.array(
@@ -171,16 +136,18 @@ def _errors(
         front_difference(one.radius, other.radius) / scene.spectrum.short_cutoff
         for one, other in pairs
     ]
+    numerics = asdict(setting.knobs)
+    del numerics["angles"]  # None in all settings: they count sites per cutoff
     return Errors(
-        knob=knob,
-        value=value,
-        knobs=knobs,
+        knob=setting.knob,
+        value=setting.value,
         seconds=np.array([one.seconds for one in found]),
         adhesion=adhesion.mean(axis=2),
         state=np.sqrt(np.mean(adhesion**2, axis=2)),
         force=np.sqrt(np.mean(force**2, axis=(1, 2))),
-        front_rms=np.array([np.sqrt(np.mean(front**2)) for front in fronts]),
+        front_rms=np.array([rms(front) for front in fronts]),
         front_max=np.array([np.max(np.abs(front)) for front in fronts]),
+        **numerics,
     )
 
 
@@ -195,24 +162,16 @@ def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
     start = time.process_time()
     simulation = scene.simulation(knobs, realisation)
     field = simulation_field(simulation)
-    approach = _branch(field, scene.penetrations, 1, simulation.solver)
-    retraction = _branch(field, scene.penetrations[::-1], -1, simulation.solver)
-    fronts = []
-    for record in (approach, retraction):
+    adhesion, force, radius = [], [], []
+    for direction in (1, -1):
+        record = _branch(field, scene.penetrations[::direction], direction, simulation.solver)
         if record.fronts is None or len(record.fronts) != scene.penetrations.size:
             raise RuntimeError(f"{simulation.label}: {record.status.value}")
-        fronts.append(record.fronts)
-    return Branches(
-        apparent_work_of_adhesion=np.array(
-            [
-                approach.states.apparent_work_of_adhesion,
-                retraction.states.apparent_work_of_adhesion[::-1],
-            ]
-        ),
-        force=np.array([approach.states.force, retraction.states.force[::-1]]),
-        radius=np.array([fronts[0], fronts[1][::-1]]),
-        seconds=time.process_time() - start,
-    )
+        adhesion.append(record.states.apparent_work_of_adhesion[::direction])
+        force.append(record.states.force[::direction])
+        radius.append(record.fronts[::direction])
+    seconds = time.process_time() - start
+    return Branches(np.array(adhesion), np.array(force), np.array(radius), seconds)
 
 
 def _branch(
@@ -228,18 +187,21 @@ def _branch(
 
 
 def front_difference(fronts: Array, exact: Array) -> Array:
-    """Difference of fronts at the sites of finer ones.
+    """Difference of fronts, trigonometric between their sites, at those of finer ones.
 
-    Parameters
-    ----------
-    fronts : (..., n_angle) array
-        Fronts; between the sites they are trigonometric. (Units: reduced lateral length)
-    exact : (..., n_fine) array
-        Fronts on other sites. (Units: reduced lateral length)
-
-    Returns
-    -------
-    (..., n_fine) array
-        Difference. (Units: reduced lateral length)
+    Arrays are of the shapes (..., n_angle) and (..., n_fine), the difference of the latter.
     """
     return resample(fronts, exact.shape[-1], axis=-1) - exact
+
+
+def rms(values: Array) -> float:
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def pareto_front(seconds: Array, error: Array) -> NDArray[np.intp]:
+    """Positions of settings that no other one beats in time and in error, the fastest first."""
+    order = np.lexsort((error, seconds))
+    best = np.minimum.accumulate(error[order])
+    first = np.concatenate([[True], error[order][1:] < best[:-1]])
+    return order[first]

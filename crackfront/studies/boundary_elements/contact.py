@@ -1,7 +1,12 @@
-"""A rough sphere on a half-space that attract each other: energy, gradient and curvature.
+"""A rough sphere on a half-space that attract each other, and how it comes to rest.
 
 Half-space, law of attraction and sphere come from ContactMechanics, Adhesion and SurfaceTopography,
 the extra `bem`; only the products with the elastic operators are those of scipy's real FFT.
+
+The nearest stable state is found as by NuMPI's `tr_newton_bounded` (a trust region, Steihaug's
+conjugate gradients on the free variables, projection on the bounds), but with the elastic operator
+as the measure of a step and as the preconditioner, which makes the number of products nearly
+independent of the grid.
 """
 
 from __future__ import annotations
@@ -19,6 +24,21 @@ from crackfront.core.extras import MissingExtraError
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
+
+_STRONGEST = 1.2
+"""Work of adhesion, in units of w_int, of the largest contact that a domain must hold."""
+
+_ACCEPTED = 0.1
+"""Gain, relative to that of the model, of a step that is taken."""
+
+_POOR = 0.25
+"""Gain below which the trust radius shrinks; and by how much it does."""
+
+_FORCING = 0.3
+"""Largest residual of the conjugate gradients, relative to that at their start."""
+
+_MOST_PRODUCTS = 200
+"""Products of one step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,21 +94,9 @@ class HalfSpaceContact:
         return displacement[:side, :side] - (self.surface + penetration)
 
     def evaluate(self, displacement: Array, penetration: float) -> tuple[float, Array]:
-        """Energy of the contact and its gradient.
+        """Energy per area of a pixel, and its derivative in the displacements.
 
-        Parameters
-        ----------
-        displacement : (2 n_point, 2 n_point) array
-            Displacement into the half-space. (Units: reduced vertical length)
-        penetration : float
-            Rigid body penetration b. (Units: reduced vertical length)
-
-        Returns
-        -------
-        float
-            Energy per area of a pixel. (Units: reduced pressure * vertical length)
-        (2 n_point, 2 n_point) array
-            Its derivative in the displacements. (Units: reduced pressure)
+        (Units: reduced pressure * vertical length; reduced pressure)
         """
         gradient = self.elastic_pressure(displacement)
         energy = 0.5 * float(np.vdot(displacement, gradient))
@@ -116,10 +124,8 @@ def half_space_contact(
     ----------
     roughness : (n_point, n_point) array
         Heights on the sphere, zero for a smooth one. (Units: reduced vertical length)
-    pixel : float
-        Grid spacing. (Units: reduced lateral length)
-    interaction_range : float
-        Gap g_c at which the attraction ends. (Units: reduced vertical length)
+    pixel, interaction_range : float
+        As of :class:`HalfSpaceContact`.
     max_penetration : float
         Largest penetration that the domain must hold. (Units: reduced vertical length)
 
@@ -136,20 +142,24 @@ def half_space_contact(
        Sec. III.
     """
     refuse_unresolved(pixel, len(roughness), interaction_range, max_penetration)
-    libraries = _libraries()
+    try:
+        from Adhesion.Interactions import PowerLaw
+        from Adhesion.System import BoundedSmoothContactSystem
+        from ContactMechanics import FreeFFTElasticHalfSpace
+        from SurfaceTopography import Topography
+        from SurfaceTopography.Special import make_sphere
+    except ModuleNotFoundError as error:
+        raise MissingExtraError("boundary elements", error, "bem") from error
     side = pixel * len(roughness)
     shape, sides = (len(roughness),) * 2, (side, side)
-    sphere = libraries.make_sphere(1.0, shape, sides, kind="paraboloid")
+    sphere = make_sphere(1.0, shape, sides, kind="paraboloid")
     surface = np.asarray(sphere.heights()) + roughness
-    topography = libraries.Topography(surface, sides)
-    substrate = libraries.FreeFFTElasticHalfSpace(
-        shape, CONTACT_MODULUS, sides, check_boundaries=False
-    )
-    law = libraries.PowerLaw(WORK_OF_ADHESION, interaction_range, 3)
+    substrate = FreeFFTElasticHalfSpace(shape, CONTACT_MODULUS, sides, check_boundaries=False)
+    law = PowerLaw(WORK_OF_ADHESION, interaction_range, 3)
     # The libraries halve the first axis; the operator is that of a square and symmetric.
     compliance = np.ascontiguousarray(np.real(substrate.greens_function).T)
     return HalfSpaceContact(
-        system=libraries.BoundedSmoothContactSystem(substrate, law, topography),
+        system=BoundedSmoothContactSystem(substrate, law, Topography(surface, sides)),
         surface=surface,
         pixel=pixel,
         interaction_range=interaction_range,
@@ -163,10 +173,7 @@ def refuse_unresolved(
 ) -> None:
     """Raise if the grid is too coarse for the attraction, or the domain too small.
 
-    Parameters
-    ----------
-    pixel, n_point, interaction_range, max_penetration
-        As in :func:`half_space_contact`, the second a number of points.
+    As of :func:`half_space_contact`, whose grid has `n_point` points along a side.
     """
     largest = 2 * (interaction_range / 3) ** 2
     side = pixel * n_point
@@ -178,9 +185,7 @@ def refuse_unresolved(
             f"2 (g_c / 3)^2 = {largest:.4g} or less, so take n_point {finest} or more, or "
             f"interaction_range {math.ceil(1000 * range_needed) / 1000:g} or more"
         )
-    reach = jkr.equilibrium_radius(max_penetration, _STRONGEST) + _cohesive_margin(
-        max_penetration, interaction_range
-    )
+    reach = _attraction_radius(max_penetration, interaction_range)
     if side < 2 * reach:
         raise ValueError(
             f"domain of side {side:.4g} is too small for the contact, whose attraction reaches to "
@@ -189,42 +194,193 @@ def refuse_unresolved(
         )
 
 
-_STRONGEST = 1.2
-"""Work of adhesion, in units of w_int, of the largest contact that a domain must hold."""
-
-
-def _cohesive_margin(penetration: float, interaction_range: float) -> float:
-    """Distance from the edge of a smooth contact to where its gap is the range of attraction."""
+def _attraction_radius(penetration: float, interaction_range: float) -> float:
+    """Radius at which the gap of a smooth contact is the range of attraction."""
     radius = jkr.equilibrium_radius(penetration, _STRONGEST)
     distance = radius + np.linspace(0.0, 2.0, 2001)
     gap = jkr.surface_displacement(distance, radius, penetration) - (penetration - distance**2 / 2)
-    return float(distance[np.argmax(gap > interaction_range)] - radius)
+    return float(distance[np.argmax(gap > interaction_range)])
 
 
 @dataclass(frozen=True, slots=True)
-class _Libraries:
-    """What is used of the optional libraries."""
+class Equilibrium:
+    """A stable state of the contact.
 
-    make_sphere: Any
-    Topography: Any
-    FreeFFTElasticHalfSpace: Any
-    PowerLaw: Any
-    BoundedSmoothContactSystem: Any
+    Attributes
+    ----------
+    displacement : (2 n_point, 2 n_point) array
+        Displacement into the half-space. (Units: reduced vertical length)
+    iterations, products : int
+        Steps of the method, and conjugate-gradient products in all of them.
+    residual : float
+        Largest pressure that is not in balance, relative to the largest tension.
+    radius : float
+        Trust radius to begin the next load step with.
+    """
+
+    displacement: Array
+    iterations: int
+    products: int
+    residual: float
+    radius: float
 
 
-def _libraries() -> _Libraries:
-    """The optional libraries, or a sentence that says how to install them."""
-    try:
-        from Adhesion.Interactions import PowerLaw
-        from Adhesion.System import BoundedSmoothContactSystem
-        from ContactMechanics import FreeFFTElasticHalfSpace
-        from SurfaceTopography import Topography
-        from SurfaceTopography.Special import make_sphere
-    except ModuleNotFoundError as error:
-        raise MissingExtraError("boundary elements", error, "bem") from error
-    return _Libraries(
-        make_sphere, Topography, FreeFFTElasticHalfSpace, PowerLaw, BoundedSmoothContactSystem
+def equilibrium(
+    contact: HalfSpaceContact,
+    displacement: Array,
+    penetration: float,
+    *,
+    tolerance: float,
+    radius: float,
+    max_iterations: int = 500,
+) -> Equilibrium:
+    """State in which a contact comes to rest from a given one.
+
+    Parameters
+    ----------
+    displacement : (2 n_point, 2 n_point) array
+        Where it starts. (Units: reduced vertical length)
+    penetration : float
+        Rigid body penetration b. (Units: reduced vertical length)
+    tolerance : float
+        Largest pressure out of balance that may be left, relative to the largest tension.
+    radius : float
+        Trust radius of the first step: root of twice its elastic energy per area of a pixel.
+
+    Raises
+    ------
+    ValueError
+        If it does not come to rest in `max_iterations` steps.
+
+    References
+    ----------
+    .. [1] Steihaug, SIAM J. Numer. Anal. 20, 626 (1983).
+    .. [2] Nocedal, Wright, Numerical Optimization, 2nd ed., Algorithms 4.1 and 7.2.
+    """
+    lowest = contact.surface + penetration
+    state = _above(displacement.copy(), lowest)
+    energy, gradient = contact.evaluate(state, penetration)
+    products, relative = 0, math.inf
+    for iteration in range(max_iterations):
+        model = _linearised(contact, state, gradient, lowest, penetration)
+        relative = float(np.max(np.abs(model.gradient))) / contact.largest_tension
+        if relative <= tolerance:
+            return Equilibrium(state, iteration, products, relative, radius)
+        step = _truncated_step(model, radius, forcing=min(_FORCING, math.sqrt(relative)))
+        trial = _above(state + step.values, lowest)
+        trial_energy, trial_gradient = contact.evaluate(trial, penetration)
+        gain = _gain(energy, trial_energy, model.decrease(trial - state))
+        products += step.products + 1
+        if gain < _POOR:
+            radius = _POOR * step.norm
+        elif gain > 1 - _POOR and step.at_boundary:
+            radius *= 2.0
+        if gain >= _ACCEPTED:
+            state, energy, gradient = trial, trial_energy, trial_gradient
+    raise ValueError(
+        f"at penetration {penetration:.6g} the boundary elements did not come to rest in "
+        f"{max_iterations} steps (pressure out of balance {relative:.2g} of the largest tension, "
+        f"{tolerance:g} asked for); take smaller load steps"
     )
+
+
+def _above(displacement: Array, lowest: Array) -> Array:
+    """A displacement moved, in place, out of the hard wall."""
+    inner = displacement[: len(lowest), : len(lowest)]
+    np.maximum(inner, lowest, out=inner)
+    return displacement
+
+
+@dataclass(frozen=True, slots=True)
+class _Linearised:
+    """Quadratic model of the energy where closed surfaces stay closed."""
+
+    contact: HalfSpaceContact
+    closed: NDArray[np.bool_]
+    gradient: Array
+    softening: Array
+
+    def free(self, values: Array) -> Array:
+        """Values without, in place, those of closed surfaces."""
+        values[: len(self.closed), : len(self.closed)][self.closed] = 0.0
+        return values
+
+    def curved(self, step: Array) -> Array:
+        """Product of the second derivatives with a step."""
+        side = len(self.closed)
+        product = self.contact.elastic_pressure(step)
+        product[:side, :side] += self.softening * step[:side, :side]
+        return product
+
+    def decrease(self, step: Array) -> float:
+        """Energy that a step releases."""
+        return -float(np.vdot(self.gradient, step) + 0.5 * np.vdot(step, self.curved(step)))
+
+
+def _linearised(
+    contact: HalfSpaceContact, state: Array, gradient: Array, lowest: Array, penetration: float
+) -> _Linearised:
+    """Model around a state; surfaces that are closed and pressed together stay so."""
+    side = contact.n_point
+    closed = (state[:side, :side] <= lowest) & (gradient[:side, :side] >= 0)
+    model = _Linearised(contact, closed, gradient.copy(), contact.softening(state, penetration))
+    model.free(model.gradient)
+    return model
+
+
+def _gain(before: float, after: float, predicted: float) -> float:
+    """Decrease of the energy relative to the predicted one; one where both are round-off."""
+    if predicted <= 0:
+        return -math.inf
+    round_off = 10 * np.finfo(float).eps * (1 + abs(before))
+    if predicted <= round_off and before - after >= -round_off:
+        return 1.0
+    return (before - after) / predicted
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """A step within the trust region, its elastic norm, and how it was found."""
+
+    values: Array
+    norm: float
+    at_boundary: bool
+    products: int
+
+
+def _truncated_step(model: _Linearised, radius: float, forcing: float) -> _Step:
+    """Steihaug's conjugate gradients, preconditioned; the norm is that of the preconditioner."""
+    step = np.zeros_like(model.gradient)
+    residual = model.gradient.copy()
+    relaxed = model.free(model.contact.elastic_displacement(residual))
+    direction = -relaxed
+    power = first = float(np.vdot(residual, relaxed))
+    # Products of step and direction in the norm of the preconditioner, by recurrence.
+    step_step = step_direction = 0.0
+    direction_direction = power
+    for count in range(1, _MOST_PRODUCTS + 1):
+        product = model.free(model.curved(direction))
+        curvature = float(np.vdot(direction, product))
+        length = power / curvature if curvature > 0 else math.inf
+        reached = step_step + 2 * length * step_direction + length**2 * direction_direction
+        if not reached < radius**2:
+            root = step_direction**2 + direction_direction * (radius**2 - step_step)
+            length = (math.sqrt(root) - step_direction) / direction_direction
+            step += length * direction
+            return _Step(step, radius, True, count)
+        step += length * direction
+        residual += length * product
+        relaxed = model.free(model.contact.elastic_displacement(residual))
+        following = float(np.vdot(residual, relaxed))
+        ratio, power = following / power, following
+        if power <= forcing**2 * first:
+            return _Step(step, math.sqrt(reached), False, count)
+        step_step = reached
+        step_direction = ratio * (step_direction + length * direction_direction)
+        direction_direction = power + ratio**2 * direction_direction
+        direction *= ratio
+        direction -= relaxed
+    return _Step(step, math.sqrt(step_step), False, count)
 
 
 def _filtered(values: Array, response: Array) -> Array:

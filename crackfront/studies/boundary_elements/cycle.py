@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
 
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule, loads
 from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
-from crackfront.studies.boundary_elements.contact import HalfSpaceContact
-from crackfront.studies.boundary_elements.minimise import equilibrium
-from crackfront.studies.boundary_elements.perimeter import EDGE, N_ANGLE, perimeter
+from crackfront.studies.boundary_elements.contact import equilibrium
+from crackfront.studies.boundary_elements.parameters import Case
 
 Array = NDArray[np.float64]
 
@@ -28,6 +28,16 @@ _LEAST_RADIUS = 1e-2
 """Trust radius that every load step may begin with."""
 
 RUNNING, LOST_CONTACT = "running", "lost contact"
+
+N_ANGLE = 720
+"""Rays on which the perimeter of a contact is looked for."""
+
+EDGE = 0.25
+"""Gap at the edge of the contact, relative to the range of attraction.
+
+The crack of linear elasticity that is equivalent to a cohesive zone has its tip within the zone, at
+a gap that scales with the range.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,35 +71,17 @@ class BoundaryCycle:
         return np.asarray(np.pi * np.mean(self.radius**2, axis=1))
 
 
-Keep = Callable[[BoundaryCycle], None]
-
-
 def boundary_cycle(
-    contact: HalfSpaceContact,
-    schedule: LoadSchedule,
-    elastic_energy: float,
-    shown_penetration: float,
-    *,
-    tolerance: float,
+    case: Case,
     resume: BoundaryCycle | None = None,
-    keep: Keep | None = None,
+    keep: Callable[[BoundaryCycle], None] | None = None,
 ) -> BoundaryCycle:
     """Quasi-static approach from before first contact to the largest penetration, and to pull-off.
 
     Parameters
     ----------
-    contact : HalfSpaceContact
-        The contact.
-    schedule : LoadSchedule
-        Penetrations; before them, those in steps of the same size from the range of the attraction.
-    elastic_energy : float
-        Energy of full conformity of the roughness, for the record. (Units: w_int)
-    shown_penetration : float
-        Penetration whose pressures are kept, of both branches. (Units: reduced vertical length)
-    tolerance : float
-        Largest pressure out of balance that may be left, relative to the largest tension.
     resume : BoundaryCycle, optional
-        An unfinished cycle of the same contact and loads.
+        An unfinished cycle of the same case.
     keep : callable, optional
         Called with the cycle so far after every load step.
 
@@ -98,11 +90,10 @@ def boundary_cycle(
     ValueError
         If a state does not come to rest, or the cycle to resume is another one.
     """
-    so_far = resume or _no_states(contact, elastic_energy, shown_penetration)
-    known = so_far.penetration.size
-    side = contact.n_point
-    displacement = contact.elastic_displacement(_padded(so_far.pressure))
-    for number, load in enumerate(contact_loads(schedule, contact.interaction_range)):
+    contact, so_far = case.contact(), resume or _no_states(case)
+    known, side = so_far.penetration.size, case.n_point
+    displacement = contact.elastic_displacement(np.pad(so_far.pressure, (0, side)))
+    for number, load in enumerate(contact_loads(case.schedule, case.interaction_range)):
         penetration, direction = load.value, load.direction
         if so_far.status != RUNNING:
             break
@@ -118,18 +109,18 @@ def boundary_cycle(
             contact,
             displacement,
             penetration,
-            tolerance=tolerance,
+            tolerance=case.tolerance,
             radius=max(so_far.trust_radius, _LEAST_RADIUS),
         )
         displacement = found.displacement
         pressure = contact.elastic_pressure(displacement)[:side, :side]
         gap = contact.gap(displacement, penetration)
-        radius = perimeter(gap, contact.pixel, EDGE * contact.interaction_range)
+        radius = perimeter(gap, case.pixel, EDGE * case.interaction_range)
         shown = so_far.shown_pressure
-        if math.isclose(penetration, shown_penetration, abs_tol=1e-9):
+        if math.isclose(penetration, case.shown_penetration, abs_tol=1e-9):
             shown = shown.copy()
             shown[0 if direction > 0 else 1] = pressure
-        lost = direction < 0 and not np.any(gap < contact.interaction_range)
+        lost = direction < 0 and not np.any(gap < case.interaction_range)
         so_far = replace(
             so_far,
             status=LOST_CONTACT if lost else RUNNING,
@@ -140,8 +131,8 @@ def boundary_cycle(
                 so_far,
                 penetration=penetration,
                 direction=direction,
-                force=float(np.sum(pressure)) * contact.pixel**2,
-                closed_area=np.count_nonzero(gap <= 0) * contact.pixel**2,
+                force=float(np.sum(pressure)) * case.pixel**2,
+                closed_area=np.count_nonzero(gap <= 0) * case.pixel**2,
                 radius=radius,
                 iterations=found.iterations,
                 products=found.products,
@@ -168,24 +159,17 @@ def contact_loads(schedule: LoadSchedule, interaction_range: float) -> Iterator[
     yield from loads(schedule)
 
 
-def _padded(pressure: Array) -> Array:
-    """Pressures on the doubled grid."""
-    return np.pad(pressure, ((0, len(pressure)), (0, len(pressure))))
-
-
-def _no_states(
-    contact: HalfSpaceContact, elastic_energy: float, shown_penetration: float
-) -> BoundaryCycle:
+def _no_states(case: Case) -> BoundaryCycle:
     """A cycle that has not begun."""
-    side = contact.n_point
+    side = case.n_point
     numbers, counts = np.empty(0), np.empty(0, dtype=np.int64)
     return BoundaryCycle(
         status=RUNNING,
         n_point=side,
-        pixel=contact.pixel,
-        interaction_range=contact.interaction_range,
-        elastic_energy=elastic_energy,
-        shown_penetration=shown_penetration,
+        pixel=case.pixel,
+        interaction_range=case.interaction_range,
+        elastic_energy=case.elastic_energy,
+        shown_penetration=case.shown_penetration,
         penetration=numbers,
         direction=counts,
         force=numbers,
@@ -207,3 +191,28 @@ def _appended(so_far: BoundaryCycle, **state: Any) -> dict[str, Any]:
         name: np.append(getattr(so_far, name), np.asarray(value)[None], axis=0)
         for name, value in state.items()
     }
+
+
+def perimeter(gap: Array, pixel: float, edge: float) -> Array:
+    """Outermost distance from the apex at which the gap is below that of the edge, ray by ray.
+
+    The gap is (n_point, n_point), the distance (N_ANGLE,) and 0 where a ray has no contact.
+    (Units: reduced vertical length, reduced lateral length)
+    """
+    centre = len(gap) // 2
+    angle = 2 * np.pi * np.arange(N_ANGLE) / N_ANGLE
+    distance = np.arange(0.0, centre - 1, 0.25)
+    rays = map_coordinates(
+        gap,
+        centre + distance * np.stack([np.cos(angle), np.sin(angle)])[:, :, None],
+        order=1,
+        mode="nearest",
+    )
+    within = rays < edge
+    last = distance.size - 1 - np.argmax(within[:, ::-1], axis=1)
+    last = np.minimum(last, distance.size - 2)
+    ray = np.arange(N_ANGLE)
+    near, far = rays[ray, last], rays[ray, last + 1]
+    opening = far - near
+    part = np.divide(edge - near, opening, out=np.zeros(N_ANGLE), where=opening > 0)
+    return np.where(np.any(within, axis=1), (distance[last] + 0.25 * part) * pixel, 0.0)

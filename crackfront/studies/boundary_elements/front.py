@@ -1,21 +1,22 @@
-"""The crack front on the heights of a case."""
+"""The crack front on the heights of a case, and states that it and boundary elements share."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
+from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.rotated import rotated_field
 from crackfront.core.solver.relax import Newton
+from crackfront.studies.boundary_elements.cycle import N_ANGLE, BoundaryCycle
 from crackfront.studies.boundary_elements.parameters import Case
-from crackfront.studies.boundary_elements.perimeter import N_ANGLE
 
 Array = NDArray[np.float64]
 
@@ -29,26 +30,35 @@ class FrontCycle:
 
     Attributes
     ----------
-    record : CycleRecord
-        Its states, with the fronts.
+    states : ContactState
+        Its states.
+    radius : (n_step, N_ANGLE) array
+        Their fronts at the angles of the boundary elements' perimeters, by their Fourier series.
+        (Units: reduced lateral length)
+    end : float
+        Penetration at which it lost contact. (Units: reduced vertical length)
+    rotated : bool
+        Whether the crack turned with the angle.
     mapping_seconds, cycle_seconds : float
         Processor time of the field and of the cycle. (Units: s)
     """
 
-    record: CycleRecord
+    states: ContactState[Any]
+    radius: Array
+    end: float
+    rotated: bool
     mapping_seconds: float
     cycle_seconds: float
+
+
+States = BoundaryCycle | ContactState[Any]
+"""What tells penetrations and directions, state by state."""
 
 
 def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = True) -> FrontCycle:
     """Cycle of the crack front on the heights of a case.
 
-    Parameters
-    ----------
-    case : Case
-        Surface and load.
-    n_angle, spacing, rotated
-        As in :func:`crackfront.core.rotated.rotated_field`.
+    The field is that of :func:`crackfront.core.rotated.rotated_field`.
 
     Raises
     ------
@@ -61,34 +71,29 @@ def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = Tru
     )
     mapped = time.process_time()
     record = run_cycle(field, case.schedule, Newton(_TOLERANCE), Recorder(fronts=True))
+    ended = time.process_time()
     if record.status is not Status.LOST_CONTACT:
         raise ValueError(
             f"{case.label}: at penetration {record.end_load:.6g} the front "
             f"{record.status.value}; raise n_angle or lower the spacing"
         )
-    return FrontCycle(record, mapped - began, time.process_time() - mapped)
-
-
-class States(Protocol):
-    """What tells which states a cycle visited."""
-
-    @property
-    def penetration(self) -> Array:
-        """Penetrations, state by state."""
-
-    @property
-    def direction(self) -> NDArray[np.int64]:
-        """+1 in approach, -1 in retraction."""
+    modes = np.fft.rfft(np.asarray(record.fronts), norm="forward")
+    radius = np.fft.irfft(modes, n=N_ANGLE, norm="forward")
+    return FrontCycle(
+        record.states, radius, record.end_load, rotated, mapped - began, ended - mapped
+    )
 
 
 def shared_states(one: States, other: States) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Indices, in both, of the states that two cycles share, in the order of the first."""
-    known, asked = (
-        [(round(b, 9), d) for b, d in zip(*pair, strict=True)]
-        for pair in (
-            (other.penetration.tolist(), other.direction.tolist()),
-            (one.penetration.tolist(), one.direction.tolist()),
-        )
+    asked, known = (
+        [
+            (round(penetration, 9), direction)
+            for penetration, direction in zip(
+                states.penetration.tolist(), states.direction.tolist(), strict=True
+            )
+        ]
+        for states in (one, other)
     )
     place = {key: number for number, key in enumerate(known)}
     pairs = [(number, place[key]) for number, key in enumerate(asked) if key in place]
@@ -96,39 +101,14 @@ def shared_states(one: States, other: States) -> tuple[NDArray[np.int64], NDArra
     return first, second
 
 
-def force_error(found: CycleRecord, exact: CycleRecord) -> float:
+def force_error(found: FrontCycle, exact: FrontCycle) -> float:
     """Rms difference of two cycles' forces where they share a state (Units: pi w_int R)."""
     one, other = shared_states(found.states, exact.states)
     return float(np.sqrt(np.mean((found.states.force[one] - exact.states.force[other]) ** 2)))
 
 
-def on_rays(radius: Array | None) -> Array:
-    """Fronts at the angles of the boundary elements' perimeters, by their Fourier series.
-
-    Parameters
-    ----------
-    radius : (n_step, n_angle) array
-        Fronts. (Units: reduced lateral length)
-    """
-    if radius is None:
-        raise ValueError("the cycle holds no fronts; record them")
-    modes = np.fft.rfft(radius, norm="forward")
-    return np.asarray(np.fft.irfft(modes, n=N_ANGLE, norm="forward"))
-
-
 def perimeter_at(penetration: float, direction: Direction, states: States, radius: Array) -> Array:
-    """Perimeter of the state of one branch at a penetration.
-
-    Parameters
-    ----------
-    penetration : float
-        Its penetration. (Units: reduced vertical length)
-    direction : {1, -1}
-        Its branch.
-    states : States
-        States of the cycle.
-    radius : (n_step, n_angle) array
-        Their perimeters. (Units: reduced lateral length)
+    """Perimeter of the state of one branch at a penetration, of all perimeters of a cycle.
 
     Raises
     ------

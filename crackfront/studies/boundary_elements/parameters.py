@@ -5,25 +5,41 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.fingerprint import fingerprint
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.data.section import Energy, Positive, Section, refusal
-from crackfront.studies.boundary_elements.contact import refuse_unresolved
+from crackfront.data.yaml import ConfigurationError, content_of, sentences
+from crackfront.studies.boundary_elements.contact import (
+    HalfSpaceContact,
+    half_space_contact,
+    refuse_unresolved,
+)
 
 Array = NDArray[np.float64]
 
 
 class CaseSection(Section):
-    """One cycle by boundary elements, and the same by the front."""
+    """One cycle by boundary elements, and the same by the front.
+
+    Attributes
+    ----------
+    n_point : int
+        Points along a side of the grid.
+    interaction_range, step : float
+        Range of the attraction, and a load step of its own. (Units: reduced vertical length)
+    elastic_energy : float
+        Energy of full conformity, 0 for a smooth sphere. (Units: w_int)
+    """
 
     n_point: Annotated[int, Field(ge=16)]
     interaction_range: Positive
@@ -47,29 +63,17 @@ class StatisticsSection(Section):
 
 
 class ValidationParameters(Section):
-    """The whole file.
+    """The whole file: a surface that all cases share, its load, and the cases.
 
     Attributes
     ----------
-    seed : int
-        Seed of the surface, which all cases share.
-    short_cutoff : float
-        Shortest wavelength of its flat spectrum. (Units: reduced lateral length)
-    side : float
-        Side of the domain and of the periodic roughness. (Units: reduced lateral length)
-    max_penetration, step : float
-        Load. (Units: reduced vertical length)
-    shown_penetration : float
-        Penetration at which perimeters are compared. (Units: reduced vertical length)
+    short_cutoff, side : float
+        Shortest wavelength of the flat spectrum; side of the domain and of the periodic roughness.
+        (Units: reduced lateral length)
+    max_penetration, step, shown_penetration : float
+        Load, and the penetration at which perimeters are compared. (Units: reduced vertical length)
     tolerance : float
         Largest pressure out of balance, relative to the largest tension.
-    front : FrontSection
-        Resolution of the front model.
-    statistics : StatisticsSection or None
-        What shows that the rotation has no effect on averages.
-    cases : tuple of CaseSection
-        Grids, ranges of attraction (Units: reduced vertical length) and energies of full
-        conformity (Units: w_int, 0 for a smooth sphere); a step of their own where it is given.
     """
 
     seed: Annotated[int, Field(ge=0)]
@@ -111,18 +115,28 @@ class ValidationParameters(Section):
         return self
 
 
+def load_validation(path: Path) -> ValidationParameters:
+    """Parameters of a YAML file like config/validation.yaml.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file cannot be read, or anything in it is unknown, missing or out of range; one
+        sentence for each.
+    """
+    try:
+        return ValidationParameters.model_validate(content_of(path))
+    except ValidationError as error:
+        raise ConfigurationError(
+            "\n".join(f"{path}: {line}" for line in sentences(error.errors(), ValidationParameters))
+        ) from error
+
+
 @dataclass(frozen=True, slots=True)
 class Case:
     """Everything that determines one cycle by boundary elements.
 
-    Attributes
-    ----------
-    seed, short_cutoff, side, shown_penetration, tolerance
-        As in :class:`ValidationParameters`.
-    n_point, interaction_range, elastic_energy
-        As in :class:`CaseSection`.
-    schedule : LoadSchedule
-        Penetrations to visit from 0 on.
+    The fields are those of :class:`ValidationParameters` and :class:`CaseSection`.
     """
 
     seed: int
@@ -148,47 +162,37 @@ class Case:
     @property
     def stem(self) -> str:
         """Name of its file, which changes with anything that determines the result."""
-        text = json.dumps([asdict(self), _source_digest()], sort_keys=True, allow_nan=False)
+        sources = ("studies/boundary_elements/contact.py", "studies/boundary_elements/cycle.py")
+        digest = fingerprint(*sources, "core/synthesis.py", "core/spectrum.py")
+        text = json.dumps([asdict(self), digest], sort_keys=True, allow_nan=False)
         return f"{self.label}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 
     def heights(self) -> Array:
         """Roughness of the sphere, the same surface for all grids and amplitudes of a seed.
 
-        The noise belongs to wavevectors, not to the points of a grid.
-
-        Returns
-        -------
-        (n_point, n_point) array
-            Heights. (Units: reduced vertical length)
+        The noise belongs to wavevectors, not to the points of a grid. (Units: reduced vertical
+        length)
         """
         flat = SelfAffineSpectrum(self.short_cutoff, self.short_cutoff, hurst=1.0)
         rng = np.random.default_rng(np.random.SeedSequence(self.seed))
         unit = gaussian_field(flat.with_elastic_energy(1.0), self.n_point, self.side, rng)
         return unit * math.sqrt(self.elastic_energy)
 
+    def contact(self) -> HalfSpaceContact:
+        """Contact of the sphere with the half-space, on a grid that resolves its attraction."""
+        return half_space_contact(
+            self.heights(), self.pixel, self.interaction_range, self.schedule.max_penetration
+        )
+
 
 def validation_cases(parameters: ValidationParameters) -> tuple[Case, ...]:
     """Cases of a validation, in their order."""
+    names = {item.name for item in fields(Case)}
     return tuple(
         Case(
-            seed=parameters.seed,
-            short_cutoff=parameters.short_cutoff,
-            side=parameters.side,
-            shown_penetration=parameters.shown_penetration,
-            tolerance=parameters.tolerance,
-            n_point=case.n_point,
-            interaction_range=case.interaction_range,
-            elastic_energy=case.elastic_energy,
+            **parameters.model_dump(include=names),
+            **case.model_dump(include=names),
             schedule=LoadSchedule(parameters.max_penetration, case.step or parameters.step),
         )
         for case in parameters.cases
     )
-
-
-_SOURCES = ("contact", "minimise", "cycle", "perimeter")
-
-
-def _source_digest() -> str:
-    """Digits that change with the sources of the boundary elements and of their surface."""
-    mine = (f"studies/boundary_elements/{name}.py" for name in _SOURCES)
-    return fingerprint(*mine, "core/synthesis.py", "core/spectrum.py")

@@ -1,17 +1,47 @@
-"""The validation as a person reads it."""
+"""The files of a validation: its numbers, its figure, and its tables as a person reads them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
+from crackfront.data.files import write_text
+from crackfront.data.provenance import Provenance
+from crackfront.data.records import write_record, write_records
+from crackfront.plots.style import save_figure
 from crackfront.studies.boundary_elements.comparison import Comparison
-from crackfront.studies.boundary_elements.trends import RotationEffect, Speed
+from crackfront.studies.boundary_elements.parameters import ValidationParameters
+from crackfront.studies.boundary_elements.picture import validation_figure
+from crackfront.studies.boundary_elements.study import Progress, RotationEffect, Speed, validation
 
 _PULL_OFF = 1.5
 """Magnitude of the pull-off force of a smooth sphere (Units: pi w_int R)."""
+
+
+def write_validation(
+    folder: Path, parameters: ValidationParameters, origin: Provenance, progress: Progress
+) -> None:
+    """Compute what a folder does not hold of a validation, and write all that it finds."""
+    found = validation(parameters, folder, origin, progress)
+    for name, rows, along in (
+        ("differences", found.differences, "case"),
+        ("speed", found.speeds, "case"),
+        ("rotation", found.effects, "surface"),
+        ("jumps-boundary", [boundary for boundary, _ in found.jumps], "jump"),
+        ("jumps-front", [front for _, front in found.jumps], "jump"),
+    ):
+        if rows:
+            write_records(folder / f"{name}.nc", rows, along, origin)
+    if found.picture is not None:
+        write_record(folder / "picture.nc", found.picture, origin)
+        for path in save_figure(validation_figure(found.picture), folder / "validation"):
+            progress(f"figure: {path}")
+    report = validation_report(found.differences, found.speeds, found.effects)
+    write_text(folder / "validation.md", report)
+    progress(f"tables: {folder / 'validation.md'}")
 
 
 def validation_report(
@@ -19,17 +49,7 @@ def validation_report(
     speeds: Sequence[Speed],
     effects: Sequence[RotationEffect],
 ) -> str:
-    """Markdown tables of a validation.
-
-    Parameters
-    ----------
-    differences : sequence of Comparison
-        All cases, those without a range of attraction extrapolated.
-    speeds : sequence of Speed
-        Costs at equal error.
-    effects : sequence of RotationEffect
-        Works of adhesion with and without the rotation.
-    """
+    """Markdown tables; of differences, those without a range of attraction are extrapolated."""
     parts = [
         ["# Crack front against boundary elements", ""],
         _difference_rows(differences),
@@ -39,6 +59,17 @@ def validation_report(
         _rotation_rows(effects),
     ]
     return "\n".join(line for part in parts for line in part)
+
+
+def _case(row: Comparison) -> str:
+    """First cells of a row."""
+    crack = "turns" if row.rotated else "fixed"
+    return f"| {row.n_point} | {row.interaction_range:g} | {row.elastic_energy:.4f} | {crack}"
+
+
+def _relative(force: float) -> str:
+    """A force relative to the pull-off force."""
+    return f"{100 * force / _PULL_OFF:.2f}%"
 
 
 def _difference_rows(differences: Sequence[Comparison]) -> list[str]:
@@ -54,13 +85,10 @@ def _difference_rows(differences: Sequence[Comparison]) -> list[str]:
         "| area, mean | rms | perimeter, appr. | retr. | all |",
         "| --: | --: | --: | --- " + "| --: " * 10 + "|",
         *(
-            f"| {row.n_point} | {row.interaction_range:g} | {row.elastic_energy:.4f} "
-            f"| {'turns' if row.rotated else 'fixed'} | {row.begin:.2f} "
-            + "".join(
-                f"| {100 * value / _PULL_OFF:.2f}% "
-                for value in (row.force_mean, row.force_median, row.force_rms, row.force_largest)
-            )
-            + f"| {100 * row.area_mean:.2f}% | {100 * row.area_rms:.2f}% "
+            f"{_case(row)} | {row.begin:.2f} | {_relative(row.force_mean)} "
+            f"| {_relative(row.force_median)} | {_relative(row.force_rms)} "
+            f"| {_relative(row.force_largest)} "
+            f"| {100 * row.area_mean:.2f}% | {100 * row.area_rms:.2f}% "
             f"| {row.perimeter_approach:.4f} | {row.perimeter_retraction:.4f} "
             f"| {row.perimeter_all:.4f} |"
             for row in differences
@@ -82,10 +110,9 @@ def _jump_rows(differences: Sequence[Comparison]) -> list[str]:
         "| pull-off force | end of contact |",
         "| --: | --: | --: | --- " + "| --: " * 7 + "|",
         *(
-            f"| {row.n_point} | {row.interaction_range:g} | {row.elastic_energy:.4f} "
-            f"| {'turns' if row.rotated else 'fixed'} | {row.jumps_boundary} | {row.jumps_front} "
-            f"| {row.jumps_shared} | {row.jump_shift:.4f} | {row.jump_spread:.4f} "
-            f"| {100 * row.pull_off_force / _PULL_OFF:.2f}% | {row.pull_off_penetration:.3f} |"
+            f"{_case(row)} | {row.jumps_boundary} | {row.jumps_front} | {row.jumps_shared} "
+            f"| {row.jump_shift:.4f} | {row.jump_spread:.4f} | {_relative(row.pull_off_force)} "
+            f"| {row.pull_off_penetration:.3f} |"
             for row in differences
             if row.interaction_range > 0
         ),
@@ -96,27 +123,22 @@ def _jump_rows(differences: Sequence[Comparison]) -> list[str]:
 def _trend_rows(differences: Sequence[Comparison]) -> list[str]:
     """Orders in the range of the attraction and in the energy of full conformity."""
     smooth = [row for row in differences if row.elastic_energy == 0 and row.interaction_range > 0]
-    limits = [row for row in differences if row.interaction_range == 0 and row.rotated]
-    limits = [row for row in limits if row.elastic_energy > 0]
+    rough = [row for row in differences if row.elastic_energy > 0 and row.rotated]
+    limits = [row for row in rough if row.interaction_range == 0]
+    rms, mean = ("rms force", "force_rms"), ("mean force", "force_mean")
+    others = ("median force", "force_median"), ("perimeter", "perimeter_all")
     lines = []
-    if len({row.interaction_range for row in smooth}) > 1:
-        ranges = [row.interaction_range for row in smooth]
-        orders = [
-            f"{name} {power_of(ranges, [getattr(row, key) for row in smooth]):.2f}"
-            for name, key in (("rms force", "force_rms"), ("mean force", "force_mean"))
-        ]
-        lines += [f"Smooth sphere, order in the range: {', '.join(orders)}.", ""]
-    if len(limits) > 1:
-        energies = [row.elastic_energy for row in limits]
-        orders = [
-            f"{name} {power_of(energies, [getattr(row, key) for row in limits]):.2f}"
-            for name, key in (
-                ("rms force", "force_rms"),
-                ("median force", "force_median"),
-                ("perimeter", "perimeter_all"),
+    for what, rows, key, ordinates in (
+        ("Smooth sphere, order in the range", smooth, "interaction_range", (rms, mean)),
+        ("Extrapolated, order in e_el", limits, "elastic_energy", (rms, *others)),
+    ):
+        abscissa = [getattr(row, key) for row in rows]
+        if len(set(abscissa)) > 1:
+            orders = (
+                f"{name} {power_of(abscissa, [getattr(row, ordinate) for row in rows]):.2f}"
+                for name, ordinate in ordinates
             )
-        ]
-        lines += [f"Extrapolated, order in e_el: {', '.join(orders)}.", ""]
+            lines += [f"{what}: {', '.join(orders)}.", ""]
     return ["## Trends", "", *lines] if lines else []
 
 
@@ -145,9 +167,8 @@ def _speed_rows(speeds: Sequence[Speed]) -> list[str]:
         "| points | range | error | s | sites of the front | error | s | faster |",
         "| --: " * 8 + "|",
         *(
-            f"| {row.n_point} | {row.interaction_range:g} "
-            f"| {100 * row.boundary_error / _PULL_OFF:.2f}% | {row.boundary_seconds:.0f} "
-            f"| {row.n_angle} | {100 * row.front_error / _PULL_OFF:.2f}% "
+            f"| {row.n_point} | {row.interaction_range:g} | {_relative(row.boundary_error)} "
+            f"| {row.boundary_seconds:.0f} | {row.n_angle} | {_relative(row.front_error)} "
             f"| {row.front_seconds:.2f} | {row.boundary_seconds / row.front_seconds:.0f} |"
             for row in speeds
         ),
