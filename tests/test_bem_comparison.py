@@ -15,7 +15,7 @@ from crackfront.cli import main
 from crackfront.core import jkr
 from crackfront.data.files import read_attributes
 from crackfront.data.records import read_record, read_records
-from crackfront.data.yaml import ConfigurationError
+from crackfront.data.section import ConfigurationError
 from crackfront.studies.boundary_elements.comparison import (
     Comparison,
     Jump,

@@ -19,7 +19,7 @@ from crackfront.core.records import variable
 from crackfront.data.files import UnreadableFileError, read_attributes
 from crackfront.data.provenance import provenance
 from crackfront.data.records import largest_differences, read_record, write_record
-from crackfront.data.yaml import ConfigurationError
+from crackfront.data.section import ConfigurationError
 from crackfront.studies.paper.figure import (
     FIGURES,
     SCALES,

@@ -11,7 +11,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
-from crackfront.data.yaml import ConfigurationError
+from crackfront.data.section import ConfigurationError
 from crackfront.studies.paper.figure import figure, load_figure
 from crackfront.studies.paper.film import conformity_energy
 from crackfront.studies.paper.main_5a import FilmScalesParameters, film_scales

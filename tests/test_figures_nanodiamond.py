@@ -8,7 +8,7 @@ import pytest
 
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
-from crackfront.data.yaml import ConfigurationError
+from crackfront.data.section import ConfigurationError
 from crackfront.studies.paper.advances import Perimeters, advances
 from crackfront.studies.paper.figure import figure, figure_files, load_figure
 from crackfront.studies.paper.main_5bc import NanodiamondParameters

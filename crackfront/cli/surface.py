@@ -271,7 +271,7 @@ def _write_field(
 
 def _surface_of(reading: _Reading) -> MeasuredSurface:
     """Surface of the files that a command names."""
-    from crackfront.data.quantities import si_value
+    from crackfront.data.written_units import si_value
     from crackfront.topography.measures import measured_surface
     from crackfront.topography.reading import Treatment, read_measurements
 
@@ -298,7 +298,7 @@ def _sides(text: str) -> tuple[float, ...]:
 def _scene_of(sphere: _Sphere) -> Scales:
     """Scene of a sphere, in SI units."""
     from crackfront.core.units import Scales
-    from crackfront.data.quantities import si_value
+    from crackfront.data.written_units import si_value
 
     modulus, poisson, radius = sphere.modulus, sphere.poisson, sphere.radius
     adhesion = sphere.work_of_adhesion

@@ -23,7 +23,7 @@ from crackfront.core.outcome import Direction
 from crackfront.core.records import variables
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.data.files import labelled, labelled_fields
-from crackfront.data.version import __version__
+from crackfront.data.provenance import __version__
 from crackfront.simulate.contact import contact_field, tile_contact
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.run import compile_solver

@@ -14,7 +14,7 @@ from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, Variable, variables
 from crackfront.core.units import Scales
-from crackfront.data.quantities import unit_value
+from crackfront.data.written_units import unit_value
 
 Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
 

@@ -11,7 +11,7 @@ from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.factors import BRANCHES
 from crackfront.core.records import Variable, variables
 from crackfront.core.units import Scales
-from crackfront.data.quantities import prefixed
+from crackfront.data.written_units import prefixed
 from crackfront.topography.densities import Density
 from crackfront.topography.measures import MeasuredSurface, RmsMeasure
 from crackfront.topography.prediction import (

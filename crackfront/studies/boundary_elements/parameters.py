@@ -11,14 +11,20 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.fingerprint import fingerprint
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.data.section import Energy, Positive, Section, refusal
-from crackfront.data.yaml import ConfigurationError, content_of, sentences
+from crackfront.data.section import (
+    Energy,
+    Positive,
+    Section,
+    content_of,
+    refusal,
+    validated,
+)
 from crackfront.studies.boundary_elements.contact import (
     HalfSpaceContact,
     half_space_contact,
@@ -124,12 +130,7 @@ def load_validation(path: Path) -> ValidationParameters:
         If the file cannot be read, or anything in it is unknown, missing or out of range; one
         sentence for each.
     """
-    try:
-        return ValidationParameters.model_validate(content_of(path))
-    except ValidationError as error:
-        raise ConfigurationError(
-            "\n".join(f"{path}: {line}" for line in sentences(error.errors(), ValidationParameters))
-        ) from error
+    return validated(path, content_of(path), ValidationParameters)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,11 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pydantic import ValidationError
-
 from crackfront.core.fingerprint import fingerprint
-from crackfront.data.section import Section
-from crackfront.data.yaml import ConfigurationError, content_of, sentences
+from crackfront.data.section import ConfigurationError, Section, content_of, validated
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -226,12 +223,7 @@ def load_figure(path: Path, scale: str) -> Section:
                 f"{path}: {key} stands in parameters and in {section}; remove one"
             )
         given |= content[section]
-    try:
-        return section_type.model_validate(given)
-    except ValidationError as error:
-        raise ConfigurationError(
-            "\n".join(f"{path}: {line}" for line in sentences(error.errors(), section_type))
-        ) from error
+    return validated(path, given, section_type)
 
 
 def figure_files(path: Path, scale: str) -> list[str]:
