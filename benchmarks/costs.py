@@ -31,7 +31,7 @@ from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
 KNOBS = Knobs(None, 2.4, 4, "cubic", 4, 1e-4)
 ENERGIES = (0.002, 0.01, 0.05, 0.15)
-STEADY = SteadySchedule(start=1.0, max_penetration=1.5, travel=1.5, error=0.1)
+STEADY = SteadySchedule(start=1.0, max_penetration=1.5, travel=1.5, standard_error=0.1)
 CYCLE = LoadSchedule(1.0, 0.1)
 
 _PASSES, _LONG = 4, 20.0

@@ -29,7 +29,7 @@ N_REALISATION = 10
 _FIRST = 2000
 """Number of the first surface: no law was fitted to it, no coverage measured."""
 
-_SCHEDULE = SteadySchedule(start=0.3, max_penetration=2.0, travel=0.5, error=1e-4)
+_SCHEDULE = SteadySchedule(start=0.3, max_penetration=2.0, travel=0.5, standard_error=1e-4)
 _FORGOTTEN = 0.05
 
 NAMES = [name for name in SCENES if name.startswith(("chemical", "flat", "h08", "h03"))]

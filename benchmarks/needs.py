@@ -74,7 +74,7 @@ SCENE = Scene(
     SelfAffineSpectrum(0.0025, 0.04, 0.8),
     tile_cutoffs=200,
     cycle=LoadSchedule(1.0, 0.05),
-    steady=SteadySchedule(start=0.5, max_penetration=1.0, travel=1.5, error=0.1),
+    steady=SteadySchedule(start=0.5, max_penetration=1.0, travel=1.5, standard_error=0.1),
 )
 """The surface h08 of config/default.yaml at its numerics and e_el = 0.05 w_int."""
 

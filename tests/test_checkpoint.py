@@ -23,7 +23,7 @@ CYCLE = replace(
     record_fronts=True,
     record_energy=True,
 )
-STEADY = replace(CYCLE, schedule=SteadySchedule(0.4, 1.2, travel=0.5, error=1e-6))
+STEADY = replace(CYCLE, schedule=SteadySchedule(0.4, 1.2, travel=0.5, standard_error=1e-6))
 
 
 def checkpoints(simulation):

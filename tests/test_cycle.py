@@ -376,7 +376,7 @@ def rough_branches(energy, seed, solver):
         record.states.apparent_work_of_adhesion[steady & branch(record, direction)].mean()
         for direction in (-1, 1)
     )
-    return retraction, approach, adhesion.elastic_energy
+    return retraction, approach, adhesion.e_el
 
 
 @every_solver

@@ -17,8 +17,8 @@ from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
-from crackfront.core.records import variables
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import variables
 from crackfront.data.files import UnreadableFileError, write_text
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.fields import PolarSamples, read_field, write_field
@@ -208,11 +208,11 @@ def test_a_tile_is_read_by_the_names_of_its_dimensions(tmp_path, order):
     assert isinstance(field, AdhesionMap)
     assert np.array_equal(field.work_of_adhesion, tile().values)
     assert field.pixel == 0.5
-    assert field.rms == pytest.approx(np.std(tile().values) / WORK_OF_ADHESION)
+    assert field.w_rms == pytest.approx(np.std(tile().values) / WORK_OF_ADHESION)
 
 
 def test_a_tile_that_was_written_is_read_back(tmp_path, rng):
-    adhesion = AdhesionMap(rng.uniform(0.1, 0.5, (6, 8)), 0.3, elastic_energy=0.1, rms=0.6)
+    adhesion = AdhesionMap(rng.uniform(0.1, 0.5, (6, 8)), 0.3, e_el=0.1, w_rms=0.6)
     write_field(tmp_path / "F.nc", adhesion, ORIGIN, source="scan.x3p")
     field = read_field(tmp_path / "F.nc")
     np.testing.assert_allclose(field.work_of_adhesion, adhesion.work_of_adhesion, rtol=4e-16)

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 from crackfront.cli import main
-from crackfront.core.records import variable
+from crackfront.core.variables import variable
 from crackfront.data.files import UnreadableFileError, read_attributes
 from crackfront.data.provenance import provenance
 from crackfront.data.records import largest_differences, read_record, write_record

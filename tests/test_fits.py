@@ -24,9 +24,9 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import polar_field
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
-from crackfront.core.records import variables
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import variables
 
 AMPLITUDES = np.array([0.005, 0.01, 0.02, 0.05, 0.1])
 LENGTHS = np.array([0.02, 0.04, 0.08])

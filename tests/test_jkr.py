@@ -101,13 +101,13 @@ def test_equilibrium_radius_inverts_equilibrium_penetration_on_the_stable_branch
 
 @given(radii, penetrations)
 def test_force_is_the_derivative_of_the_elastic_energy_in_penetration(radius, penetration):
-    slope = derivative(lambda b: float(jkr.elastic_energy(radius, b)), penetration, step=1e-2)
+    slope = derivative(lambda b: float(jkr.stored_energy(radius, b)), penetration, step=1e-2)
     assert jkr.force(radius, penetration) == pytest.approx(slope, rel=1e-9, abs=1e-9)
 
 
 @given(radii, penetrations)
 def test_release_rate_is_the_derivative_of_the_elastic_energy_in_area(radius, penetration):
-    slope = derivative(lambda a: float(jkr.elastic_energy(a, penetration)), radius, step=1e-3)
+    slope = derivative(lambda a: float(jkr.stored_energy(a, penetration)), radius, step=1e-3)
     release = jkr.stress_intensity(radius, penetration) ** 2 / (2 * CONTACT_MODULUS)
     assert 2 * np.pi * radius * release == pytest.approx(slope, rel=1e-7, abs=1e-7)
 
@@ -142,7 +142,7 @@ def test_the_circle_loses_its_stability_exactly_at_fixed_penetration_pull_off(ad
 
 def test_functions_broadcast_over_arrays():
     radius, penetration = np.array([[1.0], [2.0]]), np.array([-0.5, 0.0, 0.5])
-    for function in (jkr.stress_intensity, jkr.energy_release_rate, jkr.force, jkr.elastic_energy):
+    for function in (jkr.stress_intensity, jkr.energy_release_rate, jkr.force, jkr.stored_energy):
         both = function(radius, penetration)
         assert both.shape == (2, 3)
         assert both[1, 2] == function(2.0, 0.5)

@@ -15,8 +15,8 @@ from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.factors import BRANCHES, expected_factors, leave_one_out_error
 from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.cli import main
-from crackfront.core.records import variables
 from crackfront.core.units import Scales
+from crackfront.core.variables import variables
 from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import read_cycle
 from crackfront.topography.drawing import prediction_figure

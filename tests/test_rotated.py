@@ -39,7 +39,7 @@ def brute_force(heights, angle, radius):
             q = 2 * np.pi * np.array(pair) / (PIXEL * np.array([n_x, n_y]))
             kernel = -CONTACT_MODULUS / np.sqrt(2) * np.sqrt(1j * (q @ along) + abs(q @ across))
             stress += (kernel * modes[k, m] * np.exp(1j * (q @ place))).real / len(pairs)
-    energy = rough_adhesion(heights, PIXEL).elastic_energy * WORK_OF_ADHESION
+    energy = rough_adhesion(heights, PIXEL).e_el * WORK_OF_ADHESION
     return WORK_OF_ADHESION - energy - np.sqrt(2 * WORK_OF_ADHESION / CONTACT_MODULUS) * stress
 
 

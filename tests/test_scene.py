@@ -135,8 +135,7 @@ def test_amplitudes_of_a_realisation_are_one_surface_scaled():
     weak = simulation_adhesion(replace(SIMULATION, elastic_energy=0.02))
     strong = simulation_adhesion(replace(SIMULATION, elastic_energy=0.08))
     fluctuations = [
-        field.work_of_adhesion - WORK_OF_ADHESION * (1 - field.elastic_energy)
-        for field in (weak, strong)
+        field.work_of_adhesion - WORK_OF_ADHESION * (1 - field.e_el) for field in (weak, strong)
     ]
     assert fluctuations[1] == pytest.approx(2 * fluctuations[0], rel=1e-9, abs=1e-15)
     assert strong.elastic_energy == pytest.approx(4 * weak.elastic_energy, rel=1e-12)
@@ -146,7 +145,7 @@ def test_amplitudes_of_a_realisation_are_one_surface_scaled():
 def test_the_tile_has_the_requested_rms_on_average(kind):
     wanted = replace(SIMULATION, kind=kind, elastic_energy=0.05)
     squares = [
-        simulation_adhesion(replace(wanted, realisation=realisation)).rms ** 2
+        simulation_adhesion(replace(wanted, realisation=realisation)).w_rms ** 2
         for realisation in range(20)
     ]
     # The error of one tile is below 5 %.

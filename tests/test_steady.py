@@ -27,7 +27,7 @@ from crackfront.simulate.simulation import Resolution, Simulation
 
 SPECTRUM = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
 LENGTH = correlation_length("roughness", SPECTRUM)
-SCHEDULE = SteadySchedule(start=0.4, max_penetration=1.0, travel=0.15, error=1e-6)
+SCHEDULE = SteadySchedule(start=0.4, max_penetration=1.0, travel=0.15, standard_error=1e-6)
 
 
 def simulation(elastic_energy=0.04, realisation=0, schedule=SCHEDULE):

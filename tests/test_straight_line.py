@@ -153,7 +153,7 @@ def test_the_force_is_the_gradient_of_the_energy():
     springs = line.mean + line.stiffness * (front - 5.0)
     force = springs + line_force(line, front)
     for site, change in enumerate(step * np.eye(9)):
-        rise = line.elastic_energy(front + change, 5.0) - line.elastic_energy(front - change, 5.0)
+        rise = line.stored_energy(front + change, 5.0) - line.stored_energy(front - change, 5.0)
         assert rise / (2 * step) == pytest.approx(force[site] * line.length / 9, rel=1e-7), site
 
 

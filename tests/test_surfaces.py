@@ -281,7 +281,7 @@ def test_oblong_pixels_are_read_and_made_square_for_a_field(tmp_path, heights, s
     square = replace(whole, shortest=oblong.shortest)
     both = [measured_adhesion(item, SOFT) for item in (square, oblong)]
     assert both[1].pixel == pytest.approx(both[0].pixel)
-    assert both[1].elastic_energy == pytest.approx(both[0].elastic_energy, rel=0.02)
+    assert both[1].e_el == pytest.approx(both[0].e_el, rel=0.02)
 
 
 def test_units_and_sizes_that_a_file_lacks_must_be_named(tmp_path, heights, scan):
@@ -354,9 +354,9 @@ def test_the_tile_of_a_map_is_its_mirror_images_around_it(scan):
     assert adhesion.work_of_adhesion.shape == (256, 256)
     assert adhesion.pixel * SOFT.lateral == pytest.approx(SIDE / 128)
     mean = np.mean(adhesion.work_of_adhesion) / WORK_OF_ADHESION
-    assert mean == pytest.approx(1 - adhesion.elastic_energy)
+    assert mean == pytest.approx(1 - adhesion.e_el)
     measured = SOFT.contact_modulus / 4 * measured_mean_square(measurement, 0.5)
-    found = adhesion.elastic_energy * SOFT.work_of_adhesion
+    found = adhesion.e_el * SOFT.work_of_adhesion
     assert found == pytest.approx(measured, rel=0.25)
     # The sum over x leaves a function of y alone, even about the edges of the scan.
     along_front = adhesion.work_of_adhesion.sum(axis=0)
@@ -390,7 +390,7 @@ def test_a_map_of_odd_and_unequal_sides_has_a_tile(tmp_path, rng):
     assert measurement.size == pytest.approx((100 * SIDE / 128, 71 * SIDE / 128))
     adhesion = measured_adhesion(measurement, SOFT)
     assert adhesion.work_of_adhesion.shape == (200, 142)
-    found = adhesion.elastic_energy * SOFT.work_of_adhesion
+    found = adhesion.e_el * SOFT.work_of_adhesion
     measured = SOFT.contact_modulus / 4 * measured_mean_square(measurement, 0.5)
     assert found == pytest.approx(measured, rel=0.4)
 

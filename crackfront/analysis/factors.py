@@ -16,8 +16,8 @@ from scipy.special import stdtrit
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.report import ONSET, PERTURBATION_FACTOR
-from crackfront.core.records import ADHESION, LATERAL, variable
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.variables import ADHESION, LATERAL, variable
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.table import AMPLITUDE, REALISATION, SPECTRUM, SweepTable
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.records import ADHESION, Variable, variable, variables
+from crackfront.core.variables import ADHESION, Variable, variable, variables
 
 Array = NDArray[np.float64]
 

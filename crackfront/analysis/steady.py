@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crackfront.core import jkr
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.steady import FEWEST_STATES, standard_error
-from crackfront.core.records import ADHESION, LATERAL, variable
+from crackfront.core.variables import ADHESION, LATERAL, variable
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.steady import SteadyMeasures
-from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
 
 Array = NDArray[np.float64]
 

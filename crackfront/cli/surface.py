@@ -161,20 +161,20 @@ def predict(
         surface_text,
     )
 
-    scene = _scene_of(sphere)
+    scales = _scales_of(sphere)
     stem = _RESULTS / reading.scans[0].stem if figure is None else figure
     refuse_unwritable(stem.parent)
     found = _surface_of(reading)
     if not as_json:
         click.echo(surface_text(found) + "\n")
-    prediction = predicted(found, scene)
+    prediction = predicted(found, scales)
     if not as_json:
         click.echo(prediction_text(found, prediction))
         _echo_notes(prediction_notes(found, prediction))
     paths = save_figure(prediction_figure(found, prediction), stem)
-    outcome = _simulated(found, scene, realisations, seed, as_json) if simulate else None
+    outcome = _simulated(found, scales, realisations, seed, as_json) if simulate else None
     if as_json:
-        echo_json(machine_readable(found, scene, prediction, outcome))
+        echo_json(machine_readable(found, scales, prediction, outcome))
         return
     for path in paths:
         click.echo(f"figure: {path}")
@@ -183,17 +183,17 @@ def predict(
 
 
 def _simulated(
-    surface: MeasuredSurface, scene: Scales, realisations: int, seed: int, quiet: bool
+    surface: MeasuredSurface, scales: Scales, realisations: int, seed: int, quiet: bool
 ) -> Simulated:
     """Run the simulations behind a prediction."""
     from crackfront.topography.simulated import expected_seconds, prediction_simulations, simulated
 
-    simulations = prediction_simulations(surface, scene, realisations, seed)
+    simulations = prediction_simulations(surface, scales, realisations, seed)
     if not quiet:
         announce_compilation()
         seconds = expected_seconds(simulations)
         click.echo(f"simulating {realisations} surface(s), about {seconds:.3g} s ...")
-    return simulated(simulations, scene)
+    return simulated(simulations, scales)
 
 
 @click.command(
@@ -230,25 +230,25 @@ def surface(
     from crackfront.topography.report import conformity_text, machine_readable, surface_text
 
     named = sphere != _Sphere(None, None, None, None)
-    scene = _scene_of(sphere) if named or field is not None else None
+    scales = _scales_of(sphere) if named or field is not None else None
     if field is not None and len(reading.scans) > 1:
         raise ValueError(
             f"--field takes one scan, not {len(reading.scans)}; name the one to press on"
         )
     found = _surface_of(reading)
     if as_json:
-        echo_json(machine_readable(found, scene))
+        echo_json(machine_readable(found, scales))
     else:
         click.echo(surface_text(found))
-        if scene is not None:
-            click.echo("\n" + conformity_text(found, scene))
+        if scales is not None:
+            click.echo("\n" + conformity_text(found, scales))
         _echo_notes(surface_notes(found))
-    if field is not None and scene is not None:
-        _write_field(found, scene, place, field, quiet=as_json)
+    if field is not None and scales is not None:
+        _write_field(found, scales, place, field, quiet=as_json)
 
 
 def _write_field(
-    surface: MeasuredSurface, scene: Scales, place: Placement, path: Path, quiet: bool
+    surface: MeasuredSurface, scales: Scales, place: Placement, path: Path, quiet: bool
 ) -> None:
     """Write the map of a surface as a field."""
     from crackfront.data.provenance import provenance
@@ -256,17 +256,17 @@ def _write_field(
     from crackfront.topography.tile import measured_adhesion
 
     [measurement] = surface.measurements
-    adhesion = measured_adhesion(measurement, scene, place)
+    adhesion = measured_adhesion(measurement, scales, place)
     write_field(
         path,
         adhesion,
         provenance(),
         source=f"{measurement.path}, checksum {measurement.checksum}",
         placement=place,
-        **{name: getattr(scene, name) for name in scene.__slots__},
+        **{name: getattr(scales, name) for name in scales.__slots__},
     )
     if not quiet:
-        click.echo(f"field: {path}, e_el {adhesion.elastic_energy:.4g} w_int on the tile")
+        click.echo(f"field: {path}, e_el {adhesion.e_el:.4g} w_int on the tile")
 
 
 def _surface_of(reading: _Reading) -> MeasuredSurface:
@@ -295,7 +295,7 @@ def _sides(text: str) -> tuple[float, ...]:
         ) from error
 
 
-def _scene_of(sphere: _Sphere) -> Scales:
+def _scales_of(sphere: _Sphere) -> Scales:
     """Scene of a sphere, in SI units."""
     from crackfront.core.units import Scales
     from crackfront.data.written_units import si_value

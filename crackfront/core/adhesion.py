@@ -95,10 +95,10 @@ class AdhesionMap:
         w_loc, first axis x. (Units: reduced energy / area, w_int = 1/pi)
     pixel : float
         Grid spacing. (Units: reduced lateral length)
-    elastic_energy : float
+    e_el : float
         e_el / w_int measured on the tile; for a chemical field the equivalent
         (w_rms / w_int)^2 / 4.
-    rms : float
+    w_rms : float
         w_rms / w_int measured on the tile.
     corner : tuple of float
         Coordinates of the first point, where they matter. (Units: reduced lateral length)
@@ -106,8 +106,8 @@ class AdhesionMap:
 
     work_of_adhesion: Array
     pixel: float
-    elastic_energy: float
-    rms: float
+    e_el: float
+    w_rms: float
     corner: tuple[float, float] = (0.0, 0.0)
 
 
@@ -153,7 +153,7 @@ def rough_adhesion(heights: Array, pixel: float) -> AdhesionMap:
     adhesion *= -coupling
     rms = float(np.sqrt(np.mean(adhesion**2)) / WORK_OF_ADHESION)
     adhesion += WORK_OF_ADHESION - energy
-    return AdhesionMap(adhesion, pixel, elastic_energy=relative, rms=rms)
+    return AdhesionMap(adhesion, pixel, e_el=relative, w_rms=rms)
 
 
 def chemical_adhesion(fluctuation: Array, pixel: float) -> AdhesionMap:
@@ -175,8 +175,8 @@ def chemical_adhesion(fluctuation: Array, pixel: float) -> AdhesionMap:
     return AdhesionMap(
         work_of_adhesion=WORK_OF_ADHESION * (1 + fluctuation),
         pixel=pixel,
-        elastic_energy=rms**2 / 4,
-        rms=rms,
+        e_el=rms**2 / 4,
+        w_rms=rms,
     )
 
 

@@ -80,7 +80,7 @@ def force(radius: ArrayLike, penetration: ArrayLike) -> Array:
     )
 
 
-def elastic_energy(radius: ArrayLike, penetration: ArrayLike) -> Array:
+def stored_energy(radius: ArrayLike, penetration: ArrayLike) -> Array:
     """Elastic energy U = E' (b^2 a - 2 a^3 b / 3 + a^5 / 5).
 
     Its derivative in b is the force, in a it is 2 pi a G.

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from scipy.fft import fft2, fftfreq, fftshift
 
 from crackfront.core.adhesion import rough_adhesion
-from crackfront.core.extras import MissingExtraError
 from crackfront.core.field.fields import RayField, polar_field
+from crackfront.core.optional_libraries import MissingExtraError
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -111,7 +111,7 @@ def adhesion_on_rays(
         from finufft import nufft1d1
     except ModuleNotFoundError as error:
         raise MissingExtraError("rotated cracks", error, "bem") from error
-    energy = rough_adhesion(heights, pixel).elastic_energy * WORK_OF_ADHESION
+    energy = rough_adhesion(heights, pixel).e_el * WORK_OF_ADHESION
     wavevector, direction, amplitude = _modes(heights, pixel)
     # The transform counts its points from their middle one.
     middle = (1 + n_sample // 2) * spacing

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crackfront.core.records import Variable, variables
+from crackfront.core.variables import Variable, variables
 from crackfront.data.files import (
     PACKED,
     UnreadableFileError,
@@ -37,7 +37,7 @@ def write_record(path: Path, record: Any, origin: Provenance, **attributes: str 
     path : Path
         netCDF file.
     record : dataclass
-        A record whose fields were made by :func:`crackfront.core.records.variable`.
+        A record whose fields were made by :func:`crackfront.core.variables.variable`.
     origin : Provenance
         Where it comes from.
     **attributes : str or float

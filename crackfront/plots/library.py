@@ -53,7 +53,7 @@ def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
             draw_heights(drawn, x, y, surface.transpose("x", "y").values)
         else:
             values = adhesion.work_of_adhesion / WORK_OF_ADHESION
-            draw_field(drawn, x, y, values, 1.0, 2 * adhesion.rms)
+            draw_field(drawn, x, y, values, 1.0, 2 * adhesion.w_rms)
     return drawn
 
 
@@ -134,7 +134,7 @@ def plot_fronts(
             values = adhesion.work_of_adhesion / WORK_OF_ADHESION
             # The apex is the centre of the tile, whatever the coordinates of a given surface.
             x, y = (adhesion.pixel * (np.arange(count) - count / 2) for count in values.shape)
-            reach = max(2 * adhesion.rms, 0.05)
+            reach = max(2 * adhesion.w_rms, 0.05)
             draw_field(drawn, x, y, values, float(np.mean(values)), reach)
         draw_fronts(drawn, loop.angle.values, loop.radius.values, loop.direction.values, most)
     return drawn

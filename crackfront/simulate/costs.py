@@ -154,7 +154,7 @@ def _expected_steady(simulation: Simulation, schedule: SteadySchedule, length: f
     alike = length * integral_breadth(simulation)
     n_independent = 2 * math.pi * jkr.equilibrium_radius(schedule.start) / alike
     variance = _NOISE / (simulation.elastic_energy * n_independent)
-    return 2 * min(n_most, max(_FEWEST_STEADY, _LEAD_IN + variance / schedule.error**2))
+    return 2 * min(n_most, max(_FEWEST_STEADY, _LEAD_IN + variance / schedule.standard_error**2))
 
 
 def integral_breadth(simulation: Simulation) -> float:

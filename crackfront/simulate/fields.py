@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.field.fields import Interpolation, RayField, polar_field
-from crackfront.core.records import ADHESION, LATERAL
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, LATERAL
 from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
 from crackfront.data.provenance import Provenance
 from crackfront.data.tiles import TOLERANCE, tile_samples
@@ -91,7 +91,7 @@ def write_field(
     dataset = xr.Dataset(
         {NAME: (("x", "y"), values, about)},
         coords=coordinates,
-        attrs={"e_el": adhesion.elastic_energy, "w_rms": adhesion.rms, **attributes},
+        attrs={"e_el": adhesion.e_el, "w_rms": adhesion.w_rms, **attributes},
     )
     write_dataset(path, dataset, origin)
 
@@ -126,7 +126,7 @@ def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
     with np.errstate(invalid="ignore"):
         rms = float(np.std(samples) / WORK_OF_ADHESION)
     corner = float(values["x"][0]), float(values["y"][0])
-    return AdhesionMap(samples, pixel, elastic_energy=rms**2 / 4, rms=rms, corner=corner)
+    return AdhesionMap(samples, pixel, e_el=rms**2 / 4, w_rms=rms, corner=corner)
 
 
 def _rays(path: Path, values: xr.DataArray, interpolation: Interpolation) -> PolarSamples:

@@ -14,7 +14,7 @@ from crackfront.core.cycle.record import Checkpoint, CycleRecord
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
-from crackfront.core.records import LATERAL, STEP, Variable, variables
+from crackfront.core.variables import LATERAL, STEP, Variable, variables
 from crackfront.data.files import (
     UnreadableFileError,
     labelled,

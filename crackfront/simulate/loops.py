@@ -20,8 +20,8 @@ from crackfront.core.field.fields import TileField
 from crackfront.core.fingerprint import solver_fingerprint
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction
-from crackfront.core.records import variables
 from crackfront.core.solver.relax import Newton, named_solver
+from crackfront.core.variables import variables
 from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.provenance import __version__
 from crackfront.simulate.contact import contact_field, tile_contact
@@ -135,8 +135,8 @@ def _measures(contact: SurfaceContact, steady: SteadyAdhesion) -> dict[str, Any]
     if contact.simulation is not None and not steady.sentence:
         numerical = stated_error(contact.simulation, steady, contact.correlation_length)
     values = {
-        "e_el": contact.elastic_energy,
-        "w_rms": contact.rms,
+        "e_el": contact.e_el,
+        "w_rms": contact.w_rms,
         "correlation_length": contact.correlation_length,
         "w_appr_numerical_error": numerical[0],
         "w_retr_numerical_error": numerical[1],
@@ -226,8 +226,8 @@ class SurfaceContact:
 
     field: TileField
     tolerance: float
-    elastic_energy: float
-    rms: float
+    e_el: float
+    w_rms: float
     correlation_length: float
     simulation: Simulation | None
 
@@ -241,13 +241,11 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
     adhesion = surface_adhesion(surface)
     length = measured_correlation_length(adhesion.work_of_adhesion, adhesion.pixel)
     spectrum, deepest = stated_spectrum(surface), schedule.max_penetration
-    if spectrum is None or adhesion.elastic_energy == 0:
+    if spectrum is None or adhesion.e_el == 0:
         field = tile_contact(adhesion, deepest)
-        return SurfaceContact(
-            field, _TOLERANCE, adhesion.elastic_energy, adhesion.rms, length, None
-        )
+        return SurfaceContact(field, _TOLERANCE, adhesion.e_el, adhesion.w_rms, length, None)
     chosen = chosen_simulation(
-        surface_kind(surface), spectrum, adhesion.elastic_energy, schedule, error=error
+        surface_kind(surface), spectrum, adhesion.e_el, schedule, error=error
     )
     n_point = min(adhesion.work_of_adhesion.shape)
     sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
@@ -262,5 +260,5 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
         adhesion, sizes.n_angle, sizes.spacing, deepest, sizes.interpolation, band_limited=True
     )
     return SurfaceContact(
-        field, chosen.solver.tolerance, adhesion.elastic_energy, adhesion.rms, length, simulation
+        field, chosen.solver.tolerance, adhesion.e_el, adhesion.w_rms, length, simulation
     )

@@ -76,7 +76,7 @@ def run_simulation(
 
     adhesion = simulation_adhesion(simulation)
     field = simulation_field(simulation, adhesion)
-    e_el, w_rms = adhesion.elastic_energy, adhesion.rms
+    e_el, w_rms = adhesion.e_el, adhesion.w_rms
     # The run holds the splines alone, not the tile as well.
     del adhesion
     observers: list[Observer] = [observe]

@@ -12,8 +12,16 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.cycle.instabilities import Instabilities
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState, sphere
-from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, Variable, variables
 from crackfront.core.units import Scales
+from crackfront.core.variables import (
+    ADHESION,
+    ENERGY,
+    FORCE,
+    LATERAL,
+    VERTICAL,
+    Variable,
+    variables,
+)
 from crackfront.data.written_units import unit_value
 
 Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)

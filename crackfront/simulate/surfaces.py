@@ -12,10 +12,10 @@ from xarray import DataArray
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind, chemical_adhesion, rough_adhesion
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.records import LATERAL, Variable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import LATERAL, Variable
 from crackfront.data.files import labelled
 from crackfront.data.tiles import tile_samples
 from crackfront.simulate.contact import simulation_adhesion

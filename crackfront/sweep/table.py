@@ -30,7 +30,7 @@ from crackfront.analysis.table import (
 )
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.fingerprint import fingerprint
-from crackfront.core.records import ADHESION, variables
+from crackfront.core.variables import ADHESION, variables
 from crackfront.data.files import UnreadableFileError, labelled_fields, read_dataset
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import Block, write_records_in_blocks
@@ -150,7 +150,9 @@ def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
 @functools.cache
 def row_fingerprint() -> str:
     """Twelve hexadecimal digits that change with any source that makes a row of a result."""
-    return fingerprint("analysis", "sweep/table.py", "simulate/laws.py", "simulate/laws.csv")
+    return fingerprint(
+        "analysis/steady.py", "sweep/table.py", "simulate/laws.py", "simulate/laws.csv"
+    )
 
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:

@@ -10,9 +10,9 @@ from crackfront.analysis.estimate import REACH, Estimate
 from crackfront.analysis.factors import Factors, expected_factors
 from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.core import jkr
-from crackfront.core.records import variable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
+from crackfront.core.variables import variable
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.tile import zero_load_radius
 

@@ -13,7 +13,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.core.extras import MissingExtraError
+from crackfront.core.optional_libraries import MissingExtraError
 
 Array = NDArray[np.float64]
 

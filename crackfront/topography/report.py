@@ -9,8 +9,8 @@ from typing import Any
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.factors import BRANCHES
-from crackfront.core.records import Variable, variables
 from crackfront.core.units import Scales
+from crackfront.core.variables import Variable, variables
 from crackfront.data.written_units import prefixed
 from crackfront.topography.densities import Density
 from crackfront.topography.measures import MeasuredSurface, RmsMeasure

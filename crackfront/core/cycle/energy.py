@@ -41,4 +41,4 @@ def contact_energy(front: Array, load: float, field: Field) -> float:
     # Within the first sample the product falls linearly to zero at the apex.
     core = np.pi * first_place(field) * np.mean(front_products(innermost, field))
     outside = swept_adhesion(innermost, front, field)
-    return float(field.geometry.elastic_energy(front, load) - outside - core)
+    return float(field.geometry.stored_energy(front, load) - outside - core)

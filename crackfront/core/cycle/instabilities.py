@@ -18,8 +18,8 @@ from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.follow import Load, follow
 from crackfront.core.field.fields import Field
 from crackfront.core.outcome import Direction, Status
-from crackfront.core.records import ENERGY, LATERAL, VERTICAL, variable
 from crackfront.core.solver.relax import Solver
+from crackfront.core.variables import ENERGY, LATERAL, VERTICAL, variable
 
 Array = NDArray[np.float64]
 

@@ -14,8 +14,8 @@ from crackfront.core.cycle.energy import contact_energy, dissipated_energy
 from crackfront.core.cycle.follow import Load, Step, follow
 from crackfront.core.field.fields import Field
 from crackfront.core.outcome import Status
-from crackfront.core.records import ENERGY, STEP, variable
 from crackfront.core.solver.relax import Solver
+from crackfront.core.variables import ENERGY, STEP, variable
 
 Array = NDArray[np.float64]
 

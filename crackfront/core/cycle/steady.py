@@ -59,7 +59,7 @@ class SteadySchedule:
         Largest penetration. (Units: reduced vertical length)
     travel : float
         Way of a smooth front from state to state, in correlation lengths of w_loc.
-    error : float
+    standard_error : float
         Standard error of w_appr at which the approach turns, in units of e_el: that of its k.
 
     Raises
@@ -71,12 +71,13 @@ class SteadySchedule:
     start: float
     max_penetration: float
     travel: float
-    error: float
+    standard_error: float
 
     def __post_init__(self) -> None:
-        for name in ("travel", "error"):
+        for name in ("travel", "standard_error"):
             if not 0 < getattr(self, name) < math.inf:
-                raise ValueError(f"steady {name} is {getattr(self, name)}; it must be positive")
+                told = f"steady {name.replace('_', ' ')} is {getattr(self, name)}"
+                raise ValueError(f"{told}; it must be positive")
         if not 0 <= self.start < self.max_penetration < math.inf:
             raise ValueError(
                 f"steady start {self.start} must be 0 or more and below the largest penetration "
@@ -153,7 +154,7 @@ def _loads(
             for name in ("mean_radius", "apparent_work_of_adhesion", "rms_radius")
         )
         error = standard_error(values, radius, roughness, correlation_length) / elastic_energy
-        if values.size >= _FEWEST_TO_STOP and error <= schedule.error:
+        if values.size >= _FEWEST_TO_STOP and error <= schedule.standard_error:
             break
     lowest = np.min(radius, initial=math.inf)
     last = recorder.states[-1]

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from crackfront.core.compiled import dispatched, jit
 from crackfront.core.outcome import Direction, Relaxation
-from crackfront.core.records import Variable
+from crackfront.core.variables import Variable
 
 Array = NDArray[np.float64]
 
@@ -37,8 +37,8 @@ class Geometry(Protocol):
     def state_type(self) -> type[Any]:
         """Dataclass of what is recorded of a front at rest.
 
-        Its fields are made by :func:`crackfront.core.records.variable`; the first is the load, and
-        one of them the direction.
+        Its fields are made by :func:`crackfront.core.variables.variable`; the first is the load,
+        and one of them the direction.
         """
 
     @property
@@ -52,7 +52,7 @@ class Geometry(Protocol):
     def state(self, found: Relaxation, load: float, direction: Direction, turn: Array) -> Any:
         """What is recorded of a front at rest whose branch began at the front `turn`."""
 
-    def elastic_energy(self, front: Array, load: float) -> float:
+    def stored_energy(self, front: Array, load: float) -> float:
         """Energy of body and line, the derivative of which is f + K u."""
 
     def can_rest_inside(self, place: float, product: float, load: float) -> bool:

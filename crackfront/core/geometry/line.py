@@ -22,8 +22,8 @@ from crackfront.core.compiled import implements
 from crackfront.core.field.fields import Interpolation, TileField, tile_field
 from crackfront.core.geometry import base
 from crackfront.core.outcome import Direction, Relaxation
-from crackfront.core.records import ADHESION, LENGTH, Variable, variable
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, LENGTH, Variable, variable
 
 Array = NDArray[np.float64]
 Value = TypeVar("Value", float, Array)
@@ -118,7 +118,7 @@ class Line(NamedTuple):
             residual=found.residual,
         )
 
-    def elastic_energy(self, front: Array, load: float) -> float:
+    def stored_energy(self, front: Array, load: float) -> float:
         """Energy of springs and line (Units: reduced energy)."""
         springs = self.mean * front + self.stiffness / 2 * (front - load) ** 2
         power = np.abs(rfft(front, norm="forward")) ** 2

@@ -19,8 +19,8 @@ from crackfront.core import jkr
 from crackfront.core.compiled import implements
 from crackfront.core.geometry import base
 from crackfront.core.outcome import Direction, Relaxation
-from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, Variable, variable
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, Variable, variable
 
 Array = NDArray[np.float64]
 Value = TypeVar("Value", float, Array)
@@ -116,11 +116,11 @@ class Sphere(NamedTuple):
             residual=found.residual,
         )
 
-    def elastic_energy(self, front: Array, load: float) -> float:
+    def stored_energy(self, front: Array, load: float) -> float:
         """Energy of the rings of a smooth sphere and of the line (Units: reduced energy)."""
         # No energy is released or stored where an edge in compression advances.
         open_edge = np.maximum(front, math.sqrt(max(load, 0.0)))
-        return float(np.mean(jkr.elastic_energy(open_edge, load))) + line_energy(front)
+        return float(np.mean(jkr.stored_energy(open_edge, load))) + line_energy(front)
 
     def can_rest_inside(self, place: float, product: float, load: float) -> bool:
         """Whether a smooth contact of that work of adhesion has an equilibrium within a radius."""

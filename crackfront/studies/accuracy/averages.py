@@ -11,7 +11,7 @@ from scipy import stats
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
-from crackfront.core.records import ADHESION, variable
+from crackfront.core.variables import ADHESION, variable
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Simulation, numerical_error, stated_error
 from crackfront.studies.accuracy.scenes import Progress, Scene
@@ -40,7 +40,7 @@ LEVEL = 0.92
 _HELD_OUT = 1000
 """Number of the first surface to which no law was fitted."""
 
-_SCHEDULE = SteadySchedule(start=0.0, max_penetration=3.0, travel=1.5, error=0.1)
+_SCHEDULE = SteadySchedule(start=0.0, max_penetration=3.0, travel=1.5, standard_error=0.1)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 import xarray as xr
 
-from crackfront.core.records import Variable, variables
+from crackfront.core.variables import Variable, variables
 from crackfront.data.files import UnreadableFileError, labelled, labelled_fields, read_dataset
 from crackfront.data.records import read_records, stacked
 from crackfront.studies.accuracy.averages import held_out_coverage, sampling_errors

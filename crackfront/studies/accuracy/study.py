@@ -15,8 +15,8 @@ from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.steady import forward_circle
 from crackfront.core.field.fields import TileField
 from crackfront.core.outcome import Direction
-from crackfront.core.records import ADHESION, FORCE, variable
 from crackfront.core.solver.relax import Solver
+from crackfront.core.variables import ADHESION, FORCE, variable
 from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.laws import Knobs
 from crackfront.studies.accuracy.scenes import Progress, Scene, Setting

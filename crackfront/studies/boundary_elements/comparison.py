@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.outcome import Direction
-from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.studies.boundary_elements.cycle import BoundaryCycle
 from crackfront.studies.boundary_elements.front import FrontCycle, perimeter_at, shared_states
 from crackfront.studies.boundary_elements.parameters import Case
@@ -91,7 +91,7 @@ def comparison(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Compar
     return Comparison(
         n_point=case.n_point,
         interaction_range=case.interaction_range,
-        elastic_energy=rough_adhesion(case.heights(), case.pixel).elastic_energy,
+        elastic_energy=rough_adhesion(case.heights(), case.pixel).e_el,
         rotated=int(front.rotated),
         begin=float(np.min(compared, initial=math.inf)),
         force_mean=float(np.mean(force)),

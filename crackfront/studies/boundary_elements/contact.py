@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft2, rfft2
 
 from crackfront.core import jkr
-from crackfront.core.extras import MissingExtraError
+from crackfront.core.optional_libraries import MissingExtraError
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 Array = NDArray[np.float64]

@@ -14,7 +14,7 @@ from scipy.ndimage import map_coordinates
 
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule, loads
-from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.studies.boundary_elements.contact import equilibrium
 from crackfront.studies.boundary_elements.parameters import Case
 

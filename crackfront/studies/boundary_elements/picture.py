@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.core.records import FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.variables import FORCE, LATERAL, VERTICAL, variable
 from crackfront.plots.parts import FORCE_LABEL, HEIGHT_LABEL, PENETRATION_LABEL, label_panel
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.studies.boundary_elements.cycle import N_ANGLE, BoundaryCycle

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.extras import MissingExtraError
-from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.optional_libraries import MissingExtraError
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.studies.boundary_elements.comparison import (

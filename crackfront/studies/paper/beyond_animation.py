@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crackfront.core import jkr
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.plots.parts import FORCE_LABEL, PENETRATION_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
@@ -34,7 +34,7 @@ _PATCH_POINTS = 400
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class AnimatedCycle:
     """All states of a cycle with their fronts, and the field."""
 
     status: str = variable("what ended the cycle", "1")
@@ -53,7 +53,7 @@ class Motion:
     patch: NDArray[np.float32] = variable("local work of adhesion", ADHESION, _X, _Y)
 
 
-def motion(parameters: RoughCycleParameters, progress: Progress) -> Motion:
+def motion(parameters: RoughCycleParameters, progress: Progress) -> AnimatedCycle:
     """A full cycle with all its fronts.
 
     Raises
@@ -72,9 +72,9 @@ def motion(parameters: RoughCycleParameters, progress: Progress) -> Motion:
         raise ValueError(f"the cycle ended early: {record.status.value}")
     reach = 1.08 * record.states.max_radius.max()
     axis = np.linspace(-reach, reach, _PATCH_POINTS)
-    return Motion(
+    return AnimatedCycle(
         status=record.status.value,
-        elastic_energy=adhesion.elastic_energy,
+        elastic_energy=adhesion.e_el,
         end_penetration=record.end_load,
         direction=record.states.direction,
         penetration=record.states.penetration,
@@ -90,7 +90,7 @@ def motion(parameters: RoughCycleParameters, progress: Progress) -> Motion:
     )
 
 
-def motion_checks(shown: Motion) -> tuple[Check, ...]:
+def motion_checks(shown: AnimatedCycle) -> tuple[Check, ...]:
     """What must be true of every frame."""
     approach = shown.direction > 0
     moved = shown.direction[1:, None] * np.diff(shown.front, axis=0)
@@ -129,7 +129,7 @@ def motion_checks(shown: Motion) -> tuple[Check, ...]:
     )
 
 
-def _loop_work(shown: Motion) -> float:
+def _loop_work(shown: AnimatedCycle) -> float:
     """Loop integral of F db, in which each front is held while the penetration changes."""
     ends = np.append(shown.penetration[1:], shown.end_penetration)
     held = np.mean(jkr.force(shown.front, ends[:, None]), axis=1)
@@ -140,7 +140,7 @@ _LAST_FRAMES = 10
 """Frames without contact at the end."""
 
 
-def motion_figure(shown: Motion) -> Drawing:
+def motion_figure(shown: AnimatedCycle) -> Drawing:
     """The last frame with contact, and the whole loop."""
     animation = motion_animation(shown)
     with house_style():
@@ -148,7 +148,7 @@ def motion_figure(shown: Motion) -> Drawing:
         return animation.figure
 
 
-def motion_animation(shown: Motion) -> Animation:
+def motion_animation(shown: AnimatedCycle) -> Animation:
     """The front over the field beside the loop: one frame a state, and some without contact."""
     from crackfront.plots.animation import Animation
     from crackfront.plots.fronts import closed_front, draw_field
@@ -184,7 +184,7 @@ def motion_animation(shown: Motion) -> Animation:
     return Animation(figure, (line, title, *branches.values(), point), last + _LAST_FRAMES, show)
 
 
-def _draw_axes(axes: Axes, shown: Motion) -> None:
+def _draw_axes(axes: Axes, shown: AnimatedCycle) -> None:
     """Axes that hold the whole loop."""
     axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
     for values, setter, above in (
@@ -200,7 +200,7 @@ def _draw_axes(axes: Axes, shown: Motion) -> None:
 FIGURE = Figure(
     title="Animation: the fronts of a cycle over the field, beside its loop",
     parameters=RoughCycleParameters,
-    record=Motion,
+    record=AnimatedCycle,
     compute=motion,
     checks=motion_checks,
     draw=motion_figure,

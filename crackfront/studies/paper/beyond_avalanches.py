@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.power_law import PowerLaw, truncated_power_law
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.instabilities import resolved_motion, swept_clusters
-from crackfront.core.records import ADHESION, ENERGY, LATERAL, VERTICAL, variable
+from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.data.section import Positive
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.studies.paper.figure import Check, Figure, Progress
@@ -179,7 +179,7 @@ def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -
         avalanches=avalanches,
         smooth_area=areas[0] / sum(areas),
         circle_length=2 * np.pi * middle / float(circle_stiffness(middle, (start + stop) / 2)),
-        rms=contact.rms,
+        rms=contact.w_rms,
         larkin_length=contact.larkin_length,
     )
 

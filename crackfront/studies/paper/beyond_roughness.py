@@ -11,7 +11,7 @@ from pydantic import model_validator
 from scipy.fft import rfft
 from scipy.stats import t as student
 
-from crackfront.core.records import ADHESION, LATERAL, variable
+from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.parts import legend_entries
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
@@ -149,7 +149,7 @@ def _surface(parameters: RoughnessParameters, energy: float, realisation: int) -
         power=power.mean(axis=0),
         radius=float(circles.mean()),
         ring_stiffness=float(circle_stiffness(circles, loads).mean()),
-        rms=contact.rms,
+        rms=contact.w_rms,
         larkin_length=contact.larkin_length,
     )
 

@@ -15,9 +15,9 @@ from crackfront.core.cycle.follow import Load, follow
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import RayField, polar_field
 from crackfront.core.outcome import Direction, Status
-from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Positive, Section, refusal
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL, draw_arrow
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style

@@ -16,9 +16,9 @@ from crackfront.core.cycle.follow import Load, Step, follow
 from crackfront.core.cycle.schedule import LoadSchedule, loads
 from crackfront.core.field.fields import RayField, polar_field
 from crackfront.core.outcome import Status
-from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive, Section, refusal
 from crackfront.plots.parts import (
     FORCE_LABEL,

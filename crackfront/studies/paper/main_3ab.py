@@ -16,7 +16,7 @@ from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.instabilities import Motion, measured_instabilities, resolved_motion
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.outcome import Direction
-from crackfront.core.records import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLUE, PAGE, PURPLE, VERMILION, blank_figure, house_style
@@ -130,7 +130,7 @@ class _Branch:
     def energy_change(self) -> float:
         """By how much the energy of the contact changed, of its first and last front alone."""
         first, last = self.steps[0], self.steps[-1]
-        held = jkr.elastic_energy(first.before, last.end) - jkr.elastic_energy(
+        held = jkr.stored_energy(first.before, last.end) - jkr.stored_energy(
             first.before, first.start
         )
         fall = dissipated_energy(first.before, last.after, last.end, self.contact.field)
@@ -164,7 +164,7 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
         short_cutoff=parameters.short_cutoff,
         travel=travel,
         elastic_energy=np.array([parameters.strong, parameters.weak]),
-        rms=np.array([contact.rms for contact in contacts]),
+        rms=np.array([contact.w_rms for contact in contacts]),
         larkin_length=np.array([contact.larkin_length for contact in contacts]),
         work=np.array([branch.work for branch in retractions]),
         energy_change=np.array([branch.energy_change for branch in retractions]),

@@ -16,9 +16,9 @@ from crackfront.core import jkr
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.schedule import loads
 from crackfront.core.field.rays import front_adhesion
-from crackfront.core.records import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Positive
 from crackfront.plots.parts import ADHESION_LABEL, field_colours
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
@@ -113,7 +113,7 @@ def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedL
     """
     simulation = parameters.simulation()
     adhesion = simulation_adhesion(simulation)
-    progress(f"surface: e_el {adhesion.elastic_energy:.4f}, w_rms {adhesion.rms:.4f} w_int")
+    progress(f"surface: e_el {adhesion.e_el:.4f}, w_rms {adhesion.w_rms:.4f} w_int")
     field = simulation_field(simulation, adhesion)
     fronts: list[Array] = []
 
@@ -130,7 +130,7 @@ def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedL
     if steady.sentence:
         raise ValueError(steady.sentence)
     numerical = stated_error(simulation, steady, correlation_length)
-    circle = jkr.equilibrium_radius(0.0, 1 - adhesion.elastic_energy)
+    circle = jkr.equilibrium_radius(0.0, 1 - adhesion.e_el)
     front = np.stack([*fronts, np.full(fronts[0].size, circle)])
     across = (np.arange(_PATCH_POINTS) / (_PATCH_POINTS - 1) - 0.5) * parameters.patch_side
     x = across + np.mean([front[0, 0], front[1, 0]])
@@ -139,7 +139,7 @@ def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedL
         short_cutoff=parameters.short_cutoff,
         roll_off=parameters.roll_off,
         hurst=parameters.hurst,
-        elastic_energy=adhesion.elastic_energy,
+        elastic_energy=adhesion.e_el,
         direction=record.states.direction,
         penetration=record.states.penetration,
         mean_radius=record.states.mean_radius,

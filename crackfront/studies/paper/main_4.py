@@ -14,10 +14,10 @@ from scipy.fft import fft2, fftfreq
 from scipy.ndimage import maximum_filter
 
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
-from crackfront.core.records import ADHESION, LATERAL, VERTICAL, variable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field, tile_mean_square
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Energy, Positive, Section, refusal
 from crackfront.plots.parts import HEIGHT_LABEL, LENGTH_LABEL, label_panel
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
@@ -125,7 +125,7 @@ def mapping(parameters: MappingParameters, progress: Progress) -> Mapping:
     heights = gaussian_field(spectrum, parameters.n_point, parameters.side, rng)
     tile = rough_adhesion(heights, pixel)
     adhesion = tile.work_of_adhesion / WORK_OF_ADHESION
-    progress(f"tile of {parameters.n_point} points a side: w_rms = {tile.rms:.4f} w_int")
+    progress(f"tile of {parameters.n_point} points a side: w_rms = {tile.w_rms:.4f} w_int")
     shown = slice(0, min(round(parameters.patch / pixel) + 1, parameters.n_point))
     patch = heights[shown, shown]
     # From a mean square half-derivative to an energy of full conformity.
@@ -141,8 +141,8 @@ def mapping(parameters: MappingParameters, progress: Progress) -> Mapping:
         asked_energy=parameters.elastic_energy,
         mode_energy=stiffness * expected,
         energy_error=stiffness * deviation,
-        energy=tile.elastic_energy,
-        rms=tile.rms,
+        energy=tile.e_el,
+        rms=tile.w_rms,
         mean=float(adhesion.mean()),
         peak_mean=float(adhesion[_maxima(heights)].mean()),
         valley_mean=float(adhesion[_maxima(-heights)].mean()),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
-from crackfront.core.records import variable
+from crackfront.core.variables import variable
 from crackfront.data.section import Positive, refusal
 from crackfront.plots.densities import (
     CONVERTED_LABEL,

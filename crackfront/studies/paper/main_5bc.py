@@ -20,9 +20,9 @@ from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.outcome import Status
-from crackfront.core.records import variable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
+from crackfront.core.variables import variable
 from crackfront.data.section import InputFile, Positive, refusal
 from crackfront.plots.style import BLACK, BLUE, ORANGE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
@@ -213,7 +213,7 @@ def nanodiamond_contact(
     if steady.sentence:
         raise ValueError(steady.sentence)
     states, points, surface = record.states, parameters.points(), scales.work_of_adhesion
-    energy, whole = adhesion.elastic_energy * surface, parameters.whole_elastic_energy
+    energy, whole = adhesion.e_el * surface, parameters.whole_elastic_energy
     simulated = ForceRadius(
         states.force * scales.force, states.mean_radius * scales.lateral, states.direction
     )

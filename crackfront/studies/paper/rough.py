@@ -177,8 +177,8 @@ class DisorderParameters(Section):
         return RoughContact(
             field=simulation_field(simulation, adhesion),
             solver=Newton(min(tolerance, simulation.solver.tolerance)),
-            rms=adhesion.rms,
-            larkin_length=larkin_length(spectrum.correlation_length, adhesion.rms),
+            w_rms=adhesion.w_rms,
+            larkin_length=larkin_length(spectrum.correlation_length, adhesion.w_rms),
         )
 
 
@@ -218,15 +218,15 @@ class RoughContact:
         Work of adhesion along the rays.
     solver : Solver
         How its fronts are found.
-    rms : float
-        w_rms measured on the tile. (Units: w_int)
+    w_rms : float
+        Measured on the tile. (Units: w_int)
     larkin_length : float
         Larkin length. (Units: reduced lateral length)
     """
 
     field: TileField
     solver: Solver
-    rms: float
+    w_rms: float
     larkin_length: float
 
     def touched(self, penetration: float) -> Array:

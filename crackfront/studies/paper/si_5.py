@@ -14,7 +14,7 @@ from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
-from crackfront.core.records import ADHESION, LATERAL, variable
+from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.data.section import Section
 from crackfront.plots.style import PAGE, blank_figure, house_style
 from crackfront.studies.paper.figure import Check, Figure, Progress

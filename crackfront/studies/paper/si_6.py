@@ -12,8 +12,8 @@ from pydantic import Field, model_validator
 from scipy.signal import periodogram
 
 from crackfront.core.adhesion import half_derivative_mean_square
-from crackfront.core.records import variable
 from crackfront.core.synthesis import gaussian_field, tile_mean_square
+from crackfront.core.variables import variable
 from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.densities import (
     CONVERTED_LABEL,
