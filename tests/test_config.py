@@ -192,7 +192,7 @@ def test_steady_loads_are_read_in_both_units(tmp_path):
     content["load"]["steady"]["start"] *= scales.vertical
     metres = load_configuration(written(tmp_path, yaml.safe_dump(content))).schedule
     assert metres.start == pytest.approx(0.25, rel=1e-14)
-    assert (metres.travel, metres.error) == (2.0, 0.1)
+    assert (metres.travel, metres.standard_error) == (2.0, 0.1)
 
 
 BAD = {

@@ -90,7 +90,7 @@ def test_it_passes_the_same_radii_in_both_directions_and_not_many_more():
 def test_the_approach_ends_when_the_requested_error_is_met():
     found = {}
     for error in (1e-6, 0.45, 1.0):
-        record = run_simulation(simulation(schedule=replace(SCHEDULE, error=error))).record
+        record = run_simulation(simulation(schedule=replace(SCHEDULE, standard_error=error))).record
         steady = (record.states.direction > 0) & (record.states.least_travel >= LENGTH)
         values, radius = (
             record.states.apparent_work_of_adhesion[steady],
@@ -190,7 +190,7 @@ def test_the_standard_error_covers_the_scatter_between_realisations():
     ("change", "sentence"),
     [
         ({"travel": 0.0}, "steady travel is 0.0; it must be positive"),
-        ({"error": math.inf}, "steady error is inf; it must be positive"),
+        ({"standard_error": math.inf}, "steady standard error is inf; it must be positive"),
         ({"start": 1.0}, "start 1.0 must be 0 or more and below the largest penetration 1.0"),
         ({"start": -0.1}, "start -0.1 must be 0 or more"),
         ({"max_penetration": math.nan}, "below the largest penetration nan"),

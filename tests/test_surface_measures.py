@@ -26,9 +26,7 @@ def test_the_energy_of_full_conformity_is_that_of_the_library(measured):
     half = topography.moment_power_spectrum(order=1)
     assert half == pytest.approx(half_derivative_mean_square(heights, SIDE / N_POINT), rel=1e-10)
     energy = CONTACT_MODULUS / 4 * half / WORK_OF_ADHESION
-    assert energy == pytest.approx(
-        rough_adhesion(heights, SIDE / N_POINT).e_el, rel=1e-10
-    )
+    assert energy == pytest.approx(rough_adhesion(heights, SIDE / N_POINT).e_el, rel=1e-10)
 
 
 @pytest.mark.parametrize("order", [0.0, 0.5, 1.0])

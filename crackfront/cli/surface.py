@@ -149,7 +149,7 @@ def predict(
 
     SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
     the surface or several. w = w_int - e_el -+ k e_el with k by the simulations of this project
-    (crackfront/factors.csv).
+    (crackfront/analysis/factors.csv).
     """
     from crackfront.plots.style import save_figure
     from crackfront.topography.drawing import prediction_figure

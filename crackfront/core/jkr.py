@@ -42,10 +42,7 @@ def energy_release_rate(radius: ArrayLike, penetration: ArrayLike) -> Array:
     An edge in compression (a^2 < b) releases nothing when it opens; leaving K^2 there would
     create equilibria that do not exist.
 
-    Parameters
-    ----------
-    radius, penetration : array_like
-        As in :func:`stress_intensity`.
+    Arguments are as of :func:`stress_intensity`.
 
     Returns
     -------
@@ -64,10 +61,7 @@ def energy_release_rate(radius: ArrayLike, penetration: ArrayLike) -> Array:
 def force(radius: ArrayLike, penetration: ArrayLike) -> Array:
     """Normal force F = 4/3 E' a^3 + 2 a E' (b - a^2).
 
-    Parameters
-    ----------
-    radius, penetration : array_like
-        As in :func:`stress_intensity`.
+    Arguments are as of :func:`stress_intensity`.
 
     Returns
     -------
@@ -85,10 +79,7 @@ def stored_energy(radius: ArrayLike, penetration: ArrayLike) -> Array:
 
     Its derivative in b is the force, in a it is 2 pi a G.
 
-    Parameters
-    ----------
-    radius, penetration : array_like
-        As in :func:`stress_intensity`.
+    Arguments are as of :func:`stress_intensity`.
 
     Returns
     -------
@@ -155,10 +146,7 @@ def penetration_slope(penetration: float) -> float:
 def equilibrium_force(radius: ArrayLike, work_of_adhesion: ArrayLike = 1.0) -> Array:
     """Force of a smooth contact of this radius in equilibrium, F = a^3 - sqrt(6 w a^3).
 
-    Parameters
-    ----------
-    radius, work_of_adhesion : array_like
-        As in :func:`equilibrium_penetration`.
+    Arguments are as of :func:`equilibrium_penetration`.
 
     Returns
     -------
@@ -266,10 +254,7 @@ def pull_off_force(work_of_adhesion: float = 1.0) -> float:
 def apparent_work_of_adhesion(radius: ArrayLike, penetration: ArrayLike) -> Array:
     """Work of adhesion that a smooth sphere would need for this radius and penetration.
 
-    Parameters
-    ----------
-    radius, penetration : array_like
-        As in :func:`stress_intensity`.
+    Arguments are as of :func:`stress_intensity`.
 
     Returns
     -------

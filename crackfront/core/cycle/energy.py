@@ -31,7 +31,7 @@ def dissipated_energy(before: Array, after: Array, load: float, field: Field) ->
         negative, by no more than the integral of -w_loc over those places.
         (Units: pi w_int R times a reduced vertical length)
     """
-    elastic = field.geometry.elastic_energy
+    elastic = field.geometry.stored_energy
     return elastic(before, load) - elastic(after, load) + swept_adhesion(before, after, field)
 
 

@@ -143,19 +143,7 @@ class DisorderParameters(Section):
     def contact(
         self, elastic_energy: float, tolerance: float, realisation: int = 0, least_angles: int = 4
     ) -> RoughContact:
-        """Contact with one surface.
-
-        Parameters
-        ----------
-        elastic_energy : float
-            e_el. (Units: w_int)
-        tolerance : float
-            Largest force along the motion that may be left, relative to w_int per front length.
-        realisation : int, optional
-            Number of the surface.
-        least_angles : int, optional
-            Fewest sites of the front.
-        """
+        """Contact with one surface: e_el in units of w_int, `least_angles` sites or more."""
         spectrum = flat_spectrum(self.short_cutoff)
         side = _SIDE * jkr.equilibrium_radius(self.max_penetration)
         simulation = simulation_of(
@@ -315,20 +303,7 @@ def whole_cycle(status: str) -> Check:
 
 
 def patch_of(field: TileField, x: Array, y: Array) -> NDArray[np.float32]:
-    """Work of adhesion around the apex, as the front feels it.
-
-    Parameters
-    ----------
-    field : TileField
-        Field on a tile.
-    x, y : (n_x,) and (n_y,) arrays
-        Abscissae and ordinates. (Units: reduced lateral length)
-
-    Returns
-    -------
-    (n_x, n_y) float32 array
-        Work of adhesion. (Units: w_int)
-    """
+    """Work of adhesion in units of w_int around the apex, as the front feels it, (n_x, n_y)."""
     coefficients = field.coefficients[:-3, :-3]
     places = [
         axis * field.inverse_pixel + n_point / 2

@@ -154,19 +154,9 @@ def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> S
 def profile_periodogram(heights: Array, pixel: float) -> Array:
     """Density of the lines along x of a periodic map, averaged over all of them.
 
-    Parameters
-    ----------
-    heights : (n_x, n_y) array
-        Map; n_x is even. (Units: length)
-    pixel : float
-        Grid spacing. (Units: length)
-
-    Returns
-    -------
-    (n_x / 2 - 1,) array
-        C_1D at the wavevectors 2 pi m / (n_x pixel), m = 1, 2, ..., below the Nyquist one; its sum
-        times the spacing, divided by pi, is the mean square height about the mean of a line.
-        (Units: length**3)
+    The map is (n_x, n_y) with even n_x. C_1D stands at the wavevectors 2 pi m / (n_x pixel),
+    m = 1, 2, ..., below the Nyquist one; its sum times the spacing, divided by pi, is the mean
+    square height about the mean of a line.
     """
     _, density = periodogram(heights, fs=1 / pixel, axis=0, detrend=False)
     # One-sided in the frequency q / 2 pi; C_1D is one half of it.
