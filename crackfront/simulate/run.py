@@ -33,7 +33,7 @@ class SimulationResult:
 
 @dataclass(frozen=True, slots=True)
 class PartialRun:
-    """A simulation that has not ended yet, with its costs so far, as in :class:`RunMeasures`."""
+    """A simulation that has not ended yet, with its costs so far, as in `RunMeasures`."""
 
     simulation: Simulation
     checkpoint: Checkpoint

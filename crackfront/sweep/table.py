@@ -58,7 +58,7 @@ def write_hysteresis(
     path, sweep, origin
         The file, what it is about, and where it comes from.
     rows : iterable of SweepRow
-        One for each simulation, in the order of :meth:`Sweep.simulations`.
+        One for each simulation, in the order of :meth:`crackfront.sweep.sweep.Sweep.simulations`.
 
     Returns
     -------
