@@ -4,7 +4,7 @@ python -m benchmarks.costs --output results/benchmark
 
 Every row of `costs.csv` is one simulation, run several times unless that takes long: the least
 counts, since the speed of a processor varies by a quarter over minutes. Copied to
-`crackfront/costs.csv`, it is what `crackfront plan` predicts from.
+`crackfront/simulate/costs.csv`, it is what `crackfront plan` predicts from.
 """
 
 from __future__ import annotations
