@@ -49,6 +49,7 @@ numpydoc_validation_checks = {
     "SS02",
     "SS04",
     "PR02",
+    "PR03",
     "PR05",
     "PR06",
     "PR10",

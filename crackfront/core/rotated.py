@@ -92,7 +92,7 @@ def adhesion_on_rays(
 
     Parameters
     ----------
-    heights, pixel, rotated
+    heights, pixel
         As in :func:`rotated_field`.
     angles : (n_angle,) array
         Angles of the rays. (Units: rad)
@@ -101,6 +101,8 @@ def adhesion_on_rays(
         (Units: reduced lateral length)
     n_sample : int
         Points of a ray.
+    rotated : bool, optional
+        As in :func:`rotated_field`.
 
     Returns
     -------

@@ -64,14 +64,16 @@ def write_records_in_blocks(
 
     Parameters
     ----------
-    path, origin
-        As of :func:`write_record`.
+    path : Path
+        The file.
     dataset : xarray.Dataset
         Coordinates of the dimensions that count the records, and attributes.
     known : sequence of Variable
         Variables of the records, all of these dimensions alone.
     blocks : iterable of Block
         All records.
+    origin : Provenance
+        Where they come from.
     """
 
     def fill(part: Path) -> None:

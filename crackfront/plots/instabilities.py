@@ -72,12 +72,14 @@ def draw_patches(
 
     Parameters
     ----------
-    axes, energy, travel
-        As of :func:`draw_instabilities`.
+    axes : Axes
+        Where to draw.
     angle : (n_jump, n_angle) array
         Angles of the sites of each front. (Units: rad)
     fronts : two (n_jump, n_angle) arrays
         Fronts before and after. (Units: reduced lateral length)
+    energy, travel
+        As of :func:`draw_instabilities`.
     shades : ScalarMappable
         Colours of the energies.
     apex : float, optional

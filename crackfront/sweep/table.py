@@ -55,10 +55,12 @@ def write_hysteresis(
 
     Parameters
     ----------
-    path, sweep, origin
-        The file, what it is about, and where it comes from.
+    path, sweep
+        The file and what it is about.
     rows : iterable of SweepRow
         One for each simulation, in the order of :meth:`crackfront.sweep.sweep.Sweep.simulations`.
+    origin : Provenance
+        Where they come from.
 
     Returns
     -------
