@@ -70,14 +70,13 @@ def test_memory_is_predicted_within_a_factor_one_and_a_half():
     code = (
         "from pathlib import Path\n"
         "from dataclasses import replace\n"
-        "import crackfront.data\n"
         "from crackfront.sweep.configuration import load_configuration\n"
         "from crackfront.simulate.costs import expected_cost\n"
-        "from crackfront.simulate import run_simulation\n"
+        "from crackfront.simulate.run import run_simulation\n"
         f"sweep = load_configuration(Path({str(ROOT / 'config/test.yaml')!r}))\n"
         "one = sweep.simulation(sweep.spectra[0], 0.1, 0)\n"
         "one = replace(one, resolution=replace(one.resolution, n_point=2500))\n"
-        "print(run_simulation(one).peak_memory / expected_cost(one).memory)\n"
+        "print(run_simulation(one).measures.peak_memory / expected_cost(one).memory)\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=200, check=True
