@@ -37,10 +37,12 @@ SIMULATION = Simulation(
     solver=Reference(1e-6, max_sweeps=100_000),
 )
 
+CYCLE = LoadSchedule(1.0, 0.1)
+
 
 def test_the_tile_resolves_the_cutoff_and_holds_the_roll_off():
     spectrum = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.7, hurst=0.5)
-    sizes = resolution(spectrum, NUMERICS, KNOBS, 1.0)
+    sizes = resolution(spectrum, NUMERICS, KNOBS, CYCLE)
     assert sizes.tile_side == pytest.approx(7.0, rel=1e-15)
     assert sizes.tile_side / sizes.n_point <= 0.1 / 4
     assert sizes.spacing == 0.1 / 4
@@ -48,12 +50,12 @@ def test_the_tile_resolves_the_cutoff_and_holds_the_roll_off():
 
 def test_a_flat_spectrum_gets_the_smallest_tile_in_cutoffs():
     flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=0.5)
-    assert resolution(flat, NUMERICS, KNOBS, 1.0).tile_side == 2.0
+    assert resolution(flat, NUMERICS, KNOBS, CYCLE).tile_side == 2.0
 
 
 def test_the_front_has_enough_sites_for_the_largest_circle_and_fast_transforms():
     spectrum = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=0.5)
-    n_angle = resolution(spectrum, NUMERICS, KNOBS, 1.0).n_angle
+    n_angle = resolution(spectrum, NUMERICS, KNOBS, CYCLE).n_angle
     least = 2 * np.pi * jkr.equilibrium_radius(1.0) / 0.1 * 2
     assert n_angle % 2 == 0
     assert least <= n_angle < 1.2 * least
@@ -64,7 +66,7 @@ def test_the_front_has_enough_sites_for_the_largest_circle_and_fast_transforms()
 
 
 def test_given_angles_are_taken_as_they_are():
-    assert resolution(SIMULATION.spectrum, NUMERICS, replace(KNOBS, angles=90), 1.0).n_angle == 90
+    assert resolution(SIMULATION.spectrum, NUMERICS, replace(KNOBS, angles=90), CYCLE).n_angle == 90
 
 
 @pytest.mark.parametrize(

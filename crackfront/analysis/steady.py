@@ -52,6 +52,7 @@ class SteadyMeasures:
     n_retraction: int = variable("states that w_retr averages", "1")
     lowest_radius: float = variable("smallest mean radius of the steady window", LATERAL)
     highest_radius: float = variable("largest mean radius of the steady window", LATERAL)
+    front_rms: float = variable("rms deviation of the steady front from its mean", LATERAL)
 
 
 @dataclass(frozen=True)
@@ -125,6 +126,58 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
         n_retraction=counts[1],
         lowest_radius=lowest,
         highest_radius=highest,
+        front_rms=float(np.mean(states.rms_radius[branches[0] | branches[1]])),
+    )
+
+
+def period_adhesion(
+    record: CycleRecord, n_period: int, mean: float, correlation_length: float
+) -> SteadyAdhesion:
+    """Mean apparent work of adhesion of a straight front over one period of its tile.
+
+    Parameters
+    ----------
+    record : CycleRecord
+        States of a line, forward and back.
+    n_period : int
+        States at the end of each branch that are one period.
+    mean : float
+        Mean work of adhesion of the tile. (Units: w_int)
+    correlation_length : float
+        That of w_loc. (Units: reduced lateral length)
+    """
+    states = record.states
+    branches = [np.flatnonzero(sign * states.direction > 0)[-n_period:] for sign in (1, -1)]
+    if min(branch.size for branch in branches) < n_period:
+        counts = branches[0].size, branches[1].size
+        return _no_value(counts, f"the front was left before it had passed the tile: {counts}")
+    values = mean - states.pinning_force
+    w_appr, w_retr = (float(np.mean(values[branch])) for branch in branches)
+    errors = [
+        standard_error(
+            values[branch],
+            states.mean_position[branch],
+            states.rms_position[branch],
+            correlation_length,
+        )
+        for branch in branches
+    ]
+    return SteadyAdhesion(
+        w_appr=w_appr,
+        w_retr=w_retr,
+        w_appr_error=errors[0],
+        w_retr_error=errors[1],
+        hysteresis=w_retr - w_appr,
+        midpoint=(w_retr + w_appr) / 2,
+        # What pulls the springs is the force.
+        w_appr_from_force=w_appr,
+        w_retr_from_force=w_retr,
+        hysteresis_from_force=w_retr - w_appr,
+        n_approach=n_period,
+        n_retraction=n_period,
+        lowest_radius=math.nan,
+        highest_radius=math.nan,
+        front_rms=float(np.mean(states.rms_position[np.concatenate(branches)])),
     )
 
 
@@ -145,4 +198,4 @@ def _adhesion_from_force(radius: Array, force: Array) -> float:
 def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
     """A result without values, and why."""
     nan = math.nan
-    return SteadyAdhesion(*(nan,) * 9, *counts, nan, nan, sentence)
+    return SteadyAdhesion(*(nan,) * 9, *counts, nan, nan, nan, sentence)

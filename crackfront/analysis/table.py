@@ -27,6 +27,7 @@ class RunMeasures:
 
     e_el: float = variable("energy of full conformity measured on the tile", ADHESION)
     w_rms: float = variable("rms of the local work of adhesion measured on the tile", ADHESION)
+    negative_share: float = variable("part of the tile where w_loc is negative", "1")
     seconds: float = variable("wall time of synthesis and cycle", "s")
     cpu_seconds: float = variable("processor time of synthesis and cycle", "s")
     peak_memory: float = variable(
@@ -61,6 +62,7 @@ class SweepAxes:
     correlation_length: Array = variable(
         "wavelength of the mean wavevector of w", LATERAL, SPECTRUM
     )
+    spring: Array = variable("springs of a straight front, L_kappa; else NaN", LATERAL, *_SHAPE)
     n_angle: NDArray[np.int64] = variable("sites of the front", "1", *_SHAPE)
     sample_spacing: Array = variable("distance of samples along a ray", LATERAL, *_SHAPE)
     tile_side: Array = variable("side of the periodic tile", LATERAL, SPECTRUM)

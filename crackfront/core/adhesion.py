@@ -198,3 +198,37 @@ def correlation_length(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
     if kind == "roughness":
         return spectrum.correlation_length
     return 2 * np.pi * spectrum.mean_square(0.0) / spectrum.mean_square(0.5)
+
+
+def larkin_length(kind: FieldKind, spectrum: SelfAffineSpectrum, w_rms: float) -> float:
+    r"""Length over which weak disorder bends the front by as much as its force is correlated over.
+
+    .. math:: \ell = 2 \pi \, \frac{w_{int}\, \xi_u}{f_2}, \quad
+              \xi_u^2 = \frac{\Delta(0)}{-\Delta''(0)}, \quad
+              f_2 = \frac{w_{rms}^2}{w_{int}}
+
+    with the correlator :math:`\Delta(u)` of w_loc integrated along the front, whose spectrum is
+    :math:`C_w(q, 0)`, and the pinning force f_2 of second-order perturbation theory. For roughness
+    :math:`\xi_u` is the rms height over the rms slope. docs/law.md derives it.
+
+    Parameters
+    ----------
+    kind : {"roughness", "chemical"}
+        What the spectrum describes.
+    spectrum : SelfAffineSpectrum
+        Its shape. (Units: length)
+    w_rms : float
+        Rms of the local work of adhesion. (Units: w_int)
+
+    Returns
+    -------
+    float
+        Larkin length. (Units: length)
+    """
+    return 2 * np.pi * force_correlation_length(kind, spectrum) / w_rms**2
+
+
+def force_correlation_length(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
+    """Distance over which the force on a front is correlated, xi_u of :func:`larkin_length`."""
+    order = 0.0 if kind == "roughness" else -0.5
+    return float(np.sqrt(spectrum.mean_square(order) / spectrum.mean_square(order + 1)))

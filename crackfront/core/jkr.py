@@ -236,6 +236,45 @@ def radius_at_force(force: float, work_of_adhesion: float = 1.0) -> float:
     return float(root ** (2 / 3))
 
 
+def spring(radius: float, work_of_adhesion: float = 1.0) -> float:
+    r"""Length of the spring that holds a piece of the edge, L_kappa.
+
+    .. math:: L_\kappa = \frac{w_{int}}{dG/da} = \frac{a}{\sqrt{6 a^3 w} - w}
+
+    Parameters
+    ----------
+    radius : float
+        Contact radius a. (Units: reduced lateral length)
+    work_of_adhesion : float, optional
+        Apparent work of adhesion w, relative to w_int.
+
+    Returns
+    -------
+    float
+        Length over which the edge is as stiff against a wave as against the penetration, at which
+        it is fixed. (Units: reduced lateral length)
+
+    Raises
+    ------
+    ValueError
+        If the radius is that of pull-off or smaller, where nothing holds the edge.
+
+    Examples
+    --------
+    A third of the radius at zero penetration, a fifth at zero force:
+
+    >>> [round(a / spring(a), 9) for a in ((8 / 3) ** (1 / 3), 6 ** (1 / 3))]
+    [3.0, 5.0]
+    """
+    stiffness = math.sqrt(6 * radius**3 * work_of_adhesion) - work_of_adhesion
+    if not stiffness > 0:
+        raise ValueError(
+            f"contact radius {radius:g} is at or below that of pull-off "
+            f"({pull_off_radius(work_of_adhesion):.4g}), where nothing holds the edge; enlarge it"
+        )
+    return radius / stiffness
+
+
 def pull_off_radius(work_of_adhesion: float = 1.0) -> float:
     """Radius at which contact is lost at fixed penetration, a^3 = w / 6."""
     return float((work_of_adhesion / 6) ** (1 / 3))

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import irfft2
+from scipy.fft import irfft, irfft2
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 
@@ -14,7 +14,10 @@ Array = NDArray[np.float64]
 
 
 def gaussian_field(
-    spectrum: SelfAffineSpectrum, n_point: int, length: float, rng: np.random.Generator
+    spectrum: SelfAffineSpectrum,
+    n_point: int | tuple[int, int],
+    length: float | tuple[float, float],
+    rng: np.random.Generator,
 ) -> Array:
     """Periodic Gaussian random field with uncorrelated phases.
 
@@ -26,16 +29,16 @@ def gaussian_field(
     ----------
     spectrum : SelfAffineSpectrum
         Spectrum of the field. (Lengths in the unit of `length`)
-    n_point : int
-        Points along each side of the tile.
-    length : float
-        Side of the tile. (Units: length)
+    n_point : int or (n_x, n_y)
+        Points along the sides of the tile.
+    length : float or (l_x, l_y)
+        Its sides. (Units: length)
     rng : numpy.random.Generator
         Source of the noise.
 
     Returns
     -------
-    (n_point, n_point) array
+    (n_x, n_y) array
         Field with zero mean, first axis x, second axis y. (Units: sqrt(plateau) / length)
 
     Raises
@@ -48,37 +51,85 @@ def gaussian_field(
     ----------
     .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. II.
     """
+    n_x, n_y = (n_point, n_point) if isinstance(n_point, int) else n_point
+    l_x, l_y = length if isinstance(length, tuple) else (length, length)
+    highest_x, kept_x = _modes(spectrum.short_cutoff, n_x, l_x)
+    highest_y, kept_y = _modes(spectrum.short_cutoff, n_y, l_y)
+    step = 2 * np.pi / l_y
+    columns = np.arange(highest_y + 1)
+    modes = np.zeros((n_x, n_y // 2 + 1), dtype=complex)
+    for row in range(-highest_x, highest_x + 1):
+        noise = rng.standard_normal((2, highest_y + 1))
+        if abs(row) > kept_x:
+            continue
+        wavevector = step * np.hypot(row * (l_y / l_x), columns)
+        amplitude = np.sqrt(spectrum.density(wavevector) / 2) / math.sqrt(l_x * l_y)
+        modes[row, : kept_y + 1] = ((noise[0] + 1j * noise[1]) * amplitude)[: kept_y + 1]
+    # A real field: on the column q_y = 0 the modes at -q_x are the conjugates of those at q_x.
+    modes[0, 0] = 0.0
+    modes[-kept_x:, 0] = np.conj(modes[kept_x:0:-1, 0])
+    return np.asarray(irfft2(modes, s=(n_x, n_y), norm="forward"))
+
+
+def _modes(short_cutoff: float, n_point: int, length: float) -> tuple[int, int]:
+    """Largest mode of a spectrum along a side of a tile, and of those that its grid can hold."""
     if n_point < 4 or not 0 < length < math.inf:
         raise ValueError(
             f"tile of {n_point} points and side {length} cannot hold a surface; use at least 4 "
             "points and a positive side"
         )
     pixel = length / n_point
-    if spectrum.short_cutoff < 2 * pixel * (1 - 1e-12):
+    if short_cutoff < 2 * pixel * (1 - 1e-12):
         raise ValueError(
-            f"short cutoff {spectrum.short_cutoff:.6g} is below two pixels ({2 * pixel:.6g}); "
+            f"short cutoff {short_cutoff:.6g} is below two pixels ({2 * pixel:.6g}); "
             "refine the grid or raise the cutoff"
         )
-    highest = math.floor(length / spectrum.short_cutoff * (1 + 1e-12))
+    highest = math.floor(length / short_cutoff * (1 + 1e-12))
     if highest < 1:
         raise ValueError(
             f"tile of side {length:.6g} is shorter than the short cutoff "
-            f"{spectrum.short_cutoff:.6g}; enlarge the tile"
+            f"{short_cutoff:.6g}; enlarge the tile"
         )
-    kept = min(highest, (n_point - 1) // 2)
-    step = 2 * np.pi / length
-    columns = np.arange(highest + 1)
-    modes = np.zeros((n_point, n_point // 2 + 1), dtype=complex)
-    for row in range(-highest, highest + 1):
-        noise = rng.standard_normal((2, highest + 1))
-        if abs(row) > kept:
-            continue
-        amplitude = np.sqrt(spectrum.density(step * np.hypot(row, columns)) / 2) / length
-        modes[row, : kept + 1] = ((noise[0] + 1j * noise[1]) * amplitude)[: kept + 1]
-    # A real field: on the column q_y = 0 the modes at -q_x are the conjugates of those at q_x.
-    modes[0, 0] = 0.0
-    modes[-kept:, 0] = np.conj(modes[kept:0:-1, 0])
-    return np.asarray(irfft2(modes, s=(n_point, n_point), norm="forward"))
+    return highest, min(highest, (n_point - 1) // 2)
+
+
+def uncorrelated_rows(
+    spectrum: SelfAffineSpectrum,
+    order: float,
+    n_point: tuple[int, int],
+    pixel: float,
+    rng: np.random.Generator,
+) -> Array:
+    r"""Rows along x that know nothing of each other, as a front sees weak disorder from afar.
+
+    Their spectrum is that of an isotropic field integrated across, :math:`q^{2 \alpha} C(q)`.
+
+    Parameters
+    ----------
+    spectrum : SelfAffineSpectrum
+        C, of shortest wavelengths of two pixels or more. (Lengths in the unit of `pixel`)
+    order : float
+        Order alpha.
+    n_point : (n_x, n_y)
+        Points of a row, and rows.
+    pixel : float
+        Distance of points. (Units: length)
+    rng : numpy.random.Generator
+        Source of the noise.
+
+    Returns
+    -------
+    (n_x, n_y) array
+        Field of unit variance in the mean over realisations, each row of zero mean.
+    """
+    n_x, n_y = n_point
+    _, kept = _modes(spectrum.short_cutoff, n_x, n_x * pixel)
+    wavevector = 2 * np.pi / (n_x * pixel) * np.arange(1, kept + 1)
+    power = wavevector ** (2 * order) * spectrum.density(wavevector)
+    modes = np.zeros((n_x // 2 + 1, n_y), dtype=complex)
+    noise = rng.standard_normal((2, kept, n_y))
+    modes[1 : kept + 1] = (noise[0] + 1j * noise[1]) * np.sqrt(power / power.sum())[:, None] / 2
+    return np.asarray(irfft(modes, n=n_x, axis=0, norm="forward"))
 
 
 def tile_mean_square(

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
+from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.field.fields import Interpolation, TileField, tile_field
+from crackfront.core.geometry.line import line_field
 from crackfront.core.geometry.sphere import sphere
-from crackfront.core.synthesis import gaussian_field
+from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.simulation import Simulation, n_site
 
@@ -21,27 +24,58 @@ def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
     The noise of a realisation is scaled to the amplitude, so that all amplitudes of a spectrum
     see the same surface.
     """
-    tile = simulation.resolution
-    pixel = tile.tile_side / tile.n_point
+    (points, sides), schedule = simulation.tile, simulation.schedule
+    pixel = sides[1] / points[1]
     rng = np.random.default_rng(simulation.seed)
     unit = simulation.spectrum.with_elastic_energy(1.0)
+    if isinstance(schedule, LineSchedule) and schedule.uncorrelated:
+        return _uncorrelated_adhesion(simulation, points, pixel, rng)
     if simulation.kind == "roughness":
-        heights = gaussian_field(unit, tile.n_point, tile.tile_side, rng)
+        heights = gaussian_field(unit, points, sides, rng)
         heights *= math.sqrt(simulation.elastic_energy)
         return rough_adhesion(heights, pixel)
-    fluctuation = gaussian_field(unit, tile.n_point, tile.tile_side, rng)
+    fluctuation = gaussian_field(unit, points, sides, rng)
     fluctuation *= 2 * math.sqrt(simulation.elastic_energy / unit.mean_square(0.0))
     return chemical_adhesion(fluctuation, pixel)
 
 
+def _uncorrelated_adhesion(
+    simulation: Simulation, points: tuple[int, int], pixel: float, rng: np.random.Generator
+) -> AdhesionMap:
+    """Rows of the spectrum that w_loc has when integrated along the front, with its f_2.
+
+    Its e_el is that of which f_2 is four times as large.
+    """
+    spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
+    rows = uncorrelated_rows(spectrum, order, points, pixel, rng)
+    ratio = spectrum.mean_square(order - 0.5) / spectrum.mean_square(order)
+    adhesion = chemical_adhesion(rows, pixel)
+    rows *= math.sqrt(8 * simulation.elastic_energy * ratio / pixel)
+    return replace(
+        chemical_adhesion(rows, pixel), e_el=simulation.elastic_energy * adhesion.w_rms**2
+    )
+
+
 def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None) -> TileField:
     """Field of a simulation, on its tile if that has been made already."""
-    sizes = simulation.resolution
+    sizes, schedule = simulation.resolution, simulation.schedule
+    if adhesion is None:
+        adhesion = simulation_adhesion(simulation)
+    if isinstance(schedule, LineSchedule):
+        return line_field(
+            adhesion,
+            schedule.spring,
+            (0.0, float(schedule.loads[-1])),
+            n_site=sizes.n_angle,
+            spacing=sizes.spacing,
+            interpolation=sizes.interpolation,
+            band_limited=not schedule.uncorrelated,
+        )
     return contact_field(
-        simulation_adhesion(simulation) if adhesion is None else adhesion,
+        adhesion,
         sizes.n_angle,
         sizes.spacing,
-        simulation.schedule.max_penetration,
+        schedule.max_penetration,
         sizes.interpolation,
         band_limited=True,
     )

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from crackfront.core import jkr
+from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -52,6 +53,8 @@ class Features:
 
     Attributes
     ----------
+    n_point : float
+        Root of the number of points of the tile.
     breadth : float
         Roll-off over short cutoff.
     travel : float
@@ -63,7 +66,7 @@ class Features:
     """
 
     n_angle: int
-    n_point: int
+    n_point: float
     elastic_energy: float
     tolerance: float
     breadth: float
@@ -105,7 +108,7 @@ def _cost(simulation: Simulation) -> Cost:
     return Cost(
         seconds=float(_seconds(_coefficients(), [item])[0]),
         memory=_PROCESS_BYTES
-        + 8 * _TILES * sizes.n_point**2
+        + 8 * _TILES * math.prod(simulation.tile[0])
         + _SITE_BYTES * sizes.n_angle
         + fronts,
         disk=_FILE_BYTES + _STATE_BYTES * item.n_state + _FRONT_PART * fronts,
@@ -121,12 +124,14 @@ def features(simulation: Simulation) -> Features:
         # The hysteresis lifts w_retr by about twice e_el, and contact is lost that much later.
         lost_at = jkr.pull_off_penetration(1 + 2 * simulation.elastic_energy)
         n_state = (2 * schedule.max_penetration - lost_at) / schedule.step
+    elif isinstance(schedule, LineSchedule):
+        travel, n_state = schedule.step / length, 2.0 * schedule.loads.size
     else:
         travel = schedule.travel
         n_state = _expected_steady(simulation, schedule, length)
     return Features(
         n_angle=sizes.n_angle,
-        n_point=sizes.n_point,
+        n_point=math.sqrt(math.prod(simulation.tile[0])),
         elastic_energy=simulation.elastic_energy,
         tolerance=simulation.solver.tolerance,
         breadth=spectrum.roll_off / spectrum.short_cutoff,

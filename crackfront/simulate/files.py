@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.table import RunMeasures
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
 from crackfront.core.geometry.base import Geometry
+from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.variables import LATERAL, STEP, Variable, variables
@@ -150,18 +151,20 @@ def cycle_dataset(
 
 def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> CycleRecord:
     """Record that a dataset of :func:`cycle_dataset` holds, or `UnreadableFileError`."""
-    names = [item.name for item in variables(ContactState)]
+    states = ContactState if "penetration" in dataset else LineState
+    names = [item.name for item in variables(states)]
     missing = [name for name in names if name not in dataset]
     name = str(dataset.attrs.get("status", "")).upper()
-    if missing or name not in Status.__members__ or "end_penetration" not in dataset.attrs:
+    end = f"end_{names[0]}"
+    if missing or name not in Status.__members__ or end not in dataset.attrs:
         what = ", ".join(missing) or "a known status"
         raise UnreadableFileError(f"{place} holds no cycle: it lacks {what}")
     pull_off, fronts = dataset.attrs.get("pull_off_energy"), dataset.get("radius")
     lost = dataset.get("dissipated_energy")
     return CycleRecord(
         status=Status[name],
-        end_load=float(dataset.attrs["end_penetration"]),
-        states=ContactState(**{name: np.asarray(dataset[name]) for name in names}),
+        end_load=float(dataset.attrs[end]),
+        states=states(**{name: np.asarray(dataset[name]) for name in names}),
         dissipated_energy=None if lost is None else np.asarray(lost),
         pull_off_energy=None if pull_off is None else float(pull_off),
         fronts=None if fronts is None else np.asarray(fronts),

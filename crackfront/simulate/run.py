@@ -13,6 +13,7 @@ import numpy as np
 
 from crackfront.analysis.table import RunMeasures
 from crackfront.core.adhesion import chemical_adhesion
+from crackfront.core.cycle.period import LineSchedule, run_period
 from crackfront.core.cycle.record import Checkpoint, CycleRecord, Observer, Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -76,7 +77,7 @@ def run_simulation(
 
     adhesion = simulation_adhesion(simulation)
     field = simulation_field(simulation, adhesion)
-    e_el, w_rms = adhesion.e_el, adhesion.w_rms
+    measured = adhesion.e_el, adhesion.w_rms, float(np.mean(adhesion.work_of_adhesion < 0))
     # The run holds the splines alone, not the tile as well.
     del adhesion
     observers: list[Observer] = [observe]
@@ -89,6 +90,14 @@ def run_simulation(
     schedule, solver = simulation.schedule, simulation.solver
     if isinstance(schedule, LoadSchedule):
         record = run_cycle(field, schedule, solver, recorder)
+    elif isinstance(schedule, LineSchedule):
+        record = run_period(
+            field,
+            schedule,
+            elastic_energy=simulation.elastic_energy,
+            solver=solver,
+            recorder=recorder,
+        )
     else:
         record = run_steady(
             field,
@@ -98,7 +107,7 @@ def run_simulation(
             solver=solver,
             recorder=recorder,
         )
-    measures = RunMeasures(e_el, w_rms, *costs(), _peak_memory())
+    measures = RunMeasures(*measured, *costs(), _peak_memory())
     return SimulationResult(simulation, record, measures)
 
 

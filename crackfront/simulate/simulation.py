@@ -16,6 +16,7 @@ from scipy.fft import next_fast_len
 from crackfront.analysis.steady import SteadyAdhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, correlation_length
+from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Interpolation
@@ -23,6 +24,9 @@ from crackfront.core.fingerprint import NO_PART, SOLVER, fingerprint
 from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.laws import LAW_SIZE, Knob, Knobs, chosen_knobs, combined_error
+
+Schedule = LoadSchedule | SteadySchedule | LineSchedule
+"""Loads of a simulation: a full cycle or its steady parts, or those of a straight front."""
 
 _SOURCES = ("simulate/simulation.py", "simulate/contact.py", "simulate/run.py")
 """What determines a simulation beside the solver."""
@@ -59,6 +63,12 @@ class Numerics:
             return self.knobs
         return chosen_knobs(self.knobs, kind, spectrum, elastic_energy)
 
+    def tile_side(self, spectrum: SelfAffineSpectrum) -> float:
+        """Least side of a tile (Units: that of the spectrum)."""
+        return max(
+            self.tile_roll_offs * spectrum.roll_off, self.tile_cutoffs * spectrum.short_cutoff
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
@@ -75,30 +85,39 @@ class Resolution:
 
 
 def resolution(
-    spectrum: SelfAffineSpectrum, numerics: Numerics, knobs: Knobs, max_penetration: float
+    spectrum: SelfAffineSpectrum, numerics: Numerics, knobs: Knobs, schedule: Schedule
 ) -> Resolution:
-    """Sizes of the front and of the tile for one spectrum.
+    """Sizes of the front and of the tile for one spectrum; those of a line are of its schedule.
 
     Examples
     --------
     >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
     >>> knobs = Knobs(None, 2, 4, "cubic", 4, 1e-6)
     >>> numerics = Numerics(knobs, tile_roll_offs=10, tile_cutoffs=20)
-    >>> resolution(flat, numerics, knobs, max_penetration=1.0)
+    >>> resolution(flat, numerics, knobs, LoadSchedule(max_penetration=1.0, step=0.1))
     Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
     cutoff = spectrum.short_cutoff
-    circle = 2 * math.pi * jkr.equilibrium_radius(max_penetration)
-    sites = circle / cutoff * knobs.angles_per_cutoff
-    side = max(numerics.tile_roll_offs * spectrum.roll_off, numerics.tile_cutoffs * cutoff)
+    sites = _front_length(schedule) / cutoff * knobs.angles_per_cutoff
+    side, one_a_row = numerics.tile_side(spectrum), False
+    if isinstance(schedule, LineSchedule):
+        side, one_a_row = schedule.length, schedule.uncorrelated
     points = math.ceil(side / cutoff * knobs.pixels_per_cutoff * (1 - 1e-12))
+    n_point = next_fast_len(points, real=True)
     return Resolution(
-        n_angle=knobs.angles or n_site(sites),
+        n_angle=n_point if one_a_row else knobs.angles or n_site(sites),
         spacing=cutoff / knobs.samples_per_cutoff,
         interpolation=knobs.interpolation,
         tile_side=side,
-        n_point=next_fast_len(points, real=True),
+        n_point=n_point,
     )
+
+
+def _front_length(schedule: Schedule) -> float:
+    """Length of the longest front of a schedule that is smooth."""
+    if isinstance(schedule, LineSchedule):
+        return schedule.length
+    return 2 * math.pi * jkr.equilibrium_radius(schedule.max_penetration)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +140,9 @@ class Simulation:
         Seed of the sweep.
     resolution : Resolution
         Sizes of the front and of the tile.
-    schedule : LoadSchedule or SteadySchedule
-        Penetrations to visit: a full cycle, or the steady parts of its branches.
+    schedule : LoadSchedule, SteadySchedule or LineSchedule
+        Penetrations to visit, in a full cycle or in the steady parts of its branches; or a straight
+        front and its loads.
     solver : Solver
         How its fronts are found.
     record_fronts, record_energy : bool
@@ -136,7 +156,7 @@ class Simulation:
     realisation: int
     sweep_seed: int
     resolution: Resolution
-    schedule: LoadSchedule | SteadySchedule
+    schedule: Schedule
     solver: Solver
     record_fronts: bool = False
     record_energy: bool = False
@@ -173,6 +193,20 @@ class Simulation:
         return correlation_length(self.kind, self.spectrum)
 
     @property
+    def spring(self) -> float:
+        """Length of the springs of a straight front (Units: reduced lateral length); else NaN."""
+        return self.schedule.spring if isinstance(self.schedule, LineSchedule) else math.nan
+
+    @property
+    def tile(self) -> tuple[tuple[int, int], tuple[float, float]]:
+        """Points and sides of the tile, along x and y (Units: reduced lateral length)."""
+        sizes, schedule = self.resolution, self.schedule
+        if not isinstance(schedule, LineSchedule):
+            return (sizes.n_point, sizes.n_point), (sizes.tile_side, sizes.tile_side)
+        n_x = round(schedule.period * sizes.n_point / sizes.tile_side)
+        return (n_x, sizes.n_point), (schedule.period, sizes.tile_side)
+
+    @property
     def label(self) -> str:
         """What a person calls this simulation."""
         return f"{self.spectrum_name} e_el={self.elastic_energy:g} r={self.realisation}"
@@ -204,7 +238,7 @@ def simulation_of(
     kind: FieldKind,
     spectrum: SelfAffineSpectrum,
     elastic_energy: float,
-    schedule: LoadSchedule | SteadySchedule,
+    schedule: Schedule,
     numerics: Numerics,
     *,
     seed: int,
@@ -225,7 +259,7 @@ def simulation_of(
         elastic_energy=elastic_energy,
         realisation=realisation,
         sweep_seed=seed,
-        resolution=resolution(spectrum, numerics, knobs, schedule.max_penetration),
+        resolution=resolution(spectrum, numerics, knobs, schedule),
         schedule=schedule,
         solver=named_solver(numerics.solver, knobs.tolerance, numerics.max_sweeps),
         record_fronts="fronts" in record,
@@ -241,7 +275,7 @@ def missed_error(simulation: Simulation, asked: float) -> float:
 
 
 def numerical_error(
-    simulation: Simulation, size: float = LAW_SIZE, largest_radius: float | None = None
+    simulation: Simulation, size: float = LAW_SIZE, front_length: float | None = None
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
 
@@ -250,17 +284,16 @@ def numerical_error(
     simulation : Simulation
         A simulation.
     size : float, optional
-        Number of states times circumference of the front over the short cutoff.
-    largest_radius : float, optional
-        Largest mean radius of the states; by default that of a smooth sphere at the largest
-        penetration. (Units: reduced lateral length)
+        Number of states times length of the front over the short cutoff.
+    front_length : float, optional
+        Length of the longest front; by default that of a smooth contact.
+        (Units: reduced lateral length)
     """
     sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
-    if largest_radius is None:
-        largest_radius = jkr.equilibrium_radius(simulation.schedule.max_penetration)
-    circle = 2 * math.pi * largest_radius
+    if front_length is None:
+        front_length = _front_length(simulation.schedule)
     values: dict[Knob, float] = {
-        "sites": sizes.n_angle * cutoff / circle,
+        "sites": sizes.n_angle * cutoff / front_length,
         sizes.interpolation: cutoff / sizes.spacing,
         "pixels": cutoff * sizes.n_point / sizes.tile_side,
         "tolerance": simulation.solver.tolerance,
@@ -277,11 +310,15 @@ def stated_error(
 
     States closer than a correlation length of w_loc count as one.
     """
+    schedule, cutoff = simulation.schedule, simulation.spectrum.short_cutoff
+    if isinstance(schedule, LineSchedule):
+        size = schedule.length / cutoff * (1 + schedule.period / correlation_length)
+        return numerical_error(simulation, size)
     low, high = steady.lowest_radius, steady.highest_radius
-    cutoffs = math.pi * (low + high) / simulation.spectrum.short_cutoff
+    cutoffs, longest = math.pi * (low + high) / cutoff, 2 * math.pi * high
     apart = 1 + (high - low) / correlation_length
-    approach, _ = numerical_error(simulation, cutoffs * min(steady.n_approach, apart), high)
-    _, retraction = numerical_error(simulation, cutoffs * min(steady.n_retraction, apart), high)
+    approach, _ = numerical_error(simulation, cutoffs * min(steady.n_approach, apart), longest)
+    _, retraction = numerical_error(simulation, cutoffs * min(steady.n_retraction, apart), longest)
     return approach, retraction
 
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from crackfront.core.adhesion import FieldKind
+from crackfront.core.adhesion import FieldKind, larkin_length
+from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Interpolation
@@ -30,7 +32,8 @@ from crackfront.data.section import (
     validated,
 )
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.simulation import Numerics, missed_error
+from crackfront.simulate.lines import LineLoad, SpringUnit
+from crackfront.simulate.simulation import Numerics, Simulation, missed_error
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.reading import Detrend, Treatment, read_measurements
@@ -212,15 +215,43 @@ class SteadySection(Section):
     error: Positive
 
 
-class LoadSection(Section):
-    """Penetrations to visit."""
+class LineSection(Section):
+    """Straight fronts instead of spheres, as in `LineLoad`."""
 
-    max_penetration: Annotated[float, Field(allow_inf_nan=False)]
+    springs: Annotated[tuple[Positive, ...], Field(min_length=1)]
+    spring_unit: SpringUnit = "correlation_length"
+    length: Annotated[float, Field(ge=8, allow_inf_nan=False)]
+    period: Annotated[float, Field(ge=20, allow_inf_nan=False)]
+    transient: Annotated[float, Field(ge=3, allow_inf_nan=False)]
+    step: Positive
+    uncorrelated: bool = False
+
+    @model_validator(mode="after")
+    def _distinct(self) -> LineSection:
+        _refuse_repeated("spring", self.springs)
+        return self
+
+    def load(self) -> LineLoad:
+        """How all fronts of the sweep are held."""
+        given = {item.name: getattr(self, item.name) for item in fields(LineLoad)}
+        return LineLoad(**given)
+
+
+class LoadSection(Section):
+    """Penetrations to visit, or straight fronts."""
+
+    max_penetration: Annotated[float, Field(allow_inf_nan=False)] | None = None
     step: Positive | None = None
     steady: SteadySection | None = None
+    line: LineSection | None = None
 
     @model_validator(mode="after")
     def _makes_contact(self) -> LoadSection:
+        if self.line is not None:
+            _refuse_overruled(self, "line", ("max_penetration", "step", "steady"))
+            return self
+        if self.max_penetration is None:
+            raise refusal("key max_penetration is missing; add it, or a section line")
         if self.max_penetration < 0:
             raise refusal(
                 f"max_penetration is {self.max_penetration:g}, which never makes contact; the "
@@ -237,8 +268,11 @@ class LoadSection(Section):
             )
         return self
 
-    def schedule(self, vertical: float) -> LoadSchedule | SteadySchedule:
-        """Penetrations to visit, lengths divided by a unit."""
+    def schedule(self, vertical: float) -> LoadSchedule | SteadySchedule | LineLoad:
+        """Penetrations to visit, lengths divided by a unit, or straight fronts."""
+        if self.line is not None:
+            return self.line.load()
+        assert self.max_penetration is not None, "the schema asks for it"
         deepest, steady = self.max_penetration / vertical, self.steady
         if self.step is not None:
             return LoadSchedule(deepest, self.step / vertical)
@@ -312,7 +346,7 @@ class Configuration(Section):
             seed=self.seed,
             kind=self.field,
             scales=scales,
-            spectra=tuple(item.named(place, lateral) for place, item in enumerate(self.spectra)),
+            spectra=tuple(self._spectra(lateral)),
             elastic_energies=self.amplitudes.elastic_energies,
             n_realisation=self.realisations,
             numerics=self.numerics.numerics(),
@@ -321,6 +355,18 @@ class Configuration(Section):
             failed_fraction=self.failed_fraction,
             fit=FitRange(fit.lowest_elastic_energy, fit.highest_elastic_energy, fit.bootstrap),
         )
+
+    def _spectra(self, lateral: float) -> Iterator[NamedSpectrum]:
+        """Spectra of the sweep, those of straight fronts once for each spring."""
+        for place, item in enumerate(self.spectra):
+            named = item.named(place, lateral)
+            if self.load.line is None:
+                yield named
+                continue
+            for spring in self.load.line.springs:
+                # A name is part of the names of files.
+                ending = f"{spring:g}".replace(".", "p").replace("+", "")
+                yield NamedSpectrum(f"{named.name}-L{ending}", named.spectrum, spring)
 
 
 def _refuse_repeated(what: str, values: Any) -> None:
@@ -373,6 +419,7 @@ def _refuse_unreachable(sweep: Sweep) -> None:
     for item in sweep.spectra:
         for energy in sweep.elastic_energies:
             simulation = sweep.simulation(item, energy, 0)
+            _refuse_unresolved(simulation, item.name)
             n_angle, tolerance = simulation.resolution.n_angle, simulation.solver.tolerance
             round_off = sys.float_info.epsilon * n_angle
             if tolerance < round_off:
@@ -385,6 +432,18 @@ def _refuse_unreachable(sweep: Sweep) -> None:
                     f"numerics: error is {asked:g}, but the finest numerics leave {left:.2g} for "
                     f"{item.name} at e_el {energy:g}; ask for that, or give the knobs"
                 )
+
+
+def _refuse_unresolved(simulation: Simulation, name: str) -> None:
+    """Raise if a straight front has fewer than two sites on the length over which it bends."""
+    sizes, energy = simulation.resolution, simulation.elastic_energy
+    larkin = larkin_length(simulation.kind, simulation.spectrum, 2 * math.sqrt(energy))
+    site = sizes.tile_side / sizes.n_angle
+    if isinstance(simulation.schedule, LineSchedule) and larkin < 2 * site:
+        raise ConfigurationError(
+            f"numerics: the Larkin length of {name} at e_el {energy:g} is {larkin:.3g}, below two "
+            f"sites ({2 * site:.3g}); lower the amplitude or take more sites"
+        )
 
 
 def results_folder(path: Path) -> Path:

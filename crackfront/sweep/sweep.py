@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import hashlib
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -13,15 +14,20 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
+from crackfront.simulate.lines import LineLoad
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
 
 @dataclass(frozen=True, slots=True)
 class NamedSpectrum:
-    """A spectrum, lengths in the reduced lateral unit, and what the configuration calls it."""
+    """A spectrum, lengths in the reduced lateral unit, and what the configuration calls it.
+
+    A straight front is held by springs of so many units of its load.
+    """
 
     name: str
     spectrum: SelfAffineSpectrum
+    spring: float = math.nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +71,9 @@ class Sweep:
         Realisations of the noise for every spectrum.
     numerics : Numerics
         How simulations are resolved and solved.
-    schedule : LoadSchedule or SteadySchedule
-        Penetrations to visit: full cycles, or the steady parts of their branches.
+    schedule : LoadSchedule, SteadySchedule or LineLoad
+        Penetrations to visit, in full cycles or the steady parts of their branches; or how straight
+        fronts are held.
     record : tuple of {"fronts", "energy"}
         What to record beside the curves.
     failed_fraction : float
@@ -80,7 +87,7 @@ class Sweep:
     elastic_energies: tuple[float, ...]
     n_realisation: int
     numerics: Numerics
-    schedule: LoadSchedule | SteadySchedule
+    schedule: LoadSchedule | SteadySchedule | LineLoad
     record: tuple[Literal["fronts", "energy"], ...]
     failed_fraction: float
     fit: FitRange
@@ -97,11 +104,14 @@ class Sweep:
 
     def simulation(self, item: NamedSpectrum, energy: float, realisation: int) -> Simulation:
         """One simulation of the sweep."""
+        load, shape = self.schedule, item.spectrum
         return simulation_of(
             self.kind,
-            item.spectrum,
+            shape,
             energy,
-            self.schedule,
+            load.schedule(self.kind, shape, energy, item.spring, self.numerics)
+            if isinstance(load, LineLoad)
+            else load,
             self.numerics,
             seed=self.seed,
             realisation=realisation,

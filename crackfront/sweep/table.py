@@ -18,6 +18,7 @@ from crackfront.analysis.steady import (
     STEADY_DEFINITION,
     SteadyAdhesion,
     SteadyMeasures,
+    period_adhesion,
     steady_adhesion,
 )
 from crackfront.analysis.table import (
@@ -28,6 +29,7 @@ from crackfront.analysis.table import (
     SweepRow,
     SweepTable,
 )
+from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.fingerprint import fingerprint
 from crackfront.core.variables import ADHESION, variables
@@ -118,7 +120,11 @@ def sweep_row(result: SimulationResult) -> SweepRow:
     """What the file of a sweep says about one simulation."""
     record, simulation = result.record, result.simulation
     length = simulation.correlation_length
-    steady = steady_adhesion(record, length)
+    if isinstance(simulation.schedule, LineSchedule):
+        mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
+        steady = period_adhesion(record, simulation.schedule.n_period, mean, length)
+    else:
+        steady = steady_adhesion(record, length)
     status, sentence = _status(record, steady)
     known, cycle = status in COMPLETE, status == COMPLETE[0]
     numerical = stated_error(simulation, steady, length) if known else (np.nan, np.nan)
@@ -131,7 +137,7 @@ def sweep_row(result: SimulationResult) -> SweepRow:
         w_appr_numerical_error=numerical[0],
         w_retr_numerical_error=numerical[1],
         iterations=int(np.sum(record.states.iterations)),
-        n_step=record.states.penetration.size,
+        n_step=record.states.direction.size,
         pull_off_force=float(np.min(record.states.force, initial=np.inf)) if cycle else np.nan,
         end_penetration=record.end_load,
         status=status,
@@ -180,6 +186,7 @@ def _axes(sweep: Sweep) -> SweepAxes:
         roll_off=np.array([spectrum.roll_off for spectrum in spectra]),
         hurst=np.array([spectrum.hurst for spectrum in spectra]),
         correlation_length=np.array([row[0].correlation_length for row in firsts]),
+        spring=np.array([[one.spring for one in row] for row in firsts]),
         n_angle=np.array([[tile.n_angle for tile in row] for row in tiles]),
         sample_spacing=np.array([[tile.spacing for tile in row] for row in tiles]),
         tile_side=np.array([row[0].tile_side for row in tiles]),

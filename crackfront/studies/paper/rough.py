@@ -14,6 +14,7 @@ from scipy.ndimage import map_coordinates
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.instabilities import larkin_length
+from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import first_touch, refuse_outgrown
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -290,6 +291,7 @@ def recorded(
     ValueError
         If a smooth sphere would outgrow the field at the largest penetration.
     """
+    assert not isinstance(simulation.schedule, LineSchedule), "loads are penetrations"
     refuse_outgrown(field, simulation.schedule.max_penetration)
     compile_solver(simulation.solver.name)
     recorder.run(field, first_touch(field), loads, simulation.solver)

@@ -1,0 +1,118 @@
+"""A straight front pulled over a whole period of its tile, forward and back.
+
+By no passing, the state after one period is the same state shifted as soon as the start is
+forgotten: a mean over the next period is the exact mean over the tile.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.field.fields import TileField
+from crackfront.core.outcome import Direction, Status
+from crackfront.core.solver.relax import Solver
+
+Array = NDArray[np.float64]
+
+_BEHIND = 1.3
+"""Pinning force of the first front over that of second-order theory; none is larger."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineSchedule:
+    """Loads of a straight front on a tile, first forward, then back over the same places.
+
+    Parameters
+    ----------
+    spring : float
+        Length of the springs, L_kappa. (Units: length)
+    length : float
+        Period of the front. (Units: length)
+    period : float
+        Period of the tile along the motion, over which each branch is averaged. (Units: length)
+    lead_in : float
+        Travel before that, after which the start is forgotten. (Units: length)
+    step : float
+        Largest load step. (Units: length)
+    uncorrelated : bool, optional
+        Whether sites know nothing of each other: the limit of weak disorder.
+
+    Raises
+    ------
+    ValueError
+        If a length is not positive and finite.
+    """
+
+    spring: float
+    length: float
+    period: float
+    lead_in: float
+    step: float
+    uncorrelated: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("spring", "length", "period", "lead_in", "step"):
+            if not 0 < getattr(self, name) < math.inf:
+                what = name.replace("_", "-")
+                raise ValueError(f"{what} is {getattr(self, name)}; it must be positive and finite")
+
+    @property
+    def n_period(self) -> int:
+        """Steps of one period, at the end of which each branch is averaged."""
+        return math.ceil(self.period / self.step)
+
+    @property
+    def loads(self) -> Array:
+        """Places of the springs' other end, in the order of the advance (Units: length)."""
+        step = self.period / self.n_period
+        n_step = math.ceil(self.lead_in / step) + self.n_period
+        return step * np.arange(n_step + 1, dtype=float)
+
+
+def run_period(
+    field: TileField,
+    schedule: LineSchedule,
+    *,
+    elastic_energy: float,
+    solver: Solver | None = None,
+    recorder: Recorder | None = None,
+) -> CycleRecord:
+    """Both branches of a straight front.
+
+    Parameters
+    ----------
+    field : TileField
+        Field of the line on a tile.
+    schedule : LineSchedule
+        Loads.
+    elastic_energy : float
+        That of the tile, which tells how far behind the load a branch begins. (Units: w_int)
+    solver, recorder
+        As of :func:`crackfront.core.cycle.run.run_cycle`.
+
+    Returns
+    -------
+    CycleRecord
+        The states; its status is `STEADY` where both branches are whole.
+    """
+    recorder = recorder or Recorder()
+    behind = _BEHIND * 4 * elastic_energy * schedule.spring + schedule.step
+    loads = schedule.loads
+
+    def branches() -> Iterator[Load]:
+        directions: tuple[Direction, Direction] = (1, -1)
+        for direction in directions:
+            places = loads[::direction]
+            start = np.full(field.geometry.n_site, places[0] - direction * behind)
+            yield Load(float(places[0]), direction, start)
+            yield from (Load(float(place), direction) for place in places[1:])
+
+    recorder.run(field, np.full(field.geometry.n_site, loads[0] - behind), branches(), solver)
+    return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)

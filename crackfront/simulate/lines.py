@@ -1,0 +1,94 @@
+"""Straight fronts of a sweep: their springs and tiles, in lengths of the spectrum."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from scipy.fft import next_fast_len
+
+from crackfront.core.adhesion import (
+    FieldKind,
+    correlation_length,
+    force_correlation_length,
+    larkin_length,
+)
+from crackfront.core.cycle.period import LineSchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.simulate.simulation import Numerics
+
+SpringUnit = Literal["correlation_length", "larkin_length"]
+
+_DEPTH, _ROUGHNESS = 1.43, 0.4
+"""Rms of a front over the force's correlation length, 1.43 (L_kappa / Larkin length)^0.4: measured
+over all spectra, amplitudes and springs of `config/line.yaml`, within a fifth."""
+
+_LEAD_IN = 3.0
+"""Correlation lengths after which a front has forgotten its start, beside multiples of its rms."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineLoad:
+    """How the straight fronts of a sweep are held and pulled.
+
+    Attributes
+    ----------
+    spring_unit : {"correlation_length", "larkin_length"}
+        What the springs of the spectra are multiples of.
+    length : float
+        Period of the front over the length of its springs.
+    period : float
+        Period of the tile along the motion over the expected rms of the front.
+    transient : float
+        Travel before a branch is averaged, over the same rms.
+    step : float
+        Largest load step, in correlation lengths.
+    uncorrelated : bool
+        Whether sites know nothing of each other: the limit of weak disorder.
+    """
+
+    spring_unit: SpringUnit
+    length: float
+    period: float
+    transient: float
+    step: float
+    uncorrelated: bool = False
+
+    def schedule(
+        self,
+        kind: FieldKind,
+        spectrum: SelfAffineSpectrum,
+        elastic_energy: float,
+        spring: float,
+        numerics: Numerics,
+    ) -> LineSchedule:
+        """Loads of one spectrum and amplitude on springs of so many units; whole pixels.
+
+        Along both axes the tile has the roll-offs and short cutoffs of the numerics or more.
+        """
+        larkin = larkin_length(kind, spectrum, 2 * math.sqrt(elastic_energy))
+        length = correlation_length(kind, spectrum)
+        spring *= length if self.spring_unit == "correlation_length" else larkin
+        knobs = numerics.knobs_of(kind, spectrum, elastic_energy)
+        pixel = spectrum.short_cutoff / knobs.pixels_per_cutoff
+        least = numerics.tile_side(spectrum)
+        rms = expected_rms(kind, spectrum, spring / larkin)
+        return LineSchedule(
+            spring=spring,
+            length=pixel * _points(max(self.length * spring, least) / pixel),
+            period=pixel * _points(max(self.period * rms, least) / pixel),
+            lead_in=_LEAD_IN * length + self.transient * rms,
+            step=self.step * length,
+            uncorrelated=self.uncorrelated,
+        )
+
+
+def expected_rms(kind: FieldKind, spectrum: SelfAffineSpectrum, size: float) -> float:
+    """Expected rms of a front for L_kappa over the Larkin length (Units: length)."""
+    return _DEPTH * force_correlation_length(kind, spectrum) * max(size, 0.1) ** _ROUGHNESS
+
+
+def _points(least: float) -> int:
+    """Points of a side, an even product of small primes."""
+    return 2 * int(next_fast_len(math.ceil(least / 2 * (1 - 1e-12)), real=True))
