@@ -1,0 +1,250 @@
+"""Measure the law behind k on straight fronts, fit it, and hold spheres against it.
+
+make SWEEP=config/line.yaml; make SWEEP=config/line-chemical.yaml; make SWEEP=config/line-weak.yaml
+make; make SWEEP=config/strong.yaml
+python -m benchmarks.law fit config/line.yaml config/line-chemical.yaml config/line-weak.yaml
+python -m benchmarks.law spheres config/default.yaml config/strong.yaml
+
+`fit` writes `law.csv`, a row for every spectrum, amplitude and spring, and `law.json`, the law that
+is fitted to them; copied to `crackfront/analysis`, they are what predictions rest on. `spheres`
+writes `spheres.csv`, what spheres were simulated to have, and prints it beside what the law says.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, astuple, dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+
+from crackfront.analysis.estimate import mean_estimate
+from crackfront.analysis.law import LawCell, fitted_law, sphere_factors
+from crackfront.analysis.table import SweepTable
+from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.data.files import read_dataset, write_text
+from crackfront.simulate.lines import LineLoad
+from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.sweep import NamedSpectrum, Sweep
+from crackfront.sweep.table import read_table
+
+
+@dataclass(frozen=True, slots=True)
+class Means:
+    """k of one spectrum and amplitude with standard errors over realisations."""
+
+    realisations: int
+    approach: float
+    approach_error: float
+    retraction: float
+    retraction_error: float
+    both: float
+    both_error: float
+    numerical_error: float
+
+
+@dataclass(frozen=True, slots=True)
+class SphereRow:
+    """k of a sphere as simulated: a row of `spheres.csv`, as the law's predictions are held to."""
+
+    spectrum: str
+    kind: str
+    short_cutoff: float
+    roll_off: float
+    hurst: float
+    contact_radius: float
+    elastic_energy: float
+    realisations: int
+    approach: float
+    approach_error: float
+    retraction: float
+    retraction_error: float
+    both: float
+    both_error: float
+    numerical_error: float
+
+
+def means(table: SweepTable, kind: FieldKind) -> dict[tuple[int, int], tuple[float, Means]]:
+    """Mean e_el and factors of every spectrum and amplitude of a sweep."""
+    energy = np.where(table.finite, table.e_el, np.nan)
+    mean = 1 - energy if kind == "roughness" else np.ones_like(energy)
+    lowering, raising = (mean - table.w_appr) / energy, (table.w_retr - mean) / energy
+    branches = [mean_estimate(item) for item in (lowering, raising, (lowering + raising) / 2)]
+    energies, numerical = mean_estimate(energy)[0], mean_estimate(table.numerical_error)[0]
+    found = {}
+    for cell in np.ndindex(energies.value.shape):
+        numbers = [
+            float(values[cell])
+            for estimate, _ in branches
+            for values in (estimate.value, estimate.standard_error)
+        ]
+        count = int(branches[0][1][cell])
+        found[cell[0], cell[1]] = (
+            float(energies.value[cell]),
+            Means(count, *numbers, float(numerical.value[cell])),
+        )
+    return found
+
+
+def law_cells(configuration: Path) -> list[LawCell]:
+    """Rows of the table of one sweep of straight fronts that has been run."""
+    sweep = load_configuration(configuration)
+    load = sweep.schedule
+    if not isinstance(load, LineLoad):
+        raise ValueError(f"{configuration} runs spheres; the law is measured on straight fronts")
+    path = results_folder(configuration) / "hysteresis.nc"
+    dataset, known = read_dataset(path), means(read_table(path), sweep.kind)
+    cells = []
+    for (place, amplitude), (energy, found) in known.items():
+        item, requested = sweep.spectra[place], sweep.elastic_energies[amplitude]
+        simulation = sweep.simulation(item, requested, 0)
+        larkin = larkin_length(sweep.kind, item.spectrum, 2 * np.sqrt(requested))
+        depth = force_correlation_length(sweep.kind, item.spectrum)
+        cell = dataset.isel(spectrum=place, amplitude=amplitude)
+        cells.append(
+            LawCell(
+                spectrum=f"{_shape(sweep, item)}",
+                disorder=0.0 if load.uncorrelated else 2 * float(np.sqrt(energy)),
+                size=simulation.spring / larkin,
+                realisations=found.realisations,
+                approach=found.approach,
+                retraction=found.retraction,
+                both=found.both,
+                error=found.both_error,
+                numerical_error=found.numerical_error,
+                front_rms=float(cell.front_rms.mean()) / depth,
+                negative_share=float(cell.negative_share.mean()),
+            )
+        )
+    return _without_spacing(sweep, cells) if load.uncorrelated else cells
+
+
+def _shape(sweep: Sweep, item: NamedSpectrum) -> str:
+    """Name of a spectrum without that of its spring, and what it describes."""
+    name = item.name.rpartition("-L")[0]
+    return name if sweep.kind == "roughness" else f"{name}-{sweep.kind}"
+
+
+def _without_spacing(sweep: Sweep, cells: Sequence[LawCell]) -> list[LawCell]:
+    """Extrapolation of two spacings of uncorrelated sites to none, linear in the spacing."""
+    fine, coarse = sorted(sweep.elastic_energies)
+    # The spacing is a pixel; in units of the Larkin length it goes with e_el.
+    weight = fine / (coarse - fine)
+    found = []
+    for first, second in zip(cells[::2], cells[1::2], strict=True):
+        numbers = {
+            name: getattr(first, name) + weight * (getattr(first, name) - getattr(second, name))
+            for name in ("approach", "retraction", "both", "front_rms")
+        }
+        error = float(np.hypot((1 + weight) * first.error, weight * second.error))
+        left = abs(numbers["both"] - first.both) / 3
+        found.append(
+            replace(
+                first,
+                **numbers,
+                spectrum=f"{first.spectrum}-weak",
+                error=error,
+                numerical_error=float(np.hypot(first.numerical_error, left)),
+            )
+        )
+    return found
+
+
+def sphere_rows(configuration: Path) -> Iterator[SphereRow]:
+    """What the spheres of a sweep that has been run have.
+
+    Raises
+    ------
+    ValueError
+        If the sweep runs full cycles or straight fronts.
+    """
+    sweep = load_configuration(configuration)
+    schedule = sweep.schedule
+    if not isinstance(schedule, SteadySchedule):
+        raise ValueError(f"{configuration} does not run the steady branches of spheres")
+    path = results_folder(configuration) / "hysteresis.nc"
+    dataset = read_dataset(path)
+    radius = (dataset.lowest_radius + dataset.highest_radius).mean("realisation") / 2
+    for (place, amplitude), (energy, found) in means(read_table(path), sweep.kind).items():
+        item = sweep.spectra[place]
+        spectrum = item.spectrum
+        yield SphereRow(
+            item.name,
+            sweep.kind,
+            spectrum.short_cutoff,
+            spectrum.roll_off,
+            spectrum.hurst,
+            float(radius[place, amplitude]),
+            energy,
+            *astuple(found),
+        )
+
+
+def text_of(rows: Sequence[Any]) -> str:
+    """Text of a table of records."""
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    writer.writerow([item.name for item in fields(rows[0])])
+    for row in rows:
+        writer.writerow([f"{x:.5g}" if isinstance(x, float) else x for x in astuple(row)])
+    return lines.getvalue()
+
+
+def sphere_table(rows: Sequence[SphereRow]) -> str:
+    """Markdown table of simulated and predicted k, and how far they are apart for g above 1."""
+    lines = [
+        "| spectrum | e_el/w_int | radius | g | k, line alone | k, simulated | difference |",
+        "| --- | --- | --- | --- | --- | --- | --- |",
+    ]
+    apart = []
+    for row in rows:
+        spectrum = SelfAffineSpectrum(row.short_cutoff, row.roll_off, row.hurst)
+        law = sphere_factors(_kind(row.kind), spectrum, row.elastic_energy, row.contact_radius)
+        difference = law.both.value / row.both - 1
+        if law.size > 1:
+            apart.append(difference)
+        lines.append(
+            f"| {row.spectrum} | {row.elastic_energy:.3g} | {row.contact_radius:.3g} | "
+            f"{law.size:.2g} | {law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f}) | "
+            f"{row.both:.2f} ± {row.both_error:.2f} | {difference:+.1%} |"
+        )
+    rms, worst = np.sqrt(np.mean(np.square(apart))), np.max(np.abs(apart))
+    lines += ["", f"For g above 1, {len(apart)} rows: rms {rms:.1%}, worst {worst:.1%}."]
+    return "\n".join(lines)
+
+
+def _kind(name: str) -> FieldKind:
+    """What a spectrum describes, by its name."""
+    return "roughness" if name == "roughness" else "chemical"
+
+
+def main() -> None:
+    """Fit the law, or hold spheres against it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("task", choices=("fit", "spheres"))
+    parser.add_argument("configurations", type=Path, nargs="+")
+    parser.add_argument("--output", type=Path, default=Path("results/benchmark"))
+    chosen = parser.parse_args()
+    if chosen.task == "spheres":
+        spheres = [row for path in chosen.configurations for row in sphere_rows(path)]
+        write_text(chosen.output / "spheres.csv", text_of(spheres))
+        click.echo(sphere_table(spheres))
+        return
+    cells = [cell for path in chosen.configurations for cell in law_cells(path)]
+    cells.sort(key=lambda cell: (cell.spectrum, cell.disorder, cell.size))
+    law = fitted_law(cells)
+    write_text(chosen.output / "law.csv", text_of(cells))
+    write_text(chosen.output / "law.json", json.dumps(asdict(law), indent=1) + "\n")
+    click.echo(f"{len(cells)} rows; rms {law.rms:.1%}, worst {law.worst:.1%} for g above 1")
+
+
+if __name__ == "__main__":
+    main()
