@@ -100,13 +100,16 @@ def resolution(
     cutoff = spectrum.short_cutoff
     sites = _front_length(schedule) / cutoff * knobs.angles_per_cutoff
     side, one_a_row = numerics.tile_side(spectrum), False
+    spacing = cutoff / knobs.samples_per_cutoff
     if isinstance(schedule, LineSchedule):
         side, one_a_row = schedule.length, schedule.uncorrelated
+        # Whole samples, so that a period further on all is the same.
+        spacing = schedule.period / math.ceil(schedule.period / spacing)
     points = math.ceil(side / cutoff * knobs.pixels_per_cutoff * (1 - 1e-12))
     n_point = next_fast_len(points, real=True)
     return Resolution(
         n_angle=n_point if one_a_row else knobs.angles or n_site(sites),
-        spacing=cutoff / knobs.samples_per_cutoff,
+        spacing=spacing,
         interpolation=knobs.interpolation,
         tile_side=side,
         n_point=n_point,
