@@ -362,7 +362,7 @@ def test_every_value_states_its_statistical_and_its_numerical_error(hysteresis, 
     # Nearer states count as one: the error lies between those of one and of all states.
     cutoffs = math.pi * float(cell["lowest_radius"] + cell["highest_radius"]) / 0.1
     few, many = (
-        numerical_error(simulation, count * cutoffs, float(cell["highest_radius"]))
+        numerical_error(simulation, count * cutoffs, 2 * math.pi * float(cell["highest_radius"]))
         for count in (1, int(cell["n_approach"]))
     )
     assert many[0] <= cell["w_appr_numerical_error"] <= few[0]

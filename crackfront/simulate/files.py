@@ -151,7 +151,7 @@ def cycle_dataset(
 
 def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> CycleRecord:
     """Record that a dataset of :func:`cycle_dataset` holds, or `UnreadableFileError`."""
-    states = ContactState if "penetration" in dataset else LineState
+    states = LineState if "mean_position" in dataset else ContactState
     names = [item.name for item in variables(states)]
     missing = [name for name in names if name not in dataset]
     name = str(dataset.attrs.get("status", "")).upper()
