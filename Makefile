@@ -4,6 +4,7 @@
 #
 # Variables
 #   SWEEP=config/default.yaml   the configuration that `make` runs; results in results/<its name>/
+#   LINE=config/line-quick.yaml the straight fronts that it measures beside its own sweep
 #   SCALE=quick | paper         coarser lengths, or the paper's, for `make figures`
 #   VALIDATION=config/validation.yaml   sizes of `make validate`; config/validation-512.yaml
 #                               and config/validation-1024.yaml are hours
@@ -15,6 +16,7 @@
 #                               is then the system's. The choice is remembered until .venv is removed.
 
 SWEEP  ?= config/default.yaml
+LINE   ?= config/line-quick.yaml
 SCALE  ?= quick
 VALIDATION ?= config/validation.yaml
 PYTHON ?= python3
@@ -40,9 +42,10 @@ locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 .PHONY: all env test test-cluster nightly accuracy validate benchmark figures report docs lint lock \
   clean help
 
-all: env  ## Run the sweep SWEEP to its figure and fit
+all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP)
-	@echo "Results: $(RESULTS)"
+	$(if $(filter file,$(origin SWEEP)),$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(LINE))
+	@echo "Results: $(RESULTS)$(if $(filter file,$(origin SWEEP)), and results/$(basename $(notdir $(LINE)))/)"
 
 env: $(READY)  ## Create .venv from requirements.lock
 
