@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 import crackfront as cf
-from crackfront.analysis.law import pinning_factor, sphere_factors
+from crackfront.analysis.law import pinning_factor, shipped_law, sphere_factors
 from crackfront.cli import main
 from crackfront.core.spectrum import SelfAffineSpectrum
 
@@ -72,13 +72,15 @@ def test_what_makes_w_loc_vary_decides_how_much_of_it_is_negative():
 def test_the_text_says_the_same_in_a_few_lines():
     for options in (FRONT, SPHERE):
         lines = run(options).output.splitlines()
-        assert len(lines) == 4
+        assert len(lines) == 5
+        assert lines[3].startswith("measured for   w_rms ")
         assert lines[0].startswith(f"k              {answer(options)['k']:.3f} (95%: ")
     assert "g inf" in run(FRONT).output
     assert "L_kappa" in run(SPHERE).output
 
 
 def test_what_was_not_measured_is_told():
+    assert answer(FRONT)["measured"]["g"] == list(shipped_law().size)
     result = run(FRONT | {"--w-rms": "1.9"})
     assert "beyond what was measured: w_rms 1.9 w_int is above" in result.output
     found = answer(FRONT | {"--g": "0.1"})

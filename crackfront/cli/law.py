@@ -69,6 +69,7 @@ def law(
         raise ValueError(
             f"the options are incomplete; name {_named(_FRONT)}, or else {_named(_SPHERE)}"
         )
+    entries |= {"measured": _measured()}
     if as_json:
         echo_json(entries)
     else:
@@ -126,6 +127,13 @@ def _sphere_entries(
     }
 
 
+def _measured() -> dict[str, tuple[float, float]]:
+    """Ranges of what the law was fitted to."""
+    from crackfront.analysis.law import shipped_law
+
+    return {"w_rms": shipped_law().disorder, "g": shipped_law().size}
+
+
 def _echo_text(entries: dict[str, Any]) -> None:
     """Print what is known of k in lines."""
     interval = f"{entries['k_low']:.3g} to {entries['k_high']:.3g}"
@@ -139,6 +147,10 @@ def _echo_text(entries: dict[str, Any]) -> None:
     if "l_kappa" in entries:
         size += f" = L_kappa {entries['l_kappa']:.3g} / Larkin {entries['larkin_length']:.3g}"
     click.echo(f"at             w_rms {entries['w_rms']:.3g} w_int, {size}")
+    ranges = (
+        f"{name} {low:.3g} to {high:.3g}" for name, (low, high) in entries["measured"].items()
+    )
+    click.echo(f"measured for   {', '.join(ranges)}")
     click.echo(f"negative w_loc {entries['negative_share']:.2%} of the surface")
     if entries["warning"]:
         click.echo(f"beyond what was measured: {entries['warning']}")
