@@ -1,4 +1,4 @@
-"""Hold predictions against simulations of surfaces that the table of k does not hold.
+"""Hold predictions against simulations of surfaces that the law of k was not fitted to.
 
 python -m benchmarks.predictions
 
@@ -24,7 +24,7 @@ from crackfront.core.units import Scales
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.prediction import Prediction, predicted
 from crackfront.topography.reading import read_measurements
-from crackfront.topography.simulated import Simulated, prediction_simulations, simulated
+from crackfront.topography.simulated import Simulated, prediction_plan, simulated
 
 SCENE = Scales(radius=1e-3, work_of_adhesion=60e-3, contact_modulus=0.7e6 / 0.75)
 REALISATIONS, SEED, N_POINT = 3, 20240229, 128
@@ -66,8 +66,8 @@ def comparisons() -> Iterator[Comparison]:
             path = Path(folder) / "film.al3d"
             path.write_bytes(_scan(film, np.random.default_rng(seed)))
             surface = measured_surface(read_measurements([path]))
-        simulations = prediction_simulations(surface, SCENE, REALISATIONS, SEED)
-        yield Comparison(film, predicted(surface, SCENE), simulated(simulations, SCENE))
+        plan = prediction_plan(surface, SCENE, REALISATIONS, SEED)
+        yield Comparison(film, predicted(surface, SCENE), simulated(plan, SCENE))
 
 
 def _scan(film: Film, rng: np.random.Generator) -> bytes:

@@ -10,6 +10,7 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from crackfront.analysis.law import pinning_factor as pinning_factor
     from crackfront.core.spectrum import SelfAffineSpectrum as SelfAffineSpectrum
     from crackfront.core.units import Scales as Scales
     from crackfront.data.provenance import __version__ as __version__
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from crackfront.simulate.surfaces import random_surface as random_surface
 
 _HOMES = {
+    "pinning_factor": "analysis.law",
     "SelfAffineSpectrum": "core.spectrum",
     "Scales": "core.units",
     "__version__": "data.provenance",

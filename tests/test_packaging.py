@@ -84,7 +84,8 @@ def test_the_wheel_holds_the_laws_and_the_types_and_no_tests(wheel):
     committed = set(told("git", "-C", ROOT, "ls-tree", "-r", "--name-only", "HEAD").splitlines())
     assert (modules & committed) <= set(names)
     assert {"crackfront/simulate/laws.csv", "crackfront/simulate/costs.csv"} <= set(names)
-    assert {"crackfront/analysis/factors.csv", "crackfront/py.typed"} <= set(names)
+    assert {"crackfront/analysis/law.csv", "crackfront/analysis/law.json"} <= set(names)
+    assert "crackfront/py.typed" in names
     others = {name.split("/")[0] for name in names} - {"crackfront"}
     assert len(others) == 1
     assert others.pop().endswith(".dist-info")

@@ -244,7 +244,7 @@ def measured_cells() -> tuple[LawCell, ...]:
     )
 
 
-def pinning_factor(w_rms: float, size: float) -> PinningFactor:
+def pinning_factor(w_rms: float, size: float, kind: FieldKind = "roughness") -> PinningFactor:
     r"""Factor k of a straight front, by the measured law.
 
     The pinning force of either branch is k e_el with e_el = w_rms^2 / 4 w_int; by symmetry both
@@ -256,6 +256,8 @@ def pinning_factor(w_rms: float, size: float) -> PinningFactor:
         Rms of the local work of adhesion. (Units: w_int)
     size : float
         g, length of the spring over the Larkin length; infinity for the infinite contact.
+    kind : {"roughness", "chemical"}, optional
+        What makes w_loc vary; decides its mean, and by that the negative share alone.
 
     Returns
     -------
@@ -271,7 +273,7 @@ def pinning_factor(w_rms: float, size: float) -> PinningFactor:
     --------
     >>> import crackfront as cf
     >>> found = cf.pinning_factor(0.4, float("inf"))
-    >>> 2.3 < found.factor.value < 2.9
+    >>> 2.3 < found.factor.value < 3.2
     True
     """
     if not 0 < w_rms < 2:
@@ -301,9 +303,14 @@ def pinning_factor(w_rms: float, size: float) -> PinningFactor:
         statistical=statistical,
         numerical=numerical,
         model=model,
-        negative_share=float(ndtr(-(1 - w_rms**2 / 4) / w_rms)),
+        negative_share=float(ndtr(-_mean_adhesion(kind, w_rms**2 / 4) / w_rms)),
         warning=warning,
     )
+
+
+def _mean_adhesion(kind: FieldKind, elastic_energy: float) -> float:
+    """Mean of w_loc (Units: w_int)."""
+    return 1 - elastic_energy if kind == "roughness" else 1.0
 
 
 def _outside(law: Law, w_rms: float, size: float) -> tuple[float, str]:
@@ -394,9 +401,9 @@ def sphere_factors(
         raise ValueError(f"contact radius is {contact_radius:g}; it must be positive and finite")
     w_rms = 2 * math.sqrt(elastic_energy)
     larkin = larkin_length(kind, spectrum, w_rms)
-    mean = 1 - elastic_energy if kind == "roughness" else 1.0
+    mean = _mean_adhesion(kind, elastic_energy)
     approach, retraction = (
-        pinning_factor(w_rms, _branch_size(w_rms, larkin, mean, sign, contact_radius))
+        pinning_factor(w_rms, _branch_size(w_rms, larkin, mean, sign, contact_radius), kind)
         for sign in (-1, 1)
     )
     one, other = approach.factor, retraction.factor

@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core import jkr
+from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.cycle.steady import FEWEST_STATES, standard_error
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import FEWEST_STATES, SteadySchedule, standard_error
 from crackfront.core.variables import ADHESION, LATERAL, variable
 
 Array = NDArray[np.float64]
@@ -60,6 +62,28 @@ class SteadyAdhesion(SteadyMeasures):
     """The measures of one record, and a sentence that says why it has none, else empty."""
 
     sentence: str = ""
+
+
+def mean_adhesion(
+    record: CycleRecord,
+    schedule: LoadSchedule | SteadySchedule | LineSchedule,
+    mean: float,
+    correlation_length: float,
+) -> SteadyAdhesion:
+    """Mean apparent work of adhesion of each branch, of a sphere or of a straight front.
+
+    Parameters
+    ----------
+    record, correlation_length
+        As of :func:`steady_adhesion`.
+    schedule : LoadSchedule, SteadySchedule or LineSchedule
+        Loads of the record.
+    mean : float
+        Mean work of adhesion of the tile, which a straight front is held against. (Units: w_int)
+    """
+    if isinstance(schedule, LineSchedule):
+        return period_adhesion(record, schedule.n_period, mean, correlation_length)
+    return steady_adhesion(record, correlation_length)
 
 
 def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdhesion:

@@ -10,6 +10,7 @@ from click.shell_completion import get_completion_class
 from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.cycle import cycle
 from crackfront.cli.figure import check_figures, compare_figures, draw_figure, figure, gallery
+from crackfront.cli.law import law
 from crackfront.cli.report import examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import predict, surface
@@ -71,7 +72,7 @@ def completion(context: click.Context, shell: str) -> None:
 
 
 SECTIONS: dict[str, tuple[click.Command, ...]] = {
-    "Measured surfaces": (predict, surface),
+    "Predictions": (predict, surface, law),
     "One contact": (cycle,),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
     "Figures of the paper": (figure, draw_figure, check_figures, compare_figures, gallery),

@@ -148,8 +148,8 @@ def predict(
     """Predict how strongly a soft sphere sticks to a measured surface, from the fitted law.
 
     SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
-    the surface or several. w = w_int - e_el -+ k e_el with k by the simulations of this project
-    (crackfront/analysis/factors.csv).
+    the surface or several. w = w_int - e_el -+ k e_el with k by the law of straight fronts
+    (crackfront law).
     """
     from crackfront.plots.style import save_figure
     from crackfront.topography.drawing import prediction_figure
@@ -186,14 +186,15 @@ def _simulated(
     surface: MeasuredSurface, scales: Scales, realisations: int, seed: int, quiet: bool
 ) -> Simulated:
     """Run the simulations behind a prediction."""
-    from crackfront.topography.simulated import expected_seconds, prediction_simulations, simulated
+    from crackfront.topography.simulated import prediction_plan, simulated
 
-    simulations = prediction_simulations(surface, scales, realisations, seed)
+    plan = prediction_plan(surface, scales, realisations, seed)
     if not quiet:
         announce_compilation()
-        seconds = expected_seconds(simulations)
-        click.echo(f"simulating {realisations} surface(s), about {seconds:.3g} s ...")
-    return simulated(simulations, scales)
+        if plan.remark:
+            click.echo(plan.remark)
+        click.echo(f"simulating {realisations} surface(s), about {plan.expected_seconds:.3g} s ...")
+    return simulated(plan, scales)
 
 
 @click.command(

@@ -18,8 +18,7 @@ from crackfront.analysis.steady import (
     STEADY_DEFINITION,
     SteadyAdhesion,
     SteadyMeasures,
-    period_adhesion,
-    steady_adhesion,
+    mean_adhesion,
 )
 from crackfront.analysis.table import (
     AMPLITUDE,
@@ -29,7 +28,6 @@ from crackfront.analysis.table import (
     SweepRow,
     SweepTable,
 )
-from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.fingerprint import fingerprint
 from crackfront.core.variables import ADHESION, variables
@@ -120,11 +118,8 @@ def sweep_row(result: SimulationResult) -> SweepRow:
     """What the file of a sweep says about one simulation."""
     record, simulation = result.record, result.simulation
     length = simulation.correlation_length
-    if isinstance(simulation.schedule, LineSchedule):
-        mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
-        steady = period_adhesion(record, simulation.schedule.n_period, mean, length)
-    else:
-        steady = steady_adhesion(record, length)
+    mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
+    steady = mean_adhesion(record, simulation.schedule, mean, length)
     status, sentence = _status(record, steady)
     known, cycle = status in COMPLETE, status == COMPLETE[0]
     numerical = stated_error(simulation, steady, length) if known else (np.nan, np.nan)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from crackfront.analysis.estimate import REACH, Estimate
-from crackfront.analysis.factors import Factors, expected_factors
+from crackfront.analysis.law import SphereFactors, shipped_law, sphere_factors
 from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.core import jkr
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -19,7 +19,9 @@ from crackfront.topography.tile import zero_load_radius
 _MOST_MISFIT = 3.0
 _MOST_ANISOTROPY = 1.25
 _MOST_UNMEASURED = 0.1
-"""Chi-squared per degree of freedom, ratio of slopes and part of e_el from which on it is said."""
+_MOST_NEGATIVE = 0.05
+"""Chi-squared per degree of freedom, ratio of slopes, part of e_el and part of the surface with a
+negative w_loc from which on it is said."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +32,7 @@ class Prediction:
     error.
     """
 
-    factors: Factors
+    factors: SphereFactors
     radius: float = variable("radius of the sphere", "m")
     contact_modulus: float = variable("contact modulus E'", "Pa")
     work_of_adhesion: float = variable("intrinsic work of adhesion w_int", "J m-2")
@@ -38,6 +40,10 @@ class Prediction:
     e_el: Estimate[float] = variable("energy of full conformity", "J m-2")
     w_rms: float = variable("rms of the local work of adhesion, 2 sqrt(e_el w_int)", "J m-2")
     correlation_length: float = variable("correlation length of the local work of adhesion", "m")
+    l_kappa: float = variable("length of the springs that hold the edge, L_kappa", "m")
+    larkin_length: float = variable("Larkin length", "m")
+    size: float = variable("g, L_kappa over the Larkin length", "1")
+    negative_share: float = variable("part of the surface where w_loc is negative", "1")
     k_appr: Estimate[float] = variable("factor k of the approach", "1")
     k_retr: Estimate[float] = variable("factor k of the retraction", "1")
     w_appr: Estimate[float] = variable("work of adhesion of the approach", "J m-2")
@@ -91,12 +97,16 @@ def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
         If no contact conforms, e_el >= w_int.
     """
     factors = _factors(surface, scales)
+    k_appr, k_retr, k = (
+        replace(factor, standard_error=math.nan)
+        for factor in (factors.approach.factor, factors.retraction.factor, factors.both)
+    )
     adhesion = scales.work_of_adhesion
     energy = surface.conformity_energy(scales.contact_modulus)
     e_el, error = energy.value, REACH * energy.standard_error
-    appr = _range(adhesion - e_el, -e_el, factors.approach, (1 + factors.approach.value) * error)
-    retr = _range(adhesion - e_el, e_el, factors.retraction, (factors.retraction.value - 1) * error)
-    hysteresis = _range(0.0, 2 * e_el, factors.both, 2 * factors.both.value * error)
+    appr = _range(adhesion - e_el, -e_el, k_appr, (1 + k_appr.value) * error)
+    retr = _range(adhesion - e_el, e_el, k_retr, (k_retr.value - 1) * error)
+    hysteresis = _range(0.0, 2 * e_el, k, 2 * k.value * error)
     return Prediction(
         factors=factors,
         radius=scales.radius,
@@ -106,8 +116,12 @@ def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
         e_el=energy,
         w_rms=2 * math.sqrt(e_el * adhesion),
         correlation_length=surface.fitted.spectrum.correlation_length,
-        k_appr=factors.approach,
-        k_retr=factors.retraction,
+        l_kappa=factors.spring * scales.lateral,
+        larkin_length=factors.larkin_length * scales.lateral,
+        size=factors.size,
+        negative_share=factors.approach.negative_share,
+        k_appr=k_appr,
+        k_retr=k_retr,
         w_appr=appr,
         w_retr=retr,
         hysteresis=replace(hysteresis, low=max(0.0, hysteresis.low)),
@@ -122,8 +136,8 @@ def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
     )
 
 
-def _factors(surface: MeasuredSurface, scales: Scales) -> Factors:
-    """Factors k that are expected of a surface."""
+def _factors(surface: MeasuredSurface, scales: Scales) -> SphereFactors:
+    """Factors k that the law gives for a surface."""
     shape = reduced_spectrum(surface.fitted.spectrum, scales)
     energy = shape.elastic_energy
     if not energy < 1:
@@ -131,7 +145,8 @@ def _factors(surface: MeasuredSurface, scales: Scales) -> Factors:
             f"e_el is {energy:.3g} w_int, so that no contact conforms fully and the theory does "
             "not apply; a softer sphere, a stronger adhesion or a smoother surface would"
         )
-    return expected_factors(shape, energy, zero_load_radius(scales) / scales.lateral)
+    radius = zero_load_radius(scales) / scales.lateral
+    return sphere_factors("roughness", shape, energy, radius)
 
 
 def _range(centre: float, slope: float, factor: Estimate[float], reach: float) -> Estimate[float]:
@@ -174,7 +189,7 @@ def theory_limits(surface: MeasuredSurface, prediction: Prediction) -> tuple[Lim
 def prediction_notes(surface: MeasuredSurface, prediction: Prediction) -> Iterator[str]:
     """What a reader of a prediction must know, one sentence each."""
     yield from surface_notes(surface, prediction.contact_radius)
-    yield from _factor_notes(prediction.factors)
+    yield from _factor_notes(prediction)
     if prediction.w_appr.value <= 0:
         yield (
             "w_appr is not positive: the sphere is not drawn into contact, it has to be pressed on."
@@ -223,36 +238,23 @@ def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None)
         )
 
 
-def _factor_notes(factors: Factors) -> Iterator[str]:
+def _factor_notes(prediction: Prediction) -> Iterator[str]:
     """Where the factors come from, and where they are weak."""
-    used = ", ".join(
-        f"{name} {weight:.0%}"
-        for name, weight in zip(factors.spectra, factors.weights, strict=True)
-        if weight >= 0.05
-    )
+    factors, share = prediction.factors, prediction.negative_share
     yield (
-        f"k is interpolated from simulated spectra ({used}); its interval holds how far they miss "
-        "each other."
+        "k is that of a straight front on springs of the length L_kappa, by the law that was "
+        "fitted to simulations of such fronts; its interval holds the errors of both."
     )
-    if factors.near_onset:
+    if factors.warning:
+        yield f"Beyond what was measured: {factors.warning}."
+    _, largest = shipped_law().size
+    if factors.size > largest:
         yield (
-            "The disorder is near the onset of hysteresis for a contact of this size, where k "
-            "falls towards zero with e_el; there may be no hysteresis at all."
+            f"Size g {factors.size:.3g} is above the largest that was measured ({largest:.3g}): k "
+            "follows the finite-size exponent of the elastic line from there."
         )
-    if factors.amplitude_octaves < 0:
+    if share > _MOST_NEGATIVE:
         yield (
-            f"e_el is {2**-factors.amplitude_octaves:.2g} times below the weakest disorder that "
-            "was simulated: k is that of the weakest, and its interval reaches down to zero."
-        )
-    if factors.amplitude_octaves > 0:
-        yield (
-            f"e_el is {2**factors.amplitude_octaves:.2g} times above the strongest disorder that "
-            "was simulated: k is that of the strongest, and its interval is widened by the trend."
-        )
-    if factors.size_octaves:
-        outside = "longer" if factors.size_octaves > 0 else "shorter"
-        yield (
-            "The correlation length relative to the contact is "
-            f"{2 ** abs(factors.size_octaves):.2g} times {outside} than any that was simulated: k "
-            "follows the trend of the spectra, and its interval is widened by as much."
+            f"w_loc is negative on {share:.1%} of the surface: the linearisation of the roughness "
+            "is not to be trusted there."
         )

@@ -8,7 +8,7 @@ from dataclasses import asdict, replace
 from typing import Any
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.factors import BRANCHES
+from crackfront.analysis.law import PinningFactor, SphereFactors
 from crackfront.core.units import Scales
 from crackfront.core.variables import Variable, variables
 from crackfront.data.written_units import prefixed
@@ -53,6 +53,8 @@ def simulation_text(found: Simulated) -> str:
     lines = [f"Simulated on {found.realisations} synthesised surface(s)"]
     lines += [f"  {name:22}{_shown(_ENERGY, getattr(found, name))}" for name in _ADHESIONS]
     lines.append(f"  {'k':22}{_factor(found.k)}, numerical error {found.numerical_error:.2g}")
+    if found.remark:
+        lines.append(f"  {found.remark}")
     lines += [f"  Without a value: {sentence}" for sentence in found.failed]
     return "\n".join(lines)
 
@@ -99,7 +101,7 @@ def machine_readable(
         else {
             item.name: {"value": value, **item.attributes} for item, value in _columns(prediction)
         },
-        "factors": None if prediction is None else _with_intervals(prediction.factors, *BRANCHES),
+        "factors": None if prediction is None else _factors_entry(prediction.factors),
         "limits": [asdict(item) | {"margin": item.margin, "holds": item.holds} for item in limits],
         "notes": list(notes),
         "simulation": None if found is None else _with_intervals(found, *_ADHESIONS, "k"),
@@ -165,6 +167,10 @@ def _prediction_lines(item: Prediction) -> Iterator[str]:
     named = (
         ("correlation length", prefixed("m", item.correlation_length)),
         ("contact radius, F = 0", prefixed("m", item.contact_radius)),
+        ("L_kappa", prefixed("m", item.l_kappa)),
+        ("Larkin length", prefixed("m", item.larkin_length)),
+        ("g, L_kappa over it", f"{item.size:.3g}"),
+        ("negative w_loc", f"{item.negative_share:.2%} of the surface"),
         ("k of the approach", _factor(item.k_appr)),
         ("k of the retraction", _factor(item.k_retr)),
         *((name, _shown(_ENERGY, getattr(item, name))) for name in _ADHESIONS),
@@ -266,6 +272,21 @@ def _columns(prediction: Prediction) -> Iterator[tuple[Variable, float]]:
         ):
             if (ending == "error") == math.isfinite(found.standard_error):
                 yield replace(item, name=f"{item.name}_{ending}", long_name=text), value
+
+
+def _factors_entry(factors: SphereFactors) -> dict[str, Any]:
+    """Factors with their intervals, the errors that these are made of, and the warning."""
+
+    def entry(branch: PinningFactor) -> dict[str, Any]:
+        errors = {name: getattr(branch, name) for name in ("statistical", "numerical", "model")}
+        return _interval_entry(branch.factor) | errors
+
+    return {
+        "approach": entry(factors.approach),
+        "retraction": entry(factors.retraction),
+        "both": _interval_entry(factors.both),
+        "warning": factors.warning,
+    }
 
 
 def _with_intervals(record: Any, *names: str) -> dict[str, Any]:

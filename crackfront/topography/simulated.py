@@ -1,28 +1,36 @@
-"""The real run behind a prediction: cycles on synthesised surfaces with the fitted spectrum."""
+"""The real run behind a prediction: synthesised surfaces with the fitted spectrum.
+
+Spheres are run, or where these have too many sites the straight fronts that they are locally.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
 from crackfront.analysis.estimate import Estimate, mean_estimate
-from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.law import pinning_factor
+from crackfront.analysis.steady import mean_adhesion
 from crackfront.core import jkr
+from crackfront.core.adhesion import larkin_length
 from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.lines import LineLoad
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import (
     Numerics,
+    Schedule,
     Simulation,
     numerical_error,
     simulation_of,
 )
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import reduced_spectrum
+from crackfront.topography.tile import zero_load_radius
 
 _ERROR = 0.03
 """Standard error of k that the numerics may leave."""
@@ -32,6 +40,41 @@ _START, _DEEPEST, _TRAVEL, _STEADY_ERROR = 1.0, 1.5, 1.5, 0.1
 
 _WAY = 15.0
 """Correlation lengths that the contact grows by at least, for a few independent states."""
+
+
+_MOST_SITES, _MOST_LINE_SITES, _MOST_MEMORY = 1_000_000, 2_000_000, 8e9
+"""Sites of a sphere and of a straight front, and bytes of either, up to which they are run."""
+
+_LINE = LineLoad(spring_unit="larkin_length", length=10, period=25, transient=6, step=0.5)
+"""Straight fronts, as in config/line.yaml, from which the law of k is."""
+
+_SHORT_SIZE = 30.0
+"""g of the springs that stand for longer ones."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationPlan:
+    """What is simulated for a prediction.
+
+    Attributes
+    ----------
+    simulations : tuple of Simulation
+        One a surface.
+    correction : float
+        k by the law over that for the simulated springs, where these are shorter than those of the
+        sphere; else 1.
+    remark : str
+        What is run in place of spheres, and why; empty where spheres are.
+    """
+
+    simulations: tuple[Simulation, ...]
+    correction: float = 1.0
+    remark: str = ""
+
+    @property
+    def expected_seconds(self) -> float:
+        """Processor time that the simulations are expected to take."""
+        return sum(expected_cost(item).seconds for item in self.simulations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +94,8 @@ class Simulated:
         Standard error of k that the numerics leave.
     failed : tuple of str
         Why surfaces have no value.
+    remark : str
+        As of :class:`SimulationPlan`.
     """
 
     realisations: int
@@ -60,37 +105,87 @@ class Simulated:
     k: Estimate[float]
     numerical_error: float
     failed: tuple[str, ...]
+    remark: str
 
 
-def prediction_simulations(
+def prediction_plan(
     surface: MeasuredSurface, scales: Scales, realisations: int, seed: int
-) -> tuple[Simulation, ...]:
+) -> SimulationPlan:
     """Simulations of surfaces with the fitted spectrum and its amplitude, and noise of a seed.
 
     Raises
     ------
     ValueError
-        If no contact conforms, e_el >= w_int.
+        If no contact conforms, e_el >= w_int, or whatever is simulated would be too large.
     """
     spectrum = reduced_spectrum(surface.fitted.spectrum, scales)
     energy = spectrum.elastic_energy
     if not energy < 1:
         raise ValueError(f"e_el is {energy:.3g} w_int; no simulation conforms fully at 1 or more")
-    schedule = _schedule(spectrum.correlation_length)
-    first = simulation_of("roughness", spectrum, energy, schedule, Numerics(_ERROR), seed=seed)
+    first, correction, remark = _affordable(
+        spectrum, energy, zero_load_radius(scales) / scales.lateral, seed
+    )
     name = f"measured-{surface.checksum}"
-    return tuple(
+    simulations = (
         replace(first, spectrum_name=name, realisation=number) for number in range(realisations)
+    )
+    return SimulationPlan(tuple(simulations), correction, remark)
+
+
+def _affordable(
+    spectrum: SelfAffineSpectrum, energy: float, contact_radius: float, seed: int
+) -> tuple[Simulation, float, str]:
+    """First of sphere, line on its springs and line on short ones that is not too large."""
+    numerics = Numerics(_ERROR)
+
+    def simulation(schedule: Schedule) -> Simulation:
+        return simulation_of("roughness", spectrum, energy, schedule, numerics, seed=seed)
+
+    def line(size: float) -> Simulation:
+        return simulation(_LINE.schedule("roughness", spectrum, energy, size, numerics))
+
+    sphere = simulation(_schedule(spectrum.correlation_length))
+    if _fits(sphere, _MOST_SITES):
+        return sphere, 1.0, ""
+    w_rms = 2 * math.sqrt(energy)
+    size = jkr.spring(contact_radius, 1 - energy) / larkin_length("roughness", spectrum, w_rms)
+    instead = f"In place of a sphere ({_extent(sphere)}) a straight front is simulated, "
+    front = line(size)
+    if _fits(front, _MOST_LINE_SITES):
+        remark = f"{instead}on springs of the length L_kappa: g {size:.3g}, {_extent(front)}."
+        return front, 1.0, remark
+    if size > _SHORT_SIZE:
+        short = line(_SHORT_SIZE)
+        if _fits(short, _MOST_LINE_SITES):
+            long, near = (pinning_factor(w_rms, one).factor.value for one in (size, _SHORT_SIZE))
+            return (
+                short,
+                long / near,
+                f"{instead}on springs shorter than L_kappa: g {_SHORT_SIZE:g}, not {size:.3g} "
+                f"({_extent(front)}). What is found for k is multiplied by {long / near:.3f}, the "
+                "ratio of the law.",
+            )
+        front = short
+    raise ValueError(
+        f"no simulation is small enough: a sphere has {_extent(sphere)}, a straight front "
+        f"{_extent(front)}; trust fewer short waves with --shortest, or do without --simulate"
     )
 
 
-def expected_seconds(simulations: Sequence[Simulation]) -> float:
-    """Processor time that simulations are expected to take."""
-    return sum(expected_cost(item).seconds for item in simulations)
+def _fits(simulation: Simulation, most_sites: int) -> bool:
+    """Whether a simulation has few enough sites, and a tile that is not too large."""
+    sites = simulation.resolution.n_angle
+    return sites <= most_sites and expected_cost(simulation).memory <= _MOST_MEMORY
 
 
-def simulated(simulations: Sequence[Simulation], scales: Scales) -> Simulated:
-    """Run simulations of one surface, one after the other, and average what they find.
+def _extent(simulation: Simulation) -> str:
+    """Sites and memory of a simulation."""
+    memory = expected_cost(simulation).memory
+    return f"{simulation.resolution.n_angle:.3g} sites, {memory / 1e9:.2g} GB"
+
+
+def simulated(plan: SimulationPlan, scales: Scales) -> Simulated:
+    """Run the simulations of one surface, one after the other, and average what they find.
 
     Raises
     ------
@@ -98,15 +193,18 @@ def simulated(simulations: Sequence[Simulation], scales: Scales) -> Simulated:
         If none of them has a value.
     """
     rows, failed = [], []
-    for simulation in simulations:
+    for simulation in plan.simulations:
         result = run_simulation(simulation)
-        length = simulation.correlation_length
-        steady = steady_adhesion(result.record, length)
+        e_el = result.measures.e_el
+        mean, length = 1 - e_el, simulation.correlation_length
+        steady = mean_adhesion(result.record, simulation.schedule, mean, length)
         if steady.sentence:
             failed.append(f"{simulation.label}: {steady.sentence}")
             continue
-        k = steady.hysteresis / (2 * result.measures.e_el)
-        rows.append((steady.w_appr, steady.w_retr, steady.hysteresis, k))
+        w_appr, w_retr = (
+            mean + plan.correction * (work - mean) for work in (steady.w_appr, steady.w_retr)
+        )
+        rows.append((w_appr, w_retr, w_retr - w_appr, (w_retr - w_appr) / (2 * e_el)))
     if not rows:
         raise ValueError(f"no simulation has a value; {failed[0]}")
     means = mean_estimate(np.transpose(rows))[0]
@@ -114,7 +212,7 @@ def simulated(simulations: Sequence[Simulation], scales: Scales) -> Simulated:
     appr, retr, hysteresis = (
         work.each(lambda number: number * scales.work_of_adhesion) for work in works
     )
-    first = simulations[0]
+    first = plan.simulations[0]
     return Simulated(
         realisations=len(rows),
         w_appr=appr,
@@ -123,6 +221,7 @@ def simulated(simulations: Sequence[Simulation], scales: Scales) -> Simulated:
         k=factor,
         numerical_error=math.hypot(*numerical_error(first)) / (2 * first.elastic_energy),
         failed=tuple(failed),
+        remark=plan.remark,
     )
 
 

@@ -1,0 +1,116 @@
+"""`crackfront law`: what it prints, and one sentence for what it cannot answer."""
+
+import json
+import math
+
+import pytest
+from click.testing import CliRunner
+
+import crackfront as cf
+from crackfront.analysis.law import pinning_factor, shipped_law, sphere_factors
+from crackfront.cli import main
+from crackfront.core.spectrum import SelfAffineSpectrum
+
+FRONT = {"--w-rms": "0.4", "--g": "inf"}
+SPHERE = {"--spectrum": "0.005,0.1,0.3", "--elastic-energy": "0.05", "--contact-radius": "1.9"}
+
+
+def run(options, *more):
+    """Result of the command."""
+    parts = [part for item in options.items() for part in item]
+    return CliRunner().invoke(main, ["law", *parts, *more])
+
+
+def answer(options, *more):
+    """JSON object that the command prints."""
+    result = run(options, *more, "--json")
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+def test_a_front_has_the_k_of_the_law_in_both_branches():
+    found, k = answer(FRONT | {"--g": "7"}), pinning_factor(0.4, 7.0)
+    assert (found["k"], found["k_low"], found["k_high"]) == pytest.approx(
+        (k.factor.value, k.factor.low, k.factor.high)
+    )
+    assert found["k_appr"] == found["k_retr"] == found["k"]
+    assert (found["w_rms"], found["g"]) == (0.4, 7.0)
+    for name in ("statistical", "numerical", "model", "negative_share", "warning"):
+        assert found[name] == getattr(k, name)
+
+
+def test_an_infinite_front_is_json_that_is_read_everywhere():
+    text = run(FRONT, "--json").stdout
+    found = json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
+    assert found["g"] == "inf"
+    assert found["k"] == cf.pinning_factor(0.4, math.inf).factor.value
+    assert found["k"] > answer(FRONT | {"--g": "10"})["k"]
+
+
+@pytest.mark.parametrize("field", ["roughness", "chemical"])
+def test_a_sphere_has_its_lengths_and_the_k_of_its_branches(field):
+    found = answer(SPHERE, "--field", field)
+    law = sphere_factors(field, SelfAffineSpectrum(0.005, 0.1, 0.3), 0.05, 1.9)
+    assert (found["k"], found["k_low"], found["k_high"]) == pytest.approx(
+        (law.both.value, law.both.low, law.both.high)
+    )
+    assert found["k_appr"] == law.approach.factor.value > found["k_retr"]
+    assert found["l_kappa"] == law.spring
+    assert found["g"] == pytest.approx(found["l_kappa"] / found["larkin_length"])
+    assert found["w_rms"] == pytest.approx(2 * math.sqrt(0.05))
+
+
+def test_what_makes_w_loc_vary_decides_how_much_of_it_is_negative():
+    strong = FRONT | {"--w-rms": "0.8"}
+    rough, chemical = (answer(strong, "--field", field) for field in ("roughness", "chemical"))
+    assert rough["k"] == chemical["k"]
+    # One standard deviation and 1 / 0.8 of them: tables of the normal distribution.
+    assert rough["negative_share"] == pytest.approx(0.5 * math.erfc(1.05 / math.sqrt(2)))
+    assert chemical["negative_share"] == pytest.approx(0.5 * math.erfc(1.25 / math.sqrt(2)))
+
+
+def test_the_text_says_the_same_in_a_few_lines():
+    for options in (FRONT, SPHERE):
+        lines = run(options).output.splitlines()
+        assert len(lines) == 5
+        assert lines[3].startswith("measured for   w_rms ")
+        assert lines[0].startswith(f"k              {answer(options)['k']:.3f} (95%: ")
+    assert "g inf" in run(FRONT).output
+    assert "L_kappa" in run(SPHERE).output
+
+
+def test_what_was_not_measured_is_told():
+    assert answer(FRONT)["measured"]["g"] == list(shipped_law().size)
+    result = run(FRONT | {"--w-rms": "1.9"})
+    assert "beyond what was measured: w_rms 1.9 w_int is above" in result.output
+    found = answer(FRONT | {"--g": "0.1"})
+    assert "hysteresis sets in there" in found["warning"]
+    assert found["k_low"] == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({}, "the options are incomplete; name --w-rms and --g, or else --spectrum"),
+        ({"--w-rms": "0.4"}, "the options are incomplete"),
+        (SPHERE | {"--g": "3"}, "are mixed; name those of one"),
+        (FRONT | {"--w-rms": "2"}, "w_rms is 2 w_int; it must lie between 0 and 2"),
+        (FRONT | {"--w-rms": "-0.1"}, "w_rms is -0.1 w_int; it must lie between 0 and 2"),
+        (FRONT | {"--g": "0"}, "size g is 0; it must be positive, or inf"),
+        (FRONT | {"--g": "nan"}, "size g is nan; it must be positive, or inf"),
+        (SPHERE | {"--spectrum": "0.005,0.1"}, "--spectrum is '0.005,0.1'; write short cutoff"),
+        (SPHERE | {"--spectrum": "0.1,0.005,1"}, "roll_off 0.005 is shorter than short_cutoff"),
+        (SPHERE | {"--elastic-energy": "1"}, "is 1 w_int; the factors k need one between 0 and 1"),
+        (
+            SPHERE | {"--contact-radius": "0.4"},
+            "contact radius 0.4 is at or below that of pull-off",
+        ),
+        (SPHERE | {"--contact-radius": "-1"}, "contact radius is -1; it must be positive"),
+    ],
+)
+def test_what_cannot_be_answered_is_refused_with_a_sentence(options, sentence):
+    result = run(options)
+    assert result.exit_code == 2, result.output
+    assert "Traceback" not in result.output
+    [told] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
+    assert sentence in told
