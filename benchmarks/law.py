@@ -27,7 +27,13 @@ import click
 import numpy as np
 
 from crackfront.analysis.estimate import REACH, mean_estimate
-from crackfront.analysis.law import LawCell, SphereFactors, fitted_law, sphere_factors
+from crackfront.analysis.law import (
+    LawCell,
+    SphereFactors,
+    fitted_law,
+    slope_breadth,
+    sphere_factors,
+)
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
 from crackfront.core.cycle.steady import SteadySchedule
@@ -114,6 +120,7 @@ def law_cells(configuration: Path) -> list[LawCell]:
         cells.append(
             LawCell(
                 spectrum=f"{_shape(sweep, item)}",
+                breadth=slope_breadth(sweep.kind, item.spectrum),
                 disorder=0.0 if load.uncorrelated else 2 * float(np.sqrt(energy)),
                 size=simulation.spring / larkin,
                 realisations=found.realisations,

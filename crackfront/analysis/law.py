@@ -3,8 +3,10 @@ r"""The law behind k: of a straight front on springs, by disorder s = w_rms / w_
 The size is the length of the springs over the Larkin length, g = L_kappa / ell. With
 :math:`x = g_s^{-(1-\zeta)}`, :math:`g_s = g / (1 + c\, s^d)`,
 
-.. math:: k = \frac{k_0}{(1 + a\, s^b)(1 + A x + B x^2 + C x^3)} .
+.. math:: k = \frac{k_0}{(1 + a\, s^b (\beta_0 / \beta)^e)(1 + A x + B x^2 + C x^3)} .
 
+The Larkin length makes one curve of all surfaces at weak disorder. At strong disorder k falls with
+s, the less the broader the spectrum of the slope of w_loc is (:func:`slope_breadth`, beta).
 `python -m benchmarks.law` measures `law.csv`, fits the coefficients to it and writes `law.json`.
 A sphere is locally such a front (:func:`sphere_factors`): nothing is adjusted to spheres.
 docs/law.md derives all lengths.
@@ -40,10 +42,16 @@ FINITE_SIZE_EXPONENT = 0.612
 .. [1] Rosso, Krauth, Phys. Rev. E 65, 025101 (2002).
 """
 
-COEFFICIENTS = ("k_0", "A", "B", "C", "a", "b", "c", "d")
+COEFFICIENTS = ("k_0", "A", "B", "C", "a", "b", "c", "d", "e")
 """Names of the coefficients of the law, in the order of the files and arrays that hold them."""
 
-_START = (3.7, 0.5, 0.1, 0.05, 1.0, 1.2, 2.0, 1.2)
+_START = (3.9, 0.55, 0.05, 0.1, 1.2, 1.25, 1.8, 1.3, 0.6)
+
+TYPICAL_BREADTH = 1.18
+"""beta_0, in the middle of the shapes of spectra; that of one that is not known."""
+
+_NEAR = 0.8
+"""Cells as close in ln g tell their scatter together: few tiles say little of their own."""
 
 _LEAST_ADHESION = 0.02
 """Work of adhesion, in units of w_int, of an approach that disorder all but stops."""
@@ -57,6 +65,7 @@ class LawCell:
     """One spectrum, amplitude and spring: a row of `law.csv`."""
 
     spectrum: str = variable("name of the spectrum", "1")
+    breadth: float = variable("breadth of the spectrum of the slope of w_loc", "1")
     disorder: float = variable("s, rms of w_loc; 0 where sites are uncorrelated", "w_int")
     size: float = variable("g, length of the springs over the Larkin length", "1")
     realisations: int = variable("tiles", "1")
@@ -87,8 +96,8 @@ class Law:
         The finite-size exponent when left free, and its standard error.
     rms, worst : float
         Departure of the measured k from the law, relative, for g above 1.
-    disorder, size : tuple of float
-        Measured ranges of s and g.
+    disorder, size, breadth : tuple of float
+        Measured ranges of s, g and the breadth.
     """
 
     coefficients: tuple[float, ...]
@@ -101,6 +110,7 @@ class Law:
     worst: float
     disorder: tuple[float, float]
     size: tuple[float, float]
+    breadth: tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,13 +142,39 @@ def law_value(
     coefficients: Sequence[float] | Array,
     disorder: ArrayLike,
     size: ArrayLike,
+    breadth: ArrayLike = TYPICAL_BREADTH,
     exponent: float = FINITE_SIZE_EXPONENT,
 ) -> Array:
-    """K by the law, for arrays of s and g (infinity for the infinite contact)."""
-    k_0, *series, a, b, c, d = coefficients
+    """Values of k, for arrays of s, g (infinity for the infinite contact) and the breadth."""
+    k_0, *series, a, b, c, d, e = coefficients
     s = np.asarray(disorder, dtype=float)
     x = (np.asarray(size, dtype=float) / (1 + c * s**d)) ** -exponent
-    return np.asarray(k_0 / (1 + a * s**b) / (1 + x * np.polyval((*series[::-1],), x)))
+    fall = 1 + a * s**b * (TYPICAL_BREADTH / np.asarray(breadth, dtype=float)) ** e
+    return np.asarray(k_0 / fall / (1 + x * np.polyval(series[::-1], x)))
+
+
+def slope_breadth(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
+    r"""Breadth of the spectrum of the slope of w_loc, integrated along the front.
+
+    .. math:: \beta = \frac{M_2 M_4}{M_3^2}, \quad M_n = \int_0^\infty dq\, q^n C_w(q, 0) ,
+
+    1 for a single wavelength, larger for broader spectra.
+
+    Parameters
+    ----------
+    kind : {"roughness", "chemical"}
+        What the spectrum describes.
+    spectrum : SelfAffineSpectrum
+        Its shape.
+
+    Examples
+    --------
+    >>> round(slope_breadth("roughness", SelfAffineSpectrum(1.0, 1.0, hurst=1.0)), 4)
+    1.0417
+    """
+    order = 1.0 if kind == "roughness" else 0.5
+    low, middle, high = (spectrum.mean_square(order + more) for more in (0.0, 0.5, 1.0))
+    return low * high / middle**2
 
 
 def fitted_law(cells: Sequence[LawCell]) -> Law:
@@ -148,24 +184,26 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
     the residuals: once with the first guess, then with what they say.
     """
     used = [cell for cell in cells if cell.size >= LEAST_SIZE]
-    s, g, k, error = (
-        np.array([getattr(cell, name) for cell in used])
-        for name in ("disorder", "size", "both", "error")
+    places = tuple(
+        np.array([getattr(cell, name) for cell in used]) for name in ("disorder", "size", "breadth")
     )
+    (_, g, _), k = places, np.array([cell.both for cell in used])
+    error = _pooled_error(g, np.array([cell.error for cell in used]))
     coefficients, model = np.array(_START), (0.03, 0.05)
     for _ in range(4):
-        spread = np.hypot(error, _model_error(coefficients, s, g, model))
+        spread = np.hypot(error, _model_error(coefficients, *places, model))
 
         def residuals(trial: Array, spread: Array = spread) -> Array:
             exponent = trial[-1] if trial.size > len(COEFFICIENTS) else FINITE_SIZE_EXPONENT
-            return (law_value(trial[: len(COEFFICIENTS)], s, g, exponent) - k) / spread
+            return (law_value(trial[: len(COEFFICIENTS)], *places, exponent) - k) / spread
 
         found = least_squares(residuals, coefficients)
         coefficients = found.x
-        model = _likeliest_model(coefficients, s, g, k, error)
+        model = _likeliest_model(coefficients, places, k, error)
     free = least_squares(residuals, [*coefficients, FINITE_SIZE_EXPONENT])
-    relative = law_value(coefficients, s, g)[g >= 1] / k[g >= 1] - 1
+    relative = law_value(coefficients, *places)[g >= 1] / k[g >= 1] - 1
     numerical = [cell.numerical_error / cell.both for cell in used if cell.size >= 1]
+    ranges = [(float(values[values > 0].min()), float(values.max())) for values in places]
     return Law(
         coefficients=tuple(coefficients.tolist()),
         covariance=tuple(map(tuple, _covariance(found.jac).tolist())),
@@ -175,9 +213,16 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
         exponent=(float(free.x[-1]), float(np.sqrt(_covariance(free.jac)[-1, -1]))),
         rms=float(np.sqrt(np.mean(relative**2))),
         worst=float(np.max(np.abs(relative))),
-        disorder=(float(s[s > 0].min()), float(s.max())),
-        size=(LEAST_SIZE, float(g.max())),
+        disorder=ranges[0],
+        size=(LEAST_SIZE, ranges[1][1]),
+        breadth=ranges[2],
     )
+
+
+def _pooled_error(size: Array, error: Array) -> Array:
+    """Standard errors of cells, each the rms of those of cells of about its size."""
+    near = np.abs(np.log(size[:, None] / size)) < _NEAR
+    return np.array([np.sqrt(np.nanmean(error[row] ** 2)) for row in near])
 
 
 def _covariance(jacobian: Array) -> Array:
@@ -185,36 +230,41 @@ def _covariance(jacobian: Array) -> Array:
     return np.asarray(np.linalg.pinv(jacobian.T @ jacobian))
 
 
-def _slope(coefficients: Sequence[float] | Array, disorder: ArrayLike, size: ArrayLike) -> Array:
+def _slope(
+    coefficients: Sequence[float] | Array, disorder: ArrayLike, size: ArrayLike, breadth: ArrayLike
+) -> Array:
     """Change of k with ln g."""
-    g = np.asarray(size, dtype=float)
-    step = 1e-4
-    ends = [law_value(coefficients, disorder, g * math.exp(sign * step)) for sign in (1, -1)]
-    return np.asarray((ends[0] - ends[1]) / (2 * step))
+    g, step = np.asarray(size, dtype=float), 1e-4
+    one, other = (
+        law_value(coefficients, disorder, g * math.exp(sign * step), breadth) for sign in (1, -1)
+    )
+    return np.asarray((one - other) / (2 * step))
 
 
 def _model_error(
     coefficients: Sequence[float] | Array,
     disorder: ArrayLike,
     size: ArrayLike,
+    breadth: ArrayLike,
     model: tuple[float, float],
 ) -> Array:
     """Standard error of k by errors of ln k and of ln g."""
     factor, length = model
-    value = law_value(coefficients, disorder, size)
-    return np.hypot(factor * value, length * _slope(coefficients, disorder, size))
+    value = law_value(coefficients, disorder, size, breadth)
+    return np.hypot(factor * value, length * _slope(coefficients, disorder, size, breadth))
 
 
 def _likeliest_model(
-    coefficients: Array, s: Array, g: Array, k: Array, error: Array
+    coefficients: Array, places: tuple[Array, ...], k: Array, error: Array
 ) -> tuple[float, float]:
     """Model errors that make the residuals likeliest."""
-    residuals = law_value(coefficients, s, g) - k
+    s, g, breadth = places
+    residuals = law_value(coefficients, s, g, breadth) - k
     grid = np.linspace(0.002, 0.15, 75)
     best = (math.inf, 0.0, 0.0)
     for factor in grid:
         for length in grid:
-            variance = error**2 + _model_error(coefficients, s, g, (factor, length)) ** 2
+            variance = error**2 + _model_error(coefficients, s, g, breadth, (factor, length)) ** 2
             cost = float(np.sum(np.log(variance) + residuals**2 / variance))
             best = min(best, (cost, float(factor), float(length)))
     return best[1], best[2]
@@ -244,7 +294,9 @@ def measured_cells() -> tuple[LawCell, ...]:
     )
 
 
-def pinning_factor(w_rms: float, size: float, kind: FieldKind = "roughness") -> PinningFactor:
+def pinning_factor(
+    w_rms: float, size: float, kind: FieldKind = "roughness", breadth: float | None = None
+) -> PinningFactor:
     r"""Factor k of a straight front, by the measured law.
 
     The pinning force of either branch is k e_el with e_el = w_rms^2 / 4 w_int; by symmetry both
@@ -258,6 +310,9 @@ def pinning_factor(w_rms: float, size: float, kind: FieldKind = "roughness") -> 
         g, length of the spring over the Larkin length; infinity for the infinite contact.
     kind : {"roughness", "chemical"}, optional
         What makes w_loc vary; decides its mean, and by that the negative share alone.
+    breadth : float, optional
+        That of the spectrum, as :func:`slope_breadth`; by default k is that of a typical one, and
+        the interval covers the others.
 
     Returns
     -------
@@ -283,14 +338,19 @@ def pinning_factor(w_rms: float, size: float, kind: FieldKind = "roughness") -> 
     if not size > 0:
         raise ValueError(f"size g is {size:g}; it must be positive, or inf")
     law = shipped_law()
-    value = float(law_value(law.coefficients, w_rms, size))
+    place = w_rms, size, TYPICAL_BREADTH if breadth is None else breadth
+    value = float(law_value(law.coefficients, *place))
     steps = 1e-5 * np.maximum(np.abs(law.coefficients), 1e-3)
     gradient = [
-        (law_value(np.array(law.coefficients) + shift, w_rms, size) - value) / step
+        (law_value(np.array(law.coefficients) + shift, *place) - value) / step
         for shift, step in zip(np.diag(steps), steps, strict=True)
     ]
     statistical = math.sqrt(float(gradient @ np.array(law.covariance) @ gradient))
-    model = float(_model_error(law.coefficients, w_rms, size, (law.model_factor, law.model_length)))
+    errors = law.model_factor, law.model_length
+    model = float(_model_error(law.coefficients, *place, errors))
+    if breadth is None:
+        ends = [float(law_value(law.coefficients, w_rms, size, end)) for end in law.breadth]
+        model = math.hypot(model, (max(ends) - min(ends)) / math.sqrt(12))
     numerical = law.numerical * value
     outside, warning = _outside(law, w_rms, size)
     error = math.hypot(statistical, numerical, model, outside * value)
@@ -401,9 +461,11 @@ def sphere_factors(
         raise ValueError(f"contact radius is {contact_radius:g}; it must be positive and finite")
     w_rms = 2 * math.sqrt(elastic_energy)
     larkin = larkin_length(kind, spectrum, w_rms)
-    mean = _mean_adhesion(kind, elastic_energy)
+    mean, breadth = _mean_adhesion(kind, elastic_energy), slope_breadth(kind, spectrum)
     approach, retraction = (
-        pinning_factor(w_rms, _branch_size(w_rms, larkin, mean, sign, contact_radius), kind)
+        pinning_factor(
+            w_rms, _branch_size(w_rms, larkin, mean, sign, contact_radius, breadth), kind, breadth
+        )
         for sign in (-1, 1)
     )
     one, other = approach.factor, retraction.factor
@@ -419,7 +481,7 @@ def sphere_factors(
 
 
 def _branch_size(
-    w_rms: float, larkin: float, mean: float, sign: int, contact_radius: float
+    w_rms: float, larkin: float, mean: float, sign: int, contact_radius: float, breadth: float
 ) -> float:
     """G of a branch, whose work of adhesion mean + sign k e_el depends on k itself."""
     coefficients = shipped_law().coefficients
@@ -429,6 +491,6 @@ def _branch_size(
         return jkr.spring(contact_radius, adhesion) / larkin
 
     def excess(factor: float) -> float:
-        return float(law_value(coefficients, w_rms, size(factor))) - factor
+        return float(law_value(coefficients, w_rms, size(factor), breadth)) - factor
 
     return size(float(brentq(excess, 0.0, coefficients[0], xtol=1e-6)))
