@@ -42,6 +42,8 @@ def table(rng, shape=(2, 3, 4)):
         w_retr_from_force=nan,
         w_appr_numerical_error=nan,
         w_retr_numerical_error=nan,
+        contact_radius=np.full(shape, RADIUS),
+        spring=np.full(shape[:2], np.nan),
     )
 
 

@@ -50,6 +50,8 @@ def table(rng):
         w_retr_from_force=w_retr,
         w_appr_numerical_error=np.zeros_like(w_retr),
         w_retr_numerical_error=np.zeros_like(w_retr),
+        contact_radius=np.full(energy.shape, 1.9),
+        spring=np.full((4, 4), np.nan),
     )
 
 

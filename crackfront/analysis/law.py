@@ -16,7 +16,7 @@ import csv
 import functools
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from importlib.resources import files
 from typing import Any
@@ -50,6 +50,9 @@ _LEAST_ADHESION = 0.02
 
 LEAST_SIZE = 0.3
 """Smallest g of the fit; below, a front is pulled over nearly all of its pinning."""
+
+WEAKEST = 1e-6
+"""Rms of w_loc that stands for the limit of weak disorder. (Units: w_int)"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,12 +285,9 @@ def pinning_factor(w_rms: float, size: float) -> PinningFactor:
         raise ValueError(f"size g is {size:g}; it must be positive, or inf")
     law = shipped_law()
     value = float(law_value(law.coefficients, w_rms, size))
-    steps = 1e-5 * np.maximum(np.abs(law.coefficients), 1e-3)
-    gradient = [
-        (law_value(np.array(law.coefficients) + shift, w_rms, size) - value) / step
-        for shift, step in zip(np.diag(steps), steps, strict=True)
-    ]
-    statistical = math.sqrt(float(gradient @ np.array(law.covariance) @ gradient))
+    statistical = _statistical_error(
+        law, lambda coefficients: float(law_value(coefficients, w_rms, size))
+    )
     model = float(_model_error(law.coefficients, w_rms, size, (law.model_factor, law.model_length)))
     numerical = law.numerical * value
     outside, warning = _outside(law, w_rms, size)
@@ -304,6 +304,50 @@ def pinning_factor(w_rms: float, size: float) -> PinningFactor:
         negative_share=float(ndtr(-(1 - w_rms**2 / 4) / w_rms)),
         warning=warning,
     )
+
+
+def infinite_ratio(w_rms: float, size: float) -> Estimate[float]:
+    """Ratio of k in the infinite contact to k at a size, by the law; it extrapolates measured k.
+
+    Parameters
+    ----------
+    w_rms : float
+        Rms of the local work of adhesion. (Units: w_int)
+    size : float
+        g; below the smallest of the law the ratio is NaN.
+
+    Examples
+    --------
+    >>> ratio = infinite_ratio(0.2, 10.0)
+    >>> 1.0 < ratio.low < ratio.value < ratio.high < 1.3
+    True
+    """
+    law = shipped_law()
+    if not size >= law.size[0]:
+        return Estimate(*(math.nan,) * 4)
+
+    def ratio(coefficients: Sequence[float] | Array) -> float:
+        infinite, finite = law_value(coefficients, w_rms, np.array([math.inf, size]))
+        return float(infinite / finite)
+
+    value, finite = ratio(law.coefficients), float(law_value(law.coefficients, w_rms, size))
+    slope = float(_slope(law.coefficients, w_rms, size)) / finite
+    error = math.hypot(_statistical_error(law, ratio), law.model_length * slope * value)
+    return normal_estimate(value, error)
+
+
+def _statistical_error(law: Law, function: Callable[[Array], float]) -> float:
+    """Standard error of a function of the coefficients by their covariance."""
+    coefficients = np.array(law.coefficients)
+    steps = 1e-5 * np.maximum(np.abs(coefficients), 1e-3)
+    value = function(coefficients)
+    gradient = np.array(
+        [
+            (function(coefficients + shift) - value) / step
+            for shift, step in zip(np.diag(steps), steps, strict=True)
+        ]
+    )
+    return math.sqrt(float(gradient @ np.array(law.covariance) @ gradient))
 
 
 def _outside(law: Law, w_rms: float, size: float) -> tuple[float, str]:
