@@ -239,7 +239,11 @@ def _as_tuples(value: Any) -> Any:
 @functools.cache
 def measured_cells() -> tuple[LawCell, ...]:
     """Rows of `law.csv`."""
-    text = files("crackfront.analysis").joinpath("law.csv").read_text(encoding="utf-8")
+    return cells_of(files("crackfront.analysis").joinpath("law.csv").read_text(encoding="utf-8"))
+
+
+def cells_of(text: str) -> tuple[LawCell, ...]:
+    """Rows of the text of a `law.csv`."""
     types: dict[str, type[Any]] = {"str": str, "int": int, "float": float}
     return tuple(
         LawCell(**{item.name: types[str(item.type)](row[item.name]) for item in fields(LawCell)})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -62,8 +63,13 @@ def spectra_points(cells: Sequence[LawCell]) -> tuple[LawPoints, ...]:
             np.array([getattr(cell, item) for cell in rows])
             for item in ("disorder", "size", "both", "error")
         )
-        found.append(LawPoints(name, *columns))
+        found.append(LawPoints(_front_label(name), *columns))
     return tuple(found)
+
+
+def _front_label(name: str) -> str:
+    """Name of a spectrum, its Hurst exponent in figures: h08-chemical is H = 0.8, chemical."""
+    return ", ".join(re.sub(r"^h(\d)(\d)", r"$H=\1.\2$", name).split("-"))
 
 
 def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
@@ -82,13 +88,18 @@ def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
         draw_collapse(left, fronts, spheres)
         draw_infinite_law(right)
         for index, points in enumerate(fronts):
-            _draw_extrapolated(right, points, COLOURS[index], MARKERS[index])
+            _draw_extrapolated(right, points, *_style(index))
         _draw_extrapolated(right, spheres, BLACK, "o", face="none")
         right.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
         right.legend(loc="lower left")
         for axes, letter in ((left, "a"), (right, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
         return figure
+
+
+def _style(index: int) -> tuple[str, str]:
+    """Colour and marker of a spectrum."""
+    return COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
 
 
 def draw_collapse(axes: Axes, fronts: Sequence[LawPoints], spheres: LawPoints) -> None:
@@ -105,7 +116,7 @@ def draw_collapse(axes: Axes, fronts: Sequence[LawPoints], spheres: LawPoints) -
         zorder=2,
     )
     for index, points in enumerate(fronts):
-        _draw_points(axes, *_collapsed(law, points), points.name, COLOURS[index], MARKERS[index])
+        _draw_points(axes, *_collapsed(law, points), points.name, *_style(index))
     _draw_points(axes, *_collapsed(law, spheres), spheres.name, BLACK, "o", face="none")
     k_0 = law.coefficients[0]
     axes.axhline(k_0, color="0.5", linewidth=0.5, zorder=1)
