@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-import numpy as np
 
 from crackfront.cli.report import FILE, as_json, examples
 from crackfront.cli.sweep import configuration_argument, output_option, sweep_and_store
@@ -196,6 +195,6 @@ def _loop_example(sweep: Sweep) -> Simulation:
         item for item in sweep.spectra if item.spectrum.roll_off > item.spectrum.short_cutoff
     ]
     energy = min(sweep.elastic_energies, key=lambda value: abs(value - 0.05))
-    # All springs of spheres are NaN here, and the first spectrum stays.
-    longest = max(self_affine or sweep.spectra, key=lambda item: np.nan_to_num(item.spring))
+    # Spheres have no springs: NaN is longer than none, and the first spectrum stays.
+    longest = max(self_affine or sweep.spectra, key=lambda item: max(0.0, item.spring))
     return sweep.simulation(longest, energy, 0)
