@@ -108,7 +108,7 @@ class Law:
 
 @dataclass(frozen=True, slots=True)
 class PinningFactor:
-    """k of a straight front, with a sentence where it is not measured.
+    """Factor k of a straight front, with a sentence where it is not measured.
 
     Attributes
     ----------

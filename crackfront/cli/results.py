@@ -195,6 +195,6 @@ def _loop_example(sweep: Sweep) -> Simulation:
         item for item in sweep.spectra if item.spectrum.roll_off > item.spectrum.short_cutoff
     ]
     energy = min(sweep.elastic_energies, key=lambda value: abs(value - 0.05))
-    # Spheres have no springs: NaN is longer than none, and the first spectrum stays.
+    # The springs of spheres are NaN and count as none: the first spectrum stays.
     longest = max(self_affine or sweep.spectra, key=lambda item: max(0.0, item.spring))
     return sweep.simulation(longest, energy, 0)
