@@ -5,11 +5,14 @@ make; make SWEEP=config/strong.yaml
 python -m benchmarks.law fit config/line.yaml config/line-chemical.yaml config/line-weak.yaml
 python -m benchmarks.law spheres config/default.yaml config/strong.yaml
 python -m benchmarks.law spheres --table docs/reference/spheres.csv
+python -m benchmarks.law figure --table docs/reference/spheres.csv --output docs/figures
+python -m benchmarks.law pages --table docs/reference/spheres.csv --output .
 
 `fit` writes `law.csv`, a row for every spectrum, amplitude and spring, and `law.json`, the law that
 is fitted to them; copied to `crackfront/analysis`, they are what predictions rest on. `spheres`
 writes `spheres.csv`, what spheres were simulated to have, and prints it beside what the law says;
-with `--table` it reads such a file instead.
+with `--table` it reads such a file instead. `figure` draws the shipped law, and `pages` writes its
+numbers into README.md, docs/index.md and docs/law.md.
 """
 
 from __future__ import annotations
@@ -26,11 +29,15 @@ from typing import Any
 import click
 import numpy as np
 
+from benchmarks.law_page import renewed_page
 from crackfront.analysis.estimate import REACH, mean_estimate
 from crackfront.analysis.law import (
     LawCell,
     SphereFactors,
+    cells_of,
     fitted_law,
+    measured_cells,
+    shipped_law,
     slope_breadth,
     sphere_factors,
 )
@@ -39,10 +46,15 @@ from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.files import read_dataset, write_text
+from crackfront.plots.law import LawPoints, law_figure, spectra_points
+from crackfront.plots.style import save_picture
 from crackfront.simulate.lines import LineLoad
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.sweep import NamedSpectrum, Sweep
 from crackfront.sweep.table import read_table
+
+PAGES = ("README.md", "docs/index.md", "docs/law.md")
+"""Pages that tell numbers of the law."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,8 +262,12 @@ def sphere_table(rows: Sequence[SphereRow]) -> str:
 
 def law_of(row: SphereRow) -> SphereFactors:
     """Factors k that the law gives for the sphere of a row."""
-    spectrum = SelfAffineSpectrum(row.short_cutoff, row.roll_off, row.hurst)
-    return sphere_factors(_kind(row.kind), spectrum, row.elastic_energy, row.contact_radius)
+    return sphere_factors(_kind(row.kind), _spectrum(row), row.elastic_energy, row.contact_radius)
+
+
+def _spectrum(row: SphereRow) -> SelfAffineSpectrum:
+    """Spectrum of a sphere's surface."""
+    return SelfAffineSpectrum(row.short_cutoff, row.roll_off, row.hurst)
 
 
 def is_covered(row: SphereRow, law: SphereFactors) -> bool:
@@ -262,21 +278,59 @@ def is_covered(row: SphereRow, law: SphereFactors) -> bool:
     return bool(abs(difference) <= np.hypot(reach, own))
 
 
+def sphere_points(rows: Sequence[SphereRow]) -> LawPoints:
+    """Spheres as they are drawn."""
+    return LawPoints(
+        name="spheres",
+        disorder=2 * np.sqrt([row.elastic_energy for row in rows]),
+        size=np.array([law_of(row).size for row in rows]),
+        factor=np.array([row.both for row in rows]),
+        error=np.array([row.both_error for row in rows]),
+        breadth=np.array([slope_breadth(_kind(row.kind), _spectrum(row)) for row in rows]),
+    )
+
+
+def draw_law(folder: Path, rows: Sequence[SphereRow]) -> tuple[Path]:
+    """Draw the shipped law with what it was fitted to, and with spheres, as `law.png`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "law.png"
+    save_picture(law_figure(spectra_points(measured_cells()), sphere_points(rows)), path)
+    return (path,)
+
+
+def renew_pages(folder: Path, rows: Sequence[SphereRow]) -> tuple[Path, ...]:
+    """Write the numbers of the shipped law into the pages of a checkout."""
+    paths = tuple(folder / name for name in PAGES)
+    for path in paths:
+        text = path.read_text(encoding="utf-8")
+        renewed = renewed_page(text, shipped_law(), measured_cells(), sphere_table(rows))
+        write_text(path, renewed)
+    return paths
+
+
 def _kind(name: str) -> FieldKind:
     """What a spectrum describes, by its name."""
     return "roughness" if name == "roughness" else "chemical"
 
 
 def main() -> None:
-    """Fit the law, or hold spheres against it."""
+    """Fit the law, hold spheres against it, draw it, or write its numbers into the pages."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("task", choices=("fit", "spheres"))
+    parser.add_argument("task", choices=("fit", "spheres", "figure", "pages"))
     parser.add_argument("configurations", type=Path, nargs="*")
-    parser.add_argument("--table", type=Path, help="spheres: a spheres.csv to read")
+    parser.add_argument("--table", type=Path, help="a spheres.csv to read")
     parser.add_argument("--output", type=Path, default=Path("results/benchmark"))
     chosen = parser.parse_args()
     if chosen.task == "spheres" and chosen.table is not None:
         click.echo(sphere_table(read_spheres(chosen.table)))
+        return
+    if chosen.task in ("figure", "pages"):
+        if chosen.table is None:
+            parser.error("name the table of spheres: --table docs/reference/spheres.csv")
+        spheres = read_spheres(chosen.table)
+        draw = draw_law if chosen.task == "figure" else renew_pages
+        for path in draw(chosen.output, spheres):
+            click.echo(f"{chosen.task}: {path}")
         return
     if not chosen.configurations:
         parser.error("name the configurations of sweeps that have been run")
@@ -287,8 +341,10 @@ def main() -> None:
         return
     cells = [cell for path in chosen.configurations for cell in law_cells(path)]
     cells.sort(key=lambda cell: (cell.spectrum, cell.disorder, cell.size))
-    law = fitted_law(cells)
-    write_text(chosen.output / "law.csv", text_of(cells))
+    text = text_of(cells)
+    # What is shipped are the rows as they are written, to five digits.
+    law = fitted_law(cells_of(text))
+    write_text(chosen.output / "law.csv", text)
     write_text(chosen.output / "law.json", json.dumps(asdict(law), indent=1) + "\n")
     click.echo(f"{len(cells)} rows; rms {law.rms:.1%}, worst {law.worst:.1%} for g above 1")
 

@@ -238,6 +238,42 @@ def test_a_sweep_runs_from_its_plan_to_its_figures(tmp_path):
     assert (tmp_path / "out/fit.md").read_text(encoding="utf-8").startswith("# ")
 
 
+LINES = """seed: 3
+field: roughness
+spectra: [{name: flat, short_cutoff: 1.0, hurst: 1.0}]
+amplitudes: {work_of_adhesion_rms: [0.6, 0.84]}
+realisations: 1
+numerics:
+  angles_per_cutoff: 2
+  samples_per_cutoff: 4
+  interpolation: cubic
+  pixels_per_cutoff: 4
+  tolerance: 1.0e-4
+  tile: {roll_offs: 4, cutoffs: 10}
+  max_sweeps: 1000000
+  solver: newton
+load:
+  line: {springs: [1, 2], length: 8, period: 20, transient: 3, step: 1}
+fit: {lowest_elastic_energy: 0.08, highest_elastic_energy: 0.2, bootstrap: 200}
+"""
+
+
+def test_a_sweep_of_straight_fronts_is_fitted_and_drawn(tmp_path):
+    configuration, output = tmp_path / "lines.yaml", ("--output", tmp_path / "out")
+    configuration.write_text(LINES)
+    for command in ("simulate", "aggregate", "fit", "figures"):
+        result = run(command, configuration, *output)
+        assert result.exit_code == 0, result.output
+    found = xr.load_dataset(tmp_path / "out/fit.nc")
+    assert found.cell_size.attrs == {"units": "1", "long_name": found.cell_size.long_name}
+    # The tiles have an rms of their own.
+    np.testing.assert_allclose(found.cell_size[1], 2 * found.cell_size[0], rtol=0.3)
+    assert np.all(found.cell_law_factor_low <= found.cell_law_factor)
+    assert found.k_0_low < found.k_0 < found.k_0_high
+    assert (tmp_path / "out/figures/loop.png").stat().st_size > 10_000
+    assert "## k by the law of docs/law.md" in (tmp_path / "out/fit.md").read_text("utf-8")
+
+
 def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path):
     run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
     result = run("plan", TEST, "--output", tmp_path, "--block", "1")

@@ -37,6 +37,8 @@ def study(factor, onset=(0.001, 0.004), exponent=2.0):
         w_retr_from_force=1 - energy + reach,
         w_appr_numerical_error=zero,
         w_retr_numerical_error=zero,
+        contact_radius=zero + 1.9,
+        spring=np.full(zero.shape[:2], np.nan),
     )
     fit = fit_sweep(table, lowest_elastic_energy=0.01, highest_elastic_energy=0.15)
     parameters = ParametricStudyParameters(sweep="config/test.yaml")

@@ -12,12 +12,15 @@ from crackfront.analysis.estimate import (
     resample_counts,
     student_estimate,
 )
+from crackfront.analysis.law import law_value, shipped_law, slope_breadth
 from crackfront.analysis.report import fit_notes, fit_table, trend_sentence
 from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import REALISATION, SweepTable
 from crackfront.core import jkr
+from crackfront.core.adhesion import larkin_length
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -25,6 +28,7 @@ from crackfront.core.field.fields import polar_field
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
+from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
 
@@ -89,6 +93,8 @@ def synthetic_table(
         w_retr_from_force=w_retr - 0.002,
         w_appr_numerical_error=0.01 * energy,
         w_retr_numerical_error=0.02 * energy,
+        contact_radius=np.full(whole, 1.9),
+        spring=np.full(whole[:2], np.nan),
     )
 
 
@@ -354,6 +360,92 @@ def test_a_k_that_depends_on_disorder_is_called_no_constant(rng):
     assert "not a constant" in level
 
 
+def by_the_law(*, straight, spread=0.05):
+    """A sweep whose k is that of the law in spheres, or in straight fronts on three springs."""
+    table = synthetic_table(np.random.default_rng(3), constant, noise=0.0)
+    if straight:
+        spring = np.repeat(np.array([0.5, 2.0, 8.0])[:, None], AMPLITUDES.size, axis=1)
+        table = replace(table, spring=spring, contact_radius=np.full(table.e_el.shape, np.nan))
+    energy = np.broadcast_to(AMPLITUDES[:, None], table.e_el.shape)
+    table = replace(table, e_el=energy, w_rms=2 * np.sqrt(energy))
+    k, size = SweepLaw(table, "roughness").cells()
+    scatter = 1 + spread * np.array([-1, 1, -1, 1]) / np.sqrt(4 / 3)
+    reach = np.nan_to_num(k.value)[..., None] * energy * scatter
+    return replace(table, w_appr=1 - energy - reach, w_retr=1 - energy + reach), k, size
+
+
+@pytest.mark.parametrize("straight", [False, True])
+def test_a_sweep_by_the_law_departs_from_it_by_nothing_and_extrapolates_to_its_limit(straight):
+    table, k, size = by_the_law(straight=straight)
+    fit = fit_all(table)
+    np.testing.assert_allclose(fit.cells.size, size)
+    np.testing.assert_allclose(fit.cells.factor.value, k.value)
+    assert fit.law_departure == pytest.approx(0, abs=1e-12)
+    assert fit.n_large == np.count_nonzero(size > 1) > 3
+    law = shipped_law()
+    measured = size >= law.size[0]
+    sweep = SweepLaw(table, "roughness")
+    breadth = slope_breadth("roughness", sweep.spectrum(0))
+    limit = law_value(law.coefficients, fit.cells.w_rms, np.inf, min(breadth, law.breadth[1]))
+    infinite = fit.cells.infinite_factor
+    # The branches of a sphere have two sizes, whose mean k is not quite that of their mean size.
+    tolerance = 1e-9 if straight else 0.01
+    np.testing.assert_allclose(infinite.value[measured], limit[measured], rtol=tolerance)
+    assert np.all(np.isnan(infinite.value[~measured]))
+    # The scatter of the realisations is carried along, and what the law does not know is added.
+    relative = fit.cells.factor.standard_error / fit.cells.factor.value
+    assert np.all(infinite.standard_error[measured] > (relative * limit)[measured])
+    assert np.all(covered(fit.cells.law_factor, k.value))
+
+
+def test_sizes_are_the_springs_over_the_larkin_length():
+    table, _, size = by_the_law(straight=True)
+    spectrum = SelfAffineSpectrum(LENGTHS[1], LENGTHS[1], 0.8)
+    w_rms = 2 * np.sqrt(AMPLITUDES[2])
+    expected = table.spring[1, 2] / larkin_length("roughness", spectrum, w_rms)
+    assert size[1, 2] == pytest.approx(expected)
+    spheres, _, size = by_the_law(straight=False)
+    held = jkr.spring(1.9, 1 - AMPLITUDES[2])
+    assert size[1, 2] == pytest.approx(held / larkin_length("roughness", spectrum, w_rms))
+    assert np.all(np.isnan(spheres.spring))
+
+
+def test_uncorrelated_sites_are_the_limit_of_weak_disorder_at_any_amplitude():
+    table, _, size = by_the_law(straight=True)
+    fit = fit_all(table, uncorrelated=True)
+    coefficients = shipped_law().coefficients
+    expected = law_value(coefficients, 0.0, size)
+    np.testing.assert_allclose(fit.cells.law_factor.value, expected, rtol=1e-6)
+    assert fit.k_0.value == pytest.approx(coefficients[0], rel=1e-6)
+    assert fit.k_0.low < coefficients[0] < fit.k_0.high
+
+
+def test_a_sweep_without_sizes_has_no_k_by_the_law():
+    table = synthetic_table(np.random.default_rng(1), constant)
+    fit = fit_all(replace(table, contact_radius=np.full(table.e_el.shape, np.nan)))
+    assert np.all(np.isnan(fit.cells.law_factor.value))
+    assert np.isnan(fit.law_departure)
+    assert "law.md" not in trend_sentence(fit)
+    assert "nan" not in fit_table(fit)
+    # At the pull-off of the smooth contact nothing holds the edge either.
+    fit = fit_all(replace(table, contact_radius=np.full(table.e_el.shape, 0.5)))
+    assert np.all(np.isnan(fit.cells.size))
+
+
+def test_the_notes_and_the_table_tell_how_near_the_law_is():
+    table, k, size = by_the_law(straight=False)
+    apart = replace(table, w_appr=table.w_appr - 0.1 * (table.w_retr - table.w_appr))
+    fit = fit_all(apart)
+    assert fit.law_departure == pytest.approx(0.1)
+    assert "departs from its law (docs/law.md) by 10% rms where g is above 1" in trend_sentence(fit)
+    text = fit_table(fit)
+    assert "## k by the law of docs/law.md" in text
+    rows = [line for line in text.splitlines() if line.startswith("| flat-0.02 | 0.1 |")]
+    assert len(rows) == 1
+    assert f"| {size[0, -1]:.2g} | {1.1 * k.value[0, -1]:.2f} (" in rows[0]
+    assert f"k_0 = {float(fit.k_0.value):.2f} (" in text
+
+
 def test_a_range_below_the_onset_of_hysteresis_is_pointed_out(rng):
     table = synthetic_table(rng, lambda energy, _: np.where(energy > 0.01, 3.0, -0.3), noise=0.0)
     fit = fit_all(table)
@@ -390,6 +482,7 @@ def test_every_array_of_a_fit_comes_out_with_its_dimensions(rng):
     assert columns["pooled_factor_low"] == fit.pooled.factor.low
     np.testing.assert_array_equal(columns["cell_factor"], fit.cells.factor.value)
     assert {"exponent_standard_error", "from_force_approach", "size_slope_high"} <= set(columns)
+    assert {"cell_size", "cell_law_factor_low", "cell_infinite_factor", "k_0_high"} <= set(columns)
 
 
 @pytest.mark.parametrize(
@@ -421,6 +514,7 @@ def test_a_sweep_in_which_everything_failed_is_refused(rng):
     [
         ("hurst", np.ones(2), "hurst has shape"),
         ("w_appr", np.ones((3, 5, 2)), "w_appr has shape"),
+        ("spring", np.ones((3, 4)), "spring has shape"),
         ("e_el", np.zeros((3, 5, 4)), "measured e_el is 0.0"),
     ],
 )

@@ -7,17 +7,20 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
+from crackfront.analysis.law import law_value, shipped_law
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
 from crackfront.core import jkr
+from crackfront.core.adhesion import larkin_length
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import polar_field
+from crackfront.core.geometry.line import LineState
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.plots.loop import loop_figure
+from crackfront.plots.loop import loop_figure, pinning_figure
 from crackfront.plots.style import COLOURS, MARKERS, save_figure
 from crackfront.plots.sweep import factor_figure, hysteresis_figure
 
@@ -50,6 +53,8 @@ def table(rng):
         w_retr_from_force=w_retr,
         w_appr_numerical_error=np.zeros_like(w_retr),
         w_retr_numerical_error=np.zeros_like(w_retr),
+        contact_radius=np.full(energy.shape, 1.9),
+        spring=np.full((4, 4), np.nan),
     )
 
 
@@ -77,10 +82,145 @@ def line_labelled(axes, words):
 
 def test_the_theory_lines_lie_where_theory_says(table, fit):
     axes = hysteresis_figure(table, fit).axes[0]
-    for factor, words in ((3, "paper"), (4, "perturbation"), (fit.pooled.factor.value, "fit")):
+    for factor, words in ((3, "paper"), (4, "perturbation")):
         variance, hysteresis = line_labelled(axes, words).get_data()
         np.testing.assert_allclose(hysteresis, factor * variance / 2)
-    np.testing.assert_allclose(line_labelled(axes, "fit").get_xdata(), [0.04, 0.6])
+    pooled = line_labelled(factor_figure(table, fit).axes[0], "fit")
+    np.testing.assert_allclose(pooled.get_data(), ([0.01, 0.15], [fit.pooled.factor.value] * 2))
+
+
+def curves(axes, colour):
+    """Lines of a colour without an entry in the legend or markers, the curves of the law."""
+    lines = [line for line in axes.get_lines() if to_hex(line.get_color()) == colour.lower()]
+    return [
+        line
+        for line in lines
+        if str(line.get_label()).startswith("_") and line.get_marker() == "None"
+        if len(line.get_xdata()) > 10
+    ]
+
+
+def test_the_law_is_drawn_for_every_spectrum_through_its_values_at_the_amplitudes(table, fit):
+    hysteresis, factor = hysteresis_figure(table, fit).axes[0], factor_figure(table, fit).axes[0]
+    for index, colour in enumerate(COLOURS[:4]):
+        ((variance, jump),) = (line.get_data() for line in curves(hysteresis, colour))
+        ((energy, k),) = (line.get_data() for line in curves(factor, colour))
+        np.testing.assert_allclose(variance, 4 * energy)
+        np.testing.assert_allclose(jump, 2 * k * energy)
+        np.testing.assert_allclose(
+            energy[-1], fit.cells.e_el[index, np.isfinite(fit.cells.e_el[index])][-1]
+        )
+        last = np.flatnonzero(np.isfinite(fit.cells.law_factor.value[index]))[-1]
+        assert k[-1] == pytest.approx(fit.cells.law_factor.value[index, last])
+        # Below the smallest size that was measured nothing is drawn.
+        least = shipped_law().size[0]
+        assert np.isfinite(k[0]) == (fit.cells.size[index, 0] >= least)
+
+
+@pytest.fixture
+def line_table():
+    """Straight fronts of two spectra on three springs each, with the k of the law."""
+    energy = np.array([0.01, 0.04])
+    lengths, springs = np.array([1.0, 2.0]), np.array([2.0, 20.0, 200.0])
+    cutoff = np.repeat(lengths, 3)
+    length = np.array([SelfAffineSpectrum(one, one, 1.0).correlation_length for one in cutoff])
+    spring = np.repeat((np.tile(springs, 2) * length)[:, None], 2, axis=1)
+    whole = np.broadcast_to(energy[:, None], (6, 2, 2)).copy()
+    unknown = np.full(whole.shape, np.nan)
+    larkin = [
+        [
+            larkin_length("roughness", SelfAffineSpectrum(one, one, 1.0), 2 * np.sqrt(e))
+            for e in energy
+        ]
+        for one in cutoff
+    ]
+    k = law_value(shipped_law().coefficients, 2 * np.sqrt(energy), spring / np.array(larkin))
+    k = k[..., None] * np.array([0.99, 1.01])
+    return SweepTable(
+        spectrum=np.array([f"flat{one:g}-L{two:g}" for one in lengths for two in springs]),
+        short_cutoff=cutoff,
+        roll_off=cutoff,
+        hurst=np.ones(6),
+        correlation_length=length,
+        e_el_requested=energy,
+        e_el=whole,
+        w_rms=2 * np.sqrt(whole),
+        w_appr=1 - whole - k * whole,
+        w_retr=1 - whole + k * whole,
+        w_appr_from_force=unknown,
+        w_retr_from_force=unknown,
+        w_appr_numerical_error=np.zeros_like(whole),
+        w_retr_numerical_error=np.zeros_like(whole),
+        contact_radius=unknown,
+        spring=spring,
+    )
+
+
+def test_straight_fronts_share_the_colour_of_their_spectrum_and_differ_by_marker(line_table):
+    fit = fit_sweep(line_table, lowest_elastic_energy=0.01, highest_elastic_energy=0.04)
+    axes = hysteresis_figure(line_table, fit).axes[0]
+    points = [container.lines[0] for container in axes.containers]
+    assert [to_hex(line.get_color()).upper() for line in points] == [
+        *[COLOURS[0]] * 3,
+        *[COLOURS[1]] * 3,
+    ]
+    assert [line.get_marker() for line in points] == list(MARKERS[:3]) * 2
+    told = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert [text for text in told if "flat" in text] == [
+        "flat, $\\lambda_\\mathrm{s}=1$",
+        "flat, $\\lambda_\\mathrm{s}=2$",
+    ]
+    assert [text for text in told if "xi" in text] == [
+        rf"$L_\kappa={spring}\,\xi$" for spring in (2, 20, 200)
+    ]
+
+
+def test_k_of_straight_fronts_is_shown_against_their_size_beside_the_law(line_table):
+    fit = fit_sweep(line_table, lowest_elastic_energy=0.01, highest_elastic_energy=0.04)
+    left, right = factor_figure(line_table, fit).axes
+    points = [container.lines[0].get_data() for container in left.containers]
+    sizes, factors = (np.sort(np.concatenate(column)) for column in zip(*points, strict=True))
+    np.testing.assert_allclose(sizes, np.sort(fit.cells.size, axis=None))
+    np.testing.assert_allclose(factors, np.sort(fit.cells.factor.value, axis=None))
+    size, k = line_labelled(left, "s=0.2").get_data()
+    np.testing.assert_allclose(k, law_value(shipped_law().coefficients, 0.2, size))
+    limit = line_labelled(right, "infty")
+    drawn = np.concatenate([container.lines[0].get_xydata() for container in right.containers])
+    drawn = drawn[np.isfinite(drawn[:, 1])]
+    np.testing.assert_allclose(drawn[:, 1], np.interp(drawn[:, 0], *limit.get_data()), rtol=1e-3)
+    assert len(drawn) == np.count_nonzero(fit.cells.size > 1)
+
+
+def line_states(n_step=9):
+    """A front that pins by 0.2 forward and 0.1 back once it has forgotten its start."""
+    load = np.arange(float(n_step))
+    pinning = np.where(load < 4, 0.0, 0.2)
+    zero = np.zeros(2 * n_step)
+    return LineState(
+        load=np.concatenate([load, load[::-1]]),
+        direction=np.repeat([1, -1], n_step),
+        mean_position=zero,
+        rms_position=zero,
+        pinning_force=np.concatenate([pinning, -pinning / 2]),
+        least_travel=zero,
+        iterations=zero,
+        updates=zero,
+        residual=zero,
+    )
+
+
+def test_the_pinning_force_is_averaged_over_the_last_period_of_each_branch():
+    axes = pinning_figure(line_states(), 5, elastic_energy=0.1, title="front").axes[0]
+    assert axes.get_title() == "front"
+    forward, back = (line_labelled(axes, words) for words in ("k=2.00", "k=1.00"))
+    np.testing.assert_allclose(forward.get_data(), ([4, 8], [0.2, 0.2]))
+    np.testing.assert_allclose(back.get_data(), ([4, 0], [-0.1, -0.1]))
+    assert axes.get_legend() is not None
+
+
+def test_a_front_that_was_left_before_a_period_is_refused():
+    with pytest.raises(ValueError, match="has 9 states, fewer than the 20"):
+        pinning_figure(line_states(), 20, elastic_energy=0.1)
 
 
 def test_points_are_the_means_over_realisations(table, fit):

@@ -518,7 +518,7 @@ def test_the_documentation_states_the_range_of_the_law():
     weakest, strongest = law.disorder
     smallest, largest = law.size
     assert f"w_rms/w_int from {weakest:.2g} to {strongest:.2g} and g from {smallest:.2g} " in page
-    assert f"to {largest:.2g}" in page
+    assert f"to {largest:.3g}" in page
 
 
 def is_met(predicted, found):

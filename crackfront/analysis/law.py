@@ -18,8 +18,8 @@ import csv
 import functools
 import json
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
 from importlib.resources import files
 from typing import Any
 
@@ -53,11 +53,17 @@ TYPICAL_BREADTH = 1.18
 _NEAR = 0.8
 """Cells as close in ln g tell their scatter together: few tiles say little of their own."""
 
+_CIRCLE = 0.01
+"""Relative error of k as a circle's period, 13 to 31 springs, and its curvature are neglected."""
+
 _LEAST_ADHESION = 0.02
 """Work of adhesion, in units of w_int, of an approach that disorder all but stops."""
 
 LEAST_SIZE = 0.3
 """Smallest g of the fit; below, a front is pulled over nearly all of its pinning."""
+
+WEAKEST = 1e-6
+"""Rms of w_loc that stands for the limit of weak disorder. (Units: w_int)"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +121,7 @@ class Law:
 
 @dataclass(frozen=True, slots=True)
 class PinningFactor:
-    """k of a straight front, with a sentence where it is not measured.
+    """Factor k of a straight front, with a sentence where it is not measured.
 
     Attributes
     ----------
@@ -184,24 +190,26 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
     the residuals: once with the first guess, then with what they say.
     """
     used = [cell for cell in cells if cell.size >= LEAST_SIZE]
-    places = tuple(
-        np.array([getattr(cell, name) for cell in used]) for name in ("disorder", "size", "breadth")
+    s, g, breadth, k = (
+        np.array([getattr(cell, name) for cell in used])
+        for name in ("disorder", "size", "breadth", "both")
     )
-    (_, g, _), k = places, np.array([cell.both for cell in used])
+    places = s, g, breadth
     error = _pooled_error(g, np.array([cell.error for cell in used]))
     coefficients, model = np.array(_START), (0.03, 0.05)
     for _ in range(4):
-        spread = np.hypot(error, _model_error(coefficients, *places, model))
+        spread = np.hypot(error, _model_error(coefficients, s, g, breadth, model))
 
         def residuals(trial: Array, spread: Array = spread) -> Array:
             exponent = trial[-1] if trial.size > len(COEFFICIENTS) else FINITE_SIZE_EXPONENT
-            return (law_value(trial[: len(COEFFICIENTS)], *places, exponent) - k) / spread
+            values = law_value(trial[: len(COEFFICIENTS)], s, g, breadth, float(exponent))
+            return (values - k) / spread
 
         found = least_squares(residuals, coefficients)
         coefficients = found.x
         model = _likeliest_model(coefficients, places, k, error)
     free = least_squares(residuals, [*coefficients, FINITE_SIZE_EXPONENT])
-    relative = law_value(coefficients, *places)[g >= 1] / k[g >= 1] - 1
+    relative = law_value(coefficients, s, g, breadth)[g >= 1] / k[g >= 1] - 1
     numerical = [cell.numerical_error / cell.both for cell in used if cell.size >= 1]
     ranges = [(float(values[values > 0].min()), float(values.max())) for values in places]
     return Law(
@@ -220,9 +228,10 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
 
 
 def _pooled_error(size: Array, error: Array) -> Array:
-    """Standard errors of cells, each the rms of those of cells of about its size."""
+    """Standard errors of cells, each by the median square of those of cells of about its size."""
     near = np.abs(np.log(size[:, None] / size)) < _NEAR
-    return np.array([np.sqrt(np.nanmean(error[row] ** 2)) for row in near])
+    # The median of the squares of normal numbers is 0.455 of their mean.
+    return np.array([np.sqrt(np.nanmedian(error[row] ** 2) / 0.455) for row in near])
 
 
 def _covariance(jacobian: Array) -> Array:
@@ -255,7 +264,7 @@ def _model_error(
 
 
 def _likeliest_model(
-    coefficients: Array, places: tuple[Array, ...], k: Array, error: Array
+    coefficients: Array, places: tuple[Array, Array, Array], k: Array, error: Array
 ) -> tuple[float, float]:
     """Model errors that make the residuals likeliest."""
     s, g, breadth = places
@@ -286,7 +295,11 @@ def _as_tuples(value: Any) -> Any:
 @functools.cache
 def measured_cells() -> tuple[LawCell, ...]:
     """Rows of `law.csv`."""
-    text = files("crackfront.analysis").joinpath("law.csv").read_text(encoding="utf-8")
+    return cells_of(files("crackfront.analysis").joinpath("law.csv").read_text(encoding="utf-8"))
+
+
+def cells_of(text: str) -> tuple[LawCell, ...]:
+    """Rows of the text of a `law.csv`."""
     types: dict[str, type[Any]] = {"str": str, "int": int, "float": float}
     return tuple(
         LawCell(**{item.name: types[str(item.type)](row[item.name]) for item in fields(LawCell)})
@@ -311,8 +324,9 @@ def pinning_factor(
     kind : {"roughness", "chemical"}, optional
         What makes w_loc vary; decides its mean, and by that the negative share alone.
     breadth : float, optional
-        That of the spectrum, as :func:`slope_breadth`; by default k is that of a typical one, and
-        the interval covers the others.
+        That of the spectrum, as :func:`slope_breadth`; of one that is broader than any that was
+        measured k is that of the broadest. By default k is that of a typical one, and the interval
+        covers the others.
 
     Returns
     -------
@@ -338,14 +352,11 @@ def pinning_factor(
     if not size > 0:
         raise ValueError(f"size g is {size:g}; it must be positive, or inf")
     law = shipped_law()
-    place = w_rms, size, TYPICAL_BREADTH if breadth is None else breadth
+    place = w_rms, size, TYPICAL_BREADTH if breadth is None else _measured(breadth)
     value = float(law_value(law.coefficients, *place))
-    steps = 1e-5 * np.maximum(np.abs(law.coefficients), 1e-3)
-    gradient = [
-        (law_value(np.array(law.coefficients) + shift, *place) - value) / step
-        for shift, step in zip(np.diag(steps), steps, strict=True)
-    ]
-    statistical = math.sqrt(float(gradient @ np.array(law.covariance) @ gradient))
+    statistical = _statistical_error(
+        law, lambda coefficients: float(law_value(coefficients, *place))
+    )
     errors = law.model_factor, law.model_length
     model = float(_model_error(law.coefficients, *place, errors))
     if breadth is None:
@@ -368,9 +379,65 @@ def pinning_factor(
     )
 
 
+def _measured(breadth: float) -> float:
+    """A breadth, or the largest that was measured."""
+    return min(breadth, shipped_law().breadth[1])
+
+
 def _mean_adhesion(kind: FieldKind, elastic_energy: float) -> float:
     """Mean of w_loc (Units: w_int)."""
     return 1 - elastic_energy if kind == "roughness" else 1.0
+
+
+def infinite_ratio(w_rms: float, size: float, breadth: float = TYPICAL_BREADTH) -> Estimate[float]:
+    """Ratio of k in the infinite contact to k at a size, by the law; it extrapolates measured k.
+
+    Parameters
+    ----------
+    w_rms : float
+        Rms of the local work of adhesion. (Units: w_int)
+    size : float
+        g; below the smallest of the law the ratio is NaN.
+    breadth : float, optional
+        That of the spectrum, as :func:`slope_breadth`.
+
+    Examples
+    --------
+    >>> ratio = infinite_ratio(0.2, 10.0)
+    >>> 1.0 < ratio.low < ratio.value < ratio.high < 1.3
+    True
+    """
+    law, breadth = shipped_law(), _measured(breadth)
+    if not size >= law.size[0]:
+        return Estimate(*(math.nan,) * 4)
+
+    def ratio(coefficients: Sequence[float] | Array) -> float:
+        infinite, finite = law_value(coefficients, w_rms, np.array([math.inf, size]), breadth)
+        return float(infinite / finite)
+
+    value, finite = (
+        ratio(law.coefficients),
+        float(law_value(law.coefficients, w_rms, size, breadth)),
+    )
+    value = ratio(law.coefficients)
+    finite = float(law_value(law.coefficients, w_rms, size, breadth))
+    slope = float(_slope(law.coefficients, w_rms, size, breadth)) / finite
+    error = math.hypot(_statistical_error(law, ratio), law.model_length * slope * value)
+    return normal_estimate(value, error)
+
+
+def _statistical_error(law: Law, function: Callable[[Array], float]) -> float:
+    """Standard error of a function of the coefficients by their covariance."""
+    coefficients = np.array(law.coefficients)
+    steps = 1e-5 * np.maximum(np.abs(coefficients), 1e-3)
+    value = function(coefficients)
+    gradient = np.array(
+        [
+            (function(coefficients + shift) - value) / step
+            for shift, step in zip(np.diag(steps), steps, strict=True)
+        ]
+    )
+    return math.sqrt(float(gradient @ np.array(law.covariance) @ gradient))
 
 
 def _outside(law: Law, w_rms: float, size: float) -> tuple[float, str]:
@@ -461,13 +528,14 @@ def sphere_factors(
         raise ValueError(f"contact radius is {contact_radius:g}; it must be positive and finite")
     w_rms = 2 * math.sqrt(elastic_energy)
     larkin = larkin_length(kind, spectrum, w_rms)
-    mean, breadth = _mean_adhesion(kind, elastic_energy), slope_breadth(kind, spectrum)
+    mean, breadth = _mean_adhesion(kind, elastic_energy), _measured(slope_breadth(kind, spectrum))
     approach, retraction = (
         pinning_factor(
             w_rms, _branch_size(w_rms, larkin, mean, sign, contact_radius, breadth), kind, breadth
         )
         for sign in (-1, 1)
     )
+    approach, retraction = _on_a_circle(approach), _on_a_circle(retraction)
     one, other = approach.factor, retraction.factor
     # Errors of the law are the same for both branches.
     both = Estimate(
@@ -478,6 +546,15 @@ def sphere_factors(
     )
     spring = jkr.spring(contact_radius, mean)
     return SphereFactors(approach, retraction, both, spring, larkin, spring / larkin)
+
+
+def _on_a_circle(found: PinningFactor) -> PinningFactor:
+    """Factor of a straight front with the model error of a front that is none."""
+    value, low = found.factor.value, found.factor.low
+    error = math.hypot(found.factor.standard_error, _CIRCLE * value)
+    wider = normal_estimate(value, error)
+    factor = replace(wider, low=max(wider.low, 0.0) if low > 0 else 0.0)
+    return replace(found, factor=factor, model=math.hypot(found.model, _CIRCLE * value))
 
 
 def _branch_size(

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.law import LEAST_SIZE
 from crackfront.analysis.result import LawEstimates, SweepFit
 
 MISSING = "-"
@@ -44,6 +45,15 @@ def fit_table(fit: SweepFit) -> str:
             "range of the fit in parentheses.",
             "",
             *_cell_rows(fit),
+            "",
+            "## k by the law of docs/law.md",
+            "",
+            "k of the straight front at the same disorder and size g, from which nothing was "
+            "adjusted to this sweep; and the measured k extrapolated by it to the infinite "
+            f"contact, where g is {LEAST_SIZE:g} or more. In the limit of weak disorder that is "
+            f"k_0 = {_with_interval(fit.k_0, ())} on every surface.",
+            "",
+            *_sizes_rows(fit),
             "",
             "## What an experimenter would find",
             "",
@@ -118,6 +128,26 @@ def _cell_rows(fit: SweepFit) -> list[str]:
     if sized:
         blank = [""] * fit.table.spectrum.size
         rows.append(["mean over the range", *blank, _with_interval(fit.pooled_size_slope, ())])
+    return _markdown(header, rows)
+
+
+def _sizes_rows(fit: SweepFit) -> list[str]:
+    """Measured k beside the law's at every spectrum and amplitude."""
+    header = ("spectrum", "e_el/w_int", "g", "k, measured", "k, law", "k, infinite contact")
+    cells, rows = fit.cells, []
+    for cell in np.ndindex(cells.size.shape):
+        size = cells.size[cell]
+        rows.append(
+            (
+                str(fit.table.spectrum[cell[0]]),
+                f"{fit.table.e_el_requested[cell[1]]:.4g}",
+                f"{size:.2g}" if np.isfinite(size) else MISSING,
+                *(
+                    _with_interval(estimate, cell)
+                    for estimate in (cells.factor, cells.law_factor, cells.infinite_factor)
+                ),
+            )
+        )
     return _markdown(header, rows)
 
 
@@ -214,18 +244,29 @@ def fit_notes(fit: SweepFit) -> tuple[str, ...]:
 
 
 def trend_sentence(fit: SweepFit) -> str:
-    """Say that k is no constant, and which trends the sweep resolves."""
+    """Say that k is no constant, how near its law is, and which trends the sweep resolves."""
     disorder = _change(fit.pooled.disorder_slope, "per doubling of w_rms within a spectrum")
     size = _change(
         fit.pooled_size_slope, "per doubling of the correlation length among spectra of one shape"
     )
     return (
-        "k is a function of disorder and of size, not a constant, so that each k here is an "
-        "average over the stated range: "
+        "k is a function of disorder and of size, not a constant"
+        + _departure(fit)
+        + ", so that each k of a spectrum is an average over the stated range: "
         + (disorder or "its trend with w_rms needs two amplitudes")
         + "; "
         + (size or "its trend with size needs two spectra of one shape and different lengths")
         + "."
+    )
+
+
+def _departure(fit: SweepFit) -> str:
+    """How near the law is, in words; empty if no cell is large enough to tell."""
+    if not fit.n_large:
+        return ""
+    return (
+        f", and departs from its law (docs/law.md) by {100 * fit.law_departure:.2g}% rms where g "
+        f"is above 1 ({fit.n_large} of {fit.cells.size.size} spectra and amplitudes)"
     )
 
 

@@ -35,6 +35,9 @@ class CellEstimates:
     hysteresis: Estimate = variable("mean hysteresis w_retr - w_appr", ADHESION)
     factor: Estimate = variable("mean k = hysteresis / (2 e_el)", "1")
     midpoint_deviation: Estimate = variable("mean of midpoint - mean of w_loc", ADHESION)
+    size: Array = variable("g, length of the springs over the Larkin length", "1")
+    law_factor: Estimate = variable("k of the straight front at this disorder and size", "1")
+    infinite_factor: Estimate = variable("mean k, extrapolated to the infinite contact", "1")
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +83,8 @@ class SweepFit:
         Range of requested e_el, ends included. (Units: w_int)
     n_bootstrap, seed : int
         Bootstrap samples and the seed of their draws.
+    uncorrelated : bool
+        Whether the sites of straight fronts know nothing of each other.
     midpoint_largest, midpoint_probability : () array
         Of any cell in the range, by Student's t and Bonferroni.
     cells : CellEstimates of (n_spectrum, n_amplitude) arrays
@@ -96,6 +101,7 @@ class SweepFit:
     highest_elastic_energy: float
     n_bootstrap: int
     seed: int
+    uncorrelated: bool
     cells: CellEstimates
     spectra: LawEstimates
     pooled: LawEstimates
@@ -111,6 +117,9 @@ class SweepFit:
     midpoint_probability: Array = variable("probability of that deviation among all cells", "1")
     size_slope: Estimate = variable(_SIZE_SLOPE, "1", AMPLITUDE)
     pooled_size_slope: Estimate = variable(_SIZE_SLOPE, "1")
+    k_0: Estimate = variable("k of weak disorder in the infinite contact, by the law", "1")
+    n_large: NDArray[np.int64] = variable("spectra and amplitudes with g above 1", "1")
+    law_departure: Array = variable("rms departure of their k from the law, relative", "1")
 
 
 def fit_columns(fit: SweepFit) -> Iterator[tuple[Variable, NDArray[Any]]]:

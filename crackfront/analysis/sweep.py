@@ -19,7 +19,9 @@ from crackfront.analysis.estimate import (
     slope,
     student_estimate,
 )
+from crackfront.analysis.law import WEAKEST, pinning_factor
 from crackfront.analysis.result import CellEstimates, ForceDifference, LawEstimates, SweepFit
+from crackfront.analysis.sweep_law import SweepLaw, law_departure
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind
 
@@ -42,7 +44,11 @@ FIT_DEFINITION = (
     "field) is a ratio of sums, the best estimator for noise whose variance grows with w_rms^2. "
     "The size slope is that of k in log2 of the correlation "
     "length among spectra of one shape (equal roll_off / short_cutoff and Hurst exponent), with "
-    "one intercept a shape. Intervals are 95%, of Student's t with the bootstrap's standard error: "
+    "one intercept a shape. The law's k is that of the straight front at the measured w_rms and at "
+    "g, the length of the springs that hold the front (of a sphere those of the smooth contact of "
+    "the radius in the middle of the steady window) over the Larkin length; no sphere was fitted "
+    "to. k of the infinite contact is the measured one times what the law's k gains from g to "
+    "infinity. Intervals are 95%, of Student's t with the bootstrap's standard error: "
     "realisations of a spectrum are resampled, each with all its amplitudes because these share "
     "their noise, spectra independently of each other; percentiles of the bootstrap would be far "
     "too narrow for the few realisations there are. They cover the scatter between realisations, "
@@ -74,6 +80,7 @@ def fit_sweep(
     n_bootstrap: int = 4000,
     seed: int = 0,
     kind: FieldKind = "roughness",
+    uncorrelated: bool = False,
 ) -> SweepFit:
     """Fit k, the exponent, the midpoint and the trends of k, with intervals.
 
@@ -90,6 +97,9 @@ def fit_sweep(
     kind : {"roughness", "chemical"}, optional
         What the fields are: the midpoint should be w_int - e_el for roughness, w_int for a
         chemical field.
+    uncorrelated : bool, optional
+        Whether the sites of straight fronts know nothing of each other: the law's limit of weak
+        disorder, whatever the amplitude.
 
     Returns
     -------
@@ -111,7 +121,9 @@ def fit_sweep(
     n_realisation = np.count_nonzero(np.any(np.isfinite(chosen.factor), axis=1), axis=-1)
     parts, shares = _fit_spectra(chosen, n_realisation - 1, n_bootstrap, seed)
     spectra = LawEstimates(**dict(zip(_STATISTICS, parts, strict=True)))
-    cells = _cell_estimates(samples, 1.0 if kind == "roughness" else 0.0)
+    law = SweepLaw(table, kind, uncorrelated)
+    cells = _cell_estimates(samples, 1.0 if kind == "roughness" else 0.0, law)
+    n_large, departure = law_departure(cells.factor, cells.law_factor, cells.size)
     largest, probability = _largest_deviation(cells, in_range)
     return SweepFit(
         table=table,
@@ -120,6 +132,7 @@ def fit_sweep(
         highest_elastic_energy=highest_elastic_energy,
         n_bootstrap=n_bootstrap,
         seed=seed,
+        uncorrelated=uncorrelated,
         in_range=in_range,
         n_realisation=n_realisation,
         n_failed=np.count_nonzero(~np.isfinite(chosen.factor), axis=(1, 2)),
@@ -131,6 +144,9 @@ def fit_sweep(
         midpoint_largest=largest,
         midpoint_probability=probability,
         from_force=_force_difference(table, in_range),
+        k_0=pinning_factor(WEAKEST, np.inf).factor.each(np.asarray),
+        n_large=np.asarray(n_large),
+        law_departure=np.asarray(departure),
     )
 
 
@@ -170,9 +186,10 @@ def _samples(table: SweepTable) -> _Samples:
     )
 
 
-def _cell_estimates(samples: _Samples, lowering: float) -> CellEstimates:
+def _cell_estimates(samples: _Samples, lowering: float, law: SweepLaw) -> CellEstimates:
     """Means over the realisations where e_el lowers the mean of w_loc, as a multiple of e_el."""
     factor, count = mean_estimate(samples.factor)
+    law_factor, size = law.cells()
     return CellEstimates(
         count=count,
         e_el=mean_estimate(samples.energy)[0].value,
@@ -180,6 +197,9 @@ def _cell_estimates(samples: _Samples, lowering: float) -> CellEstimates:
         hysteresis=mean_estimate(samples.hysteresis)[0],
         factor=factor,
         midpoint_deviation=mean_estimate(lowering * samples.energy - samples.depression)[0],
+        size=size,
+        law_factor=law_factor,
+        infinite_factor=law.infinite(factor, size),
     )
 
 

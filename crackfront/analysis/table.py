@@ -99,6 +99,8 @@ class SweepTable:
     w_retr_from_force: Array = variable("that of a JKR fit of the retraction", ADHESION, *_CELL)
     w_appr_numerical_error: Array = variable("expected error of w_appr", ADHESION, *_CELL)
     w_retr_numerical_error: Array = variable("expected error of w_retr", ADHESION, *_CELL)
+    contact_radius: Array = variable("middle of the steady window; else NaN", _LENGTH, *_CELL)
+    spring: Array = variable("springs of a straight front, L_kappa; else NaN", _LENGTH, *_SHAPE)
 
     def __post_init__(self) -> None:
         n_spectrum, n_amplitude = self.spectrum.size, self.e_el_requested.size
@@ -107,6 +109,10 @@ class SweepTable:
             shape = getattr(self, item.name).shape
             if item.dims == (SPECTRUM,) and shape != (n_spectrum,):
                 raise ValueError(f"{item.name} has shape {shape}; there are {n_spectrum} spectra")
+            if item.dims == _SHAPE and shape != whole[:2]:
+                raise ValueError(
+                    f"{item.name} has shape {shape}; (spectrum, amplitude) is {whole[:2]}"
+                )
             if item.dims == _CELL and shape != whole:
                 raise ValueError(
                     f"{item.name} has shape {shape}; (spectrum, amplitude, realisation) is {whole}"
@@ -123,6 +129,11 @@ class SweepTable:
     def numerical_error(self) -> Array:
         """Numerical error of k, both branches in opposite directions, as biases are."""
         return (self.w_appr_numerical_error + self.w_retr_numerical_error) / (2 * self.e_el)
+
+    @property
+    def straight(self) -> bool:
+        """Whether the fronts are straight ones on springs."""
+        return bool(np.any(np.isfinite(self.spring)))
 
     @property
     def finite(self) -> NDArray[np.bool_]:

@@ -12,7 +12,10 @@ from crackfront.cli.report import FILE, as_json, examples
 from crackfront.cli.sweep import configuration_argument, output_option, sweep_and_store
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from crackfront.analysis.result import SweepFit
+    from crackfront.simulate.run import SimulationResult
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.store import Store
     from crackfront.sweep.sweep import Sweep
@@ -71,8 +74,6 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
 @output_option
 def figures(configuration: Path, output: Path | None) -> None:
     """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
-    from crackfront.analysis.steady import steady_adhesion
-    from crackfront.plots.loop import loop_figure
     from crackfront.plots.style import save_figure
     from crackfront.plots.sweep import factor_figure, hysteresis_figure
     from crackfront.simulate.files import read_simulation
@@ -81,18 +82,9 @@ def figures(configuration: Path, output: Path | None) -> None:
     fitted = _fitted(sweep, store)
     simulation = _loop_example(sweep)
     result = read_simulation(store.path(simulation), simulation)
-    steady = steady_adhesion(result.record, simulation.correlation_length)
-    loop = loop_figure(
-        result.record.states,
-        (steady.w_appr, steady.w_retr),
-        (steady.lowest_radius, steady.highest_radius),
-        elastic_energy=result.measures.e_el,
-        kind=sweep.kind,
-        title=simulation.label,
-    )
     drawn = {
         "hysteresis": hysteresis_figure(fitted.table, fitted),
-        "loop": loop,
+        "loop": _loop(result),
         "factor": factor_figure(fitted.table, fitted),
     }
     for name, figure in drawn.items():
@@ -160,16 +152,49 @@ def fit_of_sweep(configuration: Path) -> SweepFit:
 def _fitted(sweep: Sweep, store: Store) -> SweepFit:
     """Fit of a sweep, always the same for the same table."""
     from crackfront.analysis.sweep import fit_sweep
+    from crackfront.simulate.lines import LineLoad
     from crackfront.sweep.table import read_table
 
     table = read_table(store.hysteresis)
-    return fit_sweep(table, **asdict(sweep.fit), seed=sweep.seed, kind=sweep.kind)
+    schedule = sweep.schedule
+    return fit_sweep(
+        table,
+        **asdict(sweep.fit),
+        seed=sweep.seed,
+        kind=sweep.kind,
+        uncorrelated=isinstance(schedule, LineLoad) and schedule.uncorrelated,
+    )
+
+
+def _loop(result: SimulationResult) -> Figure:
+    """Loop of one simulation: force of a sphere, pinning force of a straight front."""
+    from crackfront.analysis.steady import steady_adhesion
+    from crackfront.core.cycle.period import LineSchedule
+    from crackfront.plots.loop import loop_figure, pinning_figure
+
+    simulation, states = result.simulation, result.record.states
+    schedule, energy = simulation.schedule, result.measures.e_el
+    if isinstance(schedule, LineSchedule):
+        return pinning_figure(
+            states, schedule.n_period, elastic_energy=energy, title=simulation.label
+        )
+    steady = steady_adhesion(result.record, simulation.correlation_length)
+    return loop_figure(
+        states,
+        (steady.w_appr, steady.w_retr),
+        (steady.lowest_radius, steady.highest_radius),
+        elastic_energy=energy,
+        kind=simulation.kind,
+        title=simulation.label,
+    )
 
 
 def _loop_example(sweep: Sweep) -> Simulation:
-    """The simulation that comes nearest to the paper's Fig. 3c."""
+    """The simulation that comes nearest to the paper's Fig. 3c, a front on its longest springs."""
     self_affine = [
         item for item in sweep.spectra if item.spectrum.roll_off > item.spectrum.short_cutoff
     ]
     energy = min(sweep.elastic_energies, key=lambda value: abs(value - 0.05))
-    return sweep.simulation((self_affine or sweep.spectra)[0], energy, 0)
+    # The springs of spheres are NaN and count as none: the first spectrum stays.
+    longest = max(self_affine or sweep.spectra, key=lambda item: max(0.0, item.spring))
+    return sweep.simulation(longest, energy, 0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -118,7 +119,7 @@ def _column(variable: Variable, rows: Sequence[Any]) -> NDArray[Any]:
 
 
 def read_record(path: Path, kind: type[Record]) -> Record:
-    """Record of a kind that :func:`write_record` wrote.
+    """Record of a kind that :func:`write_record` wrote; fields left out of it are None.
 
     Raises
     ------
@@ -153,7 +154,12 @@ def _columns(
     path: Path, dataset: xr.Dataset, kind: type[Any], *along: str
 ) -> list[tuple[str, NDArray[Any]]]:
     """Values of all variables of records of a kind."""
-    known = variables(kind, *along)
+    optional = {item.name for item in fields(kind) if item.default is None}
+    known = [
+        item
+        for item in variables(kind, *along)
+        if item.name in dataset or item.name not in optional
+    ]
     wrong = [
         item.name
         for item in known

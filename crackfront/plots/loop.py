@@ -1,4 +1,4 @@
-"""Figure of one cycle: force against mean radius between two JKR curves."""
+"""Figure of one cycle: force against mean radius between two JKR curves, or of a straight front."""
 
 from __future__ import annotations
 
@@ -37,6 +37,22 @@ class LoopStates(Protocol):
     @property
     def force(self) -> Array:
         """Normal forces."""
+
+
+class LineStates(Protocol):
+    """What is drawn of the states of a straight front."""
+
+    @property
+    def direction(self) -> NDArray[np.int64]:
+        """+1 where the load advances, -1 where it recedes."""
+
+    @property
+    def load(self) -> Array:
+        """Places of the springs' other end."""
+
+    @property
+    def pinning_force(self) -> Array:
+        """Mean forces of the springs."""
 
 
 def loop_figure(
@@ -136,6 +152,68 @@ def draw_loop(
     axes.set_xlabel(r"mean contact radius / $(3\pi w_\mathrm{int}R^2/4E')^{1/3}$")
     axes.set_ylabel(r"normal force / $\pi w_\mathrm{int} R$")
     axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
+
+
+def pinning_figure(
+    states: LineStates, n_period: int, *, elastic_energy: float, title: str = ""
+) -> Figure:
+    """Pinning force of a straight front against its load, on a figure one column wide.
+
+    Parameters are those of :func:`draw_pinning`.
+    """
+    with house_style():
+        figure = blank_figure(COLUMN, 0.72 * COLUMN)
+        axes = figure.add_subplot()
+        draw_pinning(axes, states, n_period, elastic_energy=elastic_energy)
+        axes.set_title(title)
+        return figure
+
+
+def draw_pinning(axes: Axes, states: LineStates, n_period: int, *, elastic_energy: float) -> None:
+    """Draw both branches, and their means over the last period of the tile.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    states : LineStates
+        States of a straight front, forward and back.
+    n_period : int
+        States at the end of each branch that are one period.
+    elastic_energy : float
+        Measured e_el: the mean is k e_el. (Units: w_int)
+
+    Raises
+    ------
+    ValueError
+        If a branch has fewer states than a period.
+    """
+    for direction, name, colour in ((1, "forward", BLUE), (-1, "back", VERMILION)):
+        branch = states.direction == direction
+        load, pinning = states.load[branch], states.pinning_force[branch]
+        if load.size < n_period:
+            raise ValueError(
+                f"the branch {name} has {load.size} states, fewer than the {n_period} of a period; "
+                "the front was left before it had passed the tile"
+            )
+        mean = float(np.mean(pinning[-n_period:]))
+        axes.plot(load, pinning, color=colour, linewidth=0.8, label=name, zorder=3)
+        factor = direction * mean / elastic_energy
+        axes.plot(
+            load[[-n_period, -1]],
+            [mean, mean],
+            color=colour,
+            linewidth=1.0,
+            dashes=(4, 2),
+            label=rf"mean of a period, $k={factor:.2f}$",
+            zorder=4,
+        )
+    axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.45 * (high - low))
+    axes.set_xlabel("load $X$, place of the springs (reduced length)")
+    axes.set_ylabel(r"pinning force / $w_\mathrm{int}$")
+    axes.legend(loc="upper left")
 
 
 def _set_limits(axes: Axes, states: LoopStates) -> None:

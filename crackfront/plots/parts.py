@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.result import SweepFit
+from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import SweepTable
 from crackfront.plots.style import BLACK, COLOURS, MARKERS
 
@@ -55,19 +57,59 @@ def draw_arrow(axes: Axes, abscissa: Array, ordinate: Array, colour: str) -> Non
     )
 
 
+@dataclass(frozen=True, slots=True)
+class Series:
+    """How the points of one spectrum are drawn, and their entry in a legend; empty for none."""
+
+    colour: str
+    marker: str
+    label: str
+
+
+def sweep_series(table: SweepTable) -> tuple[Series, ...]:
+    """Colours and markers of all spectra of a sweep.
+
+    Straight fronts of one spectrum on several springs share a colour and differ by marker.
+    """
+    families, found = spectrum_families(table), []
+    for index, family in enumerate(families):
+        colour = marker = index
+        label = spectrum_label(table, index)
+        if table.straight:
+            colour, marker = family, families[:index].count(family)
+            label = "" if marker else label
+        found.append(Series(spectrum_colour(colour), MARKERS[marker % len(MARKERS)], label))
+    return tuple(found)
+
+
+def spectrum_families(table: SweepTable) -> list[int]:
+    """Number of the spectrum of every entry of a table; fronts on several springs share one."""
+    columns = table.short_cutoff, table.roll_off, table.hurst
+    shapes = [tuple(float(values[index]) for values in columns) for index in range(columns[0].size)]
+    known = list(dict.fromkeys(shapes))
+    return [known.index(shape) for shape in shapes]
+
+
+def spring_label(fit: SweepFit, index: int) -> str:
+    """Length of the springs in correlation lengths, or g where that is what amplitudes share."""
+    ratio = fit.table.spring[index] / fit.table.correlation_length[index]
+    if np.ptp(ratio) < 1e-6 * np.max(ratio):
+        return rf"$L_\kappa={ratio[0]:.3g}\,\xi$"
+    return rf"$g={np.nanmean(fit.cells.size[index]):.2g}$"
+
+
 def draw_estimates(
     axes: Axes,
-    index: int,
+    series: Series,
     abscissa: Array,
     estimate: Estimate,
     filled: NDArray[np.bool_],
-    label: str,
 ) -> None:
     """Points of one spectrum with their intervals, filled or open."""
-    colour, marker = spectrum_colour(index), MARKERS[index % len(MARKERS)]
+    colour, marker = series.colour, series.marker
     reach = np.nan_to_num(estimate.high - estimate.value)
     for chosen, face, edge, name in (
-        (filled, colour, "white", label),
+        (filled, colour, "white", series.label),
         (~filled, "white", colour, ""),
     ):
         if not np.any(chosen):
@@ -90,7 +132,7 @@ def draw_estimates(
         )
 
 
-def draw_below(axes: Axes, index: int, abscissa: Array) -> None:
+def draw_below(axes: Axes, index: int, colour: str, abscissa: Array) -> None:
     """Arrows at the lower edge, side by side for the spectra."""
     for position in abscissa * 1.05 ** (index - 1):
         axes.annotate(
@@ -100,7 +142,7 @@ def draw_below(axes: Axes, index: int, abscissa: Array) -> None:
             xycoords=axes.get_xaxis_transform(),
             arrowprops={
                 "arrowstyle": "->",
-                "color": spectrum_colour(index),
+                "color": colour,
                 "linewidth": 0.8,
                 "mutation_scale": 5,
                 "shrinkA": 0,
@@ -120,6 +162,21 @@ def draw_fit(
     axes.plot(
         ends, curve(value, ends), color=BLACK, linewidth=1.2, label=f"pooled fit, $k = {text}$"
     )
+
+
+def draw_law(
+    axes: Axes, fit: SweepFit, curve: Callable[[Array, Array], tuple[Array, Array]]
+) -> None:
+    """Curves of k by the law, one a spectrum, of points that are made of e_el and k."""
+    law = SweepLaw(fit.table, fit.kind, fit.uncorrelated)
+    drawn = False
+    for index, series in enumerate(sweep_series(fit.table)):
+        abscissa, ordinate = curve(*law.curve(index))
+        if np.any(np.isfinite(ordinate)):
+            drawn = True
+            axes.plot(abscissa, ordinate, color=series.colour, linewidth=0.6, zorder=1.5)
+    if drawn:
+        axes.plot([], [], color="0.5", linewidth=0.6, label="law of $k$ by disorder and size")
 
 
 def draw_theory(axes: Axes, ends: Array, curve: Callable[[float, Array], Array]) -> None:

@@ -1,35 +1,50 @@
-"""Figures of a sweep: the law, and how k depends on disorder and on size.
+"""Figures of a sweep: hysteresis, and how k depends on disorder and on size, beside the law of k.
 
 Error bars are 95% intervals of the mean over realisations. Filled symbols lie in the range of the
-fit, open ones outside it; an arrow at the lower edge stands for a mean below the axes.
+fit, open ones outside it; an arrow at the lower edge stands for a mean below the axes. Straight
+fronts of one spectrum share a colour, their springs differ by the marker.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.law import law_value, shipped_law
 from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.result import SweepFit
+from crackfront.analysis.sweep_law import LARGE
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.plots.law import draw_infinite_law
 from crackfront.plots.parts import (
+    Series,
     arrays,
     draw_below,
     draw_estimates,
     draw_fit,
+    draw_law,
     draw_theory,
     label_decimals,
     legend_entries,
     spectrum_colour,
+    spectrum_families,
     spectrum_label,
     spectrum_row,
+    spring_label,
+    sweep_series,
 )
-from crackfront.plots.style import COLUMN, PAGE, blank_figure, house_style
+from crackfront.plots.style import COLUMN, MARKERS, PAGE, blank_figure, house_style
 
 
 def hysteresis_figure(table: SweepTable, fit: SweepFit) -> Figure:
@@ -44,8 +59,14 @@ def hysteresis_figure(table: SweepTable, fit: SweepFit) -> Figure:
 
 
 def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
-    """Dependence of k on disorder and, averaged over the range, on correlation length."""
+    """Dependence of k on disorder and, averaged over the range, on correlation length.
+
+    Of straight fronts it is that on size at every amplitude, and that of the infinite contact on
+    disorder.
+    """
     with house_style():
+        if table.straight:
+            return _line_factor_figure(table, fit)
         figure = blank_figure(PAGE, 0.42 * PAGE)
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
         draw_factor_by_disorder(left, table, fit)
@@ -58,6 +79,68 @@ def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
         return figure
 
 
+def _line_factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
+    """Straight fronts: k against size, a colour an amplitude, and its limit against disorder."""
+    figure = blank_figure(PAGE, 0.45 * PAGE)
+    left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
+    draw_factor_by_size(left, table, fit)
+    draw_infinite_law(right)
+    families, cells = spectrum_families(table), fit.cells
+    for index, family in enumerate(families):
+        label = "" if family in families[:index] else spectrum_label(table, index)
+        series = Series(spectrum_colour(family), MARKERS[family % len(MARKERS)], label)
+        s = np.zeros_like(cells.w_rms[index]) if fit.uncorrelated else cells.w_rms[index]
+        shown = np.nan_to_num(cells.size[index]) > LARGE
+        row = spectrum_row(cells.infinite_factor, index)
+        row = Estimate(*(np.where(shown, values, np.nan) for values in arrays(row)))
+        draw_estimates(right, series, s, row, fit.in_range)
+    right.legend(*legend_entries(right), loc="lower left")
+    right.set_ylabel(r"$k$, infinite contact (points: $g>1$)")
+    left.set_ylim(0.0, 1.1 * PERTURBATION_FACTOR)
+    for axes, letter in ((left, "a"), (right, "b")):
+        axes.set_title(letter, loc="left", fontweight="bold")
+    return figure
+
+
+def draw_factor_by_size(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
+    """Draw mean k of straight fronts against g, a colour an amplitude, a marker a spectrum."""
+    families, size, law = spectrum_families(table), fit.cells.size, shipped_law()
+    known = size[np.isfinite(size)]
+    ends = np.nanmin(known) / 1.5, np.nanmax(known) * 1.5
+    abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
+    shades = colormaps["viridis"](np.linspace(0, 0.88, table.e_el_requested.size))
+    for amplitude, energy in enumerate(table.e_el_requested):
+        s = 0.0 if fit.uncorrelated else 2 * np.sqrt(energy)
+        colour = to_hex(shades[amplitude])
+        for index, family in enumerate(families):
+            series = Series(colour, MARKERS[family % len(MARKERS)], "")
+            cell = Estimate(*(one[[index], amplitude] for one in arrays(fit.cells.factor)))
+            here = fit.in_range[[amplitude]]
+            draw_estimates(axes, series, size[[index], amplitude], cell, here)
+        axes.plot(
+            abscissa,
+            law_value(law.coefficients, s, abscissa),
+            color=colour,
+            linewidth=0.8,
+            label=rf"law, $s={2 * np.sqrt(energy):.3g}$",
+        )
+    for family in dict.fromkeys(families):
+        axes.plot(
+            [],
+            [],
+            linestyle="none",
+            marker=MARKERS[family % len(MARKERS)],
+            color="0.4",
+            label=spectrum_label(table, families.index(family)),
+        )
+    axes.set_xscale("log")
+    axes.set_xlim(*ends)
+    label_decimals(axes)
+    axes.set_xlabel(r"size $g=L_\kappa/\ell$, springs over Larkin length")
+    axes.set_ylabel(r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$")
+    axes.legend(loc="upper left", ncols=2)
+
+
 def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
     """Limits of an ordinate that shows all k of a sweep and those of the theories."""
     factor = fit.cells.factor.value
@@ -66,22 +149,20 @@ def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
 
 
 def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
-    """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the fit and the theory."""
+    """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the law and the theory."""
     variance, hysteresis = fit.cells.w_rms**2, fit.cells.hysteresis
     ends = np.array([np.nanmin(variance) / 1.8, np.nanmax(variance) * 1.8])
     # Below its onset hysteresis falls to nothing; such points must not stretch the axes.
     floor = 0.05 * PAPER_FACTOR / 2 * ends[0]
     above = hysteresis.value[np.nan_to_num(hysteresis.value) > floor]
     lowest = min(float(np.min(above, initial=np.inf)), PAPER_FACTOR / 2 * ends[0]) / 1.6
-    for index in range(table.spectrum.size):
-        label = spectrum_label(table, index)
+    for index, series in enumerate(sweep_series(table)):
         row = spectrum_row(hysteresis, index)
         below = np.nan_to_num(row.value, nan=np.inf) <= floor
-        draw_below(axes, index, variance[index, below])
+        draw_below(axes, index, series.colour, variance[index, below])
         shown = Estimate(*(np.where(below, np.nan, values) for values in arrays(row)))
-        draw_estimates(axes, index, variance[index], shown, fit.in_range, label)
-    fitted = 4 * np.array([fit.lowest_elastic_energy, fit.highest_elastic_energy])
-    draw_fit(axes, fitted, fit, lambda factor, abscissa: factor / 2 * abscissa)
+        draw_estimates(axes, series, variance[index], shown, fit.in_range)
+    draw_law(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
     draw_theory(axes, ends, lambda factor, abscissa: factor / 2 * abscissa)
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -89,14 +170,29 @@ def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     axes.set_ylim(lowest, PERTURBATION_FACTOR / 2 * ends[1] * 4)
     axes.set_xlabel(r"disorder $(w_\mathrm{rms}/w_\mathrm{int})^2$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
-    axes.legend(*legend_entries(axes), loc="upper left")
+    handles, labels = legend_entries(axes)
+    springs, lengths = _spring_entries(fit)
+    axes.legend([*handles, *springs], [*labels, *lengths], loc="upper left")
+
+
+def _spring_entries(fit: SweepFit) -> tuple[list[Artist], list[str]]:
+    """Markers of the springs of the first spectrum of straight fronts, and their lengths."""
+    families, series = spectrum_families(fit.table), sweep_series(fit.table)
+    first = [index for index, family in enumerate(families) if family == 0]
+    shown = first if fit.table.straight else []
+    handles: list[Artist] = [
+        Line2D([], [], color="0.4", linestyle="none", marker=series[index].marker)
+        for index in shown
+    ]
+    return handles, [spring_label(fit, index) for index in shown]
 
 
 def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -> None:
     """Draw the spectra (of heights or of w_loc), all scaled to one variance of w_loc."""
     lowest = np.pi / np.max(table.roll_off)
     densities = []
-    for index in range(table.spectrum.size):
+    families = spectrum_families(table)
+    for index in (families.index(family) for family in dict.fromkeys(families)):
         spectrum = SelfAffineSpectrum(
             float(table.short_cutoff[index]),
             float(table.roll_off[index]),
@@ -110,7 +206,7 @@ def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -
         axes.plot(
             np.append(wavevector, cutoff),
             np.append(density, np.finfo(float).tiny),
-            color=spectrum_colour(index),
+            color=spectrum_colour(families[index]),
             linewidth=0.8,
         )
     axes.set_xscale("log")
@@ -127,19 +223,17 @@ def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -
 
 
 def draw_factor_by_disorder(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
-    """Draw mean k against measured e_el, the pooled mean over the range and the theory.
+    """Draw mean k against measured e_el, the law, the pooled mean over the range and the theory.
 
     Points of different spectra are set off sideways by up to 6% so that their bars do not hide
     each other.
     """
     energy, n_spectrum = fit.cells.e_el, table.spectrum.size
     aside = 1 + 0.12 * (np.arange(n_spectrum) - (n_spectrum - 1) / 2) / max(n_spectrum - 1, 1)
-    for index in range(n_spectrum):
-        label = spectrum_label(table, index)
+    for index, series in enumerate(sweep_series(table)):
         abscissa = energy[index] * aside[index]
-        draw_estimates(
-            axes, index, abscissa, spectrum_row(fit.cells.factor, index), fit.in_range, label
-        )
+        draw_estimates(axes, series, abscissa, spectrum_row(fit.cells.factor, index), fit.in_range)
+    draw_law(axes, fit, lambda energy, factor: (energy, factor))
     ends = np.array([np.nanmin(energy) / 1.4, np.nanmax(energy) * 1.4])
     fitted = np.array([fit.lowest_elastic_energy, fit.highest_elastic_energy])
     draw_fit(axes, fitted, fit, lambda factor, abscissa: np.full(abscissa.shape, factor))
@@ -161,9 +255,9 @@ def draw_factor_by_length(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
         family = np.flatnonzero(table.shape == shape)
         family = family[np.argsort(length[family])]
         axes.plot(length[family], factor.value[family], color="0.6", linewidth=0.6, zorder=1)
-    for index in range(table.spectrum.size):
+    for index, series in enumerate(sweep_series(table)):
         here = Estimate(*(values[[index]] for values in arrays(factor)))
-        draw_estimates(axes, index, length[[index]], here, np.array([True]), "")
+        draw_estimates(axes, replace(series, label=""), length[[index]], here, np.array([True]))
     ends = np.array([np.min(length) / 1.6, np.max(length) * 1.6])
     draw_theory(axes, ends, lambda factor, abscissa: np.full(abscissa.shape, factor))
     axes.set_xscale("log")

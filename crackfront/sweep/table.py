@@ -44,6 +44,9 @@ ROWS_AT_ONCE = 4096
 COMPLETE = ("lost_contact", "steady")
 """Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
 
+_WINDOW = ("lowest_radius", "highest_radius")
+"""Ends of the steady window."""
+
 NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
 
@@ -92,10 +95,11 @@ def read_table(path: Path) -> SweepTable:
     UnreadableFileError
         If the file is missing, truncated or that of something else.
     """
-    sources = {name: name for name in SweepTable.__dataclass_fields__}
+    sources = {name: name for name in SweepTable.__dataclass_fields__ if name != "contact_radius"}
     sources["e_el_requested"] = AMPLITUDE
-    dataset = _read(path, sources.values())
+    dataset = _read(path, (*sources.values(), *_WINDOW))
     columns = {name: np.asarray(dataset[source]) for name, source in sources.items()}
+    columns["contact_radius"] = np.mean([dataset[name] for name in _WINDOW], axis=0)
     columns["spectrum"] = columns["spectrum"].astype(np.str_)
     return SweepTable(**columns)
 

@@ -67,6 +67,19 @@ class ParametricStudy:
     highest_elastic_energy: float = variable("highest e_el of the fit", ADHESION)
     n_bootstrap: int = variable("bootstrap samples of the fit", "1")
     seed: int = variable("seed of the bootstrap", "1")
+    contact_radius: Array | None = variable(
+        "middle of the steady window", LATERAL, *_cell, default=None
+    )
+
+    @property
+    def table(self) -> SweepTable:
+        """The table of the sweep; without contact radii there is no k by the law."""
+        shared = {item.name for item in fields(SweepTable)} & set(self.__slots__)
+        columns = {name: getattr(self, name) for name in shared}
+        columns["spectrum"] = self.spectrum.astype(np.str_)
+        if self.contact_radius is None:
+            columns["contact_radius"] = np.full(self.e_el.shape, np.nan)
+        return SweepTable(**columns, spring=np.full(self.e_el.shape[:2], np.nan))
 
 
 def parametric_study(
@@ -74,7 +87,11 @@ def parametric_study(
 ) -> ParametricStudy:
     """Data of the figure from the fit of a sweep."""
     progress(f"{parameters.sweep}: {fit.table.finite.sum()} simulations with a value")
-    columns = {item.name: getattr(fit.table, item.name) for item in fields(SweepTable)}
+    columns = {
+        item.name: getattr(fit.table, item.name)
+        for item in fields(SweepTable)
+        if item.name != "spring"
+    }
     return ParametricStudy(
         **columns,
         kind=fit.kind,
@@ -87,10 +104,8 @@ def parametric_study(
 
 def study_fit(study: ParametricStudy) -> SweepFit:
     """The fit of a sweep once more, from the data of the figure."""
-    columns = {item.name: getattr(study, item.name) for item in fields(SweepTable)}
-    columns["spectrum"] = study.spectrum.astype(np.str_)
     return fit_sweep(
-        SweepTable(**columns),
+        study.table,
         lowest_elastic_energy=study.lowest_elastic_energy,
         highest_elastic_energy=study.highest_elastic_energy,
         n_bootstrap=study.n_bootstrap,

@@ -1,0 +1,150 @@
+"""Numbers of the law of k in the pages, between marks, so that a new measurement renews them."""
+
+from __future__ import annotations
+
+import math
+import re
+import textwrap
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import brentq
+
+from crackfront.analysis.law import (
+    COEFFICIENTS,
+    WEAKEST,
+    Law,
+    LawCell,
+    law_value,
+    pinning_factor,
+)
+from crackfront.analysis.report import PAPER_FACTOR
+
+DISORDERS = (WEAKEST, 0.2, 0.4, 0.84)
+"""Disorders s of the table of the infinite contact."""
+
+_MARK = re.compile(r"(<!-- (\S+) of the law -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+def renewed_page(text: str, law: Law, cells: Sequence[LawCell], spheres: str) -> str:
+    """Page whose marked parts are those of a law.
+
+    Parameters
+    ----------
+    text : str
+        The page.
+    law, cells
+        The law and what it was fitted to.
+    spheres : str
+        Table of spheres, in Markdown.
+
+    Raises
+    ------
+    ValueError
+        If a mark names none of the parts that there are.
+    """
+    parts = {
+        "coefficients": coefficients_part(law),
+        "limit": limit_part(law),
+        "fronts": fronts_part(cells),
+        "spheres": spheres,
+        "finding": finding_part(law),
+    }
+
+    def part(found: re.Match[str]) -> str:
+        if found[2] not in parts:
+            raise ValueError(f"no part of the law is {found[2]}; choose one of {', '.join(parts)}")
+        return f"{found[1]}\n{parts[found[2]]}\n\n{found[3]}"
+
+    return _MARK.sub(part, text)
+
+
+def coefficients_part(law: Law) -> str:
+    """Table of the coefficients, and how far the measured k are from the law."""
+    errors = np.sqrt(np.diag(law.covariance))
+    numbers = (law.coefficients, errors)
+    rows = [f"| {name} | {value:.3f} | {error:.3f} |" for name, value, error in _named(*numbers)]
+    exponent, error = law.exponent
+    text = (
+        f"Measured are s from {law.disorder[0]:.2g} to {law.disorder[1]:.2g} and g up to "
+        f"{law.size[1]:.2g}; the fit begins at g = {law.size[0]:g}. Where g is above 1 the "
+        f"measured k depart from the law by {law.rms:.1%} rms, {law.worst:.1%} at worst. What "
+        "scatter and numerics do not explain of that is stated as the model's error: "
+        f"{law.model_factor:.1%} of k, and {law.model_length:.1%} of g. Left free, the exponent "
+        f"1 - zeta is {exponent:.2f} ± {error:.2f} (one standard error)."
+    )
+    return "\n".join(
+        [
+            "| coefficient | value | standard error |",
+            "| --- | --- | --- |",
+            *rows,
+            "",
+            _wrapped(text),
+        ]
+    )
+
+
+def _named(values: Sequence[float], errors: Sequence[float]) -> list[tuple[str, float, float]]:
+    """Coefficients with their names and errors."""
+    return list(zip(COEFFICIENTS, values, errors, strict=True))
+
+
+def limit_part(law: Law) -> str:
+    """Table of k in the infinite contact, and where it is 3."""
+    rows = []
+    for s in DISORDERS:
+        found = pinning_factor(s, math.inf)
+        k, name = found.factor, "0, k_0" if s == WEAKEST else f"{s:g}"
+        rows.append(
+            f"| {name} | {k.value:.2f} ({k.low:.2f} to {k.high:.2f}) | {found.negative_share:.1%} |"
+        )
+    text = f"In the infinite contact k is {PAPER_FACTOR:g} at s = {crossing(law):.2f} alone."
+    return "\n".join(
+        [
+            "| s | k, infinite contact (95% interval) | share of negative w_loc |",
+            "| --- | --- | --- |",
+            *rows,
+            "",
+            text,
+        ]
+    )
+
+
+def crossing(law: Law) -> float:
+    """Disorder s at which k of the infinite contact is that of the paper's fit."""
+
+    def excess(s: float) -> float:
+        return float(law_value(law.coefficients, s, math.inf)) - PAPER_FACTOR
+
+    return float(brentq(excess, 0.0, 2.0))
+
+
+def fronts_part(cells: Sequence[LawCell]) -> str:
+    """How far fronts reach: their rms, a power law of g by least squares for g above 1."""
+    large = [cell for cell in cells if cell.size > 1 and cell.front_rms > 0]
+    size, rms = (np.log([getattr(cell, name) for cell in large]) for name in ("size", "front_rms"))
+    exponent, start = np.polyfit(size, rms, 1)
+    scatter = float(np.std(rms - np.polyval((exponent, start), size)))
+    return _wrapped(
+        f"Observed over {len(large)} spectra, amplitudes and springs with g above 1: "
+        f"u_rms = {math.exp(start):.2f} xi_u g^{exponent:.2f}, within {scatter:.0%} rms."
+    )
+
+
+def finding_part(law: Law) -> str:
+    """What was found, in a sentence."""
+    weak, strong = (
+        float(law_value(law.coefficients, s, math.inf)) for s in (DISORDERS[0], DISORDERS[-1])
+    )
+    return _wrapped(
+        "What was found: k is no constant but a function of disorder, s = w_rms/w_int, and size; "
+        f"in the infinite contact it falls from {weak:.1f} at weak disorder to {strong:.1f} at s = "
+        f"{DISORDERS[-1]:g} and is {PAPER_FACTOR:g}, as the paper's fit has it, at s = "
+        f"{crossing(law):.2f}; in a finite contact it is less, and a straight front on springs "
+        "says by how much."
+    )
+
+
+def _wrapped(text: str) -> str:
+    """Lines of a paragraph."""
+    return textwrap.fill(text, 108)

@@ -1,0 +1,152 @@
+"""The law of k at the spectra and amplitudes of a sweep, and what it makes of the measured k."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.analysis.estimate import REACH, Estimate, mean_estimate
+from crackfront.analysis.law import (
+    WEAKEST,
+    infinite_ratio,
+    pinning_factor,
+    shipped_law,
+    slope_breadth,
+    sphere_factors,
+)
+from crackfront.analysis.table import SweepTable
+from crackfront.core.adhesion import FieldKind, larkin_length
+from crackfront.core.spectrum import SelfAffineSpectrum
+
+Array = NDArray[np.float64]
+
+LARGE = 1.0
+"""Sizes g above this are those that the law is held to."""
+
+_UNKNOWN = Estimate(*(math.nan,) * 4)
+
+
+@dataclass(frozen=True, slots=True)
+class SweepLaw:
+    """How the fronts of a sweep are held, which is all that the law asks for beside the disorder.
+
+    Attributes
+    ----------
+    table : SweepTable
+        The sweep.
+    kind : {"roughness", "chemical"}
+        What its spectra describe.
+    uncorrelated : bool
+        Whether the sites of straight fronts know nothing of each other: the limit of weak disorder,
+        whatever the amplitude, which decides only how far apart they are.
+    """
+
+    table: SweepTable
+    kind: FieldKind
+    uncorrelated: bool = False
+
+    @property
+    def energy(self) -> Array:
+        """Mean measured e_el, (n_spectrum, n_amplitude) (Units: w_int)."""
+        return mean_estimate(np.where(self.table.finite, self.table.e_el, np.nan))[0].value
+
+    @property
+    def holds(self) -> Array:
+        """Springs of straight fronts, or contact radii, (n_spectrum, n_amplitude)."""
+        table = self.table
+        if table.straight:
+            return table.spring
+        return mean_estimate(np.where(table.finite, table.contact_radius, np.nan))[0].value
+
+    def factor(self, index: int, energy: float, hold: float) -> tuple[Estimate[float], float]:
+        """Factor k of a spectrum at an e_el and a spring or contact radius, and g; else NaN."""
+        if not (0 < energy < 1 and 0 < hold < math.inf):
+            return _UNKNOWN, math.nan
+        spectrum = self.spectrum(index)
+        if self.table.straight:
+            w_rms = 2 * math.sqrt(energy)
+            size = hold / larkin_length(self.kind, spectrum, w_rms)
+            disorder = WEAKEST if self.uncorrelated else w_rms
+            breadth = slope_breadth(self.kind, spectrum)
+            return pinning_factor(disorder, size, self.kind, breadth).factor, size
+        try:
+            found = sphere_factors(self.kind, spectrum, energy, hold)
+        except ValueError:
+            # So close to pull-off that nothing holds the edge.
+            return _UNKNOWN, math.nan
+        return found.both, found.size
+
+    def spectrum(self, index: int) -> SelfAffineSpectrum:
+        """Spectrum of a place in the table."""
+        table = self.table
+        columns = table.short_cutoff, table.roll_off, table.hurst
+        return SelfAffineSpectrum(*(float(values[index]) for values in columns))
+
+    def cells(self) -> tuple[Estimate, Array]:
+        """Factors k and sizes g at every spectrum and amplitude, (n_spectrum, n_amplitude)."""
+        energies, holds = self.energy, self.holds
+        values, sizes = np.empty((4, *energies.shape)), np.empty(energies.shape)
+        for cell in np.ndindex(energies.shape):
+            found, sizes[cell] = self.factor(cell[0], float(energies[cell]), float(holds[cell]))
+            values[:, cell[0], cell[1]] = (
+                found.value,
+                found.standard_error,
+                found.low,
+                found.high,
+            )
+        return Estimate(*values), sizes
+
+    def curve(self, index: int, n_point: int = 40) -> tuple[Array, Array]:
+        """Factors k of a spectrum between its amplitudes, where the law is measured.
+
+        Between amplitudes springs and radii are interpolated, in the logarithm of both.
+
+        Returns
+        -------
+        energy, factor : (n_point,) arrays
+            e_el and k, NaN where g is too small; empty without two amplitudes.
+        """
+        energies, holds = self.energy[index], self.holds[index]
+        known = np.isfinite(energies) & np.isfinite(holds)
+        if np.count_nonzero(known) < 2:
+            return np.empty(0), np.empty(0)
+        order = np.argsort(energies[known])
+        places, lengths = np.log(energies[known][order]), np.log(holds[known][order])
+        between = np.linspace(places[0], places[-1], n_point)
+        factors, least = np.full(n_point, np.nan), shipped_law().size[0]
+        for number, hold in enumerate(np.interp(between, places, lengths)):
+            found, size = self.factor(index, math.exp(between[number]), math.exp(hold))
+            if size >= least:
+                factors[number] = found.value
+        return np.exp(between), factors
+
+    def infinite(self, factor: Estimate, size: Array) -> Estimate:
+        """Measured k of every cell extrapolated to the infinite contact.
+
+        It is multiplied by what the law's k gains. Half of the interval is the root of the sum of
+        the squares of that of the measured k and of the gain.
+        """
+        energies, values = self.energy, np.full((4, *size.shape), np.nan)
+        for cell in np.ndindex(size.shape):
+            w_rms = WEAKEST if self.uncorrelated else 2 * math.sqrt(energies[cell])
+            breadth = slope_breadth(self.kind, self.spectrum(cell[0]))
+            gain = infinite_ratio(w_rms, float(size[cell]), breadth)
+            measured, own_error = float(factor.value[cell]), float(factor.standard_error[cell])
+            value, relative = measured * gain.value, measured * gain.standard_error
+            error = math.hypot(own_error * gain.value, relative)
+            reach = math.hypot((float(factor.high[cell]) - measured) * gain.value, REACH * relative)
+            values[:, cell[0], cell[1]] = value, error, value - reach, value + reach
+        return Estimate(*values)
+
+
+def law_departure(factor: Estimate, law: Estimate, size: Array) -> tuple[int, float]:
+    """Number of cells with g above 1, and the rms of how far their k departs from the law's.
+
+    The departure is relative to the law's k, and NaN where there is no such cell.
+    """
+    apart = factor.value / law.value - 1
+    chosen = apart[np.isfinite(apart) & (np.nan_to_num(size) > LARGE)]
+    return chosen.size, float(np.sqrt(np.mean(chosen**2))) if chosen.size else math.nan
