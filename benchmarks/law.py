@@ -5,14 +5,16 @@ make; make SWEEP=config/strong.yaml
 python -m benchmarks.law fit config/line.yaml config/line-chemical.yaml config/line-weak.yaml
 python -m benchmarks.law spheres config/default.yaml config/strong.yaml
 python -m benchmarks.law spheres --table docs/reference/spheres.csv
-python -m benchmarks.law figure --table docs/reference/spheres.csv --output docs/figures
-python -m benchmarks.law pages --table docs/reference/spheres.csv --output .
+python -m benchmarks.law held-out
+python -m benchmarks.law figure --table docs/reference/{spheres,held-out}.csv --output docs/figures
+python -m benchmarks.law pages --table docs/reference/{spheres,held-out}.csv --output .
 
 `fit` writes `law.csv`, a row for every spectrum, amplitude and spring, and `law.json`, the law that
 is fitted to them; copied to `crackfront/analysis`, they are what predictions rest on. `spheres`
 writes `spheres.csv`, what spheres were simulated to have, and prints it beside what the law says;
-with `--table` it reads such a file instead. `figure` draws the shipped law, and `pages` writes its
-numbers into README.md, docs/index.md and docs/law.md.
+with `--table` it reads such a file instead. `held-out` simulates scenes that had no part in any
+fit, and adds the paper's sweep that is kept in docs/reference: `held-out.csv`. `figure` draws the
+shipped law, and `pages` writes its numbers into README.md, docs/index.md and docs/law.md.
 """
 
 from __future__ import annotations
@@ -42,16 +44,20 @@ from crackfront.analysis.law import (
     sphere_factors,
 )
 from crackfront.analysis.table import SweepTable
+from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.variables import variables
 from crackfront.data.files import read_dataset, write_text
 from crackfront.plots.law import LawPoints, law_figure, spectra_points
 from crackfront.plots.style import save_picture
 from crackfront.simulate.lines import LineLoad
+from crackfront.simulate.run import run_simulation
+from crackfront.simulate.simulation import Numerics, simulation_of
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.sweep import NamedSpectrum, Sweep
-from crackfront.sweep.table import read_table
+from crackfront.sweep.table import read_table, sweep_row
 
 PAGES = ("README.md", "docs/index.md", "docs/law.md")
 """Pages that tell numbers of the law."""
@@ -209,6 +215,109 @@ def sphere_rows(configuration: Path) -> Iterator[SphereRow]:
         )
 
 
+_COLUMNS = (
+    "e_el",
+    "w_appr",
+    "w_retr",
+    "lowest_radius",
+    "highest_radius",
+    "w_appr_numerical_error",
+    "w_retr_numerical_error",
+)
+
+
+def _steady(start: float, reach: float = 1.0, travel: float = 1.5) -> SteadySchedule:
+    """Steady branches from a penetration on."""
+    return SteadySchedule(start, start + reach, travel, standard_error=0.05)
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A sphere that has no part in any fit."""
+
+    name: str
+    kind: FieldKind
+    spectrum: SelfAffineSpectrum
+    elastic_energy: float
+    schedule: SteadySchedule
+
+
+SCENES = (
+    Scene("short-0.1", "roughness", SelfAffineSpectrum(0.1, 0.1, 1.0), 0.05, _steady(1.0, 4, 0.5)),
+    Scene("from-0", "roughness", SelfAffineSpectrum(0.01, 0.01, 1.0), 0.05, _steady(0.0)),
+    Scene("from-3", "roughness", SelfAffineSpectrum(0.01, 0.04, 0.6), 0.05, _steady(3.0)),
+    Scene("chemical", "chemical", SelfAffineSpectrum(0.01, 0.01, 1.0), 0.08, _steady(1.0)),
+    # Of Main Fig. 5, as its spectrum is in reduced lengths.
+    Scene(
+        "nanodiamond", "roughness", SelfAffineSpectrum(0.00104, 0.0334, 1.0), 0.173, _steady(1.0)
+    ),
+)
+
+
+def scene_rows(realisations: int = 3) -> Iterator[SphereRow]:
+    """What the scenes have, simulated."""
+    for scene in SCENES:
+        first = simulation_of(
+            scene.kind,
+            scene.spectrum,
+            scene.elastic_energy,
+            scene.schedule,
+            Numerics(0.03),
+            seed=20261122,
+        )
+        found = [
+            sweep_row(run_simulation(replace(first, realisation=number)))
+            for number in range(realisations)
+        ]
+        columns = [np.array([getattr(row, name) for row in found]) for name in _COLUMNS]
+        energy, appr, retr, low, high, *errors = columns
+        mean = 1 - energy if scene.kind == "roughness" else 1.0
+        lowering, raising = (mean - appr) / energy, (retr - mean) / energy
+        numbers = [
+            float(value)
+            for column in (lowering, raising, (lowering + raising) / 2)
+            for value in (column.mean(), column.std(ddof=1) / np.sqrt(column.size))
+        ]
+        numerical = float(np.mean(sum(errors) / (2 * energy)))
+        yield SphereRow(
+            scene.name,
+            scene.kind,
+            scene.spectrum.short_cutoff,
+            scene.spectrum.roll_off,
+            scene.spectrum.hurst,
+            float(np.mean(low + high)) / 2,
+            float(energy.mean()),
+            realisations,
+            *numbers,
+            numerical,
+        )
+
+
+def reference_rows(path: Path, schedule: SteadySchedule) -> Iterator[SphereRow]:
+    """Spheres of the data of SI Fig. S-5 that are kept as a reference, at known penetrations."""
+    dataset = read_dataset(path)
+    middle = (schedule.start + schedule.max_penetration) / 2
+    table = SweepTable(
+        **{
+            item.name: np.asarray(dataset[item.name])
+            if item.name in dataset
+            else np.full([dataset.sizes[name] for name in item.dims], np.nan)
+            for item in variables(SweepTable)
+        }
+    )
+    for (place, _), (energy, found) in means(table, "roughness").items():
+        yield SphereRow(
+            f"{table.spectrum[place]}, paper",
+            "roughness",
+            float(table.short_cutoff[place]),
+            float(table.roll_off[place]),
+            float(table.hurst[place]),
+            jkr.equilibrium_radius(middle),
+            energy,
+            *astuple(found),
+        )
+
+
 def read_spheres(path: Path) -> list[SphereRow]:
     """Rows of a `spheres.csv`."""
     types: dict[str, type[Any]] = {"str": str, "int": int, "float": float}
@@ -316,21 +425,28 @@ def _kind(name: str) -> FieldKind:
 def main() -> None:
     """Fit the law, hold spheres against it, draw it, or write its numbers into the pages."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("task", choices=("fit", "spheres", "figure", "pages"))
+    parser.add_argument("task", choices=("fit", "spheres", "held-out", "figure", "pages"))
     parser.add_argument("configurations", type=Path, nargs="*")
-    parser.add_argument("--table", type=Path, help="a spheres.csv to read")
+    parser.add_argument("--table", type=Path, nargs="+", default=(), help="tables to read")
     parser.add_argument("--output", type=Path, default=Path("results/benchmark"))
     chosen = parser.parse_args()
-    if chosen.task == "spheres" and chosen.table is not None:
-        click.echo(sphere_table(read_spheres(chosen.table)))
+    known = [row for table in chosen.table for row in read_spheres(table)]
+    if chosen.task == "spheres" and known:
+        click.echo(sphere_table(known))
         return
     if chosen.task in ("figure", "pages"):
-        if chosen.table is None:
-            parser.error("name the table of spheres: --table docs/reference/spheres.csv")
-        spheres = read_spheres(chosen.table)
+        if not known:
+            parser.error("name the tables of spheres: --table docs/reference/spheres.csv")
         draw = draw_law if chosen.task == "figure" else renew_pages
-        for path in draw(chosen.output, spheres):
+        for path in draw(chosen.output, known):
             click.echo(f"{chosen.task}: {path}")
+        return
+    if chosen.task == "held-out":
+        schedule = load_configuration(Path("config/paper.yaml")).schedule
+        assert isinstance(schedule, SteadySchedule), "the paper's sweep has steady branches"
+        spheres = [*scene_rows(), *reference_rows(Path("docs/reference/si-5.nc"), schedule)]
+        write_text(chosen.output / "held-out.csv", text_of(spheres))
+        click.echo(sphere_table(spheres))
         return
     if not chosen.configurations:
         parser.error("name the configurations of sweeps that have been run")

@@ -67,7 +67,7 @@ def coefficients_part(law: Law) -> str:
     exponent, error = law.exponent
     text = (
         f"Measured are s from {law.disorder[0]:.2g} to {law.disorder[1]:.2g} and g up to "
-        f"{law.size[1]:.2g}; the fit begins at g = {law.size[0]:g}. Where g is above 1 the "
+        f"{law.size[1]:.3g}; the fit begins at g = {law.size[0]:g}. Where g is above 1 the "
         f"measured k depart from the law by {law.rms:.1%} rms, {law.worst:.1%} at worst. What "
         "scatter and numerics do not explain of that is stated as the model's error: "
         f"{law.model_factor:.1%} of k, and {law.model_length:.1%} of g. Left free, the exponent "

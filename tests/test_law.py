@@ -31,7 +31,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.plots.law import LawPoints, law_figure, spectra_points
 
 ROOT = Path(__file__).parents[1]
-SPHERES = ROOT / "docs/reference/spheres.csv"
+SPHERES = [ROOT / "docs/reference" / name for name in ("spheres.csv", "held-out.csv")]
 FLAT = SelfAffineSpectrum(short_cutoff=0.01, roll_off=0.01, hurst=1.0)
 SPECTRA = (FLAT, SelfAffineSpectrum(0.01, 0.08, 0.8), SelfAffineSpectrum(0.01, 0.2, 0.3))
 
@@ -195,7 +195,7 @@ def test_what_has_no_k_is_refused(call, sentence):
 
 
 def test_spheres_lie_on_the_law_without_having_been_used(law):
-    rows = read_spheres(SPHERES)
+    rows = [row for path in SPHERES for row in read_spheres(path)]
     apart = []
     for row in rows:
         found = law_of(row)
@@ -206,13 +206,13 @@ def test_spheres_lie_on_the_law_without_having_been_used(law):
 
 
 def test_the_pages_tell_the_numbers_of_the_shipped_law(tmp_path):
-    rows = read_spheres(SPHERES)
+    rows = [row for path in SPHERES for row in read_spheres(path)]
     for name in PAGES:
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text((ROOT / name).read_text())
     renew_pages(tmp_path, rows)
     for name in PAGES:
-        # Otherwise: python -m benchmarks.law pages --table docs/reference/spheres.csv --output .
+        # Otherwise: python -m benchmarks.law pages --table (both) --output .
         assert (tmp_path / name).read_text() == (ROOT / name).read_text()
         assert "<!-- end -->" in (ROOT / name).read_text()
 
@@ -231,7 +231,7 @@ def test_the_table_of_the_limit_holds_its_values_and_where_k_is_that_of_the_pape
 
 
 def test_the_table_of_spheres_states_how_far_the_law_is():
-    rows = read_spheres(SPHERES)
+    rows = [row for path in SPHERES for row in read_spheres(path)]
     table = sphere_table(rows)
     assert len(re.findall(r"^\| (?!spectrum|---)", table, re.MULTILINE)) == len(rows)
     assert re.search(r"For g above 1, \d+ rows: rms [\d.]+%, worst [\d.]+%", table)
@@ -270,6 +270,8 @@ def test_the_figure_collapses_fronts_and_spheres_on_one_curve(law):
 
 
 def test_the_command_draws_the_law(tmp_path):
-    (path,) = draw_law(tmp_path / "figures", read_spheres(SPHERES))
+    (path,) = draw_law(
+        tmp_path / "figures", [row for path in SPHERES for row in read_spheres(path)]
+    )
     assert path.name == "law.png"
     assert path.stat().st_size > 10_000

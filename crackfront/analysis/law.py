@@ -445,7 +445,7 @@ def _outside(law: Law, w_rms: float, size: float) -> tuple[float, str]:
     _, strongest = law.disorder
     smallest, _ = law.size
     if w_rms > strongest:
-        return 0.25 * math.log2(w_rms / strongest) + 0.05, (
+        return 0.25 * math.log2(w_rms / strongest), (
             f"w_rms {w_rms:.3g} w_int is above the strongest disorder that was measured "
             f"({strongest:.3g}): k is extrapolated and its interval widened"
         )
