@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crackfront.data.files import read_dataset
+from crackfront.data.files import leftover_parts, read_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
@@ -313,3 +313,10 @@ def test_memory_that_does_not_suffice_ends_the_run_and_leaves_no_row(store, monk
     assert finished.status == tasks.NOT_STORED
     assert "start fewer ranks" in finished.sentence
     assert store.inventory(FLAT).missing == FLAT
+
+
+def test_a_part_that_its_writer_renames_meanwhile_is_left_alone(tmp_path, monkeypatch):
+    glob = Path.glob
+    gone = tmp_path / ".renamed.part"
+    monkeypatch.setattr(Path, "glob", lambda folder, pattern: [*glob(folder, pattern), gone])
+    assert leftover_parts(tmp_path) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tempfile
 from collections.abc import Callable, Collection
@@ -99,7 +100,15 @@ def leftover_parts(folder: Path) -> list[Path]:
     with tempfile.NamedTemporaryFile(prefix=".", suffix=".part", dir=folder) as new:
         now = Path(new.name).stat().st_mtime
         parts = [path for path in folder.glob(".*.part") if path.name != Path(new.name).name]
-        return [path for path in parts if now - path.stat().st_mtime > _SECONDS_TO_WRITE]
+        return [path for path in parts if now - _changed(path) > _SECONDS_TO_WRITE]
+
+
+def _changed(path: Path) -> float:
+    """Moment of the last change of a file; never, where its writer has just renamed it."""
+    try:
+        return path.stat().st_mtime
+    except FileNotFoundError:
+        return math.inf
 
 
 def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset:
