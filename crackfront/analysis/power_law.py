@@ -177,6 +177,8 @@ def cutoff_scale(values: Array, counts: NDArray[np.int64] | int = 1) -> float:
     return float(np.sum(counts * values**2) / np.sum(counts * values) / 2)
 
 
+_N_JOINT_BOOTSTRAP = 100
+
 _STEEPNESS = (1.0, 1.5)
 """Range of delta: 1 in mean field, 1.06 of a line of long range and 1.11 of one of short range to
 first order. Few values tell it from C, and both from tau, only within such a range."""
@@ -213,7 +215,7 @@ def joint_power_law(
     binned = [_binned(sample, smallest) for sample in samples]
     scales, natural, steepness = _most_likely_joint(binned, smallest)
     again = []
-    for _ in range(_N_BOOTSTRAP):
+    for _ in range(_N_JOINT_BOOTSTRAP):
         drawn = [
             (values, rng.multinomial(counts.sum(), counts / counts.sum()))
             for values, counts in binned

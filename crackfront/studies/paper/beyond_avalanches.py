@@ -284,6 +284,8 @@ _KINDS = ((STRONG, "strong", BLUE, "o"), (WEAK, "weak", VERMILION, "s"))
 
 def avalanche_figure(record: AvalancheRecord) -> Drawing:
     """Whole events of the line above, and below densities of the sphere."""
+    from matplotlib.ticker import NullFormatter
+
     with house_style():
         figure = blank_figure(PAGE, 0.76 * PAGE)
         grid = figure.add_gridspec(2, 1)
@@ -302,8 +304,11 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
             axes.set_xscale("log")
             axes.set_yscale("log")
             axes.set_title(letter, loc="left", fontweight="bold")
-        handles, labels = lines[0].get_legend_handles_labels()
-        title = "straight front, length of the springs over the Larkin length"
+        for axis in (lines[1].yaxis, lines[1].xaxis, lines[2].yaxis):
+            axis.set_minor_formatter(NullFormatter())
+        # The last one is the law of the theory, which the panel names.
+        handles, labels = (part[:-1] for part in lines[0].get_legend_handles_labels())
+        title = "straight front on springs"
         above.legend(handles, labels, title=title, loc="outside upper center", ncols=len(labels))
         handles, labels = panels[2].get_legend_handles_labels()
         below.legend(handles, labels, title="sphere", loc="outside upper center", ncols=2)

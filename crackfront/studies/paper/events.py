@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from crackfront.analysis.power_law import JointPowerLaw, cutoff_scale, joint_pow
 from crackfront.core.cycle.instabilities import resolved_motion, swept_areas, swept_clusters
 from crackfront.core.variables import variable
 from crackfront.data.section import Positive
-from crackfront.plots.style import BLUE, COLOURS, MARKERS
+from crackfront.plots.style import BLACK, COLOURS, MARKERS
 from crackfront.studies.paper.figure import Check, Progress, close_to
 from crackfront.studies.paper.rough import surface_means
 from crackfront.studies.paper.straight import StraightParameters
@@ -63,7 +63,7 @@ class EventParameters(StraightParameters):
 class EventRecord:
     """Whole events of straight fronts."""
 
-    front_length: float = variable("period of the fronts over L_kappa", "1")
+    front_length: float = variable("least period of the fronts over L_kappa", "1")
     sites_per_larkin_length: float = variable("sites on a Larkin length", "1")
     smallest_event: float = variable("area where the power law begins", _AREA)
     spring: Array = variable("length of the springs, L_kappa", _EXTENT, _SPRING)
@@ -260,6 +260,7 @@ def event_checks(record: EventRecord) -> Iterator[Check]:
     """Claims about whole events."""
     area, extent, patch = event_law(record), extent_law(record), patch_law(record)
     cutoff, depth = cutoff_slope(record), depth_slope(record)
+    later = event_law(replace(record, smallest_event=2 * record.smallest_event))
     decades = np.log10(area.scales / area.smallest)
     told = (
         f"{area.n_value.sum()} of {record.event_area.size} events above {area.smallest:g}, on "
@@ -273,7 +274,8 @@ def event_checks(record: EventRecord) -> Iterator[Check]:
         area.exponent,
         (area.high - area.low) / 2,
         SIZE_EXPONENT,
-        f"{told}; one fit over all springs, {shape}",
+        f"{told}; one fit over all springs, {shape}; from twice that area on {later.exponent:.2f} "
+        f"({later.low:.2f} to {later.high:.2f})",
     )
     yield _exponent_check(
         whole + "growth of the cut-off <S^2> / 2 <S> with the length of the springs",
@@ -358,9 +360,8 @@ def draw_events(axes: Axes, record: EventRecord) -> None:
     ends = law.smallest * np.array([1.0, 100.0])
     level = 3 * float(law.density(law.smallest, 0)) * law.n_value[0]
     level /= np.sum(record.event_spring == 0)
-    _draw_theory(
-        axes, ends, level * (ends / ends[0]) ** -SIZE_EXPONENT, rf"\tau = {SIZE_EXPONENT:.2f}"
-    )
+    theory = level * (ends / ends[0]) ** -SIZE_EXPONENT
+    _draw_theory(axes, ends, theory, rf"\tau = {SIZE_EXPONENT:.2f}", "upper right")
     _name_fit(axes, rf"$\tau = {law.exponent:.2f}$ ({law.low:.2f} to {law.high:.2f})", 0.06)
     axes.set_xlabel(r"area of a whole event $S/\ell\xi_u$")
     axes.set_ylabel("probability density")
@@ -369,17 +370,12 @@ def draw_events(axes: Axes, record: EventRecord) -> None:
 def draw_cutoffs(axes: Axes, record: EventRecord) -> None:
     """Cut-off of the areas against the length of the springs."""
     slope, law = cutoff_slope(record), event_law(record)
-    axes.plot(record.spring, law.scales, "o", color=BLUE, markersize=3.4)
-    axes.plot(
-        record.spring,
-        np.exp(slope.level) * record.spring**slope.exponent,
-        color=BLUE,
-        linewidth=0.9,
-    )
+    axes.plot(record.spring, law.scales, "o", color=BLACK, markersize=3.4)
     ends = record.spring[[0, -1]]
+    axes.plot(ends, np.exp(slope.level) * ends**slope.exponent, color=BLACK, linewidth=0.9)
     growth = 1 + _ROUGHNESS
     theory = 0.6 * law.scales[0] * (ends / ends[0]) ** growth
-    _draw_theory(axes, ends, theory, rf"1 + \zeta = {growth:.3f}")
+    _draw_theory(axes, ends, theory, rf"1 + \zeta = {growth:.3f}", "lower right")
     _name_fit(axes, rf"slope {slope.exponent:.2f} $\pm$ {slope.reach:.2f}", 0.9)
     axes.set_xlabel(r"length of the springs $L_\kappa/\ell$")
     axes.set_ylabel(r"cut-off $S_m/\ell\xi_u$")
@@ -407,9 +403,9 @@ def draw_depths(axes: Axes, record: EventRecord) -> None:
         )
     ends = np.array([record.smallest_event ** (1 / (1 + _ROUGHNESS)), record.spring.max()])
     fit = np.exp(slope.level) * ends**slope.exponent
-    axes.plot(ends, fit, color="black", linewidth=0.9)
+    axes.plot(ends, fit, color=BLACK, linewidth=0.9)
     theory = 0.7 * fit[0] * (ends / ends[0]) ** _ROUGHNESS
-    _draw_theory(axes, ends, theory, rf"\zeta = {_ROUGHNESS}")
+    _draw_theory(axes, ends, theory, rf"\zeta = {_ROUGHNESS}", "lower right")
     _name_fit(axes, rf"slope {slope.exponent:.3f} $\pm$ {slope.reach:.3f}", 0.9)
     axes.set_xlabel(r"extent $l/\ell$")
     axes.set_ylabel(r"depth $S/l\xi_u$")
@@ -426,10 +422,17 @@ def logarithmic_edges(values: Array) -> Array:
     return np.asarray(edges)
 
 
-def _draw_theory(axes: Axes, abscissa: Array, ordinate: Array, name: str) -> None:
+def _draw_theory(
+    axes: Axes,
+    abscissa: Array,
+    ordinate: Array,
+    name: str,
+    place: Literal["lower right", "upper right"],
+) -> None:
     """Power law of the theory, named in a legend of its own."""
-    (line,) = axes.plot(abscissa, ordinate, color="0.35", linewidth=0.8, dashes=(4, 2))
-    axes.legend([line], [f"${name}$"], loc="lower right")
+    dashes, name = (4, 2), f"${name}$"
+    (line,) = axes.plot(abscissa, ordinate, color="0.35", linewidth=0.8, dashes=dashes, label=name)
+    axes.legend(handles=[line], loc=place)
 
 
 def _name_fit(axes: Axes, text: str, height: float) -> None:
