@@ -284,7 +284,7 @@ _KINDS = ((STRONG, "strong", BLUE, "o"), (WEAK, "weak", VERMILION, "s"))
 
 def avalanche_figure(record: AvalancheRecord) -> Drawing:
     """Whole events of the line above, and below densities of the sphere."""
-    from matplotlib.ticker import NullFormatter
+    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
 
     with house_style():
         figure = blank_figure(PAGE, 0.76 * PAGE)
@@ -304,7 +304,14 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
             axes.set_xscale("log")
             axes.set_yscale("log")
             axes.set_title(letter, loc="left", fontweight="bold")
-        for axis in (lines[1].yaxis, lines[1].xaxis, lines[2].yaxis):
+        # Less than two decades: powers of ten alone would be too few.
+        for axis, places in (
+            (lines[1].xaxis, FixedLocator(record.spring.tolist())),
+            (lines[1].yaxis, LogLocator(subs=(1.0, 2.0, 5.0))),
+            (lines[2].yaxis, LogLocator(subs=(1.0, 2.0, 5.0))),
+        ):
+            axis.set_major_locator(places)
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_formatter(NullFormatter())
         # The last one is the law of the theory, which the panel names.
         handles, labels = (part[:-1] for part in lines[0].get_legend_handles_labels())
