@@ -29,22 +29,22 @@ def synthetic(exponents, rng, n_surface=8):
     mode = np.arange(1, 400)
     empty = RoughnessRecord(
         short_cutoff=0.02,
-        elastic_energy=np.array([0.05, 0.001]),
-        rms=np.array([0.45, 0.06]),
-        larkin_length=np.array([0.01, 0.6]),
-        radius=np.array([1.6, 1.6]),
-        ring_stiffness=np.array([4.0, 4.0]),
-        longest=np.array([0.8, 0.8]),
-        shortest=np.array([0.08, 0.08]),
+        elastic_energy=np.tile([0.05, 0.001], 2),
+        rms=np.tile([0.45, 0.06], 2),
+        larkin_length=np.tile([0.01, 0.6], 2),
+        radius=np.full(4, 1.6),
+        ring_stiffness=np.full(4, 4.0),
+        longest=np.full(4, 0.8),
+        shortest=np.full(4, 0.08),
         mode=mode,
-        power=np.ones((2, n_surface, mode.size)),
+        power=np.ones((4, n_surface, mode.size)),
         lag=np.geomspace(0.01, 3, 20),
-        difference=np.ones((2, 20)),
+        difference=np.ones((4, 20)),
     )
     scatter = rng.gamma(20, 1 / 20, empty.power.shape)
     laws = [
         stiffness_wavevector(empty, index) ** -(1 + 2 * exponent)
-        for index, exponent in enumerate(exponents)
+        for index, exponent in enumerate((*exponents, *exponents))
     ]
     return replace(empty, power=np.array(laws)[:, None] * scatter)
 
@@ -59,6 +59,11 @@ def record():
         n_surface=2,
         n_front=4,
     )
+    lines = {
+        "strong_line": small.strong_line.model_copy(update={"spring": 12.0}),
+        "weak_line": small.weak_line.model_copy(update={"elastic_energy": 0.09, "spring": 1.2}),
+    }
+    small = small.model_copy(update=lines)
     return SCENE.compute(small, lambda line: None)
 
 
@@ -71,8 +76,10 @@ def test_the_fit_recovers_exponents_within_its_intervals(rng):
 
 
 def test_other_exponents_fail_the_checks(rng):
-    assert [check.passed for check in SCENE.checks(synthetic((0.5, 0.388), rng))] == [False] * 3
+    assert [check.passed for check in SCENE.checks(synthetic((0.5, 0.388), rng))] == [False] * 5
     assert [check.passed for check in SCENE.checks(synthetic((0.388, 0.388), rng))] == [
+        True,
+        False,
         True,
         False,
         False,
@@ -81,7 +88,7 @@ def test_other_exponents_fail_the_checks(rng):
 
 def test_without_the_stiffness_of_the_circle_the_exponent_is_lower(rng):
     data = synthetic((0.388, 0.5), rng)
-    bare = fitted_roughness(replace(data, ring_stiffness=np.zeros(2)), WEAK)
+    bare = fitted_roughness(replace(data, ring_stiffness=np.zeros(4)), WEAK)
     assert bare.exponent < fitted_roughness(data, WEAK).exponent - 0.03
 
 
@@ -91,6 +98,15 @@ def test_differences_follow_from_the_spectrum(record):
         plateau = record.difference[index, -1] ** 2
         assert 0.3 * 2 * variance < plateau < 3 * 2 * variance
         assert np.all(record.difference[index, :10] < record.difference[index, 20])
+
+
+def test_straight_fronts_count_as_circles_as_stiff_as_their_springs(record):
+    springs = np.array([12.0, 1.2]) * record.larkin_length[2:]
+    assert record.ring_stiffness[2:] == pytest.approx(record.radius[2:] / springs, rel=1e-9)
+    assert record.larkin_length[3] == pytest.approx(10 * record.larkin_length[2])
+    # Of the same springs the front with more disorder is the rougher one.
+    strong, weak = record.power[2:].mean(axis=1)
+    assert strong.sum() > 3 * weak.sum()
 
 
 def test_weak_disorder_roughens_less(record):
@@ -111,8 +127,15 @@ def test_parameters_that_cannot_be_fitted_are_refused(changes, sentence):
         SCENE.parameters.model_validate(parameters().model_dump() | changes)
 
 
-def test_its_drawing_has_three_labelled_panels(record):
-    wide = replace(record, longest=np.full(2, 1.0), shortest=np.full(2, 0.2))
+def test_a_range_of_a_straight_front_that_holds_no_wavelength_is_refused():
+    line = parameters().weak_line.model_dump() | {"fit_from": 1.0}
+    with pytest.raises(ValidationError, match=r"fit_from is 1; it must be below fit_to, 0\.07"):
+        SCENE.parameters.model_validate(parameters().model_dump() | {"weak_line": line})
+
+
+def test_its_drawing_has_four_labelled_panels(record):
+    wide = replace(record, longest=np.full(4, 1.0), shortest=np.full(4, 0.2))
     drawn = figure("beyond-roughness").draw(wide)
     assert isinstance(drawn, Figure)
+    assert len(drawn.axes) == 4
     assert all(axes.get_xlabel() and axes.get_ylabel() for axes in drawn.axes)

@@ -4,11 +4,14 @@ import itertools
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
-from crackfront.core.adhesion import correlation_length
+from crackfront.core.adhesion import AdhesionMap, correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.instabilities import larkin_length, resolved_motion, swept_clusters
 from crackfront.core.field.fields import polar_field
+from crackfront.core.geometry.line import line_field, straight_front
+from crackfront.core.geometry.sphere import sphere
 from crackfront.core.solver.relax import Newton, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
@@ -128,7 +131,7 @@ def test_patches_are_told_apart_across_the_ends_of_the_array():
     before, after = np.full(12, 2.0), np.full(12, 2.0)
     after[[11, 0, 1]] = 1.9
     after[5] = 1.8
-    clusters = swept_clusters(before, after, 0.05)
+    clusters = swept_clusters(before, after, 0.05, sphere(12))
     arc = 2 * np.pi / 12
     assert [round(item.depth, 9) for item in clusters] == [0.1, 0.2]
     assert clusters[0].area == pytest.approx(3 * arc * (4 - 1.9**2) / 2)
@@ -137,8 +140,37 @@ def test_patches_are_told_apart_across_the_ends_of_the_array():
 
 def test_nothing_moved_is_no_patch_and_everything_one():
     front = np.full(12, 2.0)
-    assert swept_clusters(front, front, 0.01) == []
-    assert len(swept_clusters(front, front - 0.1, 0.01)) == 1
+    assert swept_clusters(front, front, 0.01, sphere(12)) == []
+    assert len(swept_clusters(front, front - 0.1, 0.01, sphere(12))) == 1
+
+
+def test_a_straight_front_on_a_wave_jumps_once_a_period_from_where_its_load_turns():
+    # u - X = spring * amplitude * sin(q u): the load has a maximum where its slope is zero.
+    wavelength, spring, amplitude, n_y = 64, 100.0, 0.3, 32
+    q = 2 * np.pi / wavelength
+    wave = 1 + amplitude * np.sin(q * np.arange(wavelength))
+    adhesion = AdhesionMap(WORK_OF_ADHESION * np.repeat(wave[:, None], n_y, axis=1), 1.0, 0.0, 0.0)
+    field = line_field(adhesion, spring, (0.0, 300.0))
+    front = straight_front(field, adhesion, 100.0)
+    solver = Newton(1e-11)
+    front = relax(front, 100.0, 1, field, solver).front
+    jumps = [
+        motion
+        for motion in resolved_motion(
+            field, front, 100.0, [200.0], 1, travel=1.0, precision=1e-6, solver=solver
+        )
+        if motion.unstable
+    ]
+    turn = -np.arccos(1 / (spring * amplitude * q)) / q
+    load = turn - spring * amplitude * np.sin(q * turn)
+    first = wavelength * np.ceil((100.0 - load) / wavelength)
+    loads = np.arange(load + first, 200.0, wavelength)
+    assert [jump.end for jump in jumps] == pytest.approx(loads, abs=1e-3)
+    landed = brentq(lambda u: u - spring * amplitude * np.sin(q * u) - load, turn + 1, 100.0)
+    for jump in jumps:
+        (whole,) = swept_clusters(jump.before, jump.after, 1.0, field.geometry)
+        assert whole.area == pytest.approx(n_y * (landed - turn), rel=1e-3)
+        assert whole.extent == pytest.approx(n_y)
 
 
 def test_the_larkin_length_of_white_disorder_is_that_of_the_literature():

@@ -1,8 +1,8 @@
 """The single elastic instabilities of a branch, told apart from the smooth motion between them.
 
 A load step is halved until the front moves little, which is smooth motion, or until the step is
-too small to matter, which is an instability. No passing makes this exact: the front at a
-penetration does not depend on the steps that led there.
+too small to matter, which is an instability. No passing makes this exact: the front at a load does
+not depend on the steps that led there.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.follow import Load, follow
 from crackfront.core.field.fields import Field
+from crackfront.core.geometry.base import Geometry, weight, weight_slope
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Solver
 from crackfront.core.variables import ENERGY, LATERAL, VERTICAL, variable
@@ -33,8 +34,8 @@ class Motion:
     Attributes
     ----------
     start, end : float
-        Penetrations of the two. (Units: reduced vertical length)
-    before, after : (n_angle,) array
+        Loads of the two, penetrations of a sphere. (Units: reduced vertical length)
+    before, after : (n_site,) array
         The fronts. (Units: reduced lateral length)
     unstable : bool
         Whether the front jumped, however small the step.
@@ -60,19 +61,19 @@ def resolved_motion(
 ) -> Iterator[Motion]:
     """Motion of a front from load to load, resolved into smooth steps and single instabilities.
 
-    Instabilities that are closer in penetration than the precision come out as one; those that
+    Instabilities that are closer in load than the precision come out as one; those that
     move no site further than `travel` count as smooth.
 
     Parameters
     ----------
     field : Field
         Work of adhesion along the rays.
-    front : (n_angle,) array
+    front : (n_site,) array
         Metastable front. (Units: reduced lateral length)
     start : float
-        Its penetration. (Units: reduced vertical length)
+        Its load, the penetration of a sphere. (Units: reduced vertical length)
     loads : iterable of float
-        Penetrations to visit, in the direction of motion. (Units: reduced vertical length)
+        Loads to visit, in the direction of motion. (Units: reduced vertical length)
     direction : {1, -1}
         +1 in approach, -1 in retraction.
     travel : float
@@ -149,14 +150,15 @@ def measured_instabilities(jumps: Sequence[Motion], field: Field, travel: float)
     travel : float
         Smallest motion of a site that counts. (Units: reduced lateral length)
     """
-    clusters = [swept_clusters(jump.before, jump.after, travel) for jump in jumps]
+    geometry = field.geometry
+    clusters = [swept_clusters(jump.before, jump.after, travel, geometry) for jump in jumps]
     fronts = [np.array([getattr(jump, name) for jump in jumps]) for name in ("before", "after")]
     return Instabilities(
         np.array([jump.end for jump in jumps]),
         np.array([dissipated_energy(jump.before, jump.after, jump.end, field) for jump in jumps]),
         np.array([sum(part.area for part in parts) for parts in clusters]),
         np.array([parts[0].extent for parts in clusters]),
-        *(front.reshape(-1, field.geometry.n_site) for front in fronts),
+        *(front.reshape(-1, geometry.n_site) for front in fronts),
     )
 
 
@@ -180,7 +182,29 @@ class Cluster:
     extent: float
 
 
-def swept_clusters(before: Array, after: Array, threshold: float) -> list[Cluster]:
+def swept_areas(before: Array, after: Array, geometry: Geometry) -> Array:
+    """Area that each site of a front sweeps on its way to another.
+
+    Parameters
+    ----------
+    before, after : (n_site,) array
+        The fronts. (Units: reduced lateral length)
+    geometry : Geometry
+        That of the front.
+
+    Returns
+    -------
+    (n_site,) array
+        Areas, none of them negative. (Units: reduced lateral length**2)
+    """
+    # The weight, of a sphere the radius, is linear: that of the middle makes a sector exact.
+    width = weight(geometry, 0.0) + weight_slope(geometry) * (before + after) / 2
+    return np.asarray(np.abs(after - before) * width * geometry.perimeter / before.size)
+
+
+def swept_clusters(
+    before: Array, after: Array, threshold: float, geometry: Geometry
+) -> list[Cluster]:
     """Contiguous parts of the perimeter that moved by more than a threshold, the largest first.
 
     The front is elastic over long distances, so that an instability may move parts that do not
@@ -188,10 +212,12 @@ def swept_clusters(before: Array, after: Array, threshold: float) -> list[Cluste
 
     Parameters
     ----------
-    before, after : (n_angle,) array
+    before, after : (n_site,) array
         Fronts before and after. (Units: reduced lateral length)
     threshold : float
         Smallest motion that counts. (Units: reduced lateral length)
+    geometry : Geometry
+        That of the front.
 
     References
     ----------
@@ -199,12 +225,14 @@ def swept_clusters(before: Array, after: Array, threshold: float) -> list[Cluste
 
     Examples
     --------
+    >>> from crackfront.core.geometry.sphere import sphere
     >>> before, after = np.full(8, 2.0), np.array([1.5, 2, 2, 1.5, 1.5, 2, 2, 1.5])
-    >>> [round(item.extent / (np.pi / 4), 6) for item in swept_clusters(before, after, 0.1)]
+    >>> clusters = swept_clusters(before, after, 0.1, sphere(8))
+    >>> [round(item.extent / (np.pi / 4), 6) for item in clusters]
     [3.5, 3.5]
     """
     moved = np.abs(after - before)
-    area = np.abs(after**2 - before**2) * np.pi / moved.size
+    area = swept_areas(before, after, geometry)
     inside = moved > threshold
     if not np.any(inside):
         return []

@@ -1,9 +1,9 @@
-"""Beyond the paper: sizes, extents and energies of the instabilities of steady retraction."""
+"""Beyond the paper: avalanches of straight fronts on springs, and of a sphere in retraction."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,8 +13,19 @@ from crackfront.analysis.power_law import PowerLaw, truncated_power_law
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.instabilities import resolved_motion, swept_clusters
 from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
-from crackfront.data.section import Positive
+from crackfront.data.section import Count, Positive
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.studies.paper.events import (
+    SIZE_EXPONENT,
+    EventParameters,
+    EventRecord,
+    draw_cutoffs,
+    draw_depths,
+    draw_events,
+    event_checks,
+    event_record,
+    logarithmic_edges,
+)
 from crackfront.studies.paper.figure import Check, Figure, Progress
 from crackfront.studies.paper.rough import (
     STRONG,
@@ -24,6 +35,7 @@ from crackfront.studies.paper.rough import (
     flat_spectrum,
     surface_means,
 )
+from crackfront.studies.paper.straight import Springs
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,11 +44,11 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_DISORDER, _EVENT = "disorder", "avalanche"
+_DISORDER, _AVALANCHE = "disorder", "avalanche"
 
 
 class AvalancheParameters(RetractionParameters):
-    """Surfaces, the part of their retraction that is resolved, and the range of the fit.
+    """Surfaces, the part of their retraction that is resolved, the range of the fit, and lines.
 
     The closer the penetrations are to pull-off, the softer is the circle, and the larger may
     avalanches become.
@@ -53,17 +65,26 @@ class AvalancheParameters(RetractionParameters):
     smallest_area : float
         Where the power law begins, over the area of a Larkin length (or a correlation length, if
         that is longer) times a correlation length.
+    line : EventParameters
+        Straight fronts, and how their events are told apart.
+    springs : tuple of float
+        Their L_kappa, over the Larkin length.
+    n_tile : int
+        Tiles of each spring; each front goes over a whole period.
     """
 
     load_step: Positive
     travel: Positive
     precision: Positive
     smallest_area: Positive
+    line: EventParameters
+    springs: Springs
+    n_tile: Count
 
 
 @dataclass(frozen=True, slots=True)
-class AvalancheRecord:
-    """Avalanches of all surfaces."""
+class AvalancheRecord(EventRecord):
+    """Whole events of straight fronts, and avalanches of all surfaces of a sphere."""
 
     short_cutoff: float = variable("shortest wavelength of the roughness", LATERAL)
     correlation_length: float = variable("correlation length of w_loc", LATERAL)
@@ -77,13 +98,13 @@ class AvalancheRecord:
         "perimeter over the stiffness of the circle, a dG/da / w_int", LATERAL, _DISORDER
     )
     smooth_area: Array = variable("share of the area left in smooth steps", "1", _DISORDER)
-    disorder_index: NDArray[np.int64] = variable("which disorder", "1", _EVENT)
-    surface: NDArray[np.int64] = variable("number of the surface", "1", _EVENT)
-    penetration: Array = variable("penetration of the avalanche", VERTICAL, _EVENT)
-    area: Array = variable("area that it sweeps", f"({LATERAL})^2", _EVENT)
-    extent: Array = variable("width of its largest patch, area over depth", LATERAL, _EVENT)
-    n_patch: NDArray[np.int64] = variable("patches that do not touch", "1", _EVENT)
-    energy: Array = variable("energy that it dissipates", ENERGY, _EVENT)
+    disorder_index: NDArray[np.int64] = variable("which disorder", "1", _AVALANCHE)
+    surface: NDArray[np.int64] = variable("number of the surface", "1", _AVALANCHE)
+    penetration: Array = variable("penetration of the avalanche", VERTICAL, _AVALANCHE)
+    area: Array = variable("area that it sweeps", f"({LATERAL})^2", _AVALANCHE)
+    extent: Array = variable("width of its largest patch, area over depth", LATERAL, _AVALANCHE)
+    n_patch: NDArray[np.int64] = variable("patches that do not touch", "1", _AVALANCHE)
+    energy: Array = variable("energy that it dissipates", ENERGY, _AVALANCHE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +131,9 @@ class _Surface:
 
 
 def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> AvalancheRecord:
-    """Avalanches of steady retraction on several surfaces of two amplitudes."""
+    """Whole events of straight fronts, then avalanches on surfaces of two amplitudes."""
+    line, springs = parameters.line, parameters.springs
+    whole = event_record(line, springs, parameters.n_tile, parameters.seed, progress)
     surfaces: list[list[_Surface]] = []
     for name, energy in (("strong", parameters.strong), ("weak", parameters.weak)):
         surfaces.append([])
@@ -126,6 +149,7 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
         return np.array([getattr(event, name) for kind in events for event in kind])
 
     return AvalancheRecord(
+        **{one.name: getattr(whole, one.name) for one in fields(whole)},
         short_cutoff=parameters.short_cutoff,
         correlation_length=correlation,
         precision=parameters.precision,
@@ -169,7 +193,7 @@ def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -
         areas[step.unstable] += area
         last = step.after
         if step.unstable:
-            patches = swept_clusters(step.before, step.after, travel)
+            patches = swept_clusters(step.before, step.after, travel, contact.field.geometry)
             lost = dissipated_energy(step.before, step.after, step.end, contact.field)
             avalanches.append(
                 _Avalanche(realisation, step.end, area, patches[0].extent, len(patches), lost)
@@ -184,12 +208,8 @@ def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -
     )
 
 
-SIZE_EXPONENT = 1.28
-"""Exponent of avalanche sizes of a line with long-range elasticity (Laurson, Santucci, Zapperi,
-Phys. Rev. E 81, 046116)."""
-
 _TOLERANCE = 0.1
-"""Largest deviation of the exponent."""
+"""Largest deviation of that of a sphere."""
 
 
 def size_law(record: AvalancheRecord, index: int) -> PowerLaw:
@@ -201,7 +221,8 @@ def size_law(record: AvalancheRecord, index: int) -> PowerLaw:
 
 def avalanche_checks(record: AvalancheRecord) -> tuple[Check, ...]:
     """Exponents, and the lengths between which avalanches lie."""
-    checks = [
+    checks = [*event_checks(record)]
+    checks += [
         check
         for index, name in ((STRONG, "strong"), (WEAK, "weak"))
         for check in _checks(record, index, name)
@@ -212,7 +233,7 @@ def avalanche_checks(record: AvalancheRecord) -> tuple[Check, ...]:
     ]
     checks.append(
         Check(
-            "the smallest extent grows for weaker disorder",
+            "sphere: the smallest extent grows for weaker disorder",
             "> 1",
             f"{smallest[WEAK] / smallest[STRONG]:.3g} times",
             smallest[WEAK] > smallest[STRONG],
@@ -231,8 +252,8 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
     law = size_law(record, index)
     contained = "contains it" if law.low <= SIZE_EXPONENT <= law.high else "leaves it out"
     yield Check(
-        f"{name} disorder: exponent of the swept areas",
-        f"{SIZE_EXPONENT} ± {_TOLERANCE}",
+        f"sphere, {name} disorder: exponent of the swept areas",
+        f"{SIZE_EXPONENT:.2f} ± {_TOLERANCE}",
         f"{law.exponent:.2f} ({law.low:.2f} to {law.high:.2f})",
         abs(law.exponent - SIZE_EXPONENT) <= _TOLERANCE,
         f"{law.n_value} of {energy.size} avalanches; the 95% interval of a bootstrap over "
@@ -241,7 +262,7 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
         "few, as the sphere's own cut-off need not be exponential",
     )
     yield Check(
-        f"{name} disorder: every avalanche dissipates energy",
+        f"sphere, {name} disorder: every avalanche dissipates energy",
         "> 0",
         f"{energy.size} from {energy.min():.2g} to {energy.max():.2g}",
         bool(np.all(energy > 0)),
@@ -249,8 +270,8 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
     )
     longest = float(np.quantile(extent, 0.99))
     yield Check(
-        f"{name} disorder: avalanches end below the length on which the circle is stiffer than "
-        "the line",
+        f"sphere, {name} disorder: avalanches end below the length on which the circle is stiffer "
+        "than the line",
         f"99% below {record.circle_length[index]:.3g}",
         f"{longest:.3g}",
         longest < record.circle_length[index],
@@ -260,34 +281,50 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
 
 _KINDS = ((STRONG, "strong", BLUE, "o"), (WEAK, "weak", VERMILION, "s"))
 
-_BINS_A_DECADE = 5
-
 
 def avalanche_figure(record: AvalancheRecord) -> Drawing:
-    """Densities of areas with their power laws, of extents, and of energies."""
+    """Whole events of the line above, and below densities of the sphere."""
+    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
+
     with house_style():
-        figure = blank_figure(PAGE, 0.38 * PAGE)
-        panels = figure.subplots(1, 3)
+        figure = blank_figure(PAGE, 0.76 * PAGE)
+        grid = figure.add_gridspec(2, 1)
+        above, below = (figure.add_subfigure(grid[row]) for row in range(2))
+        lines, panels = above.subplots(1, 3), below.subplots(1, 3)
+        draw_events(lines[0], record)
+        draw_cutoffs(lines[1], record)
+        draw_depths(lines[2], record)
         _draw_areas(panels[0], record)
         _draw_extents(panels[1], record)
         # The reduced unit of energy is pi times w_int times the lateral unit squared.
         energies = record.energy / (record.short_cutoff**2 / np.pi)
         label = r"dissipated energy $/\,w_\mathrm{int}\lambda_\mathrm{s}^2$"
         _draw_densities(panels[2], record, energies, label)
-        for axes, letter in zip(panels, "abc", strict=True):
+        for axes, letter in zip([*lines, *panels], "abcdef", strict=True):
             axes.set_xscale("log")
             axes.set_yscale("log")
             axes.set_title(letter, loc="left", fontweight="bold")
+        # Less than two decades: powers of ten alone would be too few.
+        for axis, places in (
+            (lines[1].xaxis, FixedLocator(record.spring.tolist())),
+            (lines[1].yaxis, LogLocator(subs=(1.0, 2.0, 5.0))),
+            (lines[2].yaxis, LogLocator(subs=(1.0, 2.0, 5.0))),
+        ):
+            axis.set_major_locator(places)
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
+        # The last one is the law of the theory, which the panel names.
+        handles, labels = (part[:-1] for part in lines[0].get_legend_handles_labels())
+        title = "straight front on springs"
+        above.legend(handles, labels, title=title, loc="outside upper center", ncols=len(labels))
         handles, labels = panels[2].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper center", ncols=2)
+        below.legend(handles, labels, title="sphere", loc="outside upper center", ncols=2)
         return figure
 
 
 def _draw_densities(axes: Axes, record: AvalancheRecord, values: Array, what: str) -> None:
     """Densities of both disorders in logarithmic bins, with the error of counting."""
-    low, high = np.log10(values.min()), np.log10(values.max())
-    edges = np.logspace(low, high, max(int((high - low) * _BINS_A_DECADE), 4) + 1)
-    edges[-1] *= 1 + 1e-9
+    edges = logarithmic_edges(values)
     for index, name, colour, marker in _KINDS:
         chosen = values[record.disorder_index == index]
         counts, _ = np.histogram(chosen, edges)
@@ -333,7 +370,7 @@ def _draw_areas(axes: Axes, record: AvalancheRecord) -> None:
         color="0.35",
         linewidth=0.7,
         dashes=(4, 2),
-        label=rf"$\tau = {SIZE_EXPONENT}$",
+        label=rf"$\tau = {SIZE_EXPONENT:.2f}$",
     )
     _legend_of(axes, "tau")
 
