@@ -48,7 +48,7 @@ COEFFICIENTS = ("k_0", "A", "B", "C", "a", "b", "c", "d", "e")
 _START = (3.9, 0.55, 0.05, 0.1, 1.2, 1.25, 1.8, 1.3, 0.6)
 
 TYPICAL_BREADTH = 1.18
-"""beta_0, in the middle of the shapes of spectra; that of one that is not known."""
+"""Breadth beta_0 in the middle of those of spectra; that of one that is not known."""
 
 _NEAR = 0.8
 """Cells as close in ln g tell their scatter together: few tiles say little of their own."""
@@ -324,9 +324,9 @@ def pinning_factor(
     kind : {"roughness", "chemical"}, optional
         What makes w_loc vary; decides its mean, and by that the negative share alone.
     breadth : float, optional
-        That of the spectrum, as :func:`slope_breadth`; of one that is broader than any that was
-        measured k is that of the broadest. By default k is that of a typical one, and the interval
-        covers the others.
+        That of the spectrum, as :func:`crackfront.analysis.law.slope_breadth`; of one that is
+        broader than any that was measured k is that of the broadest. By default k is that of a
+        typical one, and the interval covers the others.
 
     Returns
     -------
@@ -399,7 +399,7 @@ def infinite_ratio(w_rms: float, size: float, breadth: float = TYPICAL_BREADTH) 
     size : float
         g; below the smallest of the law the ratio is NaN.
     breadth : float, optional
-        That of the spectrum, as :func:`slope_breadth`.
+        That of the spectrum, as :func:`crackfront.analysis.law.slope_breadth`.
 
     Examples
     --------

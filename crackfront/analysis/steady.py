@@ -74,12 +74,14 @@ def mean_adhesion(
 
     Parameters
     ----------
-    record, correlation_length
+    record : CycleRecord
         As of :func:`steady_adhesion`.
     schedule : LoadSchedule, SteadySchedule or LineSchedule
         Loads of the record.
     mean : float
         Mean work of adhesion of the tile, which a straight front is held against. (Units: w_int)
+    correlation_length : float
+        As of :func:`steady_adhesion`.
     """
     if isinstance(schedule, LineSchedule):
         return period_adhesion(record, schedule.n_period, mean, correlation_length)

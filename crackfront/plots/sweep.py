@@ -19,10 +19,10 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.law import law_value, shipped_law
+from crackfront.analysis.law import law_value, shipped_law, slope_breadth
 from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.result import SweepFit
-from crackfront.analysis.sweep_law import LARGE
+from crackfront.analysis.sweep_law import LARGE, SweepLaw
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -105,6 +105,9 @@ def _line_factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
 def draw_factor_by_size(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     """Draw mean k of straight fronts against g, a colour an amplitude, a marker a spectrum."""
     families, size, law = spectrum_families(table), fit.cells.size, shipped_law()
+    sweep = SweepLaw(table, fit.kind)
+    spectra = [sweep.spectrum(index) for index in range(table.spectrum.size)]
+    breadth = float(np.mean([slope_breadth(fit.kind, spectrum) for spectrum in spectra]))
     known = size[np.isfinite(size)]
     ends = np.nanmin(known) / 1.5, np.nanmax(known) * 1.5
     abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
@@ -119,7 +122,7 @@ def draw_factor_by_size(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
             draw_estimates(axes, series, size[[index], amplitude], cell, here)
         axes.plot(
             abscissa,
-            law_value(law.coefficients, s, abscissa),
+            law_value(law.coefficients, s, abscissa, min(breadth, law.breadth[1])),
             color=colour,
             linewidth=0.8,
             label=rf"law, $s={2 * np.sqrt(energy):.3g}$",
