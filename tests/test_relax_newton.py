@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.ndimage import gaussian_filter
 
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.cycle.record import Recorder
@@ -214,3 +215,73 @@ def test_the_number_of_threads_has_no_say():
         for threads in ("1", "2")
     }
     assert len(found) == 1
+
+
+# --- small fronts on straight pieces: never more transforms than the reference needs sweeps
+
+
+def small_scene(seed):
+    """Field, its first place and loads of a small cycle of any disorder and spacing."""
+    rng = np.random.default_rng(seed)
+    n_angle, n_sample = int(rng.integers(17, 132)), int(np.exp(rng.uniform(2.1, 5.7)))
+    amplitude = rng.choice([0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.0, 1.5, 2.0, 3.0])
+    inner = np.exp(rng.uniform(-3.9, -1.6))
+    spacings = [
+        np.ones(n_sample - 1),
+        np.diff(np.geomspace(inner, 3.4, n_sample)),
+        rng.uniform(0.1, 1.9, n_sample - 1),
+        rng.exponential(1.0, n_sample - 1) + 1e-3,
+    ][rng.integers(4)]
+    ways = np.concatenate([[0.0], np.cumsum(spacings)])
+    radii = inner + (3.4 - inner) * ways / ways[-1]
+    noise = rng.standard_normal((n_sample, n_angle))
+    if patch := rng.integers(3):
+        noise = gaussian_filter(noise, patch, mode=("nearest", "wrap"))
+    field = polar_field(radii, (1 + amplitude * noise / noise.std()) / np.pi)
+    top, step = rng.uniform(0.1, 1.0), rng.choice([0.02, 0.1, 0.25, 0.5, 1.0])
+    up, down = np.arange(0, top, step), np.arange(top, -6, -step)
+    return field, inner, [(b, 1) for b in up] + [(b, -1) for b in down]
+
+
+def compared(field, front, loads):
+    """Outcomes of both solvers, each from the front of the reference before, until contact ends."""
+    for load, direction in loads:
+        expected, found = (
+            relax(front, load, direction, field, SOLVERS[solver](1e-8, 30000))
+            for solver in ("reference", "newton")
+        )
+        yield expected, found
+        if expected.status is not Status.CONVERGED:
+            return
+        front = expected.front
+
+
+def assert_no_small_cycle_needs_more_transforms(seeds):
+    for seed in seeds:
+        field, inner, loads = small_scene(seed)
+        for expected, found in compared(field, np.full(field.geometry.n_site, inner), loads):
+            assert found.status is expected.status, seed
+            assert found.sweeps <= expected.sweeps, seed
+            if found.status is Status.CONVERGED:
+                assert np.max(np.abs(found.front - expected.front)) < 1e-5, seed
+
+
+def test_no_small_cycle_on_straight_pieces_needs_more_transforms_than_the_reference_sweeps():
+    assert_no_small_cycle_needs_more_transforms(range(40))
+
+
+@pytest.mark.slow
+def test_none_of_two_thousand_small_cycles_needs_more_transforms_than_the_reference_sweeps():
+    assert_no_small_cycle_needs_more_transforms(range(2000))
+
+
+@pytest.mark.parametrize("n_angle", [32, 131, 300])
+@pytest.mark.parametrize("n_ring", [10, 40])
+@pytest.mark.parametrize("grown", [False, True])
+def test_uniform_adhesion_on_few_rings_takes_fewer_transforms_than_sweeps(n_angle, n_ring, grown):
+    radii = (np.geomspace if grown else np.linspace)(0.02, 3.4, n_ring)
+    field = polar_field(radii, np.full((n_ring, n_angle), 1 / np.pi))
+    loads = [(0.0, 1), (1.0, 1), (0.0, -1), (-0.8, -1), (-1.2, -1)]
+    for expected, found in compared(field, np.full(n_angle, 0.02), loads):
+        assert found.status is expected.status
+        assert found.sweeps <= expected.sweeps

@@ -79,9 +79,10 @@ _LINEAR_MEMORY, _CUBIC_MEMORY = 128, 32
 
 
 @jit
-def samples_ahead(field):
-    """Largest number of samples that a solver may look ahead."""
-    return (_CUBIC_MEMORY if is_cubic(field) else _LINEAR_MEMORY) // 2
+def distance_ahead(field):
+    """Largest distance that a solver may look ahead, over half of the samples of a memory."""
+    memory, last = _CUBIC_MEMORY if is_cubic(field) else _LINEAR_MEMORY, sample_count(field) - 1
+    return memory // 2 * (sample_place(field, last) - sample_place(field, 0)) / last
 
 
 @implements(sample_place, RayField)

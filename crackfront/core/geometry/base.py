@@ -61,7 +61,7 @@ class Geometry(Protocol):
 
 @dispatched
 def restoring_force(geometry: Any, place: float, load: float) -> float:
-    """Restoring force f on a site; it increases with the place and is convex."""
+    """Restoring force f on a site; with the place it increases, and so does its convex slope."""
     raise NotImplementedError
 
 
@@ -74,12 +74,6 @@ def restoring_slope(geometry: Any, place: float, load: float) -> float:
 @dispatched
 def lowest_place(geometry: Any, load: float) -> float:
     """Place below which no site can rest."""
-    raise NotImplementedError
-
-
-@dispatched
-def is_below_lowest(geometry: Any, place: float, load: float) -> bool:
-    """Whether a place is at or below the lowest one."""
     raise NotImplementedError
 
 

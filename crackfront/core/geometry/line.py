@@ -228,12 +228,6 @@ def _lowest(geometry: Any, load: float) -> float:
     return -np.inf
 
 
-@implements(base.is_below_lowest, Line)
-def _is_stopped(geometry: Any, place: float, load: float) -> bool:
-    """Nowhere."""
-    return False
-
-
 @implements(base.mode_stiffness, Line)
 def _stiffness(geometry: Any, mode: float) -> float:
     """Of the absolute value of the wavevector."""

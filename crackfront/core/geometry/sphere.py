@@ -206,12 +206,6 @@ def _lowest(geometry: Any, load: float) -> float:
     return np.sqrt(max(load, 0.0))
 
 
-@implements(base.is_below_lowest, Sphere)
-def _is_compressed(geometry: Any, place: float, load: float) -> bool:
-    """Whether the edge is in compression, which a circle smaller than nothing always is."""
-    return place * abs(place) <= load
-
-
 @implements(base.mode_stiffness, Sphere)
 def _stiffness(geometry: Any, mode: float) -> float:
     """Of the half-Laplacian in the angle."""

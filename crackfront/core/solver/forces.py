@@ -12,7 +12,13 @@ from crackfront.core.compiled import jit, kernel
 from crackfront.core.field.pieces import blend, hull_until, peek_piece, polynomial, steepest_inside
 from crackfront.core.field.rays import front_products, segment_below
 from crackfront.core.field.samples import fetch, is_cubic, sample_count, sample_place
-from crackfront.core.geometry.base import mode_stiffness, restoring_force, restoring_slope, weight
+from crackfront.core.geometry.base import (
+    lowest_place,
+    mode_stiffness,
+    restoring_force,
+    restoring_slope,
+    weight,
+)
 from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -100,10 +106,12 @@ def hardening(field, memory, ray, place, product, segment, reach, load, directio
 
     On the piece under the site the steepest chord of the product is exact; further pieces lie in
     the hull of their control points, so that no chord is steeper than the steepest to one of those.
-    The restoring force is convex: its slope at the outer end bounds its chords.
+    The slope of the restoring force increases and is convex: no chord outward is steeper than the
+    mean of the slopes at its ends, none inward steeper than that under the site.
     """
-    furthest = place + reach if direction > 0 else place
-    restoring = restoring_slope(field.geometry, furthest, load)
+    restoring = restoring_slope(field.geometry, place, load)
+    if direction > 0:
+        restoring = 0.5 * (restoring + restoring_slope(field.geometry, place + reach, load))
     last = sample_count(field) - 2
     inner, outer = sample_place(field, segment), sample_place(field, segment + 1)
     inverse = 1.0 / (outer - inner)
@@ -138,13 +146,26 @@ def hardening(field, memory, ray, place, product, segment, reach, load, directio
 
 
 @jit
-def drive_sites(geometry, front, load, direction, drive):
-    """Fill in the force along the motion; return its largest and least value relative to w_int."""
+def resting_place(field, load, direction):
+    """Lowest place, where a site that recedes rests; -inf where it leaves the field before."""
+    lowest = lowest_place(field.geometry, load)
+    return lowest if direction < 0 and lowest > sample_place(field, 0) else -np.inf
+
+
+@jit
+def drive_sites(geometry, front, load, direction, lowest, drive):
+    """Fill in the force along the motion; return its largest and least value relative to w_int.
+
+    Sites that rest at the lowest place are driven back without bound, and do not count.
+    """
     place, product = front.place, front.product
     line = line_force(geometry, place)
     most, least = 0.0, 0.0
     for i in range(drive.size):
         drive[i] = direction * (product[i] - restoring_force(geometry, place[i], load) - line[i])
+        if place[i] <= lowest:
+            drive[i] = -np.inf
+            continue
         relative = drive[i] / (weight(geometry, place[i]) * WORK_OF_ADHESION)
         most, least = max(most, relative), min(least, relative)
     return most, least

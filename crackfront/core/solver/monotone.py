@@ -17,7 +17,7 @@ import numpy as np
 
 from crackfront.core.compiled import jit
 from crackfront.core.field.rays import front_products
-from crackfront.core.field.samples import sample_place, samples_ahead
+from crackfront.core.field.samples import distance_ahead, sample_place
 from crackfront.core.geometry.base import weight
 from crackfront.core.solver.forces import (
     BLOCKED,
@@ -29,6 +29,7 @@ from crackfront.core.solver.forces import (
     hardening,
     line_force,
     place_front,
+    resting_place,
 )
 from crackfront.core.solver.newton import make_newton, newton_step
 from crackfront.core.solver.reference import rosso_krauth
@@ -47,6 +48,9 @@ _MARGIN = 10
 _ROUNDS = 12
 """Steps of one window before the whole front is looked at again."""
 
+_EQUILIBRIUM = 0.3
+"""Part of the tolerance to which a window of the whole front is relaxed."""
+
 _ROUND_OFF = 1e-9
 """Backward drive, relative to w_int, that round-off may cause."""
 
@@ -63,8 +67,7 @@ def monotone_newton(place, load, direction, field, memory, tolerance, max_sweeps
         place, load, direction, field, memory, tolerance, max_sweeps
     )
     if code == BLOCKED:
-        # The edge of the contact is near compression, or the field too steep for the digits of a
-        # radius: the reference knows how to stop there.
+        # The field is too steep for the digits of a radius: the reference knows how to stop there.
         code, sweeps, more, residual = rosso_krauth(
             place, load, direction, field, memory, tolerance, max_sweeps - pairs
         )
@@ -83,14 +86,15 @@ def _run(place, load, direction, field, memory, tolerance, max_sweeps):
     row = line_force(geometry, unit)
     window, newton = make_window(row), make_newton(count)
     drive, active = np.empty(count), np.empty(count, np.bool_)
-    furthest = samples_ahead(field) * (sample_place(field, 1) - sample_place(field, 0))
+    furthest = distance_ahead(field)
     collective = _line_outweighs_field(field, memory, front, row, load, direction)
     # A backward force within the tolerance counts as equilibrium.
     slack = tolerance * WORK_OF_ADHESION * weight(geometry, np.min(place))
     residual, first_least, pairs, updates = np.inf, 0.0, 0, 0
     before = np.zeros(count)
+    lowest = resting_place(field, load, direction)
     while code == CONVERGED:
-        residual, least = drive_sites(geometry, front, load, direction, drive)
+        residual, least = drive_sites(geometry, front, load, direction, lowest, drive)
         if pairs == 0:
             first_least = least
         pairs += 1
@@ -104,30 +108,31 @@ def _run(place, load, direction, field, memory, tolerance, max_sweeps):
         if np.array_equal(front.place, before):
             return STILL, pairs, updates, residual
         before[:] = front.place
+        if count <= LONGEST:
+            # Sums over pairs of sites cost no more than transforms.
+            code, steps = relax_window(
+                window, field, memory, front, drive, np.argmin(drive), count, load, direction,
+                _EQUILIBRIUM * tolerance, furthest, slack, _ROUNDS,
+            )  # fmt: skip
+            updates += steps * count
+            continue
         calm = residual <= _CALM
         n_active = 0 if calm else _mark(geometry, front, drive, _LEVEL * residual, active)
         if calm or (collective and n_active > 0.3 * count):
             accuracy = 0.02 if calm else 0.1
             code, used = newton_step(
-                newton,
-                field,
-                memory,
-                front,
-                drive,
-                load,
-                direction,
-                furthest,
-                slack,
-                accuracy,
+                newton, field, memory, front, drive, load, direction, furthest, slack, accuracy
             )
             pairs += used
             updates += count
-        else:
-            code, used = _relax_active(
-                window, field, memory, front, drive, active, load, direction,
-                _LEVEL * residual, furthest, slack,
-            )  # fmt: skip
-            updates += used
+            if code != BLOCKED:
+                continue
+            _mark(geometry, front, drive, _LEVEL * residual, active)
+        code, used = _relax_active(
+            window, field, memory, front, drive, active, load, direction,
+            _LEVEL * residual, furthest, slack,
+        )  # fmt: skip
+        updates += used
     return code, pairs, updates, residual
 
 
@@ -138,7 +143,8 @@ def _is_round_off(place, field, drive, least):
     inner = front_products(np.nextafter(place, -np.inf), field)
     for i in range(place.size):
         backward = drive[i] < least * weight(field.geometry, place[i]) * WORK_OF_ADHESION
-        if backward and -drive[i] > 4 * abs(outer[i] - inner[i]):
+        # A site at rest at the lowest place is driven back without bound.
+        if backward and np.inf > -drive[i] > 4 * abs(outer[i] - inner[i]):
             return False
     return True
 

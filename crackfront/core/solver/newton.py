@@ -9,10 +9,20 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from crackfront.core.compiled import jit, kernel
-from crackfront.core.geometry.base import is_below_lowest, mode_stiffness, self_modes
-from crackfront.core.solver.forces import BLOCKED, CONVERGED, hardening, line_force, locate
+from crackfront.core.geometry.base import mode_stiffness, self_modes
+from crackfront.core.solver.forces import (
+    BLOCKED,
+    CONVERGED,
+    hardening,
+    line_force,
+    locate,
+    resting_place,
+)
 
 Array = NDArray[np.float64]
+
+_GROWTH = 8
+"""How many times as far as the furthest reach, or as its own force takes it, a site may go."""
 
 
 class Newton(NamedTuple):
@@ -150,13 +160,15 @@ def newton_step(newton, field, memory, front, drive, b, direction, furthest, sla
 
     The right-hand side is lowered by the tolerance of the linear solver and the step clipped at
     zero: an inexact step then still leaves every drive forward. Sites driven backward by more than
-    `slack` are held.
+    `slack` are held. Where a site would pass the lowest place nothing moves, and BLOCKED is told.
     """
     count, step, reach, ahead = drive.size, newton.step, newton.reach, newton.ahead
     place, segment, product = front.place, front.segment, front.product
     largest = np.max(drive)
+    own = mode_stiffness(field.geometry, 1) * self_modes(count)
     floor = largest / furthest
-    tolerance = min(accuracy * largest, 0.3 * max(np.mean(drive), 1e-6 * largest))
+    furthest = min(furthest, _GROWTH * max(np.max(reach), largest / own))
+    tolerance = min(accuracy * largest, 0.3 * max(np.mean(np.maximum(drive, 0.0)), 1e-6 * largest))
     right = np.maximum(drive, 0.0) - tolerance
     for i in range(count):
         newton.free[i] = drive[i] >= -slack
@@ -165,33 +177,34 @@ def newton_step(newton, field, memory, front, drive, b, direction, furthest, sla
             field, memory, i, place[i], product[i], segment[i], reach[i], b, direction
         )
     step[:] = 0.0
-    pairs, share, safe = 0, 1.0, False
+    pairs, share, safe, part = 0, 1.0, False, 1.0
     for _ in range(6):
         used, solved, share = _solve_softest(field.geometry, newton, right, floor, tolerance, share)
         pairs += used
         if not solved:
             break
-        safe, far = True, False
+        np.maximum(step, 0.0, step)
+        # A part of a safe step is safe.
+        part = min(1.0, furthest / max(np.max(step), 1e-9 * furthest))
+        safe = True
         for i in range(count):
-            step[i] = max(step[i], 0.0)
-            far = far or step[i] > furthest
-            if step[i] > reach[i]:
+            if part * step[i] > reach[i]:
                 safe = False
-                reach[i] = min(step[i], furthest)
+                reach[i] = part * step[i]
                 further = hardening(
                     field, memory, i, place[i], product[i], segment[i], reach[i], b, direction
                 )
                 ahead[i] = max(ahead[i], further)
         if safe:
             break
-        share = 0.0 if far else share
+    step *= part
     if not safe or np.max(step) == 0.0:
         _own_steps(newton, field, memory, front, drive, b, direction, furthest)
-    if direction < 0:
-        # All or none: the step of a site is safe only together with those of the others.
-        for i in range(count):
-            if is_below_lowest(field.geometry, place[i] - step[i], b):
-                return BLOCKED, pairs
+    # All or none: the step of a site is safe only together with those of the others.
+    lowest = resting_place(field, b, direction)
+    for i in range(count):
+        if step[i] > max(place[i] - lowest, 0.0):
+            return BLOCKED, pairs
     for i in range(count):
         moved = place[i] + direction * step[i]
         low, value = locate(field, memory, i, moved, segment[i], direction)

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core.compiled import jit, kernel
-from crackfront.core.geometry.base import is_below_lowest, restoring_force, weight
-from crackfront.core.solver.forces import BLOCKED, CONVERGED, hardening, locate
+from crackfront.core.geometry.base import restoring_force, weight
+from crackfront.core.solver.forces import CONVERGED, hardening, locate, resting_place
 from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -24,15 +24,21 @@ HALF_BAND = 7
 LONGEST = 256
 """Largest number of sites relaxed at once."""
 
+_DOMINANCE = 0.02
+"""By how much a pivot exceeds its row, relative to the stiffness of the line against one site."""
+
+_GROWTH = 8
+"""How many times as far as the furthest reach a site may go."""
+
 
 class Window(NamedTuple):
     """Work space of a window: one entry a site, and the coupling between sites.
 
     Attributes
     ----------
-    drive, reach, stiffness, step : (LONGEST + HALF_BAND,) array
+    drive, reach, stiffness, step, given : (LONGEST + HALF_BAND,) array
         Force along the motion, distance over which the stiffness holds, stiffness of the site's
-        own force, and the step.
+        own force, the step, and the step that is given to a site, negative for none.
     band : (LONGEST + HALF_BAND, HALF_BAND + 1) array
         Factors of the banded system.
     coupling : (2 LONGEST + 1,) array
@@ -43,6 +49,7 @@ class Window(NamedTuple):
     reach: Array
     stiffness: Array
     step: Array
+    given: Array
     band: Array
     coupling: Array
 
@@ -59,29 +66,37 @@ def make_window(row):
         np.zeros(size),
         np.zeros(size),
         np.zeros(size),
+        np.zeros(size),
         np.zeros((size, HALF_BAND + 1)),
         coupling,
     )
 
 
 @kernel
-def _solve_banded(window, count, slack, pull):
+def _solve_banded(window, count):
     """Step of (K + D) step = drive with K cut to a band, by Gaussian elimination, clipped at 0.
 
-    A site that is driven backward by more than `slack` is held: pushed back harder than its
-    neighbours can ever `pull`, by a stiffness against which its step vanishes in round-off.
+    D is raised where its softening would make a pivot no larger than the rest of its row. A site
+    whose step is given has a stiffness against which all others vanish in round-off.
     """
     band, step, drive, stiffness = window.band, window.step, window.drive, window.stiffness
     row = window.coupling[LONGEST : LONGEST + HALF_BAND + 1]
+    least, given = _DOMINANCE * row[0], 1e15 * row[0]
     for i in range(count):
         step[i] = max(drive[i], 0.0)
         for lag in range(HALF_BAND + 1):
             band[i, lag] = row[lag]
         band[i, 0] += stiffness[i]
-        if drive[i] < -slack:
-            step[i] = -pull
-            band[i, 0] = 1e15 * row[0]
+        if window.given[i] >= 0.0:
+            step[i] = given * window.given[i]
+            band[i, 0] = given
     for i in range(count):
+        rest = least
+        for lag in range(1, HALF_BAND + 1):
+            rest -= band[i, lag]
+        if band[i, 0] < rest:
+            stiffness[i] += rest - band[i, 0]
+            band[i, 0] = rest
         inverse = 1.0 / band[i, 0]
         for lag in range(1, HALF_BAND + 1):
             factor = band[i, lag] * inverse
@@ -94,66 +109,78 @@ def _solve_banded(window, count, slack, pull):
         value = step[i]
         for lag in range(1, HALF_BAND + 1):
             value -= band[i, lag] * step[i + lag]
-        step[i] = value * band[i, 0]
-    for i in range(count):
-        step[i] = max(step[i], 0.0)
+        step[i] = window.given[i] if window.given[i] >= 0.0 else max(value * band[i, 0], 0.0)
 
 
 @kernel
-def _choose_step(
-    window, field, memory, front, first, count, b, direction, largest, furthest, slack
-):
-    """Step that no stiffness underestimates.
+def _choose_step(window, field, memory, front, first, count, b, direction, furthest, lowest):
+    """Step of at most `furthest` that no stiffness underestimates, with no site below the lowest.
 
     Sites that would go beyond the reach of their stiffness get it anew for the longer way. It can
     only grow, so that the second step is shorter everywhere and needs no third.
     """
     place, segment, product = front.place, front.segment, front.product
     reach, stiffness, step = window.reach, window.stiffness, window.step
-    # With a stiffness of at least largest / furthest no site moves beyond `furthest`.
-    floor, pull = largest / furthest, window.coupling[LONGEST] * furthest
     i = first
     for j in range(count):
-        ahead = hardening(
+        stiffness[j] = hardening(
             field, memory, i, place[i], product[i], segment[i], reach[j], b, direction
         )
-        stiffness[j] = max(ahead, floor)
         i = i + 1 if i + 1 < place.size else 0
-    _solve_banded(window, count, slack, pull)
+    _solve_banded(window, count)
+    # A part of a safe step is safe.
+    part = min(1.0, furthest / np.max(step[:count]))
     short = False
     i = first
     for j in range(count):
-        if step[j] > reach[j]:
+        if part * step[j] > reach[j]:
             short = True
-            reach[j] = step[j]
+            reach[j] = part * step[j]
             ahead = hardening(
                 field, memory, i, place[i], product[i], segment[i], reach[j], b, direction
             )
             stiffness[j] = max(ahead, stiffness[j])
         i = i + 1 if i + 1 < place.size else 0
     if short:
-        _solve_banded(window, count, slack, pull)
+        _solve_banded(window, count)
+    if lowest > -np.inf:
+        _stop_at_lowest(window, front, first, count, lowest, part)
+    if part < 1.0:
+        for j in range(count):
+            step[j] *= part
 
 
 @kernel
-def _move(window, field, memory, front, first, count, b, direction):
+def _stop_at_lowest(window, front, first, count, lowest, part):
+    """Give the sites that would pass the lowest place steps by their own force, not beyond it."""
+    place, step = front.place, window.step
+    own, passing = window.coupling[LONGEST], False
+    for j in range(count):
+        rest = max(place[(first + j) % place.size] - lowest, 0.0)
+        if part * step[j] > rest:
+            passing = True
+            stiffness = own + max(window.stiffness[j], 0.0)
+            window.given[j] = min(max(window.drive[j], 0.0) / stiffness, rest)
+    if passing:
+        _solve_banded(window, count)
+
+
+@kernel
+def _move(window, field, memory, front, first, count, b, direction, lowest):
     """Take the step and bring the drive within the window up to date."""
     place, segment, product = front.place, front.segment, front.product
     drive, step, coupling = window.drive, window.step, window.coupling
     geometry = field.geometry
-    if direction < 0:
-        # All or none: the step of a site is safe only together with those of its neighbours.
-        for j in range(count):
-            if is_below_lowest(geometry, place[(first + j) % place.size] - step[j], b):
-                return BLOCKED
     i = first
     for j in range(count):
         moved = place[i] + direction * step[j]
+        resting = direction < 0 and moved <= lowest
+        moved = min(place[i], lowest) if resting else moved
         low, value = locate(field, memory, i, moved, segment[i], direction)
         if low < 0:
             return -low
         rise = restoring_force(geometry, moved, b) - restoring_force(geometry, place[i], b)
-        drive[j] += direction * (value - product[i] - rise)
+        drive[j] = -np.inf if resting else drive[j] + direction * (value - product[i] - rise)
         place[i], segment[i], product[i] = moved, low, value
         i = i + 1 if i + 1 < place.size else 0
     for j in range(count):
@@ -170,30 +197,33 @@ def relax_window(
     """Move `count` sites from `first` on until their drive falls below a level.
 
     At most `rounds` steps of at most `furthest` are taken; `drive` is that of the whole front.
-    Sites driven backward by more than `slack` are held. Returns a code and the number of steps.
+    Sites driven backward by more than `slack` are held, also those that rest at the lowest place.
+    Returns a code and the number of steps.
     """
     place, local, reach, step = front.place, window.drive, window.reach, window.step
-    own = window.coupling[LONGEST]
+    own, lowest = window.coupling[LONGEST], resting_place(field, b, direction)
     for j in range(count):
         local[j] = drive[(first + j) % place.size]
         reach[j] = 4 * max(local[j], 0.0) / own
     steps = 0
     while steps < rounds:
-        largest, calm = 0.0, True
+        far, calm = 0.0, True
         i = first
         for j in range(count):
-            largest = max(largest, local[j])
             bound = level * weight(field.geometry, place[i]) * WORK_OF_ADHESION
             calm = calm and local[j] <= bound
-            reach[j] = min(max(reach[j], 1e-9 * furthest), furthest)
+            far = max(far, reach[j])
+            window.given[j] = 0.0 if local[j] < -slack else -1.0
             i = i + 1 if i + 1 < place.size else 0
         if calm:
             break
-        _choose_step(
-            window, field, memory, front, first, count, b, direction, largest, furthest, slack
-        )
+        # A stiffness for a way that is much too long is much too large.
+        far = min(_GROWTH * far, furthest)
+        for j in range(count):
+            reach[j] = min(max(reach[j], 1e-9 * far), far)
+        _choose_step(window, field, memory, front, first, count, b, direction, far, lowest)
         steps += 1
-        code = _move(window, field, memory, front, first, count, b, direction)
+        code = _move(window, field, memory, front, first, count, b, direction, lowest)
         if code != CONVERGED:
             return code, steps
         for j in range(count):
