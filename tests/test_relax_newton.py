@@ -239,7 +239,7 @@ def small_scene(seed):
         noise = gaussian_filter(noise, patch, mode=("nearest", "wrap"))
     field = polar_field(radii, (1 + amplitude * noise / noise.std()) / np.pi)
     top, step = rng.uniform(0.1, 1.0), rng.choice([0.02, 0.1, 0.25, 0.5, 1.0])
-    up, down = np.arange(0, top, step), np.arange(top, -6, -step)
+    up, down = [*np.arange(0, top, step), top], np.arange(top - step, -6, -step)
     return field, inner, [(b, 1) for b in up] + [(b, -1) for b in down]
 
 
