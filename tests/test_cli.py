@@ -16,7 +16,7 @@ from click.testing import CliRunner
 import crackfront as cf
 from crackfront import __version__
 from crackfront.cli import main
-from crackfront.cli.sweep import TRY_AGAIN
+from crackfront.cli.report import StoppedError
 from crackfront.core import jkr
 from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
@@ -480,7 +480,7 @@ def test_the_examples_of_the_help_name_options_that_exist(name, line):
 
 def test_the_exit_codes_of_the_help_are_those_of_the_commands():
     text = run("--help").output
-    for code in (0, 1, 2, TRY_AGAIN):
+    for code in (0, 1, 2, StoppedError.exit_code):
         assert re.search(rf"^ +{code} +\w", text, re.MULTILINE)
 
 

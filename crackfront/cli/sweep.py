@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, as_json, echo_json, examples
+from crackfront.cli.report import (
+    FILE,
+    StoppedError,
+    announce_compilation,
+    as_json,
+    echo_json,
+    examples,
+)
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
@@ -19,9 +26,6 @@ if TYPE_CHECKING:
     from crackfront.sweep.store import Store
     from crackfront.sweep.sweep import NamedSpectrum, Sweep
     from crackfront.sweep.tasks import Finished
-
-TRY_AGAIN = 75
-"""Exit code of a command that was told to end before it was done (EX_TEMPFAIL of sysexits.h)."""
 
 configuration_argument = click.argument("configuration", type=FILE)
 output_option = click.option(
@@ -185,8 +189,8 @@ def simulate(
 ) -> None:
     """Run the simulations of a sweep that are not stored yet.
 
-    SIGTERM is taken as notice: running simulations are kept as far as they are, and the exit code
-    is 75. The same command then goes on from there.
+    Ctrl-C and SIGTERM are taken as notice: running simulations are kept as far as they are, and
+    the exit code is 75. The same command then goes on from there.
     """
     from crackfront.sweep import parallel
 
@@ -228,6 +232,8 @@ def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path
 
     folder.mkdir(parents=True, exist_ok=True)
     code = parallel.launch_ranks(arguments, ranks, launcher, folder)
+    if code == StoppedError.exit_code:
+        sys.exit(code)  # the manager has told it
     if code != 0:
         click.echo(
             f"Error: the ranks ended with exit code {code}; finished simulations are stored, and "
@@ -258,12 +264,10 @@ def _fill(
                     "command continues with the others"
                 )
             if finished.status == STOPPED:
-                click.echo(
-                    f"Stopped as told: {count} of {len(missing)} simulations were stored and the "
-                    "running ones kept; the same command continues with the others",
-                    err=True,
+                raise StoppedError(
+                    f"{count} of {len(missing)} simulations were stored and the running ones "
+                    "kept; the same command continues with the others"
                 )
-                sys.exit(TRY_AGAIN)
     if missing:
         click.echo(f"{len(missing)} simulations in {time.monotonic() - started:.1f} s")
 

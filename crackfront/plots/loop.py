@@ -161,11 +161,7 @@ def draw_loop(
 
 
 def pinning_figure(
-    states: LineStates,
-    n_period: int | None = None,
-    *,
-    elastic_energy: float | None = None,
-    title: str = "",
+    states: LineStates, n_period: int, *, elastic_energy: float, title: str = ""
 ) -> Figure:
     """Pinning force of a straight front against its load, on a figure one column wide.
 
