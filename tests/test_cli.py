@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shlex
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -307,7 +308,9 @@ def test_the_status_counts_what_is_done_failed_running_and_waiting(tmp_path):
     journal.append(Entry(flat[1].key, flat[1].label, flat[1].parts))
     result = run("status", tmp_path)
     assert result.exit_code == 0, result.output
-    [_, first, second, sentence] = result.output.splitlines()
+    [_, first, second, process, sentence] = result.output.splitlines()
+    who = f"process {os.getpid()} on {socket.gethostname()}: {flat[1].label}, last sign of life "
+    assert process.startswith(who)
     assert first.split()[:5] == ["flat", "0", "1", "1", "2"]
     assert float(first.split()[5]) > 0
     assert second.split() == ["rough", "4", "0", "0", "0", "0"]
