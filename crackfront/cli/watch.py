@@ -126,7 +126,7 @@ class Progress:
         if count == known or left <= 0:
             return line
         seconds = (time.monotonic() - begun) * left / (count - known)
-        return f"{line}; about {_duration(seconds)} left"
+        return f"{line}; about {duration(seconds)} left"
 
     def _show(self, recorder: Recorder) -> None:
         """Replace the last line."""
@@ -178,7 +178,7 @@ class Watch(Progress):
         """A frame ends with a line of its own."""
 
 
-def _duration(seconds: float) -> str:
+def duration(seconds: float) -> str:
     """A time in the unit that a person would take."""
     for unit, size in (("h", 3600.0), ("min", 60.0)):
         if seconds >= 1.5 * size:

@@ -107,6 +107,9 @@ class Journal:
             self._held.close()
             self._held = None
 
+    def __del__(self) -> None:
+        self.let_go()
+
     def beat(self) -> None:
         """Show that this process lives."""
         os.utime(self._path)
@@ -133,10 +136,10 @@ class Running:
     silent_seconds: float
 
 
-SECONDS_TO_LIVE = 120.0
+_SECONDS_TO_LIVE = 120.0
 """Age of a journal, against the newest, from which its process has ended where no lock tells."""
 
-SECONDS_OF_CLOCKS = 600.0
+_SECONDS_OF_CLOCKS = 600.0
 """Age of the newest journal by this machine's clock from which no such process lives any more."""
 
 
@@ -148,7 +151,7 @@ def running(folder: Path) -> list[Running]:
     for path, moment in moments.items():
         alive = _is_alive(path)
         if alive is None:
-            alive = newest - moment < SECONDS_TO_LIVE and now - newest <= SECONDS_OF_CLOCKS
+            alive = newest - moment < _SECONDS_TO_LIVE and now - newest <= _SECONDS_OF_CLOCKS
         entries = [entry for _, entry in read_journal(path, "")] if alive else []
         if entries and not entries[-1].definition:
             host, process, _ = path.stem.rsplit("-", 2)

@@ -72,7 +72,7 @@ def sweep(
     ):
         for simulation, finished in fill(store, missing, origin):
             if finished.status == STOPPED:
-                raise KeyboardInterrupt("what ran is kept in the store; the same call goes on")
+                raise KeyboardInterrupt("what ran is kept; the same call goes on")
             if finished.status == NOT_STORED:
                 raise OSError(f"{simulation.label}: {finished.sentence}")
             bar.update()
