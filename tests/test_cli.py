@@ -630,6 +630,7 @@ def test_a_field_of_heights_that_jump_at_the_edge_is_refused(rough_surface, tmp_
     assert "the tile is not periodic. Level the map and mirror or window it" in result.stderr
 
 
+@pytest.mark.usefixtures("_heeded_signals")
 @pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
     rough_surface, tmp_path, monkeypatch, signal_number
@@ -666,6 +667,7 @@ def test_what_another_cycle_kept_is_told_and_left_alone(rough_surface, tmp_path)
     assert "out.checkpoint.nc is of another cycle, which begins anew" in result.stderr
 
 
+@pytest.mark.usefixtures("_heeded_signals")
 @pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM])
 def test_any_command_that_is_told_to_end_says_so_with_the_same_exit_code(
     monkeypatch, signal_number

@@ -177,6 +177,7 @@ def test_two_controllers_at_the_same_shard_do_no_harm(configuration, same, tmp_p
     assert same(tmp_path)
 
 
+@pytest.mark.usefixtures("_heeded_signals")
 @pytest.mark.parametrize(
     ("ranks", "told"),
     [

@@ -129,7 +129,7 @@ def draw_straight_fronts(
             axes.plot(front, y, color=colour, linewidth=0.7, label=name)
     axes.set_xlabel("$x$, along the motion (unit of the tile)")
     axes.set_ylabel("$y$, along the front (unit of the tile)")
-    axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
 
 
 def _few(fronts: Array, most: int) -> Array:

@@ -227,7 +227,8 @@ def draw_pinning(
     axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.45 * (high - low))
-    axes.set_xlabel("load $X$, place of the springs (reduced length)")
+    unit = "unit of the tile" if n_period is None else "reduced length"
+    axes.set_xlabel(f"load $X$, place of the springs ({unit})")
     axes.set_ylabel(r"pinning force / $w_\mathrm{int}$")
     axes.legend(loc="upper left")
 

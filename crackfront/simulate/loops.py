@@ -83,7 +83,7 @@ def run_loop(
     error : float, optional
         Standard error of the factor k of either branch that the numerics may leave; measured
         laws choose sites, samples and tolerance. They need the attributes `short_cutoff`,
-        `roll_off` and `hurst` of the surface, as :func:`random_surface` sets them. Without these
+        `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them. Without these
         the front has a site a pixel or more, and two samples a pixel along a ray.
     solver : {"newton", "reference"}, optional
         Solver; both find the same fronts.
@@ -148,10 +148,12 @@ def loop_dataset(
 
     Parameters
     ----------
-    record, geometry, sites
-        As of :func:`crackfront.simulate.files.cycle_dataset`.
+    record : CycleRecord
+        The states of a cycle.
     measures : TileMeasures, optional
         What the tile tells; without it the curves stand alone.
+    geometry, sites
+        As of :func:`crackfront.simulate.files.cycle_dataset`.
     simulation : Simulation, optional
         Whose numerical errors are known.
     """
