@@ -209,7 +209,7 @@ BAD = {
         "unknown key numerics.tile.sides; the keys here are roll_offs, cutoffs",
     ),
     "missing key": (("seed: 1\n", ""), "key seed is missing; add it"),
-    "key twice": (("seed: 1", "seed: 1\nseed: 2"), "is no valid YAML in line 2: key 'seed' stands"),
+    "key twice": (("seed: 1", "seed: 1\nseed: 2"), "is no valid YAML in line 3: key 'seed' stands"),
     "hurst above one": (
         ("hurst: 0.8", "hurst: 1.2"),
         "spectra[1].hurst is 1.2; it must be less than or equal to 1",
