@@ -10,8 +10,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, as_json, echo_json, examples
+from crackfront.cli.report import (
+    FILE,
+    Number,
+    announce_compilation,
+    announce_cost,
+    as_json,
+    echo_json,
+    examples,
+    whole,
+)
 from crackfront.cli.watch import Watch, state_line
+from crackfront.data.bounds import COUNT, DENSITY, TOLERANCE, Range
 from crackfront.simulate.cases import CASES, Resolution
 
 if TYPE_CHECKING:
@@ -23,16 +33,18 @@ def _case_options(command: Callable[..., None]) -> Callable[..., None]:
     """Give a command the options of all cases."""
     known: dict[str, list[str]] = {}
     texts: dict[str, str] = {}
+    bounds: dict[str, Range] = {}
     for name, case in CASES.items():
         for item in fields(case):
             flag = _flag(item)
             known.setdefault(flag, []).append(name)
             texts.setdefault(flag, item.metadata["text"])
+            bounds.setdefault(flag, item.metadata["bounds"])
     for flag, names in reversed(known.items()):
         owner = "" if len(names) == len(CASES) else f"({', '.join(names)}) "
-        command = click.option(flag, _parameter(flag), type=float, help=owner + texts[flag])(
-            command
-        )
+        command = click.option(
+            flag, _parameter(flag), type=Number(bounds[flag]), help=owner + texts[flag]
+        )(command)
     return command
 
 
@@ -66,7 +78,7 @@ def _parameter(flag: str) -> str:
 @_case_options
 @click.option(
     "--tolerance",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Number(TOLERANCE),
     default=1e-8,
     show_default=True,
     help="Force that may be left, relative to w_int per front length.",
@@ -79,7 +91,7 @@ def _parameter(flag: str) -> str:
 )
 @click.option(
     "--max-sweeps",
-    type=click.IntRange(min=1),
+    type=whole(COUNT),
     default=10_000_000,
     show_default=True,
     help="Limit on the sweeps of one load step.",
@@ -92,12 +104,12 @@ def _parameter(flag: str) -> str:
 )
 @click.option(
     "--angles",
-    type=click.IntRange(min=4),
+    type=whole(Range(4, COUNT.most)),
     help="Sites of the front on a tile.  [default: one or more a pixel on the largest circle]",
 )
 @click.option(
     "--samples-per-pixel",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Number(DENSITY),
     help="Samples along a ray on a tile, per pixel.  [default: 2, or 4 where linear]",
 )
 @click.option(
@@ -161,6 +173,7 @@ def cycle(
             "mean_radius; leave it out"
         )
     announce_compilation(err=as_json)
+    announce_cost(problem.seconds)
     shown = Watch(getattr(case, "max_penetration", None)) if watch else None
     recorder = Recorder(
         fronts="fronts" in record,

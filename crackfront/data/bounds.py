@@ -49,6 +49,14 @@ MOST_SECONDS = 1e3 * 365.25 * 86400
 """Processor time of a command: a thousand years."""
 
 
+TOLERANCE = Range(1e-16, 1.0)
+"""Force that may be left, relative to w_int per front length."""
+
+
+class TooLargeError(ValueError):
+    """What needs more memory or time than there is."""
+
+
 def refuse_outside(what: str, value: float, bounds: Range, unit: str = "") -> None:
     """Raise if a number is not within its bounds.
 
@@ -71,15 +79,13 @@ def refuse_outside(what: str, value: float, bounds: Range, unit: str = "") -> No
         )
 
 
-def refuse_beyond_memory(
-    what: str, needed: float, remedy: str, *, anywhere: bool = False
-) -> None:
+def refuse_beyond_memory(what: str, needed: float, remedy: str, *, anywhere: bool = False) -> None:
     """Raise if something needs more memory than there is for this process.
 
     Parameters
     ----------
     what : str
-        What needs it, plural.
+        What needs it.
     needed : float
         How much. (Units: bytes)
     remedy : str
@@ -89,26 +95,25 @@ def refuse_beyond_memory(
 
     Raises
     ------
-    ValueError
+    TooLargeError
         That tells what is needed and what is at hand.
     """
     at_hand = memory_at_hand()
     if needed > (max(at_hand, MOST_MEMORY) if anywhere else at_hand):
-        raise ValueError(
-            f"{what} need {in_bytes(needed)} of memory; here are {in_bytes(at_hand)}: {remedy}"
+        raise TooLargeError(
+            f"{what} would need {in_bytes(needed)} of memory; here are {in_bytes(at_hand)}: "
+            f"{remedy}"
         )
 
 
 def refuse_beyond_time(what: str, seconds: float, remedy: str) -> None:
     """Raise if something takes more than :data:`MOST_SECONDS` of processor time."""
     if not seconds <= MOST_SECONDS:
-        raise ValueError(
-            f"{what} would take {in_time(seconds)} of processor time; {remedy}"
-        )
+        raise TooLargeError(f"{what} would take {in_time(seconds)} of processor time; {remedy}")
 
 
 def memory_at_hand() -> float:
-    """Memory that this process may have: of the machine, its group, its own limit (Units: bytes)."""
+    """Memory that this process may have, of the machine, its group and its own limit, in bytes."""
     limits = [float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES"), *_group_limits()]
     own, _ = resource.getrlimit(resource.RLIMIT_AS)
     if own != resource.RLIM_INFINITY:

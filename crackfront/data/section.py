@@ -15,6 +15,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from crackfront.data.bounds import COUNT, DENSITY, NUMBER, SEED, Range, regular_file
 
+
 def refusal(message: str) -> PydanticCustomError:
     """A refusal that keeps its own sentence."""
     return PydanticCustomError("section", "{message}", {"message": message})
@@ -104,7 +105,8 @@ class _Loader(yaml.SafeLoader):
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
         """Node with all that stands in it; what an anchor stands for counts at every place."""
-        event, before = self.peek_event(), self._count
+        event: yaml.Event = self.peek_event()  # type: ignore[no-untyped-call]
+        before = self._count
         if self._depth > _DEEPEST:
             raise self._refusal(f"more than {_DEEPEST} lists and mappings are nested", event)
         self._depth += 1
@@ -118,7 +120,9 @@ class _Loader(yaml.SafeLoader):
         else:
             self._count += self._sizes[id(node)]
         if self._count > _MOST_NODES:
-            raise self._refusal(f"with what its anchors repeat it has over {_MOST_NODES} values", event)
+            raise self._refusal(
+                f"with what its anchors repeat it has over {_MOST_NODES} values", event
+            )
         return node
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
@@ -132,8 +136,8 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
     @staticmethod
-    def _refusal(problem: str, place: yaml.Node | yaml.Event) -> yaml.MarkedYAMLError:
-        """A refusal at a place of the file."""
+    def _refusal(problem: str, place: Any) -> yaml.MarkedYAMLError:
+        """A refusal at a node or an event."""
         return yaml.MarkedYAMLError(problem=problem, problem_mark=place.start_mark)
 
 
@@ -159,11 +163,14 @@ def content_of(path: Path) -> dict[str, Any]:
     """
     try:
         text = regular_file(path, _MOST_BYTES).read_text(encoding="utf-8")
-        content = yaml.load(text, Loader=_Loader)
     except OSError as error:
         raise ConfigurationError(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise ConfigurationError(f"{path} is no UTF-8 text; save it as UTF-8") from error
+    except ValueError as error:
+        raise ConfigurationError(str(error)) from error
+    try:
+        content = yaml.load(text, Loader=_Loader)
     except yaml.MarkedYAMLError as error:
         line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise ConfigurationError(f"{path} is no valid YAML{line}: {error.problem}") from error

@@ -76,7 +76,7 @@ class Features:
         States that it is expected to find.
     """
 
-    n_angle: int
+    n_angle: float
     n_point: float
     elastic_energy: float
     tolerance: float
@@ -131,6 +131,37 @@ def featured_cost(item: Features, *, fronts: bool) -> Cost:
     )
 
 
+def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_sample: float) -> float:
+    """Processor time that a cycle on a given field is expected to take, roughly.
+
+    Parameters
+    ----------
+    n_angle : float
+        Sites of the front.
+    n_point : float
+        Points of the field.
+    n_state : float
+        Load steps.
+    n_sample : float
+        Samples that each site passes.
+
+    Raises
+    ------
+    TooLargeError
+        If time or memory are more than there is.
+    """
+    usual = Features(n_angle, math.sqrt(n_point), _USUAL, 1e-8, 1.0, 1.0, True, n_state)
+    cost = featured_cost(usual, fronts=False)
+    cost = replace(cost, seconds=cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample)
+    told = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
+    refuse_unaffordable(cost, f"{told} {n_sample:.3g} samples a ray", "take fewer, or larger steps")
+    return cost.seconds
+
+
+_USUAL, _SAMPLE_SECONDS = 0.05, 1e-7
+"""e_el where it is not known (Units: w_int); time of one sample. (Units: s)"""
+
+
 def refuse_unaffordable(cost: Cost, what: str, remedy: str, processes: int = 1) -> None:
     """Raise if what is about to be run needs more memory or time than there is.
 
@@ -139,7 +170,7 @@ def refuse_unaffordable(cost: Cost, what: str, remedy: str, processes: int = 1) 
     cost : Cost
         Expected cost of each process.
     what : str
-        What is run, plural.
+        What is run.
     remedy : str
         What to do.
     processes : int, optional

@@ -22,13 +22,10 @@ from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.data.bounds import (
-    LENGTH,
-    PENETRATION,
     SI,
     Range,
     refuse_beyond_memory,
     refuse_beyond_time,
-    refuse_outside,
 )
 from crackfront.data.section import (
     ConfigurationError,
@@ -454,9 +451,7 @@ def _refuse_endless(sweep: Sweep) -> None:
             refuse_oversized(item.spectrum, sweep.numerics, knobs, deepest)
             cost = expected_cost(sweep.simulation(item, energy, 0))
             coarser = "ask for fewer, coarser or larger load steps, or for smaller tiles"
-            refuse_beyond_memory(
-                f"simulations of {item.name}", cost.memory, coarser, anywhere=True
-            )
+            refuse_beyond_memory(f"simulations of {item.name}", cost.memory, coarser, anywhere=True)
             seconds += sweep.n_realisation * cost.seconds
     refuse_beyond_time("the simulations", seconds, coarser)
 
