@@ -102,7 +102,7 @@ def fault(case):
             return f"exit code {result.exit_code}"
         if result.exit_code and not result.stderr.strip():
             return f"silent: exit code {result.exit_code} without a sentence"
-        if len(result.output) > 20_000:
+        if len(result.output) > 30_000:
             return f"flood: {len(result.output)} characters: {result.output[:200]}"
         return case.wrong(result.stdout) if result.exit_code == 0 else ""
     except Told:

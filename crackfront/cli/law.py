@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.report import Number, as_json, echo_json, examples
-from crackfront.data.bounds import LENGTH, Range, refuse_outside
+from crackfront.cli.report import as_json, echo_json, examples
+from crackfront.data.bounds import LENGTH, refuse_outside
 
 if TYPE_CHECKING:
     from crackfront.core.adhesion import FieldKind
     from crackfront.core.spectrum import SelfAffineSpectrum
 
-_DISORDER, _SIZE = Range(1e-6, 1e3), Range(1e-9, math.inf)
 _FRONT, _SPHERE = ("--w-rms", "--g"), ("--spectrum", "--elastic-energy", "--contact-radius")
 
 
@@ -24,20 +23,16 @@ _FRONT, _SPHERE = ("--w-rms", "--g"), ("--spectrum", "--elastic-energy", "--cont
         "crackfront law --spectrum 0.005,0.1,0.3 --elastic-energy 0.05 --contact-radius 1.9 --json",
     )
 )
+@click.option("--w-rms", type=float, help="Front: rms of the local work of adhesion, in w_int.")
 @click.option(
-    "--w-rms", type=Number(_DISORDER), help="Front: rms of the local work of adhesion, in w_int."
-)
-@click.option(
-    "--g", type=Number(_SIZE), help="Front: length of its springs over the Larkin length, or inf."
+    "--g", type=float, help="Front: length of its springs over the Larkin length, or inf."
 )
 @click.option(
     "--spectrum",
     help="Sphere: short cutoff, roll-off and Hurst exponent, as in 0.005,0.1,0.3; reduced lengths.",
 )
-@click.option("--elastic-energy", type=Number(_DISORDER), help="Sphere: e_el, in w_int.")
-@click.option(
-    "--contact-radius", type=Number(LENGTH), help="Sphere: radius of the contact, reduced."
-)
+@click.option("--elastic-energy", type=float, help="Sphere: e_el, in w_int.")
+@click.option("--contact-radius", type=float, help="Sphere: radius of the contact, reduced.")
 @click.option(
     "--field",
     type=click.Choice(["roughness", "chemical"]),
