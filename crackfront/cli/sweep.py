@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -63,8 +63,7 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
     """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
     sweep, store = sweep_and_store(configuration, output)
     shards = sweep.shards(block)
-    shapes = {item: sweep.shard(item) for item in sweep.spectra}
-    inventory = store.inventory([one for simulations in shapes.values() for one in simulations])
+    inventory = store.inventory(sweep.simulations())
     if as_json:
         echo_json(
             {
@@ -81,10 +80,13 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         return
     click.echo("spectrum          lambda_s  lambda_r     H         angles         points    stored")
     rows = []
-    for item, simulations in shapes.items():
-        missing = [one for one in inventory.missing if one.spectrum_name == item.name]
-        stored = len(simulations) - len(missing)
-        click.echo(f"{_sizes(item, simulations)}  {stored:5}/{len(simulations)}")
+    left = defaultdict(list)
+    for one in inventory.missing:
+        left[one.spectrum_name].append(one)
+    for item in sweep.spectra:
+        missing, total = left[item.name], sweep.n_simulation // len(sweep.spectra)
+        examples = [sweep.simulation(item, energy, 0) for energy in sweep.elastic_energies]
+        click.echo(f"{_sizes(item, examples)}  {total - len(missing):5}/{total}")
         rows.append(_row(item.name, sum(shard.item is item for shard in shards), missing))
     if sentence := inventory.stale_sentence():
         click.echo(sentence)
