@@ -9,7 +9,6 @@ import os
 import resource
 import shlex
 import signal
-import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -84,11 +83,13 @@ def fault(case):
     def ring(number, frame):
         raise TooLong
 
-    before = signal.signal(signal.SIGALRM, ring)
+    before = {bell: signal.signal(bell, ring) for bell in (signal.SIGALRM, signal.SIGPROF)}
     limits = resource.getrlimit(resource.RLIMIT_AS)
     used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (used + BYTES, limits[1]))
-    signal.alarm(SECONDS)
+    # Processor time, and much more of the clock's: a machine may be busy with other things.
+    signal.setitimer(signal.ITIMER_PROF, SECONDS)
+    signal.alarm(6 * SECONDS)
     try:
         with ExitStack() as stack:
             for module in ("cycle", "sweep"):
@@ -111,7 +112,9 @@ def fault(case):
         return "hang"
     finally:
         signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        for bell, handler in before.items():
+            signal.signal(bell, handler)
         resource.setrlimit(resource.RLIMIT_AS, limits)
 
 
@@ -460,7 +463,7 @@ def good_commands(folder):
         coords={"radius": 0.1 * np.arange(1, 31)},
     ).to_netcdf(rays)
     scan = folder / "scan.npy"
-    np.save(scan, 1e-8 * np.random.default_rng(1).standard_normal((48, 48)))
+    np.save(scan, 1e-8 * np.random.default_rng(1).standard_normal((36, 36)))
     sweep = folder / "sweep.yaml"
     sweep.write_text(yaml.safe_dump(good_configuration(np.random.default_rng(3))))
     output, store = folder / "out.nc", folder / "store"
@@ -522,7 +525,7 @@ def finite(content):
     return not isinstance(content, float) or math.isfinite(content)
 
 
-N_POINT = 48
+N_POINT = 36
 
 
 def written_scan(rng, heights, path):
@@ -592,11 +595,7 @@ def faults(kind, numbers, folder):
     """Faults of the cases of some numbers."""
     found = {}
     for number in numbers:
-        began = time.monotonic()
-        told = fault(numbered_case(kind, number, folder / f"{kind}-{number}"))
-        if not told and time.monotonic() - began > SECONDS:
-            told = "hang"
-        if told:
+        if told := fault(numbered_case(kind, number, folder / f"{kind}-{number}")):
             found[number] = told
     return found
 

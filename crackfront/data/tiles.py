@@ -56,13 +56,14 @@ def _spacing(values: xr.DataArray, name: str) -> float:
     return mean
 
 
-def refuse_extreme(name: str, values: Array) -> None:
+def refuse_extreme(name: str, values: Array, unit: float = 1.0) -> None:
     """Raise if a value is finite, but so large that no surface has it; NaN is left to others."""
-    beyond = np.isfinite(values) & ~((values >= ADHESION.least) & (values <= ADHESION.most))
+    beyond = (values < ADHESION.least * unit) | (values > ADHESION.most * unit)
+    beyond &= np.isfinite(values)
     if np.any(beyond):
         place = tuple(map(int, np.unravel_index(np.argmax(beyond), beyond.shape)))
         bounds = f"{ADHESION.least:g} and {ADHESION.most:g}"
         raise ValueError(
-            f"{name} is {values[place]:g} at index {', '.join(map(str, place))} "
+            f"{name} is {float(values[place]) / unit:g} at index {', '.join(map(str, place))} "
             f"({np.count_nonzero(beyond)} such values); it must lie between {bounds}"
         )

@@ -124,7 +124,7 @@ def _refuse_other_units(path: Path, values: xr.DataArray) -> None:
 def _refuse_extreme(path: Path, samples: Array) -> None:
     """Raise if a sample is larger than any work of adhesion."""
     try:
-        refuse_extreme(f"{NAME} / w_int", samples / WORK_OF_ADHESION)
+        refuse_extreme(f"{NAME} / w_int", samples, WORK_OF_ADHESION)
     except ValueError as error:
         raise UnreadableFileError(f"{path}: {error}") from error
 
