@@ -81,7 +81,7 @@ def test_a_limit_of_the_process_is_what_is_at_hand():
 def test_a_thousand_years_are_refused_and_half_of_them_are_not():
     refuse_beyond_time("it", MOST_SECONDS / 2, "no")
     for seconds in (2 * MOST_SECONDS, math.inf, math.nan):
-        with pytest.raises(TooLargeError, match="it would take .* of processor time; no"):
+        with pytest.raises(TooLargeError, match=r"it would take .* of processor time; no"):
             refuse_beyond_time("it", seconds, "no")
 
 
@@ -146,7 +146,10 @@ def tile(tmp_path):
         ({"--tolerance": "inf"}, "'--tolerance': inf is not in the range"),
         ({"--tolerance": "nan"}, "'--tolerance': nan is no number"),
         ({"--step": 1e-300}, "'--step': 1e-300 is not in the range"),
-        ({"--step": 1e-15}, "load steps with 45 sites and"),
+        (
+            {"--step": 1e-15},
+            "load steps with 44.8 sites and 57.1 samples a ray would need 2.91 EB of",
+        ),
         ({"--angles": 10**11}, "would need 51.2 TB of memory; here are"),
         ({"--samples-per-pixel": 1e5}, "'--samples-per-pixel': 100000.0 is not in the range"),
         ({"--max-penetration": 1e308}, "'--max-penetration': 1e+308 is not in the range"),
@@ -178,15 +181,15 @@ def test_many_sites_are_announced_with_their_price(tile, tmp_path, monkeypatch):
         told.append(seconds)
         raise ValueError("enough")
 
-    monkeypatch.setattr("crackfront.cli.cycle.announce_cost", announced)
+    monkeypatch.setattr(sys.modules["crackfront.cli.cycle"], "announce_cost", announced)
     given = ("--max-penetration", 1, "--step", 0.25, "--angles", 10**6)
     assert "enough" in refused(*("cycle", "--field", tile, *given, "--output", tmp_path / "out.nc"))
     assert 3600 < told[0] < MOST_SECONDS
 
 
-@pytest.mark.parametrize("text", ["1e308MPa", "1e-300Pa", "1e16Pa"])
+@pytest.mark.parametrize("text", ["1e300MPa", "1e-300Pa", "1e16Pa"])
 def test_a_modulus_that_nothing_has_is_refused(text):
-    with pytest.raises(ValueError, match="modulus is .* Pa; it must lie between 0.001 and 1e"):
+    with pytest.raises(ValueError, match=r"modulus is .* Pa; it must lie between 0.001 and 1e"):
         si_value(text, "Pa", what="modulus")
 
 
