@@ -28,6 +28,9 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL
 
 SEED = 20261122
+ANSWERS = (0, 3)
+"""Exit codes of a command that has an answer, without or with reservations."""
+
 SECONDS, BYTES = 20, 4 * 10**9
 """Time and memory after which a case hangs or takes too much."""
 
@@ -99,13 +102,13 @@ def fault(case):
             result = CliRunner().invoke(main, case.arguments)
         if result.exception is not None and not isinstance(result.exception, SystemExit):
             return f"traceback: {type(result.exception).__name__}: {result.exception}"[:300]
-        if result.exit_code not in (0, 1, 2):
+        if result.exit_code not in range(5):
             return f"exit code {result.exit_code}"
-        if result.exit_code and not result.stderr.strip():
+        if result.exit_code in (1, 2) and not result.stderr.strip():
             return f"silent: exit code {result.exit_code} without a sentence"
         if len(result.output) > 30_000:
             return f"flood: {len(result.output)} characters: {result.output[:200]}"
-        return case.wrong(result.stdout) if result.exit_code == 0 else ""
+        return case.wrong(result.stdout) if result.exit_code in ANSWERS else ""
     except Told:
         return ""
     except TooLong:
