@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
-_PLACE = Range(-NUMBER.most, NUMBER.most)
+_PLACE, _DEPTH = (Range(-bounds.most, bounds.most) for bounds in (NUMBER, PENETRATION))
+"""What is refused by the parser; why a negative step or penetration is none, its user says."""
 
 
 def option(text: str, bounds: Range, *, flag: str | None = None, default: Any = MISSING) -> Any:
@@ -74,10 +75,10 @@ class SphereCase:
 
     ends_by: ClassVar[str] = "LOST_CONTACT"
 
-    max_penetration: float = option("Largest penetration.", PENETRATION)
+    max_penetration: float = option("Largest penetration.", _DEPTH)
     step: float | None = option(
         "Difference of loads.  [default on a sphere: 0.004, dissipated energies to 1%]",
-        NUMBER,
+        _PLACE,
         default=None,
     )
 
@@ -134,7 +135,7 @@ class LineCase:
     spring: float = option("Length of the springs, w_int / kappa, in the unit of the tile.", NUMBER)
     first: float = option("First load, and the last.", _PLACE, flag="--from")
     last: float = option("Load at which the motion turns.", _PLACE, flag="--to")
-    step: float | None = option("Difference of loads.", NUMBER)
+    step: float | None = option("Difference of loads.", _PLACE)
 
     def problem(self, read: Callable[[], AdhesionMap | PolarSamples], asked: Resolution) -> Problem:
         """Field on the points of a tile, one site for every y unless asked for otherwise."""
