@@ -147,7 +147,7 @@ def read_dataset(
         raise
     except (OSError, RuntimeError, ValueError) as error:
         raise UnreadableFileError(
-            f"{path} is no complete netCDF file; remove it or write it again"
+            f"{path} is no complete netCDF file; write it again, or name another"
         ) from error
 
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from crackfront.core.cycle.follow import Load
     from crackfront.core.field.fields import Field, Interpolation
     from crackfront.simulate.fields import PolarSamples
+    from crackfront.simulate.tiles import TileMeasures
 
     Array = NDArray[np.float64]
 
@@ -48,16 +49,29 @@ def option(text: str, bounds: Range, *, flag: str | None = None, default: Any = 
 
 
 class Problem(NamedTuple):
-    """What a cycle is run on, and the time that it is expected to take.
+    """What a cycle is run on.
 
-    The `sites` are coordinates that are not those of the geometry.
+    Attributes
+    ----------
+    field, front, loads
+        As of :func:`crackfront.core.cycle.follow.follow`.
+    expected : int
+        States that it will have, roughly.
+    seconds : float
+        Processor time that they will take, roughly.
+    sites : (n_site,) array or None
+        Coordinates that are not those of the geometry.
+    measures : TileMeasures or None
+        What the tile tells of the loop of a sphere.
     """
 
     field: Field
     front: Array
     loads: Iterable[Load]
+    expected: int
     seconds: float
     sites: Array | None = None
+    measures: TileMeasures | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,12 +107,14 @@ class SphereCase:
         from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule, loads
         from crackfront.simulate.contact import tile_contact
         from crackfront.simulate.costs import affordable_seconds
+        from crackfront.simulate.tiles import tile_measures
 
         step = DEFAULT_STEP if self.step is None else self.step
         way, radius = (
             loads(LoadSchedule(self.max_penetration, step)),
             jkr.equilibrium_radius(self.max_penetration),
         )
+        # A smooth sphere comes off there; a rough one goes somewhat further.
         n_state = 3 + (2 * self.max_penetration - jkr.pull_off_penetration()) / step
         given, angles, density = read(), asked.angles, asked.samples_per_pixel
         if isinstance(given, AdhesionMap):
@@ -110,7 +126,8 @@ class SphereCase:
                 n_sample=2 * radius / given.pixel * (density or 4.0),
             )
             field = tile_contact(given, self.max_penetration, angles, density, pieces)
-            return Problem(field, checked_touch(field, self.max_penetration), way, seconds)
+            front, measures = checked_touch(field, self.max_penetration), tile_measures(given)
+            return Problem(field, front, way, int(n_state), seconds, measures=measures)
         if angles is not None or density is not None:
             raise ValueError(
                 "--angles and --samples-per-pixel are for tiles; a polar field brings its own "
@@ -123,7 +140,7 @@ class SphereCase:
             n_sample=2 * given.field.places.size,
         )
         front = checked_touch(given.field, self.max_penetration)
-        return Problem(given.field, front, way, seconds, given.angles)
+        return Problem(given.field, front, way, int(n_state), seconds, given.angles)
 
 
 @dataclass(frozen=True)
@@ -170,7 +187,7 @@ class LineCase:
             interpolation=asked.interpolation or "cubic",
         )
         front = straight_front(field, given, self.first)
-        return Problem(field, front, [way[0]._replace(start=front), *way[1:]], seconds)
+        return Problem(field, front, [way[0]._replace(start=front), *way[1:]], len(way), seconds)
 
 
 CASES: dict[str, type[Any]] = {"sphere": SphereCase, "line": LineCase}
