@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, as_json, echo_json, examples
+from crackfront.cli.report import (
+    FILE,
+    announce_compilation,
+    as_json,
+    echo_json,
+    examples,
+    refuse_unwritable,
+)
 from crackfront.cli.watch import Watch, state_line
 from crackfront.simulate.cases import CASES, Resolution
 
@@ -145,11 +152,14 @@ def cycle(
     from crackfront.core.cycle.record import Recorder
     from crackfront.core.outcome import Status
     from crackfront.core.solver.relax import named_solver
+    from crackfront.data.files import refuse_no_file
     from crackfront.data.provenance import provenance
     from crackfront.simulate.fields import read_field
     from crackfront.simulate.files import write_cycle
 
     case = _case(geometry, given)
+    refuse_no_file(output)
+    refuse_unwritable(output.parent)
     solution = named_solver(solver, tolerance, max_sweeps)
     problem = case.problem(
         lambda: read_field(field_file, interpolation or "linear"),

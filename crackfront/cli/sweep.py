@@ -216,7 +216,7 @@ def simulate(
         click.echo(f"Warning: {sentence}; it is computed anew", err=True)
     if sentence := inventory.stale_sentence():
         click.echo(sentence)
-    _fill(store, inventory.missing, configuration, checkpoint)
+    fill_store(store, inventory.missing, configuration, checkpoint)
     for shard in shards:
         manifest = store.write_manifest(shard, sweep.shard(shard.item, shard.realisations))
     click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
@@ -237,8 +237,11 @@ def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path
         sys.exit(code if 0 < code < 126 else 1)
 
 
-def _fill(
-    store: Store, missing: tuple[Simulation, ...], configuration: Path, checkpoint_seconds: float
+def fill_store(
+    store: Store,
+    missing: tuple[Simulation, ...],
+    configuration: Path,
+    checkpoint_seconds: float = 60.0,
 ) -> None:
     """Run what is missing and report every simulation as it ends."""
     from crackfront.data.provenance import provenance
@@ -299,12 +302,14 @@ def _reported(
 @as_json
 def status(folder: Path, as_json: bool) -> None:
     """Tell how far the sweep in a folder is; also while it runs, here or elsewhere."""
+    from crackfront.data.files import refuse_damaged
     from crackfront.sweep.configuration import load_configuration
     from crackfront.sweep.store import Store
 
     store = Store(folder)
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
+    refuse_damaged(store.configuration)
     found = store.progress(load_configuration(store.configuration))
     if as_json:
         echo_json({"spectra": [asdict(item) for item in found]})
