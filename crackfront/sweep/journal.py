@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import functools
 import hashlib
 import json
@@ -39,22 +40,22 @@ class Entry:
         What the key is made of, as :attr:`crackfront.simulate.simulation.Simulation.parts`.
     size : int
         Bytes of its file, 0 where it has none.
-    digest : str
-        Digest of its file, empty where it has none or an earlier version wrote it.
     definition : str
         Fingerprint of what a row is, as :func:`crackfront.sweep.table.row_fingerprint`; empty where
         the simulation was only begun.
     row : SweepRow or None
         Its row, where the simulation ended and a row is still that.
+    digest : str
+        Digest of its file, empty where it has none or an earlier version wrote it.
     """
 
     key: str
     label: str
     parts: dict[str, str]
     size: int = 0
-    digest: str = ""
     definition: str = ""
     row: SweepRow | None = None
+    digest: str = ""
 
 
 class Journal:
@@ -81,7 +82,7 @@ class Journal:
                 written = file.write(line)
                 os.fsync(file.fileno())
                 if written != len(line):
-                    raise OSError(f"{self._path} took only {written} of {len(line)} bytes")
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self._path))
             except OSError:
                 file.truncate(length)
                 raise
