@@ -16,18 +16,24 @@ from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.data.digests import Integrity, integrity, seal
-from crackfront.data.files import UnreadableFileError, read_attributes, read_dataset, refuse_damaged
+from crackfront.data.files import (
+    UnreadableFileError,
+    read_attributes,
+    read_dataset,
+    refuse_damaged,
+    write_dataset,
+)
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import blank_figure, save_figure
 from crackfront.simulate.contact import tile_contact
 from crackfront.simulate.fields import read_field, write_field
 from crackfront.simulate.files import (
+    cycle_dataset,
     read_checkpoint,
     read_cycle,
     read_simulation,
     write_checkpoint,
-    write_cycle,
 )
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.surfaces import surface_adhesion
@@ -137,7 +143,7 @@ def kinds(tmp_path_factory):
     adhesion = surface_adhesion(surface)
     write_field(folder / "field.nc", adhesion, origin)
     record = run_cycle(tile_contact(adhesion, 0.2), LoadSchedule(0.2, 0.1), SOLVERS["newton"](1e-6))
-    write_cycle(folder / "cycle.nc", record, origin)
+    write_dataset(folder / "cycle.nc", cycle_dataset(record), origin)
     parameters = load_figure(ROOT / "config/figures/main-1d.yaml", "quick")
     smooth = FIGURE.compute(parameters, lambda line: None)
     write_record(folder / "main-1d.nc", smooth, origin)

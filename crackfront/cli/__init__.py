@@ -13,11 +13,12 @@ from crackfront.cli.cycle import cycle
 from crackfront.cli.figure import check_figures, draw_figure, figure, gallery
 from crackfront.cli.integrity import compare, verify
 from crackfront.cli.law import law
-from crackfront.cli.report import examples
+from crackfront.cli.report import StoppedError, examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.cli.validate import validate
+from crackfront.sweep.parallel import ending_alike
 
 
 class _RefusalError(click.ClickException):
@@ -40,7 +41,13 @@ class _Commands(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
         try:
-            return super().invoke(ctx)
+            with ending_alike():
+                return super().invoke(ctx)
+        except KeyboardInterrupt as error:
+            raise StoppedError(
+                "nothing is half-written; the same command begins anew, or goes on from its last "
+                "checkpoint"
+            ) from error
         except BrokenPipeError:
             raise
         except OSError as error:
@@ -93,7 +100,8 @@ Exit codes:
       a cycle that ended early, ranks that failed, results that are damaged or do not
       agree
   2   the input cannot be used; one sentence says why, and nothing was computed
-  75  told to end (SIGTERM) before it was done; the same command goes on
+  75  told to end (Ctrl-C or SIGTERM) before it was done; the same command goes on,
+      or begins anew where it says so
 
 \b
 Examples:
