@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, examples, whole
+from crackfront.cli.report import FILE, announce_compilation, examples, refuse_unwritable, whole
 from crackfront.data.bounds import Range
 
 _output = click.option(
@@ -51,6 +51,7 @@ def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
         names = ", ".join(SCENES)
         hint = f"did you mean {near[0]}?" if near else f"choose one of {names}"
         raise click.BadParameter(f"there is no scene {scene!r}; {hint}")
+    refuse_unwritable(output)
     announce_compilation()
     compile_solver("newton")
     found = STUDIES[study](SCENES[scene], realisations, click.echo)

@@ -175,12 +175,14 @@ def cycle(
     from crackfront.core.cycle.record import Recorder
     from crackfront.core.outcome import Status
     from crackfront.core.solver.relax import named_solver
-    from crackfront.data.files import write_dataset
+    from crackfront.data.files import refuse_no_file, write_dataset
     from crackfront.data.provenance import provenance
     from crackfront.simulate.fields import read_field
     from crackfront.simulate.loops import loop_dataset
 
     case = _case(geometry, given)
+    refuse_no_file(output)
+    refuse_unwritable(output.parent)
     solution = named_solver(solver, tolerance, max_sweeps)
     problem = case.problem(
         lambda: read_field(field_file, interpolation or "linear"),

@@ -239,7 +239,7 @@ def simulate(
         click.echo(f"Warning: {sentence}; it is computed anew", err=True)
     if sentence := inventory.stale_sentence():
         click.echo(sentence)
-    _fill(store, inventory.missing, configuration, checkpoint)
+    fill_store(store, inventory.missing, configuration, checkpoint)
     for shard in shards:
         manifest = store.write_manifest(shard, sweep.shard(shard.item, shard.realisations))
     click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
@@ -262,8 +262,11 @@ def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path
         sys.exit(code if 0 < code < 126 else 1)
 
 
-def _fill(
-    store: Store, missing: tuple[Simulation, ...], configuration: Path, checkpoint_seconds: float
+def fill_store(
+    store: Store,
+    missing: tuple[Simulation, ...],
+    configuration: Path,
+    checkpoint_seconds: float = 60.0,
 ) -> None:
     """Run what is missing and report every simulation as it ends."""
     from crackfront.data.provenance import provenance
@@ -326,6 +329,7 @@ def status(folder: Path, as_json: bool) -> None:
     A process on this machine is told to run as long as it lives, one on another machine as long as
     it shows signs of life.
     """
+    from crackfront.data.files import refuse_damaged
     from crackfront.sweep.configuration import load_configuration
     from crackfront.sweep.journal import running
     from crackfront.sweep.store import Store
@@ -333,6 +337,7 @@ def status(folder: Path, as_json: bool) -> None:
     store = Store(folder)
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
+    refuse_damaged(store.configuration)
     found = store.progress(load_configuration(store.configuration))
     processes = running(store.journals)
     if as_json:

@@ -6,7 +6,7 @@ import difflib
 import hashlib
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Literal
 
 from crackfront.core.adhesion import FieldKind
@@ -136,6 +136,16 @@ class Sweep:
         return tuple(self.simulations(item, realisations))
 
     @property
+    def fingerprint(self) -> str:
+        """Twelve hexadecimal digits that change with what a configuration means."""
+        return _fingerprint(self)
+
+    @property
+    def table_fingerprint(self) -> str:
+        """The same without what is done with the table of the sweep."""
+        return _fingerprint(self, "failed_fraction", "fit")
+
+    @property
     def n_simulation(self) -> int:
         """Number of simulations."""
         return len(self.spectra) * len(self.elastic_energies) * self.n_realisation
@@ -174,6 +184,12 @@ class Sweep:
             )
         block = f".{realisations.start}-{realisations.stop - 1}"
         return Shard(item, realisations, item.name + ("" if realisations == everything else block))
+
+
+def _fingerprint(sweep: Sweep, *without: str) -> str:
+    """Digits that change with any parameter of a sweep but some."""
+    parts = [getattr(sweep, item.name) for item in fields(sweep) if item.name not in without]
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:12]
 
 
 def shard_fingerprint(shard: Sequence[Simulation]) -> str:
