@@ -9,15 +9,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crackfront.analysis.report import PAPER_FACTOR
+from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
-from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
+from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL, draw_arrow
+from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
 
 Array = NDArray[np.float64]
 
 FEWEST_FOR_ARROW = 5
 """States that a branch must have for a part of it to have a direction."""
+
+_RADIUS_LABEL = rf"mean {RADIUS_LABEL}"
 
 MOST_MARKERS = 60
 """Markers on a branch, roughly; of more states only every second, third ... is marked."""
@@ -76,6 +79,96 @@ def loop_figure(
         return figure
 
 
+def steady_loop_figure(
+    states: LoopStates,
+    works: tuple[float, float],
+    window: tuple[float, float],
+    *,
+    elastic_energy: float,
+    kind: FieldKind = "roughness",
+    title: str = "",
+) -> Figure:
+    """The loop that steady parts of two branches stand for, beside these parts.
+
+    Parameters are those of :func:`draw_loop`; both works of adhesion have values. The figure is a
+    page wide.
+    """
+    with house_style():
+        figure = blank_figure(PAGE, 0.44 * PAGE)
+        left, right = figure.subplots(1, 2)
+        _draw_whole(left, states, works, window)
+        draw_loop(
+            right, states, works, window, elastic_energy=elastic_energy, kind=kind, arrows=False
+        )
+        handles, labels = (
+            one + other
+            for one, other in zip(
+                right.get_legend_handles_labels(), left.get_legend_handles_labels(), strict=True
+            )
+        )
+        right.get_legend().remove()
+        figure.legend(handles, labels, loc="outside upper center", ncols=4)
+        for axes, letter in ((left, "a"), (right, "b")):
+            axes.set_title(letter, loc="left", fontweight="bold")
+        left.set_title(f"{title}: the loop of its works of adhesion", fontsize=7)
+        right.set_title("the steady parts, which were simulated", fontsize=7)
+        return figure
+
+
+def _draw_whole(
+    axes: Axes, states: LoopStates, works: tuple[float, float], window: tuple[float, float]
+) -> None:
+    """Loop of a smooth sphere with the work of adhesion of either branch, and the states on it."""
+    turn = float(np.max(states.mean_radius))
+    starts = jkr.equilibrium_radius(0.0, works[0]), jkr.pull_off_radius(works[1])
+    for (direction, colour, marker), adhesion, start in zip(
+        ((1, BLUE, "o"), (-1, VERMILION, "s")), works, starts, strict=True
+    ):
+        branch = states.direction == direction
+        radius = np.linspace(start, turn, 300)
+        force = jkr.equilibrium_force(radius, adhesion)
+        axes.plot(radius, force, color=colour, linewidth=1.0, zorder=2)
+        axes.plot(
+            [0.0, start], [0.0, force[0]], color=colour, linewidth=0.7, dashes=(4, 2), zorder=2
+        )
+        axes.plot(
+            states.mean_radius[branch],
+            states.force[branch],
+            linestyle="none",
+            marker=marker,
+            markersize=2,
+            markerfacecolor="white",
+            markeredgewidth=0.5,
+            color=colour,
+            zorder=3,
+        )
+        middle = slice(150, 152)
+        draw_arrow(axes, radius[middle][::direction], force[middle][::direction], colour)
+    ends = jkr.equilibrium_force(turn, np.array(works))
+    axes.plot(
+        [turn, turn],
+        ends,
+        color="0.35",
+        linewidth=0.7,
+        dashes=(1, 1.5),
+        label="edge pinned at the turn",
+        zorder=1,
+    )
+    axes.axvspan(*window, color="0.93", linewidth=0, zorder=0)
+    axes.annotate(
+        "jumps into and out of contact",
+        (starts[0] / 2, float(jkr.equilibrium_force(starts[0], works[0])) / 2),
+        xytext=(-8, 8),
+        textcoords="offset points",
+        color="0.35",
+    )
+    low, high = jkr.pull_off_force(works[1]), float(max(ends[0], np.max(states.force)))
+    axes.set_xlim(0.0, 1.06 * turn)
+    axes.set_ylim(low - 0.08 * (high - low), max(high, 0.0) + 0.1 * (high - low))
+    axes.set_xlabel(_RADIUS_LABEL)
+    axes.set_ylabel(FORCE_LABEL)
+
+
 def draw_loop(
     axes: Axes,
     states: LoopStates,
@@ -84,6 +177,7 @@ def draw_loop(
     *,
     elastic_energy: float | None = None,
     kind: FieldKind = "roughness",
+    arrows: bool = True,
 ) -> None:
     """Draw the two branches, their JKR curves and the window of the averages.
 
@@ -101,6 +195,8 @@ def draw_loop(
         Measured e_el, for the curves that the paper predicts. (Units: w_int)
     kind : {"roughness", "chemical"}, optional
         Whether they lie around w_int - e_el or w_int.
+    arrows : bool, optional
+        Whether an arrow beside each branch has its direction.
 
     Raises
     ------
@@ -144,14 +240,13 @@ def draw_loop(
             zorder=0,
             label="window of the averages",
         )
-    axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
     _set_limits(axes, states)
-    for direction, _, _, colour, _, _ in branches:
+    for direction, _, _, colour, _, _ in branches if arrows else ():
         branch = states.direction == direction
         _draw_motion(axes, states.mean_radius[branch], states.force[branch], colour)
-    axes.set_xlabel(r"mean contact radius / $(3\pi w_\mathrm{int}R^2/4E')^{1/3}$")
-    axes.set_ylabel(r"normal force / $\pi w_\mathrm{int} R$")
-    axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
+    axes.set_xlabel(_RADIUS_LABEL)
+    axes.set_ylabel(FORCE_LABEL)
+    axes.legend(loc="upper left")
 
 
 def pinning_figure(

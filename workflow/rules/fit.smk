@@ -15,6 +15,7 @@ rule summary:
         CONFIGURATION,
         f"{RESULTS}/hysteresis.nc",
         f"{RESULTS}/fit.md",
+        expand("{results}/figures/{figure}.png", results=RESULTS, figure=SWEEP_FIGURES),
     output:
         report(
             f"{RESULTS}/summary.html",
