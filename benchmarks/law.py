@@ -32,7 +32,7 @@ import click
 import numpy as np
 
 from benchmarks.law_page import renewed_page
-from crackfront.analysis.estimate import REACH, mean_estimate
+from crackfront.analysis.estimate import REACH, mean_estimate, with_error
 from crackfront.analysis.finding import departure_of_spheres, finding
 from crackfront.analysis.law import (
     LawCell,
@@ -364,7 +364,7 @@ def sphere_table(rows: Sequence[SphereRow]) -> str:
         lines.append(
             f"| {row.spectrum} | {row.elastic_energy:.3g} | {row.contact_radius:.3g} | "
             f"{law.size:.2g} | {law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f}) | "
-            f"{row.both:.2f} ± {row.both_error:.2f} | {difference:+.1%} |"
+            f"{with_error(row.both, row.both_error)} | {difference:+.1%} |"
         )
     rms, worst = np.sqrt(np.mean(np.square(apart))), np.max(np.abs(apart))
     lines += [

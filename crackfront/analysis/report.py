@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import Estimate, with_error
 from crackfront.analysis.finding import (
     PAPER_FACTOR,
     PERTURBATION_FACTOR,
@@ -195,7 +195,7 @@ def _cell(fit: SweepFit, spectrum: int, amplitude: int) -> str:
         return MISSING
     value = fit.cells.factor.value[spectrum, amplitude]
     error = fit.cells.factor.standard_error[spectrum, amplitude]
-    return f"{value:.2f} ± {error:.2f} ({count})" if count > 1 else f"{value:.2f} (1)"
+    return f"{with_error(value, error)} ({count})" if count > 1 else f"{value:.2f} (1)"
 
 
 def _midpoint_sentence(fit: SweepFit) -> str:

@@ -44,7 +44,7 @@ def draw_field(
         extent=(x[0], x[-1], y[0], y[-1]),
         interpolation="nearest",
     )
-    bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, format="%.1f", extend="both")
+    bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, format="{x:.1f}", extend="both")
     bar.set_label(rf"local {ADHESION_LABEL}")
     label_plane(axes)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import Estimate, with_error
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.report import pooled_limits
 from crackfront.analysis.result import SweepFit
@@ -159,7 +159,7 @@ def draw_fit(
     value, reach = float(fit.pooled.factor.value), float(fit.pooled.factor.high)
     text = f"{value:.2f}"
     if np.isfinite(reach):
-        text += rf" \pm {reach - value:.2f}"
+        text = with_error(value, reach - value).replace("±", r"\pm")
     label = ", ".join([f"pooled $k = {text}$", *pooled_limits(fit, fit.spectra.factor)])
     axes.plot(ends, curve(value, ends), color=BLACK, linewidth=1.2, label=label)
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from crackfront.analysis.estimate import with_error
 from crackfront.core.fingerprint import fingerprint
 from crackfront.data.section import ConfigurationError, Section, content_of, validated
 
@@ -99,10 +100,10 @@ def close_to(
     after = f" {units}" if units else ""
     said = ""
     if law is not None and abs(found - law[0]) <= law[1]:
-        said = f"{law[0]:.6g} ± {law[1]:.2g}{after}"
+        said = f"{with_error(*law)}{after}"
     return Check(
         claim,
-        f"{expected:.6g} ± {tolerance:.2g}{after}",
+        f"{with_error(expected, tolerance)}{after}",
         f"{found:.6g}{after}",
         abs(found - expected) <= tolerance,
         remark,

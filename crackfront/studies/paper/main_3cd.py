@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from crackfront.analysis.estimate import REACH
+from crackfront.analysis.estimate import REACH, with_error
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law import sphere_factors
 from crackfront.analysis.steady import steady_adhesion
@@ -178,8 +178,8 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
         "roughness", spectrum, energy, (loop.lowest_radius + loop.highest_radius) / 2
     )
     numbers = (
-        f"k of this loop is {factor:.2f} ± {factor_error:.2f}, that of the law at its disorder and "
-        f"size {law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f}); tolerance: "
+        f"k of this loop is {with_error(factor, factor_error)}, by the law at its size "
+        f"{law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f}); tolerance: "
         f"what one digit of k leaves, {ONE_DIGIT:g} e_el, with {energy:.4f} w_int on the tile"
     )
     return (
@@ -227,7 +227,7 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
         expected, passed = {
             "below": (f"below {mean - reach:.4f}", found < mean - reach),
             "above": (f"above {mean + reach:.4f}", found > mean + reach),
-            "at": (f"{mean:.4f} ± {reach:.2g}", abs(found - mean) <= reach),
+            "at": (with_error(mean, reach), abs(found - mean) <= reach),
         }[word]
         checks.append(
             Check(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
-from crackfront.analysis.estimate import REACH, Estimate, slope
+from crackfront.analysis.estimate import REACH, Estimate, slope, with_error
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep import fit_sweep
@@ -157,7 +157,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             ", ".join(
                 f"{name} {value:.2f}" for name, value in zip(study.spectrum, factors, strict=True)
             ),
-            law=_said(100 * spread, *law.spread, digits=0, units="%"),
+            law=_said(100 * spread, *law.spread, units="%"),
         ),
         Check(
             "onset of hysteresis at larger e_el for a longer correlation length",
@@ -200,10 +200,9 @@ def _by_law(fit: SweepFit) -> _ByLaw:
     )
 
 
-def _said(found: float, value: float, reach: float, digits: int = 2, units: str = "") -> str:
+def _said(found: float, value: float, reach: float, units: str = "") -> str:
     """The law's number where what was found agrees with it, else nothing."""
-    agrees = abs(found - value) <= reach
-    return f"{value:.{digits}f} ± {reach:.{digits}f}{units}" if agrees else ""
+    return f"{with_error(value, reach)}{units}" if abs(found - value) <= reach else ""
 
 
 def _interval(estimate: Estimate) -> str:
