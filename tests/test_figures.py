@@ -155,7 +155,7 @@ def test_a_check_that_fails_says_so():
 def test_a_difference_that_the_law_foretells_is_told_with_its_number():
     foretold = close_to("k", 2.1, 3.0, 0.5, law=(2.2, 0.2))
     assert foretold.result == "differs as the law of k says"
-    assert "differs as the law of k says: 2.2 ± 0.2 |" in "\n".join(checks_table([foretold]))
+    assert "differs as the law of k says: 2.20 ± 0.20 |" in "\n".join(checks_table([foretold]))
     assert close_to("k", 2.9, 3.0, 0.5, law=(2.2, 0.2)).result == "agrees"
     assert close_to("k", 1.9, 3.0, 0.5, law=(2.2, 0.2)).result == "FAIL"
 
