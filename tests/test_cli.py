@@ -194,7 +194,7 @@ def test_a_contact_that_outgrows_its_field_is_refused_before_it_starts(rough_ray
     [
         (("--max-penetration", -1), "max penetration -1.0 never makes contact"),
         (("--step", 0), "load step is 0.0; it must be positive"),
-        (("--step", "nan"), "load step is nan; it must be positive"),
+        (("--step", "nan"), "'--step': nan is no number"),
         (("--solver", "none"), "solver"),
         (("--field", "none.nc"), "none.nc does not exist"),
         (("--angles", 16), "--angles and --samples-per-pixel are for tiles"),

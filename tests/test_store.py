@@ -15,6 +15,7 @@ from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import run_simulation
+from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import journal, tasks
 from crackfront.sweep import table as tables
 from crackfront.sweep.configuration import load_configuration
@@ -320,3 +321,11 @@ def test_a_part_that_its_writer_renames_meanwhile_is_left_alone(tmp_path, monkey
     gone = tmp_path / ".renamed.part"
     monkeypatch.setattr(Path, "glob", lambda folder, pattern: [*glob(folder, pattern), gone])
     assert leftover_parts(tmp_path) == []
+
+
+def test_keys_are_made_of_stored_simulations_alone_as_they_take_long(store, monkeypatch):
+    fill(store, FLAT[:1])
+    many, asked, key = replace(SWEEP, n_realisation=300), [], Simulation.key.fget
+    monkeypatch.setattr(Simulation, "key", property(lambda one: asked.append(one) or key(one)))
+    assert len(store.inventory(many.simulations()).missing) == many.n_simulation - 1
+    assert len(asked) < 10

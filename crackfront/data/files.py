@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from crackfront.core.variables import Variable, variables
+from crackfront.data.bounds import TooLargeError, refuse_beyond_memory
 from crackfront.data.provenance import Provenance, utc_now
 
 PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
@@ -111,7 +112,9 @@ def _changed(path: Path) -> float:
         return math.inf
 
 
-def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset:
+def read_dataset(
+    path: Path, names: Collection[str] | None = None, *, copies: float = 1.0
+) -> xr.Dataset:
     """Dataset of a netCDF file, in memory.
 
     Parameters
@@ -120,9 +123,13 @@ def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset
         The file.
     names : collection of str, optional
         Variables to read beside the coordinates, those that are there; by default all.
+    copies : float, optional
+        Memory that is needed at once, relative to that of the variables.
 
     Raises
     ------
+    TooLargeError
+        If they need more than there is, whatever the file holds of them.
     UnreadableFileError
         If there is no such file or it is no complete netCDF file.
     """
@@ -131,7 +138,13 @@ def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset
     try:
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
             others = [] if names is None else [name for name in dataset if name not in names]
-            return dataset.drop_vars(others).load()
+            chosen = dataset.drop_vars(others)
+            refuse_beyond_memory(
+                f"the variables of {path}", copies * chosen.nbytes, "use smaller ones"
+            )
+            return chosen.load()
+    except TooLargeError:
+        raise
     except (OSError, RuntimeError, ValueError) as error:
         raise UnreadableFileError(
             f"{path} is no complete netCDF file; write it again, or name another"

@@ -233,12 +233,23 @@ class Ledger:
     def parts(self, label: str) -> dict[str, str] | None:
         """What the key is made of with which a simulation of a label was stored last, if it was."""
         labels = self._lines["label"]
+        if not labels.size:
+            return None
         last = np.searchsorted(labels, _hash(label), side="right", sorter=self._by_label) - 1
         if last < 0:
             return None
         line = self._lines[self._by_label[last]]
         entries = self._entries(int(line["journal"]), [int(line["place"])])
         return next((one.parts for one in entries if one.label == label), None)
+
+    def _begun(self, simulations: Sequence[Simulation]) -> Sequence[bool]:
+        """Whether there is a line of the label of each simulation."""
+        if not self._lines.size:
+            return [False] * len(simulations)
+        labels = np.array([_hash(one.label) for one in simulations], dtype="u8")
+        places = np.searchsorted(self._lines["label"], labels, sorter=self._by_label)
+        nearest = self._by_label[np.minimum(places, self._lines.size - 1)]
+        return (self._lines["label"][nearest] == labels).tolist()
 
     @functools.cached_property
     def _by_label(self) -> NDArray[np.int64]:
@@ -255,9 +266,19 @@ class Ledger:
 
     def _rows(self, simulations: Sequence[Simulation]) -> Iterator[SweepRow | None]:
         """Rows of a few simulations, journal by journal."""
+        # A key takes long, and what has no line needs none.
+        begun = self._begun(simulations)
+        if not any(begun):
+            yield from (None for _ in simulations)
+            return
         # Spectra of one shape and different names have the same keys.
-        names = [(one.key, one.label) for one in simulations]
-        hashes = np.array([_hash(f"{key} {label}") for key, label in names], dtype="u8")
+        names = [
+            (one.key if known else "", one.label)
+            for one, known in zip(simulations, begun, strict=True)
+        ]
+        hashes = np.array(
+            [_hash(f"{key} {label}") if key else 0 for key, label in names], dtype="u8"
+        )
         first, last = (
             np.searchsorted(self._lines["identity"], hashes, side=side)
             for side in ("left", "right")

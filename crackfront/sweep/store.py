@@ -79,6 +79,21 @@ class Progress:
     seconds: float
 
 
+class _Curves:
+    """Files of simulations by all of their names but the keys, which take long."""
+
+    def __init__(self, folder: Path) -> None:
+        self._names = {path.stem.rpartition("-")[0] for path in folder.glob("*.nc")}
+        self._beginnings: dict[tuple[str, float], str] = {}
+
+    def __contains__(self, simulation: Simulation) -> bool:
+        """Whether there may be a file of a simulation."""
+        alike = simulation.spectrum_name, simulation.elastic_energy
+        if alike not in self._beginnings:
+            self._beginnings[alike] = simulation.stem.rsplit("-", 2)[0]
+        return f"{self._beginnings[alike]}-r{simulation.realisation}" in self._names
+
+
 @dataclass(frozen=True, slots=True)
 class Store:
     """Results of a sweep in a folder."""
@@ -112,8 +127,9 @@ class Store:
         self, simulations: Iterable[Simulation], ledger: Ledger | None = None
     ) -> Iterator[Holding]:
         """What is stored of simulations, by the journals or a ledger that was made of them."""
+        curves = _Curves(self.folder / "curves")
         for simulation, row in (ledger or Ledger(self.folder)).rows(simulations):
-            if row is not None or not self.path(simulation).is_file():
+            if row is not None or simulation not in curves or not self.path(simulation).is_file():
                 yield Holding(simulation, row)
                 continue
             try:

@@ -167,7 +167,7 @@ class Sweep:
     def named_shard(self, item: NamedSpectrum, realisations: range) -> Shard:
         """Shard of a spectrum and a block of realisations, which the sweep must have."""
         everything = range(self.n_realisation)
-        if not realisations or not set(realisations) <= set(everything):
+        if not realisations or realisations[0] < 0 or realisations[-1] >= everything.stop:
             raise ValueError(
                 f"realisations {realisations.start} to {realisations.stop - 1} are not among those "
                 f"of the sweep, 0 to {self.n_realisation - 1}"
