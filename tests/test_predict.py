@@ -13,8 +13,8 @@ from click.testing import CliRunner
 from benchmarks import predictions
 from benchmarks.predictions import TABLE_HEAD, comparison_row
 from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law import pinning_factor, shipped_law, sphere_factors
-from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.cli import main
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
