@@ -87,6 +87,8 @@ Exit codes:
   1   computed, but not what was asked for: too many simulations without a value,
       a cycle that ended early, ranks that failed
   2   the input cannot be used; one sentence says why, and nothing was computed
+  3   predict: the theory applies with reservations, each of which is named
+  4   predict: the theory does not apply, and what modulus, radius or roughness would do
   75  told to end (SIGTERM) before it was done; the same command goes on
 
 \b

@@ -35,8 +35,9 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineLoad, SpringUnit
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
+from crackfront.topography.levelling import Detrend
 from crackfront.topography.measures import measured_surface
-from crackfront.topography.reading import Detrend, Treatment, read_measurements
+from crackfront.topography.reading import Treatment, read_measurements
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 
