@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import brentq
 
+from crackfront.analysis.known_factors import PAPER_FACTOR
 from crackfront.analysis.law import (
     COEFFICIENTS,
     WEAKEST,
@@ -18,7 +19,6 @@ from crackfront.analysis.law import (
     law_value,
     pinning_factor,
 )
-from crackfront.analysis.report import PAPER_FACTOR
 
 DISORDERS = (WEAKEST, 0.2, 0.4, 0.84)
 """Disorders s of the table of the infinite contact."""

@@ -7,14 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.known_factors import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.law import LEAST_SIZE
 from crackfront.analysis.result import LawEstimates, SweepFit
 
 MISSING = "-"
 """What stands where the data give no number."""
-
-PAPER_FACTOR, PERTURBATION_FACTOR = 3.0, 4.0
-"""k of the paper's fit, and of second-order perturbation theory in the limit of weak disorder."""
 
 ONSET = 0.5
 """A k below this part of the spectrum's largest counts as below the onset of hysteresis."""

@@ -165,7 +165,7 @@ def _sphere_options(*, required: bool) -> Callable[[Command], Command]:
     type=FILE,
     help="Figure, without suffix; PDF and PNG.  [default: results/predict/<first scan>]",
 )
-@click.option("--no-figure", is_flag=True, help="Draw none, which takes a second less.")
+@click.option("--no-figure", is_flag=True, help="Draw none: most of the time goes into it.")
 @click.pass_context
 def predict(
     context: click.Context,

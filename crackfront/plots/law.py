@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import REACH
+from crackfront.analysis.known_factors import PERTURBATION_FACTOR
 from crackfront.analysis.law import (
     LEAST_SIZE,
     TYPICAL_BREADTH,
@@ -24,7 +25,6 @@ from crackfront.analysis.law import (
     pinning_factor,
     shipped_law,
 )
-from crackfront.analysis.report import PERTURBATION_FACTOR
 from crackfront.plots.parts import draw_theory, label_decimals
 from crackfront.plots.style import BLACK, COLOURS, MARKERS, PAGE, blank_figure, house_style
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crackfront.analysis.report import PAPER_FACTOR
+from crackfront.analysis.known_factors import PAPER_FACTOR
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style

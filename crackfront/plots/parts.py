@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
+from crackfront.analysis.known_factors import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import SweepTable

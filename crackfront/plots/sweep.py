@@ -19,8 +19,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.known_factors import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.law import law_value, shipped_law, slope_breadth
-from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import LARGE, SweepLaw
 from crackfront.analysis.table import SweepTable

@@ -66,7 +66,7 @@ def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figur
             draw_scan(axes, measurement)
         for axes in maps[len(shown) :]:
             axes.set_axis_off()
-        label_panel(maps[0], "d")
+        below.text(0.005, 0.97, "d", fontsize=9, fontweight="bold", va="top")
         return figure
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from crackfront.analysis.estimate import REACH, Estimate
+from crackfront.analysis.known_factors import PAPER_FACTOR
 from crackfront.analysis.law import SphereFactors, shipped_law, sphere_factors
-from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.core import jkr
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from crackfront.analysis.report import PAPER_FACTOR
+from crackfront.analysis.known_factors import PAPER_FACTOR
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.record import Recorder

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.report import PAPER_FACTOR
+from crackfront.analysis.known_factors import PAPER_FACTOR
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
