@@ -85,11 +85,11 @@ def refused(*arguments):
 
 @pytest.fixture(scope="module")
 def smooth_scan(tmp_path_factory):
-    """Scan of a surface that is smooth on a plateau of long waves."""
-    spectrum = SelfAffineSpectrum(0.5e-6, 1e-6, 0.8, 4e-31)
-    heights = gaussian_field(spectrum, 512, 50e-6, np.random.default_rng(3))
+    """Scan of a surface with half the heights of nanodiamond, which shows all that matters."""
+    spectrum = SelfAffineSpectrum(0.1e-6, 2.1e-6, 0.95, 2e-27)
+    heights = gaussian_field(spectrum, 512, 25.6e-6, np.random.default_rng(3))
     path = tmp_path_factory.mktemp("scans") / "smooth.al3d"
-    path.write_bytes(scans.al3d(heights, 50e-6 / 512, "smooth"))
+    path.write_bytes(scans.al3d(heights, 25.6e-6 / 512, "smooth"))
     return path
 
 

@@ -92,7 +92,6 @@ def levelled(heights: Array, fitted: Points, detrend: Detrend) -> Array:
     ValueError
         If the points do not determine the trend, or the heights are it but for round-off.
     """
-    level = heights - np.mean(heights[fitted])
     terms = [
         term
         for term in itertools.product(range(order_of(detrend) + 1), repeat=heights.ndim)
@@ -103,6 +102,7 @@ def levelled(heights: Array, fitted: Points, detrend: Detrend) -> Array:
             f"{np.count_nonzero(fitted)} points are left to fit {taken_off(detrend)}; mask fewer "
             "of them"
         )
+    level = heights - np.mean(heights[fitted])
     bases = [
         legvander(np.linspace(-1, 1, count), order_of(detrend)).astype(float)
         for count in heights.shape

@@ -248,7 +248,11 @@ def _verdict_entry(found: Verdict) -> dict[str, Any]:
     return {
         "outcome": found.outcome,
         "conditions": [
-            asdict(item) | {"standing": item.standing, "margin": item.margin}
+            asdict(item)
+            | {
+                "standing": item.standing,
+                "margin": item.margin if math.isfinite(item.margin) else None,
+            }
             for item in found.conditions
         ],
         "reservations": list(found.reservations),
