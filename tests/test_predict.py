@@ -317,13 +317,16 @@ def test_a_negative_share_is_a_reservation_where_it_counts(predict, prediction):
     assert not any("w_loc" in text for text in weak["verdict"]["reservations"])
 
 
-def test_a_contact_too_small_for_hysteresis_is_told(predict):
-    content = json.loads(predict("--json", modulus="5kPa", radius="70um").output)
-    [told] = [text for text in content["verdict"]["reservations"] if "law of k was not" in text]
+def test_a_contact_too_small_for_hysteresis_is_told(surface):
+    small = replace(SCENE, radius=70e-6, contact_modulus=5e3 / 0.75)
+    found = predicted(surface, small)
+    [told] = [
+        text for text in verdict(surface, small, None, found).reservations if "law of k" in text
+    ]
     assert "hysteresis sets in there" in told
-    assert content["factors"]["warning"] in told
-    assert content["prediction"]["hysteresis_low"]["value"] == 0
-    assert content["prediction"]["hysteresis"]["value"] > 0
+    assert found.factors.warning in told
+    assert found.hysteresis.low == 0
+    assert found.hysteresis.value > 0
 
 
 def test_each_outcome_has_its_exit_code(predict, smooth_scan):
