@@ -406,7 +406,8 @@ def test_a_prediction_shows_itself_with_intervals_limits_and_notes():
     assert found.w_retr == expected.w_retr
     assert found.surface.checksum == surface.checksum
     shown = repr(found)
-    assert prediction_text(surface, expected) in shown
+    assert prediction_text(expected) in shown
+    assert "\nThe theory applies" in shown
     assert surface_text(surface) in shown
     for note in prediction_notes(surface, expected):
         assert note in shown
