@@ -336,7 +336,7 @@ def test_a_validation_without_its_extra_is_refused_before_it_computes(
     )
     assert run.exit_code == 2
     assert f"need {name}, which is not installed" in run.output
-    assert "pip install 'crackfront[bem]'" in run.output
+    assert "pip install '.[bem]'" in run.output
     assert not (tmp_path / "x").exists()
 
 

@@ -584,7 +584,7 @@ def test_every_kind_of_bad_scan_is_refused_with_a_sentence(tmp_path, monkeypatch
     ):
         assert sentence in refused("predict", scan, *sphere(), *figure, *more)
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
-    assert "pip install 'crackfront[surfaces]'" in refused("predict", OVERVIEW, *sphere(), *figure)
+    assert "pip install '.[surfaces]'" in refused("predict", OVERVIEW, *sphere(), *figure)
 
 
 def test_a_field_needs_the_whole_sphere_and_one_scan(tmp_path):

@@ -282,6 +282,35 @@ def test_any_start_between_the_first_circle_and_the_front_ends_in_the_same_front
 
 
 @every_solver
+@pytest.mark.parametrize("penetration", [0.3, 0.005])
+def test_a_circle_on_the_first_sample_that_nothing_drives_inward_rests_there(solver, penetration):
+    # At 0.3 its edge is in compression, at 0.005 it would rather advance.
+    case = Rays(0, start=0.1)
+    found = relax(case.circle(), penetration, -1, case.field, SOLVERS[solver](TIGHT))
+    assert found.status is Status.CONVERGED
+    assert np.array_equal(found.front, case.circle())
+
+
+@every_solver
+@pytest.mark.parametrize("n_angle", [24, 300])
+def test_sites_at_rest_on_the_first_sample_do_not_end_the_retraction_of_the_others(solver, n_angle):
+    case = Rays(0, n_angle, amplitude=0.1, start=0.1)
+    start = np.where(np.arange(n_angle) < n_angle // 2, case.radii[0], case.radii[-1])
+    found = relax(start, 0.5, -1, case.field, SOLVERS[solver](TIGHT))
+    assert found.status is Status.CONVERGED
+    assert np.array_equal(found.front[: n_angle // 2], start[: n_angle // 2])
+    assert np.all(found.front[n_angle // 2 :] < 2.0)
+    assert case.residual(found.front, 0.5, -1) < 1e-12
+
+
+@every_solver
+def test_a_circle_on_the_first_sample_that_is_driven_inward_leaves(solver):
+    case = Rays(0, start=0.1)
+    found = relax(case.circle(), -1.0, -1, case.field, SOLVERS[solver](TIGHT))
+    assert found.status is Status.LOST_CONTACT
+
+
+@every_solver
 @few
 @given(case=rays(), direction=st.sampled_from([1, -1]))
 def test_a_front_in_equilibrium_stays_where_it_is(solver, case, direction):

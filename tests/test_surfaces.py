@@ -328,7 +328,7 @@ def test_surfaces_without_a_spectrum_are_refused(tmp_path, heights, scan):
 
 def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatch, scan):
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
-    assert "pip install 'crackfront[surfaces]'" in refusal([scan])
+    assert "pip install '.[surfaces]'" in refusal([scan])
 
 
 def test_a_surface_without_plateau_says_so(rng, tmp_path):

@@ -19,6 +19,6 @@ class MissingExtraError(ValueError):
     def __init__(self, purpose: str, error: ModuleNotFoundError, extra: str) -> None:
         name = (error.name or "a library").partition(".")[0]
         super().__init__(
-            f"{purpose} need {name}, which is not installed; install it with: "
-            f"pip install 'crackfront[{extra}]'"
+            f"{purpose} need {name}, which is not installed; in the folder of the source of "
+            f"crackfront, install it with: pip install '.[{extra}]'"
         )

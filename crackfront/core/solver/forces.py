@@ -67,7 +67,8 @@ def front_force(front, load, field):
 def locate(field, memory, ray, place, segment, direction):
     """Segment ahead of a place that was in `segment` before it moved, and the product there.
 
-    A negative segment says that the ray ends: -INWARD or -OUTWARD.
+    A negative segment says that the ray ends: -INWARD or -OUTWARD. A site on the first sample may
+    rest there, and leaves only as it moves on.
     """
     last = sample_count(field) - 2
     if direction > 0:
@@ -76,10 +77,10 @@ def locate(field, memory, ray, place, segment, direction):
             if segment > last:
                 return -OUTWARD, 0.0
     else:
-        while place <= sample_place(field, segment):
+        while segment > 0 and place <= sample_place(field, segment):
             segment -= 1
-            if segment < 0:
-                return -INWARD, 0.0
+        if place < sample_place(field, segment):
+            return -INWARD, 0.0
     inner, outer = sample_place(field, segment), sample_place(field, segment + 1)
     fetch(field, memory, ray, segment, segment + 1)
     piece = peek_piece(field, memory, ray, segment)
