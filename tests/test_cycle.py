@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
+from scipy.ndimage import gaussian_filter
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
-from crackfront.core.cycle.energy import dissipated_energy
+from crackfront.core.cycle.energy import contact_energy, dissipated_energy
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -666,3 +667,61 @@ def test_energy_is_gained_only_where_an_edge_in_compression_is_closed_over_repel
     # It does happen, and the bound is of the same size.
     assert -0.02 < gained < -1e-3
     assert paid < 20 * -gained
+
+
+def few_sites(seed, interpolation):
+    """A field at three times w_int whose patches are as wide as a contact."""
+    rng = np.random.default_rng(seed)
+    n_angle, n_sample = int(rng.integers(4, 24)), int(rng.integers(16, 40))
+    noise = gaussian_filter(rng.standard_normal((n_sample, n_angle)), 1, mode=("nearest", "wrap"))
+    radii = np.linspace(rng.uniform(0.05, 0.1), 3.6, n_sample)
+    adhesion = WORK_OF_ADHESION * (1 + 3 * noise / noise.std())
+    return polar_field(radii, adhesion, interpolation)
+
+
+def cycles_of_few_sites(interpolation):
+    """Field and record of each of some cycles."""
+    for seed in range(40):
+        field = few_sites(seed, interpolation)
+        recorder = Recorder(fronts=True, energy=True)
+        yield field, run_cycle(field, LoadSchedule(0.6, 0.05), recorder=recorder)
+
+
+def test_making_contact_gains_no_more_than_the_first_circle_costs():
+    least = 0.0
+    for field, record in cycles_of_few_sites("cubic"):
+        circle = np.full(field.geometry.n_site, first_place(field))
+        lost = record.dissipated_energy[0]
+        assert lost > -max(contact_energy(circle, 0.0, field), 0.0) - 1e-9
+        least = min(least, lost)
+    # It does happen.
+    assert -0.1 < least < -0.01
+
+
+def test_losing_contact_gains_no_more_than_what_adheres_when_one_site_has_passed_the_apex():
+    least = 0.0
+    for field, record in cycles_of_few_sites("cubic"):
+        if record.pull_off_energy >= 0:
+            continue
+        found = relax(record.fronts[-1], record.end_load, -1, field)
+        left = np.maximum(found.front, first_place(field))
+        assert np.min(left) < 0.2 < 0.4 < np.max(left)
+        assert record.pull_off_energy > contact_energy(left, record.end_load, field) - 1e-6
+        least = min(least, record.pull_off_energy)
+    assert -1.0 < least < -0.3
+
+
+def test_the_apparent_work_is_less_in_retraction_only_where_the_mean_radius_has_grown_more():
+    most = 0.0
+    for _, record in cycles_of_few_sites("linear"):
+        states = record.states
+        work = states.apparent_work_of_adhesion
+        release = work * states.mean_radius
+        for up in np.flatnonzero(branch(record, 1)):
+            same = branch(record, -1) & np.isclose(states.penetration, states.penetration[up])
+            for down in np.flatnonzero(same):
+                assert np.min(record.fronts[down] - record.fronts[up]) > -1e-6
+                # The mean of a G grows with the radius of every site, that of a may grow faster.
+                assert release[down] > release[up] - 1e-6
+                most = max(most, work[up] - work[down])
+    assert 0.01 < most < 0.2

@@ -66,7 +66,8 @@ def test_after_the_lead_in_a_period_later_the_front_is_the_same_further_on(energ
             fronts[-2 * schedule.n_period : -schedule.n_period],
         )
         assert len(before) == schedule.n_period
-        assert np.max(np.abs(last - before - direction * schedule.period)) < 1e-11
+        # The first of two periods may begin anywhere within the tolerance, 1e-9.
+        assert np.max(np.abs(last - before - direction * schedule.period)) < 1e-8
 
 
 def test_a_start_twice_as_far_behind_is_forgotten():
