@@ -6,7 +6,9 @@ the extra `bem`; only the products with the elastic operators are those of scipy
 The nearest stable state is found as by NuMPI's `tr_newton_bounded` (a trust region, Steihaug's
 conjugate gradients on the free variables, projection on the bounds), but with the elastic operator
 as the measure of a step and as the preconditioner, which makes the number of products nearly
-independent of the grid.
+independent of the grid. A step halfway along which the energy is found to rise is shortened, so that
+none jumps over a barrier; where nothing is out of balance no curvature may be negative, so that none
+ends on one.
 """
 
 from __future__ import annotations
@@ -39,6 +41,12 @@ _FORCING = 0.3
 
 _MOST_PRODUCTS = 200
 """Products of one step."""
+
+_ROUND_OFF = 10 * float(np.finfo(float).eps)
+"""Changes of the energy that have no meaning, relative to it."""
+
+_PROBED = 1e-2
+"""Residual, relative to its start, to which the curvature of a state is probed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,6 +224,13 @@ class Equilibrium:
         Largest pressure that is not in balance, relative to the largest tension.
     radius : float
         Trust radius to begin the next load step with.
+    energy, released : float
+        Energy per area of a pixel, and how far it fell at this penetration; it never rises.
+        (Units: reduced pressure * vertical length)
+    barriers : int
+        Steps that would have passed over a rise of the energy, and were shortened.
+    saddles : int
+        States without forces whose energy falls to both sides, and which were left.
     """
 
     displacement: Array
@@ -223,6 +238,10 @@ class Equilibrium:
     products: int
     residual: float
     radius: float
+    energy: float
+    released: float
+    barriers: int
+    saddles: int
 
 
 def equilibrium(
@@ -260,17 +279,35 @@ def equilibrium(
     lowest = contact.surface + penetration
     state = _above(displacement.copy(), lowest)
     energy, gradient = contact.evaluate(state, penetration)
-    products, relative = 0, math.inf
+    began, products, barriers, saddles, relative = energy, 0, 0, 0, math.inf
     for iteration in range(max_iterations):
         model = _linearised(contact, state, gradient, lowest, penetration)
         relative = float(np.max(np.abs(model.gradient))) / contact.largest_tension
-        if relative <= tolerance:
-            return Equilibrium(state, iteration, products, relative, radius)
-        step = _truncated_step(model, radius, forcing=min(_FORCING, math.sqrt(relative)))
+        if relative > tolerance:
+            step = _truncated_step(model, radius, forcing=min(_FORCING, math.sqrt(relative)))
+        else:
+            step = _downward_step(model, radius)
+            if model.decrease(step.values) <= _ROUND_OFF * (1 + abs(energy)):
+                return Equilibrium(
+                    displacement=state,
+                    iterations=iteration,
+                    products=products + step.products,
+                    residual=relative,
+                    radius=radius,
+                    energy=energy,
+                    released=began - energy,
+                    barriers=barriers,
+                    saddles=saddles,
+                )
+            saddles += 1
         trial = _above(state + step.values, lowest)
         trial_energy, trial_gradient = contact.evaluate(trial, penetration)
         gain = _gain(energy, trial_energy, model.decrease(trial - state))
         products += step.products + 1
+        energies = energy, trial_energy
+        if gain >= _ACCEPTED and _passes_barrier(contact, state, trial, energies, penetration):
+            barriers += 1
+            gain = -math.inf
         if gain < _POOR:
             radius = _POOR * step.norm
         elif gain > 1 - _POOR and step.at_boundary:
@@ -282,6 +319,21 @@ def equilibrium(
         f"{max_iterations} steps (pressure out of balance {relative:.2g} of the largest tension, "
         f"{tolerance:g} asked for); take smaller load steps"
     )
+
+
+def _passes_barrier(
+    contact: HalfSpaceContact,
+    state: Array,
+    trial: Array,
+    energies: tuple[float, float],
+    load: float,
+) -> bool:
+    """Whether the energy, seen halfway, rises on the way from a state to a lower one."""
+    before, after = energies
+    halfway, gradient = contact.evaluate((state + trial) / 2, load)
+    climbing = float(np.vdot(gradient, trial - state)) > 0
+    round_off = _ROUND_OFF * (1 + abs(before))
+    return halfway > before + round_off or (climbing and after < halfway - round_off)
 
 
 def _above(displacement: Array, lowest: Array) -> Array:
@@ -332,7 +384,7 @@ def _gain(before: float, after: float, predicted: float) -> float:
     """Decrease of the energy relative to the predicted one; one where both are round-off."""
     if predicted <= 0:
         return -math.inf
-    round_off = 10 * np.finfo(float).eps * (1 + abs(before))
+    round_off = _ROUND_OFF * (1 + abs(before))
     if predicted <= round_off and before - after >= -round_off:
         return 1.0
     return (before - after) / predicted
@@ -381,6 +433,38 @@ def _truncated_step(model: _Linearised, radius: float, forcing: float) -> _Step:
         direction *= ratio
         direction -= relaxed
     return _Step(step, math.sqrt(step_step), False, count)
+
+
+def _downward_step(model: _Linearised, radius: float) -> _Step:
+    """Step along a direction of negative curvature, or none where no curvature is negative.
+
+    Conjugate gradients for forces where surfaces attract each other: what else is in their space
+    has the curvature of the half-space alone. They come upon a negative curvature as soon as it is
+    in the space of their directions.
+    """
+    side = len(model.closed)
+    residual = np.zeros_like(model.gradient)
+    noise = np.random.default_rng(0).standard_normal((side, side))
+    residual[:side, :side] = model.softening * noise
+    model.free(residual)
+    relaxed = model.free(model.contact.elastic_displacement(residual))
+    direction = -relaxed
+    power = first = float(np.vdot(residual, relaxed))
+    for count in range(1, _MOST_PRODUCTS + 1):
+        if power <= _PROBED**2 * first:
+            break
+        product = model.free(model.curved(direction))
+        curvature = float(np.vdot(direction, product))
+        if curvature < 0:
+            down = -1.0 if float(np.vdot(model.gradient, direction)) > 0 else 1.0
+            stretch = float(np.vdot(direction, model.contact.elastic_pressure(direction)))
+            return _Step(down * radius / math.sqrt(stretch) * direction, radius, True, count)
+        residual += power / curvature * product
+        relaxed = model.free(model.contact.elastic_displacement(residual))
+        ratio, power = float(np.vdot(residual, relaxed)) / power, float(np.vdot(residual, relaxed))
+        direction *= ratio
+        direction -= relaxed
+    return _Step(np.zeros_like(direction), 0.0, False, count)
 
 
 def _filtered(values: Array, response: Array) -> Array:

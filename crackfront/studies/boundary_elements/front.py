@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core.cycle.record import Recorder
-from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.run import first_touch, refuse_outgrown, run_cycle
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.rotated import rotated_field
 from crackfront.core.solver.relax import Newton
 from crackfront.studies.boundary_elements.cycle import N_ANGLE, BoundaryCycle
-from crackfront.studies.boundary_elements.parameters import Case
+from crackfront.studies.boundary_elements.parameters import BranchSchedule, Case
 
 Array = NDArray[np.float64]
 
@@ -63,16 +63,23 @@ def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = Tru
     Raises
     ------
     ValueError
-        If the cycle does not end by losing contact.
+        If the front fails, or loses contact within the steady parts of its branches.
     """
     began = time.process_time()
     field = rotated_field(
         case.heights(), case.pixel, n_angle, spacing, case.side / 2, rotated=rotated
     )
     mapped = time.process_time()
-    record = run_cycle(field, case.schedule, Newton(_TOLERANCE), Recorder(fronts=True))
+    recorder, solver = Recorder(fronts=True), Newton(_TOLERANCE)
+    if isinstance(case.schedule, BranchSchedule):
+        refuse_outgrown(field, case.schedule.max_penetration)
+        recorder.run(field, first_touch(field), case.schedule.loads(), solver)
+        record, expected = recorder.record(), Status.CONVERGED
+    else:
+        record = run_cycle(field, case.schedule, solver, recorder)
+        expected = Status.LOST_CONTACT
     ended = time.process_time()
-    if record.status is not Status.LOST_CONTACT:
+    if record.status is not expected:
         raise ValueError(
             f"{case.label}: at penetration {record.end_load:.6g} the front "
             f"{record.status.value}; raise n_angle or lower the spacing"

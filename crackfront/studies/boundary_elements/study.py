@@ -31,6 +31,7 @@ from crackfront.studies.boundary_elements.front import (
 from crackfront.studies.boundary_elements.parameters import (
     Case,
     ValidationParameters,
+    surface_seed,
     validation_cases,
 )
 from crackfront.studies.boundary_elements.picture import ValidationPicture, validation_picture
@@ -265,10 +266,9 @@ def _rotation_effects(parameters: ValidationParameters) -> tuple[RotationEffect,
         return ()
     effects = []
     for number in range(given.surfaces):
-        sequence = np.random.SeedSequence(parameters.seed, spawn_key=(number,))
         case = replace(
             validation_cases(parameters)[0],
-            seed=int(sequence.generate_state(1)[0]),
+            seed=surface_seed(parameters.seed, number),
             n_point=given.n_point,
             interaction_range=0.0,
             elastic_energy=given.elastic_energy,
