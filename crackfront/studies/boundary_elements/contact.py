@@ -6,16 +6,16 @@ the extra `bem`; only the products with the elastic operators are those of scipy
 The nearest stable state is found as by NuMPI's `tr_newton_bounded` (a trust region, Steihaug's
 conjugate gradients on the free variables, projection on the bounds), but with the elastic operator
 as the measure of a step and as the preconditioner, which makes the number of products nearly
-independent of the grid. A step halfway along which the energy is found to rise is shortened, so that
-none jumps over a barrier; where nothing is out of balance no curvature may be negative, so that none
-ends on one.
+independent of the grid. A step halfway along which the energy is found to rise is shortened, so
+that none jumps over a barrier; where nothing is out of balance no curvature may be negative, so
+that none ends on one.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,8 @@ from crackfront.core.optional_libraries import MissingExtraError
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
+Values = TypeVar("Values", NDArray[np.float64], NDArray[np.float32])
+"""In the precision of what they are made from."""
 
 _STRONGEST = 1.2
 """Work of adhesion, in units of w_int, of the largest contact that a domain must hold."""
@@ -88,11 +90,11 @@ class HalfSpaceContact:
         """Attraction of closed surfaces, 3 w_int / g_c (Units: reduced pressure)."""
         return 3 * WORK_OF_ADHESION / self.interaction_range
 
-    def elastic_pressure(self, displacement: Array) -> Array:
+    def elastic_pressure(self, displacement: Values) -> Values:
         """Pressures that a displacement needs, on the doubled grid (Units: reduced pressure)."""
         return _filtered(displacement, self.stiffness)
 
-    def elastic_displacement(self, pressure: Array) -> Array:
+    def elastic_displacement(self, pressure: Values) -> Values:
         """Displacement that pressures cause, on the doubled grid (Units: reduced vertical)."""
         return _filtered(pressure, self.compliance)
 
@@ -101,12 +103,16 @@ class HalfSpaceContact:
         side = self.n_point
         return displacement[:side, :side] - (self.surface + penetration)
 
-    def evaluate(self, displacement: Array, penetration: float) -> tuple[float, Array]:
+    def evaluate(
+        self, displacement: Array, penetration: float, elastic: Array | None = None
+    ) -> tuple[float, Array]:
         """Energy per area of a pixel, and its derivative in the displacements.
 
+        The elastic pressures may be given where they are known.
         (Units: reduced pressure * vertical length; reduced pressure)
         """
-        gradient = self.elastic_pressure(displacement)
+        pressure = self.elastic_pressure(displacement) if elastic is None else elastic
+        gradient = pressure.copy()
         energy = 0.5 * float(np.vdot(displacement, gradient))
         attraction, slope, _ = self.system.interaction.evaluate(
             self.gap(displacement, penetration), potential=True, gradient=True
@@ -278,7 +284,8 @@ def equilibrium(
     """
     lowest = contact.surface + penetration
     state = _above(displacement.copy(), lowest)
-    energy, gradient = contact.evaluate(state, penetration)
+    elastic = contact.elastic_pressure(state)
+    energy, gradient = contact.evaluate(state, penetration, elastic)
     began, products, barriers, saddles, relative = energy, 0, 0, 0, math.inf
     for iteration in range(max_iterations):
         model = _linearised(contact, state, gradient, lowest, penetration)
@@ -301,19 +308,24 @@ def equilibrium(
                 )
             saddles += 1
         trial = _above(state + step.values, lowest)
-        trial_energy, trial_gradient = contact.evaluate(trial, penetration)
+        trial_elastic = contact.elastic_pressure(trial)
+        trial_energy, trial_gradient = contact.evaluate(trial, penetration, trial_elastic)
         gain = _gain(energy, trial_energy, model.decrease(trial - state))
         products += step.products + 1
-        energies = energy, trial_energy
-        if gain >= _ACCEPTED and _passes_barrier(contact, state, trial, energies, penetration):
-            barriers += 1
-            gain = -math.inf
+        if gain >= _ACCEPTED:
+            halfway = contact.evaluate(
+                (state + trial) / 2, penetration, (elastic + trial_elastic) / 2
+            )
+            if _passes_barrier(trial - state, energy, trial_energy, *halfway):
+                barriers += 1
+                gain = -math.inf
         if gain < _POOR:
             radius = _POOR * step.norm
         elif gain > 1 - _POOR and step.at_boundary:
             radius *= 2.0
         if gain >= _ACCEPTED:
-            state, energy, gradient = trial, trial_energy, trial_gradient
+            state, elastic = trial, trial_elastic
+            energy, gradient = trial_energy, trial_gradient
     raise ValueError(
         f"at penetration {penetration:.6g} the boundary elements did not come to rest in "
         f"{max_iterations} steps (pressure out of balance {relative:.2g} of the largest tension, "
@@ -322,16 +334,10 @@ def equilibrium(
 
 
 def _passes_barrier(
-    contact: HalfSpaceContact,
-    state: Array,
-    trial: Array,
-    energies: tuple[float, float],
-    load: float,
+    way: Array, before: float, after: float, halfway: float, gradient: Array
 ) -> bool:
-    """Whether the energy, seen halfway, rises on the way from a state to a lower one."""
-    before, after = energies
-    halfway, gradient = contact.evaluate((state + trial) / 2, load)
-    climbing = float(np.vdot(gradient, trial - state)) > 0
+    """Whether the energy rises on the way to a lower one, by itself and its gradient halfway."""
+    climbing = float(np.vdot(gradient, way)) > 0
     round_off = _ROUND_OFF * (1 + abs(before))
     return halfway > before + round_off or (climbing and after < halfway - round_off)
 
@@ -352,21 +358,22 @@ class _Linearised:
     gradient: Array
     softening: Array
 
-    def free(self, values: Array) -> Array:
+    def free(self, values: Values) -> Values:
         """Values without, in place, those of closed surfaces."""
         values[: len(self.closed), : len(self.closed)][self.closed] = 0.0
         return values
 
-    def curved(self, step: Array) -> Array:
+    def curved(self, step: Values) -> Values:
         """Product of the second derivatives with a step."""
         side = len(self.closed)
         product = self.contact.elastic_pressure(step)
         product[:side, :side] += self.softening * step[:side, :side]
         return product
 
-    def decrease(self, step: Array) -> float:
-        """Energy that a step releases."""
-        return -float(np.vdot(self.gradient, step) + 0.5 * np.vdot(step, self.curved(step)))
+    def decrease(self, step: NDArray[np.floating[Any]]) -> float:
+        """Energy that a step releases, its second order in single precision."""
+        curved = self.curved(step.astype(np.float32))
+        return -float(np.vdot(self.gradient, step) + 0.5 * np.vdot(step, curved))
 
 
 def _linearised(
@@ -394,16 +401,19 @@ def _gain(before: float, after: float, predicted: float) -> float:
 class _Step:
     """A step within the trust region, its elastic norm, and how it was found."""
 
-    values: Array
+    values: NDArray[np.float32]
     norm: float
     at_boundary: bool
     products: int
 
 
 def _truncated_step(model: _Linearised, radius: float, forcing: float) -> _Step:
-    """Steihaug's conjugate gradients, preconditioned; the norm is that of the preconditioner."""
-    step = np.zeros_like(model.gradient)
-    residual = model.gradient.copy()
+    """Steihaug's conjugate gradients, preconditioned; the norm is that of the preconditioner.
+
+    In single precision: a step need not be more exact than its forcing.
+    """
+    residual = model.gradient.astype(np.float32)
+    step = np.zeros_like(residual)
     relaxed = model.free(model.contact.elastic_displacement(residual))
     direction = -relaxed
     power = first = float(np.vdot(residual, relaxed))
@@ -443,7 +453,7 @@ def _downward_step(model: _Linearised, radius: float) -> _Step:
     in the space of their directions.
     """
     side = len(model.closed)
-    residual = np.zeros_like(model.gradient)
+    residual = np.zeros_like(model.gradient, dtype=np.float32)
     noise = np.random.default_rng(0).standard_normal((side, side))
     residual[:side, :side] = model.softening * noise
     model.free(residual)
@@ -467,8 +477,8 @@ def _downward_step(model: _Linearised, radius: float) -> _Step:
     return _Step(np.zeros_like(direction), 0.0, False, count)
 
 
-def _filtered(values: Array, response: Array) -> Array:
+def _filtered(values: Values, response: Array) -> Values:
     """Values whose Fourier modes are multiplied by a response."""
     modes = rfft2(values)
-    modes *= response
+    modes *= response.astype(values.dtype, copy=False)
     return np.asarray(irfft2(modes, s=values.shape, overwrite_x=True))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.core.cycle.energy import contact_energy
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import first_touch, refuse_outgrown, run_cycle
 from crackfront.core.geometry.sphere import ContactState
@@ -35,6 +36,9 @@ class FrontCycle:
     radius : (n_step, N_ANGLE) array
         Their fronts at the angles of the boundary elements' perimeters, by their Fourier series.
         (Units: reduced lateral length)
+    energy : (n_step,) array
+        Energies of the contacts above that of none. (Units: pi w_int R times a reduced vertical
+        length)
     end : float
         Penetration at which it lost contact. (Units: reduced vertical length)
     rotated : bool
@@ -45,6 +49,7 @@ class FrontCycle:
 
     states: ContactState[Any]
     radius: Array
+    energy: Array
     end: float
     rotated: bool
     mapping_seconds: float
@@ -84,10 +89,21 @@ def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = Tru
             f"{case.label}: at penetration {record.end_load:.6g} the front "
             f"{record.status.value}; raise n_angle or lower the spacing"
         )
-    modes = np.fft.rfft(np.asarray(record.fronts), norm="forward")
+    fronts = np.asarray(record.fronts)
+    modes = np.fft.rfft(fronts, norm="forward")
     radius = np.fft.irfft(modes, n=N_ANGLE, norm="forward")
+    energy = [
+        contact_energy(front, load, field)
+        for front, load in zip(fronts, record.states.penetration.tolist(), strict=True)
+    ]
     return FrontCycle(
-        record.states, radius, record.end_load, rotated, mapped - began, ended - mapped
+        states=record.states,
+        radius=radius,
+        energy=np.array(energy),
+        end=record.end_load,
+        rotated=rotated,
+        mapping_seconds=mapped - began,
+        cycle_seconds=ended - mapped,
     )
 
 

@@ -169,12 +169,17 @@ class SpectrumSection(Section):
 
 
 class GridSection(Section):
-    """Grid, range of the attraction and load step of all amplitudes, on the first surfaces."""
+    """Grid, range of the attraction and load step, on the first surfaces.
+
+    `scenes` is how many pairs of spectrum and amplitude it runs, those of the first spectrum first;
+    all by default, and then the smooth sphere as well.
+    """
 
     n_point: Annotated[int, Field(ge=16)]
     interaction_range: Positive
     step: Positive
     surfaces: Count
+    scenes: Count | None = None
 
 
 class AmplitudeParameters(Section):
@@ -210,6 +215,8 @@ class AmplitudeParameters(Section):
             place = f"grids[{number}]"
             if grid in self.grids[:number]:
                 raise refusal(f"{place} stands twice; remove one")
+            if (grid.scenes or 0) > (count := len(self.spectra) * len(self.elastic_energies)):
+                raise refusal(f"{place}: scenes is {grid.scenes}; there are {count}")
             _refuse_grid(place, self, grid.n_point, grid.interaction_range, self.loads)
             for name in ("first", "last", "turned", "end"):
                 count = getattr(self.loads, name) / grid.step
@@ -233,7 +240,7 @@ def load_validation(path: Path) -> ValidationParameters | AmplitudeParameters:
         sentence for each.
     """
     content = content_of(path)
-    if isinstance(content, dict) and "elastic_energies" in content:
+    if "elastic_energies" in content:
         return validated(path, content, AmplitudeParameters)
     return validated(path, content, ValidationParameters)
 
@@ -354,14 +361,13 @@ def amplitude_cases(parameters: AmplitudeParameters) -> tuple[Case, ...]:
     The smooth sphere of every grid comes first.
     """
     cases = []
-    flat, energies = parameters.spectra[0], parameters.elastic_energies
-    smooth = [(0, grid, flat, 0.0) for grid in parameters.grids]
+    scenes = [(shape, e) for shape in parameters.spectra for e in parameters.elastic_energies]
+    smooth = [(0, grid, scenes[0][0], 0.0) for grid in parameters.grids if grid.scenes is None]
     rough = [
         (surface, grid, spectrum, energy)
         for surface in range(max(grid.surfaces for grid in parameters.grids))
         for grid in parameters.grids
-        for spectrum in parameters.spectra
-        for energy in energies
+        for spectrum, energy in scenes[: grid.scenes]
         if surface < grid.surfaces
     ]
     for surface, grid, spectrum, energy in [*smooth, *rough]:

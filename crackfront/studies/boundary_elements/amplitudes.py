@@ -1,0 +1,344 @@
+"""Hysteresis of the crack front and of boundary elements on the same surfaces, by amplitude."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import binary_fill_holes, label
+
+from crackfront.analysis.estimate import Estimate, mean_estimate, student_estimate
+from crackfront.core import jkr
+from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
+from crackfront.studies.boundary_elements.comparison import jumps
+from crackfront.studies.boundary_elements.cycle import BoundaryCycle
+from crackfront.studies.boundary_elements.front import FrontCycle, front_cycle, shared_states
+from crackfront.studies.boundary_elements.parameters import (
+    AmplitudeParameters,
+    Case,
+    amplitude_cases,
+)
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+_JUMP = 0.25
+"""Least motion of an arc that jumps, in short cutoffs."""
+
+_SMOOTH = 0.5
+"""Part of it that a smooth front may move in a load step where jumps are counted."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceComparison:
+    """Both models over the steady parts of both branches on one surface.
+
+    Works of adhesion are means over the states of a branch, of the smooth sphere that has the same
+    force at the same penetration. Areas are means over all states, relative to that of the front.
+    """
+
+    seed: int = variable("seed of the surface", "1")
+    n_point: int = variable("points along a side of the grid", "1")
+    interaction_range: float = variable("gap at which the attraction ends", VERTICAL)
+    step: float = variable("load step", VERTICAL)
+    roll_off: float = variable("roll-off wavelength", LATERAL)
+    hurst: float = variable("Hurst exponent", "1")
+    asked_energy: float = variable("energy of full conformity that was asked for", ADHESION)
+    elastic_energy: float = variable("energy of full conformity on the tile", ADHESION)
+    repelling: float = variable("part of the surface whose work of adhesion is negative", "1")
+    boundary_approach: float = variable("w_appr of the boundary elements", ADHESION)
+    boundary_retraction: float = variable("w_retr of the boundary elements", ADHESION)
+    front_approach: float = variable("w_appr of the front", ADHESION)
+    front_retraction: float = variable("w_retr of the front", ADHESION)
+    open_inside: float = variable("area within the front that boundary elements leave open", "1")
+    closed_outside: float = variable("area outside the front that they close", "1")
+    pockets: float = variable("open area enclosed by contact, boundary elements", "1")
+    islands: float = variable("closed area apart from the contact, boundary elements", "1")
+    overhangs: float = variable(
+        "open area behind the perimeter but not enclosed, boundary elements", "1"
+    )
+    boundary_jumps: float = variable(
+        "jumps of a quarter of a cutoff or more, boundary elements; NaN in large load steps", "1"
+    )
+    front_jumps: float = variable("the same of the front", "1")
+    boundary_dissipated: float = variable("energy lost in both branches, boundary", ENERGY)
+    front_dissipated: float = variable("energy lost in both branches, front", ENERGY)
+    barriers: int = variable("steps that would have passed a barrier, and were shortened", "1")
+    saddles: int = variable("states without forces that were no minimum, and were left", "1")
+    least_released: float = variable("least fall of the energy at a penetration", ENERGY)
+    products: float = variable("conjugate-gradient products of a load step", "1")
+    boundary_seconds: float = variable("processor time of the boundary elements", "s")
+    front_seconds: float = variable("processor time of the front and its field", "s")
+
+    @property
+    def boundary_hysteresis(self) -> float:
+        """That of the boundary elements (Units: w_int)."""
+        return self.boundary_retraction - self.boundary_approach
+
+    @property
+    def front_hysteresis(self) -> float:
+        """That of the front (Units: w_int)."""
+        return self.front_retraction - self.front_approach
+
+    @property
+    def setting(self) -> tuple[float, ...]:
+        """What surfaces share that are averaged: grid, range, load step, spectrum, amplitude."""
+        return (*self.resolution, *self.scene)
+
+    @property
+    def resolution(self) -> tuple[float, ...]:
+        """Grid, range of the attraction, load step."""
+        return self.n_point, self.interaction_range, self.step
+
+    @property
+    def scene(self) -> tuple[float, ...]:
+        """Spectrum and amplitude."""
+        return self.roll_off, self.hurst, self.asked_energy
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """Surfaces of one spectrum, amplitude, grid and load step."""
+
+    rows: tuple[SurfaceComparison, ...]
+
+    def mean(self, value: Callable[[SurfaceComparison], float]) -> Estimate:
+        """Mean of a quantity over the surfaces."""
+        return mean_estimate(np.array([value(row) for row in self.rows]))[0]
+
+    def hysteresis_ratio(self) -> Estimate:
+        """Hysteresis of the front over that of the boundary elements, means over the surfaces.
+
+        The standard error is that of the jackknife.
+        """
+        front, boundary = (
+            np.array([getattr(row, f"{model}_hysteresis") for row in self.rows])
+            for model in ("front", "boundary")
+        )
+        count = len(self.rows)
+        value = np.sum(front) / np.sum(boundary)
+        if count < 2:
+            return student_estimate(value, math.nan, 0)
+        left = (np.sum(front) - front) / (np.sum(boundary) - boundary)
+        error = math.sqrt((count - 1) / count * float(np.sum((left - np.mean(left)) ** 2)))
+        return student_estimate(value, error, count - 1)
+
+
+def settings(rows: Iterable[SurfaceComparison]) -> tuple[Setting, ...]:
+    """Surfaces that are averaged together, by resolution, spectrum and amplitude."""
+    alike: dict[tuple[float, ...], list[SurfaceComparison]] = {}
+    for row in rows:
+        alike.setdefault(row.setting, []).append(row)
+    return tuple(Setting(tuple(alike[key])) for key in sorted(alike))
+
+
+def surface_comparison(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> SurfaceComparison:
+    """Both models on one surface, in the states that they share but for that of the turn."""
+    theirs, ours = _compared(case, boundary, front)
+    states = front.states
+    adhesion = rough_adhesion(case.heights(), case.pixel)
+    works = [
+        [
+            float(np.mean(apparent_adhesion(model.force[kept], model.penetration[kept])))
+            for kept in (numbers[model.direction[numbers] == sign] for sign in (1, -1))
+        ]
+        for model, numbers in ((boundary, theirs), (states, ours))
+    ]
+    areas = _areas(case, boundary, front)
+    dissipated = [
+        float(np.sum(_dissipated(model.penetration[kept], model.direction[kept], force, energy)))
+        for model, kept, force, energy in (
+            (boundary, theirs, boundary.force[theirs], boundary.energy[theirs]),
+            (states, ours, states.force[ours], front.energy[ours]),
+        )
+    ]
+    counts = [
+        _jump_count(case, model.penetration[kept], model.direction[kept], radius[kept])
+        for model, kept, radius in (
+            (boundary, theirs, boundary.radius),
+            (states, ours, front.radius),
+        )
+    ]
+    return SurfaceComparison(
+        seed=case.seed,
+        n_point=case.n_point,
+        interaction_range=case.interaction_range,
+        step=case.schedule.step,
+        roll_off=case.roll_off or case.short_cutoff,
+        hurst=case.hurst,
+        asked_energy=case.elastic_energy,
+        elastic_energy=adhesion.e_el,
+        repelling=float(np.mean(adhesion.work_of_adhesion < 0)),
+        boundary_approach=works[0][0],
+        boundary_retraction=works[0][1],
+        front_approach=works[1][0],
+        front_retraction=works[1][1],
+        open_inside=areas[0],
+        closed_outside=areas[1],
+        pockets=areas[2],
+        islands=areas[3],
+        overhangs=areas[4],
+        boundary_jumps=counts[0],
+        front_jumps=counts[1],
+        boundary_dissipated=dissipated[0],
+        front_dissipated=dissipated[1],
+        barriers=int(np.sum(boundary.barriers)),
+        saddles=int(np.sum(boundary.saddles)),
+        least_released=float(np.min(boundary.released)),
+        products=float(np.mean(boundary.products)),
+        boundary_seconds=float(np.sum(boundary.seconds)),
+        front_seconds=front.mapping_seconds + front.cycle_seconds,
+    )
+
+
+def apparent_adhesion(force: Array, penetration: Array) -> Array:
+    """Work of adhesion of the smooth sphere that has a force at a penetration (Units: w_int).
+
+    Of the two radii of F = 3 a b / 2 - a^3 / 2 the larger one has an open edge.
+
+    Examples
+    --------
+    >>> radius = np.array([1.2, 1.7])
+    >>> penetration = jkr.equilibrium_penetration(radius, 0.8)
+    >>> apparent_adhesion(jkr.equilibrium_force(radius, 0.8), penetration).round(12).tolist()
+    [0.8, 0.8]
+    """
+    radius = [
+        float(np.max(np.real(np.roots([1.0, 0.0, -3 * b, 2 * load]))))
+        for load, b in zip(force.tolist(), penetration.tolist(), strict=True)
+    ]
+    return jkr.apparent_work_of_adhesion(radius, penetration)
+
+
+def within(radius: Array, n_point: int, pixel: float) -> Mask:
+    """Points of a grid around the apex that are within a line of these radii at equal angles."""
+    position = (np.arange(n_point) - n_point // 2) * pixel
+    x, y = np.meshgrid(position, position, indexing="ij")
+    angle = np.mod(np.arctan2(y, x), 2 * np.pi)
+    corners = 2 * np.pi * np.arange(radius.size + 1) / radius.size
+    edge = np.interp(angle, corners, np.append(radius, radius[0]))
+    return np.asarray(np.hypot(x, y) < edge)
+
+
+@dataclass(frozen=True, slots=True)
+class Regions:
+    """Where one state of the boundary elements differs from a front, and from a disc.
+
+    Attributes
+    ----------
+    inside : (n_point, n_point) array
+        Points within the front.
+    open_inside, closed_outside, pockets, islands, overhangs : (n_point, n_point) array
+        As of :class:`SurfaceComparison`.
+    """
+
+    inside: Mask
+    open_inside: Mask
+    closed_outside: Mask
+    pockets: Mask
+    islands: Mask
+    overhangs: Mask
+
+
+def regions(closed: Mask, perimeter: Array, front: Array, pixel: float) -> Regions:
+    """Regions of one state, from where surfaces are closed and the edges at equal angles."""
+    inside = within(front, len(closed), pixel)
+    parts, _ = label(closed)
+    sizes = np.bincount(parts.ravel())
+    main = closed & (parts == 1 + int(np.argmax(sizes[1:])))
+    filled = binary_fill_holes(closed)
+    return Regions(
+        inside=inside,
+        open_inside=inside & ~closed,
+        closed_outside=closed & ~inside,
+        pockets=filled & ~closed,
+        islands=closed & ~main,
+        overhangs=within(perimeter, len(closed), pixel) & ~filled,
+    )
+
+
+def _areas(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> list[float]:
+    """Mean areas of the regions, relative to that within the front."""
+    theirs, ours = _compared(case, boundary, front)
+    parts = []
+    for one, other in zip(theirs.tolist(), ours.tolist(), strict=True):
+        found = regions(
+            boundary.closed_at(one), boundary.radius[one], front.radius[other], case.pixel
+        )
+        whole = np.count_nonzero(found.inside)
+        parts.append(
+            [
+                np.count_nonzero(part) / whole
+                for part in (
+                    found.open_inside,
+                    found.closed_outside,
+                    found.pockets,
+                    found.islands,
+                    found.overhangs,
+                )
+            ]
+        )
+    return [float(value) for value in np.mean(parts, axis=0)]
+
+
+def _compared(
+    case: Case, boundary: BoundaryCycle, front: FrontCycle
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """States of both branches in both models, without that of the turn."""
+    theirs, ours = shared_states(boundary, front.states)
+    kept = boundary.penetration[theirs] < case.schedule.max_penetration - 1e-9
+    return theirs[kept], ours[kept]
+
+
+def _dissipated(
+    penetration: Array, direction: NDArray[np.int64], force: Array, energy: Array
+) -> Array:
+    """Work of the force, by the trapezoidal rule, less the change of the energy, step by step."""
+    work = np.diff(penetration) * (force[1:] + force[:-1]) / 2
+    return np.asarray((work - np.diff(energy))[direction[1:] == direction[:-1]])
+
+
+def _jump_count(
+    case: Case, penetration: Array, direction: NDArray[np.int64], radius: Array
+) -> float:
+    """Jumps of both branches; NaN where a load step moves a smooth front too far to tell them."""
+    largest = case.schedule.step / jkr.penetration_slope(float(np.min(penetration)))
+    if largest > _SMOOTH * _JUMP * case.short_cutoff:
+        return math.nan
+    return float(len(jumps(penetration, direction, radius, _JUMP * case.short_cutoff)))
+
+
+def compared_surfaces(
+    parameters: AmplitudeParameters,
+    cycle: Callable[[Case], BoundaryCycle | None],
+) -> Iterator[tuple[Case, BoundaryCycle, FrontCycle, SurfaceComparison]]:
+    """Every case with its cycles and their comparison; what has no cycle is left out."""
+    fronts: dict[tuple[object, ...], FrontCycle] = {}
+    for case in amplitude_cases(parameters):
+        boundary = cycle(case)
+        if boundary is None:
+            continue
+        # The surface is that of the spectrum, not of the grid: so is the front.
+        scene = case.seed, case.roll_off, case.hurst, case.elastic_energy, case.schedule
+        if scene not in fronts:
+            fronts[scene] = front_cycle(case, parameters.front.n_angle, parameters.front.spacing)
+        yield case, boundary, fronts[scene], surface_comparison(case, boundary, fronts[scene])
+
+
+def validity_rows(found: Sequence[Setting]) -> list[tuple[float, ...]]:
+    """Roll-off, Hurst exponent, e_el, ratio of hystereses and its error, of the most surfaces."""
+    best: dict[tuple[float, ...], Setting] = {}
+    for setting in found:
+        scene = setting.rows[0].scene
+        if scene[-1] > 0 and len(setting.rows) > len(best.get(scene, Setting(())).rows):
+            best[scene] = setting
+    rows = []
+    for scene, setting in sorted(best.items()):
+        ratio = setting.hysteresis_ratio()
+        energy = float(setting.mean(lambda row: row.elastic_energy).value)
+        rows.append((*scene[:2], energy, float(ratio.value), float(ratio.standard_error)))
+    return rows
