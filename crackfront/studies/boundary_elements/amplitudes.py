@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_fill_holes, label
 
 from crackfront.analysis.estimate import Estimate, mean_estimate, student_estimate
+from crackfront.analysis.validity import ValidityRow
 from crackfront.core import jkr
 from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.studies.boundary_elements.comparison import jumps
 from crackfront.studies.boundary_elements.cycle import BoundaryCycle
-from crackfront.studies.boundary_elements.front import FrontCycle, front_cycle, shared_states
+from crackfront.studies.boundary_elements.front import (
+    FrontCycle,
+    States,
+    front_cycle,
+    shared_states,
+)
 from crackfront.studies.boundary_elements.parameters import (
     AmplitudeParameters,
     Case,
@@ -25,6 +33,7 @@ from crackfront.studies.boundary_elements.parameters import (
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Model = Literal["boundary", "front"]
 
 _JUMP = 0.25
 """Least motion of an arc that jumps, in short cutoffs."""
@@ -38,7 +47,9 @@ class SurfaceComparison:
     """Both models over the steady parts of both branches on one surface.
 
     Works of adhesion are means over the states of a branch, of the smooth sphere that has the same
-    force at the same penetration. Areas are means over all states, relative to that of the front.
+    force at the same penetration. The hysteresis is the energy that either branch loses per area
+    that it sweeps, summed: it does not depend on where on the surface the branches are. Areas are
+    means over all states, relative to that of the front.
     """
 
     seed: int = variable("seed of the surface", "1")
@@ -67,22 +78,14 @@ class SurfaceComparison:
     front_jumps: float = variable("the same of the front", "1")
     boundary_dissipated: float = variable("energy lost in both branches, boundary", ENERGY)
     front_dissipated: float = variable("energy lost in both branches, front", ENERGY)
+    boundary_hysteresis: float = variable("energy lost per area swept, boundary", ADHESION)
+    front_hysteresis: float = variable("energy lost per area swept, front", ADHESION)
     barriers: int = variable("steps that would have passed a barrier, and were shortened", "1")
     saddles: int = variable("states without forces that were no minimum, and were left", "1")
     least_released: float = variable("least fall of the energy at a penetration", ENERGY)
     products: float = variable("conjugate-gradient products of a load step", "1")
     boundary_seconds: float = variable("processor time of the boundary elements", "s")
     front_seconds: float = variable("processor time of the front and its field", "s")
-
-    @property
-    def boundary_hysteresis(self) -> float:
-        """That of the boundary elements (Units: w_int)."""
-        return self.boundary_retraction - self.boundary_approach
-
-    @property
-    def front_hysteresis(self) -> float:
-        """That of the front (Units: w_int)."""
-        return self.front_retraction - self.front_approach
 
     @property
     def setting(self) -> tuple[float, ...]:
@@ -109,6 +112,10 @@ class Setting:
     def mean(self, value: Callable[[SurfaceComparison], float]) -> Estimate:
         """Mean of a quantity over the surfaces."""
         return mean_estimate(np.array([value(row) for row in self.rows]))[0]
+
+    def hysteresis(self, model: Model) -> Estimate:
+        """Mean hysteresis of a model over the surfaces (Units: w_int)."""
+        return self.mean(lambda row: float(getattr(row, f"{model}_hysteresis")))
 
     def hysteresis_ratio(self) -> Estimate:
         """Hysteresis of the front over that of the boundary elements, means over the surfaces.
@@ -149,11 +156,11 @@ def surface_comparison(case: Case, boundary: BoundaryCycle, front: FrontCycle) -
         for model, numbers in ((boundary, theirs), (states, ours))
     ]
     areas = _areas(case, boundary, front)
-    dissipated = [
-        float(np.sum(_dissipated(model.penetration[kept], model.direction[kept], force, energy)))
-        for model, kept, force, energy in (
-            (boundary, theirs, boundary.force[theirs], boundary.energy[theirs]),
-            (states, ours, states.force[ours], front.energy[ours]),
+    lost = [
+        _lost(model, energy, kept)
+        for model, energy, kept in (
+            (boundary, boundary.energy, theirs),
+            (states, front.energy, ours),
         )
     ]
     counts = [
@@ -184,8 +191,10 @@ def surface_comparison(case: Case, boundary: BoundaryCycle, front: FrontCycle) -
         overhangs=areas[4],
         boundary_jumps=counts[0],
         front_jumps=counts[1],
-        boundary_dissipated=dissipated[0],
-        front_dissipated=dissipated[1],
+        boundary_dissipated=lost[0][0],
+        front_dissipated=lost[1][0],
+        boundary_hysteresis=lost[0][1],
+        front_hysteresis=lost[1][1],
         barriers=int(np.sum(boundary.barriers)),
         saddles=int(np.sum(boundary.saddles)),
         least_released=float(np.min(boundary.released)),
@@ -294,12 +303,20 @@ def _compared(
     return theirs[kept], ours[kept]
 
 
-def _dissipated(
-    penetration: Array, direction: NDArray[np.int64], force: Array, energy: Array
-) -> Array:
-    """Work of the force, by the trapezoidal rule, less the change of the energy, step by step."""
-    work = np.diff(penetration) * (force[1:] + force[:-1]) / 2
-    return np.asarray((work - np.diff(energy))[direction[1:] == direction[:-1]])
+def _lost(states: States, energy: Array, kept: NDArray[np.int64]) -> tuple[float, float]:
+    """Energy that both branches lose, and the sum of what they lose per area (Units: w_int).
+
+    In a load step it is the work of the force, by the trapezoidal rule, less the energy's rise.
+    """
+    lost = density = 0.0
+    for sign in (1, -1):
+        branch = kept[states.direction[kept] == sign]
+        force, area = states.force[branch], states.contact_area[branch]
+        work = np.diff(states.penetration[branch]) * (force[1:] + force[:-1]) / 2
+        part = float(np.sum(work - np.diff(energy[branch])))
+        lost += part
+        density += part / abs(float(area[-1] - area[0])) / WORK_OF_ADHESION
+    return lost, density
 
 
 def _jump_count(
@@ -329,16 +346,30 @@ def compared_surfaces(
         yield case, boundary, fronts[scene], surface_comparison(case, boundary, fronts[scene])
 
 
-def validity_rows(found: Sequence[Setting]) -> list[tuple[float, ...]]:
-    """Roll-off, Hurst exponent, e_el, ratio of hystereses and its error, of the most surfaces."""
+def best_settings(found: Iterable[Setting]) -> list[Setting]:
+    """One setting of every spectrum and amplitude: the shortest range, then the most surfaces."""
     best: dict[tuple[float, ...], Setting] = {}
-    for setting in found:
-        scene = setting.rows[0].scene
-        if scene[-1] > 0 and len(setting.rows) > len(best.get(scene, Setting(())).rows):
-            best[scene] = setting
-    rows = []
-    for scene, setting in sorted(best.items()):
-        ratio = setting.hysteresis_ratio()
-        energy = float(setting.mean(lambda row: row.elastic_energy).value)
-        rows.append((*scene[:2], energy, float(ratio.value), float(ratio.standard_error)))
-    return rows
+
+    def rank(one: Setting) -> tuple[float, ...]:
+        return -one.rows[0].interaction_range, len(one.rows), one.rows[0].n_point
+
+    for one in found:
+        scene = one.rows[0].scene
+        if scene not in best or rank(one) > rank(best[scene]):
+            best[scene] = one
+    return [best[scene] for scene in sorted(best)]
+
+
+def validity_row(setting: Setting, short_cutoff: float) -> ValidityRow:
+    """What is told of the front at one spectrum and amplitude."""
+    ratio, row = setting.hysteresis_ratio(), setting.rows[0]
+    return ValidityRow(
+        roll_off=row.roll_off / short_cutoff,
+        hurst=row.hurst,
+        elastic_energy=float(setting.mean(lambda one: one.elastic_energy).value),
+        ratio=float(ratio.value),
+        error=float(ratio.standard_error),
+        surfaces=len(setting.rows),
+        n_point=row.n_point,
+        interaction_range=row.interaction_range,
+    )

@@ -132,7 +132,7 @@ def validation(
         If a front fails.
     """
     cycles = [
-        (case, _stored_cycle(case, folder / f"{case.stem}.nc", origin, progress))
+        (case, stored_cycle(case, folder / f"{case.stem}.nc", origin, progress))
         for case in validation_cases(parameters)
     ]
     compared = []
@@ -163,7 +163,13 @@ def validation(
     )
 
 
-def _stored_cycle(case: Case, path: Path, origin: Provenance, progress: Progress) -> BoundaryCycle:
+def finished_cycle(path: Path) -> BoundaryCycle | None:
+    """Cycle of a file, or none where there is no file or a load is left to do."""
+    known = read_record(path, BoundaryCycle) if path.exists() else None
+    return known if known is not None and known.status != RUNNING else None
+
+
+def stored_cycle(case: Case, path: Path, origin: Provenance, progress: Progress) -> BoundaryCycle:
     """Cycle of a case: read, continued or computed."""
 
     def keep(cycle: BoundaryCycle) -> None:
@@ -174,9 +180,10 @@ def _stored_cycle(case: Case, path: Path, origin: Provenance, progress: Progress
             f"{cycle.seconds[-1]:.2f} s"
         )
 
+    finished = finished_cycle(path)
+    if finished is not None:
+        return finished
     known = read_record(path, BoundaryCycle) if path.exists() else None
-    if known is not None and known.status != RUNNING:
-        return known
     return boundary_cycle(case, known, keep)
 
 
