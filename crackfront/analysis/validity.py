@@ -1,7 +1,7 @@
 """Up to which roughness the hysteresis of a crack front is that of boundary elements.
 
-`crackfront validate config/validation-strong.yaml` computes both on the same surfaces and writes
-`validity.csv`, which is kept here.
+`crackfront validate` computes both on the same surfaces and writes `validity.csv`, which is kept
+here.
 """
 
 from __future__ import annotations
@@ -101,18 +101,20 @@ def largest_energy(rows: Sequence[ValidityRow], tolerance: float) -> float:
 def validity_sentence(rows: Sequence[ValidityRow] | None = None) -> str:
     """What the hysteresis of a front is worth by amplitude, by the shipped table or another."""
     rows = shipped_validity() if rows is None else rows
-    smoothest = min(row.elastic_energy for row in rows)
+    energies = [row.elastic_energy for row in rows]
     told = []
     for tolerance in TOLERANCES:
         energy = largest_energy(rows, tolerance)
-        told.append(
-            f"to {tolerance:.0%} up to e_el/w_int = {energy:.2g}"
-            if energy
-            else f"to {tolerance:.0%} nowhere from e_el/w_int = {smoothest:.2g} on"
-        )
+        if energy:
+            strongest = ", the strongest that was compared" if energy == max(energies) else ""
+            told.append(f"to {tolerance:.0%} up to e_el/w_int = {energy:.2g}{strongest}")
+        else:
+            told.append(f"to {tolerance:.0%} nowhere from e_el/w_int = {min(energies):.2g} on")
+    if largest_energy(rows, TOLERANCES[0]) == largest_energy(rows, TOLERANCES[-1]):
+        del told[1:]
     worst = max(rows, key=lambda row: abs(row.ratio - 1))
     return (
         f"Against boundary elements on the same surfaces the front's hysteresis is right "
-        f"{' and '.join(told)}; at worst it is {worst.ratio:.2g} times theirs, at "
+        f"{', and '.join(told)}; at worst it is {worst.ratio:.2g} times theirs, at "
         f"e_el/w_int = {worst.elastic_energy:.2g}."
     )

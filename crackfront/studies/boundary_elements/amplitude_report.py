@@ -22,6 +22,7 @@ from crackfront.studies.boundary_elements.amplitudes import (
     SurfaceComparison,
     best_settings,
     compared_surfaces,
+    range_limits,
     settings,
     validity_row,
 )
@@ -82,7 +83,7 @@ def write_amplitudes(
 
 def _write_validity(folder: Path, rows: Sequence[SurfaceComparison], short_cutoff: float) -> None:
     """Figure and table of the range within which the front's hysteresis holds."""
-    found = [one for one in settings(rows) if one.rows[0].asked_energy > 0]
+    found = [one for one in settings([*rows, *range_limits(rows)]) if one.rows[0].asked_energy]
     if found:
         best = best_settings(found)
         save_figure(validity_figure(found, best), folder / "validation")
@@ -92,14 +93,14 @@ def _write_validity(folder: Path, rows: Sequence[SurfaceComparison], short_cutof
 
 def amplitude_report(rows: Sequence[SurfaceComparison], short_cutoff: float) -> str:
     """Markdown tables of what is finished."""
-    found = settings(rows)
+    found, limits = settings(rows), settings(range_limits(rows))
     rough = [one for one in found if one.rows[0].asked_energy > 0]
-    best = best_settings(rough)
+    best = best_settings(one for one in (*found, *limits) if one.rows[0].asked_energy > 0)
     told = [validity_row(one, short_cutoff) for one in best]
     parts = [
         ["# Crack front against boundary elements, by amplitude", ""],
         [validity_sentence(told), ""] if told else [],
-        _hysteresis_rows(found),
+        _hysteresis_rows((*found, *limits)),
         _difference_rows(rough),
         _resolution_rows(rows),
         _minimiser_rows(found),
@@ -156,14 +157,26 @@ def _hysteresis_rows(found: Sequence[Setting]) -> list[str]:
             [
                 *_setting(row, float(one.mean(_energy).value)),
                 f"{len(one.rows)}",
-                *_cells(one, lambda row: row.boundary_approach, lambda row: row.front_approach),
-                *_cells(one, lambda row: row.boundary_retraction, lambda row: row.front_retraction),
+                *_cells(
+                    one,
+                    lambda row: row.boundary_approach,
+                    lambda row: row.front_approach,
+                    lambda row: row.zone_approach,
+                    lambda row: row.boundary_retraction,
+                    lambda row: row.front_retraction,
+                    lambda row: row.zone_retraction,
+                ),
                 *_cells(
                     one,
                     lambda row: (row.boundary_approach + row.boundary_retraction) / 2,
                     lambda row: (row.front_approach + row.front_retraction) / 2,
                 ),
-                *_cells(one, lambda row: row.boundary_hysteresis, lambda row: row.front_hysteresis),
+                *_cells(
+                    one,
+                    lambda row: row.boundary_hysteresis,
+                    lambda row: row.front_hysteresis,
+                    lambda row: row.zone_hysteresis,
+                ),
                 *(_cells(one, _factor, _front_factor, digits=2) if row.asked_energy else ["", ""]),
                 _shown(one.hysteresis_ratio(), 2) if row.asked_energy else "",
             ]
@@ -172,12 +185,14 @@ def _hysteresis_rows(found: Sequence[Setting]) -> list[str]:
         "Works of adhesion of the smooth sphere with the same force at the same penetration, in "
         "w_int; boundary elements first, then the front on the same surfaces; in brackets standard "
         "errors over surfaces. Hysteresis: the energy that either branch loses per area that it "
-        "sweeps, summed; k is half of it over e_el. Ratio: front over boundary elements.",
+        "sweeps, summed; k is half of it over e_el. Ratio: front over boundary elements. With "
+        "zone: a front that feels the mean of the heights over a cohesive zone of the length "
+        "E' w_int / tension^2. Range 0 is extrapolated from the two shortest of a surface.",
         "",
         *_table(
             (
-                *("surfaces", "w_appr", "front", "w_retr", "front", "mean", "front"),
-                *("hysteresis", "front", "k", "front", "ratio"),
+                *("surfaces", "w_appr", "front", "with zone", "w_retr", "front", "with zone"),
+                *("mean", "front", "hysteresis", "front", "with zone", "k", "front", "ratio"),
             ),
             lines,
         ),

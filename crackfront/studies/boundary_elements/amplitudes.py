@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -15,7 +15,7 @@ from crackfront.analysis.estimate import Estimate, mean_estimate, student_estima
 from crackfront.analysis.validity import ValidityRow
 from crackfront.core import jkr
 from crackfront.core.adhesion import rough_adhesion
-from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.studies.boundary_elements.comparison import jumps
 from crackfront.studies.boundary_elements.cycle import BoundaryCycle
@@ -65,6 +65,9 @@ class SurfaceComparison:
     boundary_retraction: float = variable("w_retr of the boundary elements", ADHESION)
     front_approach: float = variable("w_appr of the front", ADHESION)
     front_retraction: float = variable("w_retr of the front", ADHESION)
+    zone_approach: float = variable("w_appr of a front with a cohesive zone", ADHESION)
+    zone_retraction: float = variable("w_retr of a front with a cohesive zone", ADHESION)
+    zone_hysteresis: float = variable("energy it loses per area swept", ADHESION)
     open_inside: float = variable("area within the front that boundary elements leave open", "1")
     closed_outside: float = variable("area outside the front that they close", "1")
     pockets: float = variable("open area enclosed by contact, boundary elements", "1")
@@ -143,8 +146,13 @@ def settings(rows: Iterable[SurfaceComparison]) -> tuple[Setting, ...]:
     return tuple(Setting(tuple(alike[key])) for key in sorted(alike))
 
 
-def surface_comparison(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> SurfaceComparison:
-    """Both models on one surface, in the states that they share but for that of the turn."""
+def surface_comparison(
+    case: Case, boundary: BoundaryCycle, front: FrontCycle, zone: FrontCycle
+) -> SurfaceComparison:
+    """Both models on one surface, in the states that they share but for that of the turn.
+
+    The second front has a cohesive zone as long as that of the boundary elements.
+    """
     theirs, ours = _compared(case, boundary, front)
     states = front.states
     adhesion = rough_adhesion(case.heights(), case.pixel)
@@ -153,7 +161,7 @@ def surface_comparison(case: Case, boundary: BoundaryCycle, front: FrontCycle) -
             float(np.mean(apparent_adhesion(model.force[kept], model.penetration[kept])))
             for kept in (numbers[model.direction[numbers] == sign] for sign in (1, -1))
         ]
-        for model, numbers in ((boundary, theirs), (states, ours))
+        for model, numbers in ((boundary, theirs), (states, ours), (zone.states, ours))
     ]
     areas = _areas(case, boundary, front)
     lost = [
@@ -161,6 +169,7 @@ def surface_comparison(case: Case, boundary: BoundaryCycle, front: FrontCycle) -
         for model, energy, kept in (
             (boundary, boundary.energy, theirs),
             (states, front.energy, ours),
+            (zone.states, zone.energy, ours),
         )
     ]
     counts = [
@@ -184,6 +193,9 @@ def surface_comparison(case: Case, boundary: BoundaryCycle, front: FrontCycle) -
         boundary_retraction=works[0][1],
         front_approach=works[1][0],
         front_retraction=works[1][1],
+        zone_approach=works[2][0],
+        zone_retraction=works[2][1],
+        zone_hysteresis=lost[2][1],
         open_inside=areas[0],
         closed_outside=areas[1],
         pockets=areas[2],
@@ -334,16 +346,72 @@ def compared_surfaces(
     cycle: Callable[[Case], BoundaryCycle | None],
 ) -> Iterator[tuple[Case, BoundaryCycle, FrontCycle, SurfaceComparison]]:
     """Every case with its cycles and their comparison; what has no cycle is left out."""
+    given = parameters.front
     fronts: dict[tuple[object, ...], FrontCycle] = {}
+
+    def front(case: Case, zone: float) -> FrontCycle:
+        # The surface is that of the spectrum, not of the grid: so is the front.
+        key = case.seed, case.roll_off, case.hurst, case.elastic_energy, case.schedule, zone
+        if key not in fronts:
+            fronts[key] = front_cycle(case, given.n_angle, given.spacing, zone=zone)
+        return fronts[key]
+
     for case in amplitude_cases(parameters):
         boundary = cycle(case)
         if boundary is None:
             continue
-        # The surface is that of the spectrum, not of the grid: so is the front.
-        scene = case.seed, case.roll_off, case.hurst, case.elastic_energy, case.schedule
-        if scene not in fronts:
-            fronts[scene] = front_cycle(case, parameters.front.n_angle, parameters.front.spacing)
-        yield case, boundary, fronts[scene], surface_comparison(case, boundary, fronts[scene])
+        sharp, blunt = front(case, 0.0), front(case, zone_length(case.interaction_range))
+        yield case, boundary, sharp, surface_comparison(case, boundary, sharp, blunt)
+
+
+def zone_length(interaction_range: float) -> float:
+    """Length E' w_int / tension^2 of a cohesive zone, by its largest tension 3 w_int / g_c.
+
+    Examples
+    --------
+    >>> round(zone_length(0.3), 4)
+    0.0236
+    """
+    return CONTACT_MODULUS * interaction_range**2 / (9 * WORK_OF_ADHESION)
+
+
+def range_limits(rows: Sequence[SurfaceComparison]) -> list[SurfaceComparison]:
+    """The two shortest ranges of every surface, extrapolated to a vanishing one.
+
+    Works of adhesion are linear in the length of the cohesive zone, hence in the square of the
+    range; so is the logarithm of the hysteresis, where both are positive. Everything else is that
+    of the shorter range.
+    """
+    alike: dict[tuple[float, ...], list[SurfaceComparison]] = {}
+    for row in rows:
+        alike.setdefault((*row.scene, row.seed, row.step), []).append(row)
+    limits = []
+    for found in alike.values():
+        found.sort(key=lambda row: (row.interaction_range, -row.n_point))
+        fine = found[0]
+        longer = [row for row in found if row.interaction_range > fine.interaction_range]
+        if not longer:
+            continue
+        coarse = longer[0]
+        share = 1 / ((coarse.interaction_range / fine.interaction_range) ** 2 - 1)
+        lost, more = fine.boundary_hysteresis, coarse.boundary_hysteresis
+        limits.append(
+            replace(
+                fine,
+                interaction_range=0.0,
+                boundary_approach=fine.boundary_approach
+                + share * (fine.boundary_approach - coarse.boundary_approach),
+                boundary_retraction=fine.boundary_retraction
+                + share * (fine.boundary_retraction - coarse.boundary_retraction),
+                boundary_hysteresis=lost * (lost / more) ** share
+                if min(lost, more) > 0
+                else lost + share * (lost - more),
+                zone_approach=fine.front_approach,
+                zone_retraction=fine.front_retraction,
+                zone_hysteresis=fine.front_hysteresis,
+            )
+        )
+    return limits
 
 
 def best_settings(found: Iterable[Setting]) -> list[Setting]:
