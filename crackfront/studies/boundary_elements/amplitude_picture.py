@@ -140,7 +140,7 @@ def validity_figure(found: Sequence[Setting], shown: Sequence[Setting]) -> Figur
     found : sequence of Setting
         Every setting; its ratio is drawn small.
     shown : sequence of Setting
-        One of every spectrum and amplitude, whose hystereses are drawn.
+        Those extrapolated to a vanishing range, whose hystereses are drawn.
     """
     with house_style():
         figure = blank_figure(PAGE, 0.42 * PAGE)

@@ -20,7 +20,6 @@ from crackfront.studies.boundary_elements.amplitude_picture import (
 from crackfront.studies.boundary_elements.amplitudes import (
     Setting,
     SurfaceComparison,
-    best_settings,
     compared_surfaces,
     range_limits,
     settings,
@@ -83,25 +82,30 @@ def write_amplitudes(
 
 def _write_validity(folder: Path, rows: Sequence[SurfaceComparison], short_cutoff: float) -> None:
     """Figure and table of the range within which the front's hysteresis holds."""
-    found = [one for one in settings([*rows, *range_limits(rows)]) if one.rows[0].asked_energy]
-    if found:
-        best = best_settings(found)
-        save_figure(validity_figure(found, best), folder / "validation")
-        told = [validity_row(one, short_cutoff) for one in best]
+    found, limits = (
+        [one for one in settings(some) if one.rows[0].asked_energy > 0]
+        for some in (rows, range_limits(rows))
+    )
+    if limits:
+        save_figure(validity_figure(found, limits), folder / "validation")
+        told = [validity_row(one, short_cutoff) for one in limits]
         write_text(folder / "validity.csv", validity_text(told))
+
+
+def _rough(rows: Iterable[SurfaceComparison]) -> list[Setting]:
+    """Settings without the smooth spheres."""
+    return list(settings(row for row in rows if row.asked_energy > 0))
 
 
 def amplitude_report(rows: Sequence[SurfaceComparison], short_cutoff: float) -> str:
     """Markdown tables of what is finished."""
     found, limits = settings(rows), settings(range_limits(rows))
-    rough = [one for one in found if one.rows[0].asked_energy > 0]
-    best = best_settings(one for one in (*found, *limits) if one.rows[0].asked_energy > 0)
-    told = [validity_row(one, short_cutoff) for one in best]
+    told = [validity_row(one, short_cutoff) for one in _rough(range_limits(rows))]
     parts = [
         ["# Crack front against boundary elements, by amplitude", ""],
         [validity_sentence(told), ""] if told else [],
         _hysteresis_rows((*found, *limits)),
-        _difference_rows(rough),
+        _difference_rows(_rough(rows)),
         _resolution_rows(rows),
         _minimiser_rows(found),
     ]

@@ -414,20 +414,6 @@ def range_limits(rows: Sequence[SurfaceComparison]) -> list[SurfaceComparison]:
     return limits
 
 
-def best_settings(found: Iterable[Setting]) -> list[Setting]:
-    """One setting of every spectrum and amplitude: the shortest range, then the most surfaces."""
-    best: dict[tuple[float, ...], Setting] = {}
-
-    def rank(one: Setting) -> tuple[float, ...]:
-        return -one.rows[0].interaction_range, len(one.rows), one.rows[0].n_point
-
-    for one in found:
-        scene = one.rows[0].scene
-        if scene not in best or rank(one) > rank(best[scene]):
-            best[scene] = one
-    return [best[scene] for scene in sorted(best)]
-
-
 def validity_row(setting: Setting, short_cutoff: float) -> ValidityRow:
     """What is told of the front at one spectrum and amplitude."""
     ratio, row = setting.hysteresis_ratio(), setting.rows[0]
