@@ -18,6 +18,7 @@ from crackfront.analysis.validity import (
 )
 from crackfront.cli import main
 from crackfront.core import jkr
+from crackfront.data.files import read_attributes
 from crackfront.data.records import read_record, read_records
 from crackfront.data.section import ConfigurationError
 from crackfront.studies.boundary_elements.amplitude_picture import AmplitudePicture
@@ -253,3 +254,13 @@ def test_the_shipped_table_is_that_of_the_kept_validation():
     assert validity_text([shipped]) == validity_text([found])
     assert 0.9 < shipped.ratio < 1
     assert "front's hysteresis is right to 10% up to e_el/w_int = 0.03" in validity_sentence()
+
+
+def test_the_kept_comparison_says_where_it_comes_from_and_that_no_energy_rose():
+    kept = Path(__file__).parents[1] / "docs" / "reference" / "validation"
+    rows = read_records(kept / "differences-strong.nc", SurfaceComparison, "case")
+    assert [row.asked_energy for row in rows] == [0, 0.177, 0.03, 0.1]
+    assert all(row.least_released > 0 and row.saddles == row.barriers == 0 for row in rows)
+    told = read_attributes(kept / "differences-strong.nc")
+    assert told["command"] == "crackfront validate config/validation-strong.yaml --finished"
+    assert "dirty" not in told["git_commit"]
