@@ -5,11 +5,15 @@ matplotlib is imported by the functions that draw, so that who only computes doe
 
 from __future__ import annotations
 
+import functools
 import logging
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from crackfront.data.files import replace_atomically
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,6 +36,9 @@ BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = (
 COLOURS = (GREEN, BLUE, PURPLE, VERMILION, ORANGE, SKY, BLACK)
 MARKERS = ("s", "o", "^", "D", "v", "P", "X")
 """One colour and marker a spectrum; after seven both repeat, out of step."""
+
+_SMALL = 6.5
+"""Size of the font of explanations."""
 
 _SHOWN = 4.0
 """Width of a figure on a screen (Units: inch)."""
@@ -90,6 +97,13 @@ def blank_figure(width: float, height: float) -> Figure:
     return figure
 
 
+def explain(figure: Figure, text: str) -> None:
+    """Lines below a figure that say what its legend does not: bars, open symbols, grey lines."""
+    per_inch = 72 / (0.56 * _SMALL)
+    lines = textwrap.fill(text, int(per_inch * figure.get_figwidth()))
+    figure.supxlabel(lines, fontsize=_SMALL, color="0.25")
+
+
 @contextmanager
 def shown_axes() -> Iterator[Axes]:
     """Axes of a new figure that a notebook shows, unless drawing on them fails."""
@@ -106,11 +120,13 @@ def shown_axes() -> Iterator[Axes]:
 
 def save_figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
     """Write a figure as PDF and PNG (300 dpi), its folder too; equal figures give equal bytes."""
-    stem.parent.mkdir(parents=True, exist_ok=True)
     pdf, png = (stem.with_name(stem.name + suffix) for suffix in (".pdf", ".png"))
     with house_style(), _fonts_without_dates():
-        figure.savefig(pdf, metadata={"CreationDate": None})
-        figure.savefig(png, metadata={"Software": None})
+        for path, undated in ((pdf, "CreationDate"), (png, "Software")):
+            written = functools.partial(
+                figure.savefig, format=path.suffix[1:], metadata={undated: None}
+            )
+            replace_atomically(path, written, sealed=True)
     return pdf, png
 
 

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR, fit_notes, fit_table
+from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
+from crackfront.analysis.report import fit_notes, fit_table
 from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import FIT_DEFINITION
@@ -35,8 +36,8 @@ def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Pa
         "notes": list(fit_notes(fit)),
         "columns": entries,
     }
-    write_text(paths[1], json.dumps(content, indent=1, allow_nan=False) + "\n")
-    write_text(paths[2], fit_table(fit))
+    write_text(paths[1], json.dumps(content, indent=1, allow_nan=False) + "\n", sealed=True)
+    write_text(paths[2], fit_table(fit), sealed=True)
     return paths
 
 

@@ -14,7 +14,8 @@ from scipy.fft import fftfreq, fftn
 from scipy.signal import get_window
 from scipy.special import digamma, polygamma
 
-from crackfront.topography.reading import Measurement, surface_library
+from crackfront.topography.instruments import surface_library
+from crackfront.topography.reading import Measurement
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,9 @@ from crackfront.topography.densities import Density
 
 Array = NDArray[np.float64]
 
-_LOWEST_HURST = 0.01
+HURST_RANGE = (0.01, 1.0)
+"""Hurst exponents that are fitted."""
+
 _STARTS = 6
 """Roll-offs from which the fit begins; the best end counts."""
 
@@ -131,8 +133,8 @@ def _fit(
     shape = SelfAffineSpectrum(shortest, start, 0.8)
     plateau = np.mean([np.mean(item.logarithm - np.log(_model(shape, item))) for item in densities])
     bounds = (
-        [-np.inf, math.log(shortest), _LOWEST_HURST],
-        [np.inf, math.log(longest), 1.0],
+        [-np.inf, math.log(shortest), HURST_RANGE[0]],
+        [np.inf, math.log(longest), HURST_RANGE[1]],
     )
     return least_squares(residuals, [plateau, math.log(start), 0.8], bounds=bounds, x_scale="jac")
 
@@ -156,7 +158,7 @@ def _spectrum(parameters: Array, shortest: float) -> SelfAffineSpectrum:
     return SelfAffineSpectrum(
         shortest,
         max(shortest, math.exp(roll_off)),
-        min(max(hurst, _LOWEST_HURST), 1.0),
+        min(max(hurst, HURST_RANGE[0]), HURST_RANGE[1]),
         math.exp(plateau),
     )
 

@@ -1,20 +1,19 @@
 rule fit:
     input:
-        CONFIGURATION,
         f"{RESULTS}/hysteresis.nc",
     output:
         multiext(f"{RESULTS}/fit", ".nc", ".json", ".md"),
     params:
         sources=package_fingerprint(),
+        sweep=SWEEP.fingerprint,
     shell:
         "crackfront fit {CONFIGURATION:q} --output {RESULTS:q}"
 
 
 rule summary:
     input:
-        CONFIGURATION,
         f"{RESULTS}/hysteresis.nc",
-        f"{RESULTS}/fit.md",
+        expand("{results}/figures/{figure}.png", results=RESULTS, figure=SWEEP_FIGURES),
     output:
         report(
             f"{RESULTS}/summary.html",
@@ -23,5 +22,6 @@ rule summary:
         ),
     params:
         sources=package_fingerprint(),
+        sweep=SWEEP.fingerprint,
     shell:
         "crackfront summary {CONFIGURATION:q} --output {RESULTS:q}"

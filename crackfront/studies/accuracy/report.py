@@ -17,6 +17,7 @@ from crackfront.plots.style import (
     MARKERS,
     PAGE,
     blank_figure,
+    explain,
     house_style,
     save_figure,
 )
@@ -48,6 +49,7 @@ _NAMES = {
     "pixels": "pixels of the tile",
     "tolerance": "tolerance of the force",
     "asked": "chosen for an error",
+    "finer": "finer than the reference",
 }
 
 
@@ -81,7 +83,7 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     write_text(folder / "laws.csv", laws_text(laws))
     tables = _tables(list(studies.values()), samples.values(), coverages.values())
     parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
-    write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]))
+    write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]), sealed=True)
     if page is not None:
         write_text(page, filled_page(page.read_text(encoding="utf-8"), tables))
     shown = [studies[name] for name in _SHOWN if name in studies]
@@ -304,6 +306,7 @@ def _work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
             axes.set_ylabel("rms error of the hysteresis / %")
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside right upper", title="varied")
+        explain(figure, "grey: the Pareto front, from setting to setting that none beats in both")
         return figure
 
 

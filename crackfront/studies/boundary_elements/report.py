@@ -42,7 +42,7 @@ def write_validation(
             progress(f"figure: {path}")
         write_text(folder / "validity.csv", validity_text([loop_validity(found.picture)]))
     report = validation_report(found.differences, found.speeds, found.effects)
-    write_text(folder / "validation.md", report)
+    write_text(folder / "validation.md", report, sealed=True)
     progress(f"tables: {folder / 'validation.md'}")
 
 
