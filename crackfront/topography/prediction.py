@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from crackfront.analysis.estimate import REACH, Estimate
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law import SphereFactors, shipped_law, sphere_factors
+from crackfront.analysis.validity import validity_sentence
 from crackfront.core import jkr
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
@@ -150,6 +151,7 @@ def prediction_notes(surface: MeasuredSurface, prediction: Prediction) -> Iterat
     """What a reader of a prediction must know, one sentence each."""
     yield from surface_notes(surface, prediction.contact_radius)
     yield from _factor_notes(prediction)
+    yield validity_sentence()
     if prediction.w_appr.value <= 0:
         yield (
             "w_appr is not positive: the sphere is not drawn into contact, it has to be pressed on."
