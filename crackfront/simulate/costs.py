@@ -134,7 +134,7 @@ def features(simulation: Simulation) -> Features:
         n_point=math.sqrt(math.prod(simulation.tile[0])),
         elastic_energy=simulation.elastic_energy,
         tolerance=simulation.solver.tolerance,
-        breadth=spectrum.roll_off / spectrum.short_cutoff,
+        breadth=spectrum.longest_feature / spectrum.short_cutoff,
         travel=travel,
         full_cycle=isinstance(schedule, LoadSchedule),
         n_state=n_state,
