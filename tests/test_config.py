@@ -2,8 +2,10 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
@@ -409,12 +411,15 @@ def test_a_spectrum_may_be_that_of_measurements(tmp_path):
     sweep = load_configuration(written(tmp_path, with_surface()))
     [item] = sweep.spectra
     surface = measured_surface(read_measurements(sorted(SCANS.glob("*.al3d"))))
-    found = surface.fitted.spectrum
+    found = surface.joint.spectrum
     assert item.name == f"film-{surface.checksum}"
-    for name in ("short_cutoff", "roll_off"):
-        length = getattr(item.spectrum, name) * sweep.scales.lateral
-        assert length == pytest.approx(getattr(found, name), rel=1e-4)
-    assert item.spectrum.hurst == pytest.approx(found.hurst, rel=1e-4)
+    lengths = np.array(item.spectrum.wavelengths) * sweep.scales.lateral
+    assert lengths == pytest.approx(np.array(found.wavelengths), rel=1e-4)
+    ratios = np.array(item.spectrum.densities) / np.array(found.densities)
+    assert ratios == pytest.approx(np.full(ratios.size, ratios[0]), rel=1e-4)
+    first, *_ = sweep.shard(item)
+    assert first.seed != replace(first, spectrum=item.spectrum.in_units(2.0)).seed
+    assert first.key == replace(first, spectrum=item.spectrum.amplified(2.0)).key
 
 
 def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):

@@ -40,6 +40,7 @@ class _Reading:
     unit: str | None
     size: str | None
     shortest: str | None
+    longest: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +87,13 @@ def _reading_options(command: Command) -> Command:
         ),
         click.option(
             "--shortest",
-            help="Shortest wavelength to trust, as in 0.4um.  [default: what the file says of tip "
-            "or resolution, and at least four pixels]",
+            help="Shortest wavelength to trust, as in 0.4um.  [default: found by resolution, "
+            "noise, what the file says of its tip, and four pixels]",
+        ),
+        click.option(
+            "--longest",
+            help="Longest wavelength to trust.  [default: found by what is left of the form, and "
+            "half a side]",
         ),
     )
     return _bundled(command, "reading", _Reading, options)
@@ -256,7 +262,8 @@ def _write_field(
     from crackfront.simulate.fields import write_field
     from crackfront.topography.tile import measured_adhesion
 
-    [measurement] = surface.measurements
+    [one] = surface.scans
+    measurement = one.trusted_measurement
     adhesion = measured_adhesion(measurement, scales, place)
     write_field(
         path,
@@ -276,14 +283,17 @@ def _surface_of(reading: _Reading) -> MeasuredSurface:
     from crackfront.topography.measures import measured_surface
     from crackfront.topography.reading import Treatment, read_measurements
 
-    limit, size = reading.shortest, reading.size
+    size = reading.size
     treatment = Treatment(
         reading.detrend,
         reading.unit,
         None if size is None else _sides(size),
-        None if limit is None else si_value(limit, "m", what="--shortest"),
     )
-    return measured_surface(read_measurements(reading.scans, treatment))
+    ends = [
+        None if text is None else si_value(text, "m", what=f"--{name}")
+        for name, text in (("shortest", reading.shortest), ("longest", reading.longest))
+    ]
+    return measured_surface(read_measurements(reading.scans, treatment), *ends)
 
 
 def _sides(text: str) -> tuple[float, ...]:

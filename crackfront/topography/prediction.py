@@ -6,21 +6,21 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from crackfront.analysis.estimate import REACH, Estimate
+from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import SphereFactors, shipped_law, sphere_factors
 from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.core import jkr
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
+from crackfront.topography.bands import Scan
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.tile import zero_load_radius
 
-_MOST_MISFIT = 3.0
 _MOST_ANISOTROPY = 1.25
 _MOST_UNMEASURED = 0.1
 _MOST_NEGATIVE = 0.05
-"""Chi-squared per degree of freedom, ratio of slopes, part of e_el and part of the surface with a
+"""Ratio of slopes, part of e_el and part of the surface with a
 negative w_loc from which on it is said."""
 
 
@@ -28,8 +28,7 @@ negative w_loc from which on it is said."""
 class Prediction:
     """Adhesion that is predicted, in SI units, and the factors k that it rests on.
 
-    The intervals of the works of adhesion hold those of k and of e_el. Only e_el has a standard
-    error.
+    The intervals of the works of adhesion hold those of k and of e_el.
     """
 
     factors: SphereFactors
@@ -77,15 +76,10 @@ class Limit:
         return self.value < self.largest
 
 
-def reduced_spectrum(spectrum: SelfAffineSpectrum, scales: Scales) -> SelfAffineSpectrum:
+def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSpectrum:
     """A spectrum of heights in metres in reduced units: its `elastic_energy` is e_el / w_int."""
-    plateau = spectrum.plateau / (scales.vertical * scales.lateral) ** 2
-    return SelfAffineSpectrum(
-        spectrum.short_cutoff / scales.lateral,
-        spectrum.roll_off / scales.lateral,
-        spectrum.hurst,
-        plateau,
-    )
+    unit = (scales.vertical * scales.lateral) ** 2
+    return spectrum.in_units(scales.lateral).amplified(1 / unit)
 
 
 def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
@@ -103,10 +97,9 @@ def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
     )
     adhesion = scales.work_of_adhesion
     energy = surface.conformity_energy(scales.contact_modulus)
-    e_el, error = energy.value, REACH * energy.standard_error
-    appr = _range(adhesion - e_el, -e_el, k_appr, (1 + k_appr.value) * error)
-    retr = _range(adhesion - e_el, e_el, k_retr, (k_retr.value - 1) * error)
-    hysteresis = _range(0.0, 2 * e_el, k, 2 * k.value * error)
+    appr = _linear(adhesion, energy, k_appr, -1.0, -1.0)
+    retr = _linear(adhesion, energy, k_retr, -1.0, 1.0)
+    hysteresis = _linear(0.0, energy, k, 0.0, 2.0)
     return Prediction(
         factors=factors,
         radius=scales.radius,
@@ -114,8 +107,8 @@ def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
         work_of_adhesion=adhesion,
         contact_radius=zero_load_radius(scales),
         e_el=energy,
-        w_rms=2 * math.sqrt(e_el * adhesion),
-        correlation_length=surface.fitted.spectrum.correlation_length,
+        w_rms=2 * math.sqrt(energy.value * adhesion),
+        correlation_length=surface.joint.spectrum.correlation_length,
         l_kappa=factors.spring * scales.lateral,
         larkin_length=factors.larkin_length * scales.lateral,
         size=factors.size,
@@ -131,14 +124,14 @@ def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
         ),
         pull_off_force_smooth=-jkr.pull_off_force() * scales.force,
         paper_factor=PAPER_FACTOR,
-        paper_w_appr=adhesion - (1 + PAPER_FACTOR) * e_el,
-        paper_w_retr=adhesion - (1 - PAPER_FACTOR) * e_el,
+        paper_w_appr=adhesion - (1 + PAPER_FACTOR) * energy.value,
+        paper_w_retr=adhesion - (1 - PAPER_FACTOR) * energy.value,
     )
 
 
 def _factors(surface: MeasuredSurface, scales: Scales) -> SphereFactors:
     """Factors k that the law gives for a surface."""
-    shape = reduced_spectrum(surface.fitted.spectrum, scales)
+    shape = reduced_spectrum(surface.joint.spectrum, scales)
     energy = shape.elastic_energy
     if not energy < 1:
         raise ValueError(
@@ -149,14 +142,20 @@ def _factors(surface: MeasuredSurface, scales: Scales) -> SphereFactors:
     return sphere_factors("roughness", shape, energy, radius)
 
 
-def _range(centre: float, slope: float, factor: Estimate[float], reach: float) -> Estimate[float]:
-    """`centre + slope k` with the interval of k and, in quadrature, another reach."""
-    value = centre + slope * factor.value
-    ends = sorted((centre + slope * factor.low, centre + slope * factor.high))
-    low, high = value - ends[0], ends[1] - value
-    return Estimate(
-        value, math.nan, value - math.hypot(low, reach), value + math.hypot(high, reach)
-    )
+def _linear(
+    base: float, energy: Estimate[float], factor: Estimate[float], own: float, slope: float
+) -> Estimate[float]:
+    """`base + (own + slope k) e_el`, with the intervals of k and of e_el in quadrature."""
+    value = base + (own + slope * factor.value) * energy.value
+    ends = [
+        sorted(end - value for end in pair)
+        for pair in (
+            [base + (own + slope * end) * energy.value for end in (factor.low, factor.high)],
+            [base + (own + slope * factor.value) * end for end in (energy.low, energy.high)],
+        )
+    ]
+    low, high = (math.hypot(*(one[end] for one in ends)) for end in (0, 1))
+    return Estimate(value, math.nan, value - low, value + high)
 
 
 def _forces(retraction: Estimate[float], reduced: float, scales: Scales) -> Estimate[float]:
@@ -198,43 +197,56 @@ def prediction_notes(surface: MeasuredSurface, prediction: Prediction) -> Iterat
 
 def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None) -> Iterator[str]:
     """Treatments and doubts of the measurements, against the radius of a contact (Units: m)."""
-    fitted = surface.fitted
-    for item, ratio in zip(surface.measurements, surface.anisotropy, strict=True):
-        if item.missing > 0:
-            yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
-        if item.is_line:
+    joint = surface.joint
+    for index, one in enumerate(surface.scans):
+        yield from _scan_notes(one, contact_radius)
+        if joint.density.disagrees(index):
+            level = joint.density.levels[index]
             yield (
-                f"{item.path} is a line scan: its density is fitted by the projection of an "
-                "isotropic surface."
+                f"{one.measurement.path} disagrees with the other scans: its density is "
+                f"{level.value:.2g} ({level.low:.2g} to {level.high:.2g}) times theirs where they "
+                "overlap; the intervals hold that."
             )
-        elif max(item.pixels) > 1.001 * min(item.pixels):
-            yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
-        if max(ratio, 1 / ratio) > _MOST_ANISOTROPY:
-            yield (
-                f"{item.path}: the rms slope along x is {ratio:.2g} times that along y; the theory "
-                "is for isotropic surfaces."
-            )
-        if contact_radius is not None and min(item.size) < 2 * contact_radius:
-            yield (
-                f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
-                f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
-                "spectrum."
-            )
-    if not fitted.has_roll_off:
+    if not joint.fit.has_roll_off:
         yield (
-            "The density shows no plateau within the trusted wavelengths: the roll-off stands near "
-            "their longest, and longer waves may add to e_el; add a larger scan."
+            "The density shows no plateau within the trusted wavelengths: it is taken as flat "
+            f"above, longer waves would add about {joint.shares.missing_long:.0%} to e_el, and its "
+            "interval holds roll-offs of up to four sides of the scan; add a larger scan."
         )
-    if fitted.misfit > _MOST_MISFIT:
+    if joint.shares.missing_short > _MOST_UNMEASURED:
         yield (
-            f"The self-affine spectrum misses the densities by {fitted.misfit:.1f} in chi-squared "
-            "per degree of freedom, and the uncertainties are widened accordingly; look at the "
-            "figure."
+            "Waves shorter than the points hold are left out: two more decades of the power law "
+            f"would add {joint.shares.missing_short:.0%} to e_el; add a finer scan."
         )
-    if surface.unmeasured_share > _MOST_UNMEASURED:
+
+
+def _scan_notes(one: Scan, contact_radius: float | None) -> Iterator[str]:
+    """Treatments and doubts of one scan."""
+    item, band = one.measurement, one.band
+    if item.missing > 0:
+        yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
+    if item.is_line:
         yield (
-            "Waves shorter than can be trusted are left out: two more decades of the power law "
-            f"would add {surface.unmeasured_share:.0%} to e_el; add a finer scan."
+            f"{item.path} is a line scan: its density is that of an isotropic surface with this "
+            "projection."
+        )
+    elif max(item.pixels) > 1.001 * min(item.pixels):
+        yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
+    for axis in band.stripes:
+        yield (
+            f"{item.path}: waves along {'xy'[axis]} alone have another density than all others, as "
+            "of rows that are shifted or levelled one by one; they are left out."
+        )
+    if max(band.anisotropy, 1 / band.anisotropy) > _MOST_ANISOTROPY:
+        yield (
+            f"{item.path}: the rms slope along x is {band.anisotropy:.2g} times that along y; the "
+            "theory is for isotropic surfaces."
+        )
+    if contact_radius is not None and min(item.size) < 2 * contact_radius:
+        yield (
+            f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
+            f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
+            "spectrum."
         )
 
 
