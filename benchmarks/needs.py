@@ -36,7 +36,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.contact import contact_field, simulation_adhesion
-from crackfront.simulate.files import write_cycle, write_simulation
+from crackfront.simulate.files import cycle_dataset, write_simulation
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.run import compile_solver, run_simulation
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
@@ -185,7 +185,7 @@ def measure(scene: Scene, need: Need) -> Row:
     if need.rays:
         field = ring_field(scene, need.rays)
         record = run_cycle(field, scene.cycle, Newton(TOLERANCE))
-        write = functools.partial(write_cycle, record=record)
+        write = functools.partial(write_dataset, dataset=cycle_dataset(record))
     else:
         result = run_simulation(simulation(scene, need))
         record = result.record

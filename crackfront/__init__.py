@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from crackfront.analysis.law import pinning_factor as pinning_factor
     from crackfront.core.spectrum import SelfAffineSpectrum as SelfAffineSpectrum
-    from crackfront.core.units import Scales as Scales
     from crackfront.data.provenance import __version__ as __version__
     from crackfront.plots.library import plot_fronts as plot_fronts
     from crackfront.plots.library import plot_instabilities as plot_instabilities
@@ -21,14 +20,17 @@ if TYPE_CHECKING:
     from crackfront.plots.library import plot_surface as plot_surface
     from crackfront.simulate.loops import find_instabilities as find_instabilities
     from crackfront.simulate.loops import run_loop as run_loop
+    from crackfront.simulate.si_units import Scales as Scales
     from crackfront.simulate.si_units import in_reduced_units as in_reduced_units
     from crackfront.simulate.si_units import in_si_units as in_si_units
     from crackfront.simulate.surfaces import random_surface as random_surface
+    from crackfront.sweep.library import sweep as sweep
+    from crackfront.topography.library import predict as predict
+    from crackfront.topography.library import read_scan as read_scan
 
 _HOMES = {
     "pinning_factor": "analysis.law",
     "SelfAffineSpectrum": "core.spectrum",
-    "Scales": "core.units",
     "__version__": "data.provenance",
     "plot_fronts": "plots.library",
     "plot_instabilities": "plots.library",
@@ -37,9 +39,13 @@ _HOMES = {
     "plot_surface": "plots.library",
     "find_instabilities": "simulate.loops",
     "run_loop": "simulate.loops",
+    "Scales": "simulate.si_units",
     "in_reduced_units": "simulate.si_units",
     "in_si_units": "simulate.si_units",
     "random_surface": "simulate.surfaces",
+    "sweep": "sweep.library",
+    "predict": "topography.library",
+    "read_scan": "topography.library",
 }
 """Where the parts of the library stand."""
 

@@ -9,11 +9,10 @@ experiments in the paper, of soft PDMS on rough nanocrystalline diamond.
 
 import numpy as np
 import xarray as xr
-from matplotlib import pyplot
 
 import crackfront as cf
 
-sphere = cf.Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
+sphere = cf.Scales(radius="1.25mm", work_of_adhesion="63mJ/m2", contact_modulus=0.7e6 / 0.75)
 f"{1e6 * sphere.lateral:.1f} um, {1e6 * sphere.vertical:.2f} um, {1e3 * sphere.force:.3f} mN"
 
 # %%
@@ -30,15 +29,9 @@ loop = cf.in_si_units(cf.run_loop(cf.in_reduced_units(heights, sphere)), sphere)
 loop[["penetration", "mean_radius", "force"]]
 
 # %%
-# What comes out is in SI units, and says so.
+# What comes out is in SI units, says so, and is drawn in them.
 
-figure, axes = pyplot.subplots(layout="constrained")
-for direction, label in ((1, "approach"), (-1, "retraction")):
-    branch = loop.where(loop.direction == direction, drop=True)
-    axes.plot(1e6 * branch.mean_radius, 1e3 * branch.force, ".-", label=label)
-axes.set_xlabel("mean contact radius (µm)")
-axes.set_ylabel("normal force (mN)")
-legend = axes.legend()
+axes = cf.plot_loop(loop)
 
 # %%
 # Energy of full conformity, and hysteresis of the two branches (J / m²).

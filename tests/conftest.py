@@ -1,6 +1,7 @@
 """What every test shares: floating-point errors raise, random numbers are seeded."""
 
 import os
+import signal
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -21,6 +22,21 @@ def _floating_point_errors_raise() -> Iterator[None]:
     before = np.seterr(all="raise", under="ignore")
     yield
     np.seterr(**before)
+
+
+@pytest.fixture
+def _heeded_signals() -> Iterator[None]:
+    """Signals reach the commands also where the tests run in the background, which ignores some."""
+    ignored = [
+        number
+        for number in (signal.SIGINT, signal.SIGHUP)
+        if signal.getsignal(number) is signal.SIG_IGN
+    ]
+    for number in ignored:
+        signal.signal(number, signal.default_int_handler)
+    yield
+    for number in ignored:
+        signal.signal(number, signal.SIG_IGN)
 
 
 def _mapped(path: Path) -> bool:

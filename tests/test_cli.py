@@ -4,6 +4,8 @@ import json
 import os
 import re
 import shlex
+import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -12,14 +14,16 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
+from matplotlib.figure import Figure
 
 import crackfront as cf
 from crackfront import __version__
 from crackfront.cli import main
-from crackfront.cli.sweep import TRY_AGAIN
+from crackfront.cli.report import StoppedError
 from crackfront.core import jkr
 from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.data.files import write_text
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, Journal
 from crackfront.sweep.table import failed_row, row_fingerprint
@@ -62,6 +66,14 @@ def rough_rays(tmp_path, rng):
         coords={"radius": radii, "angle": -np.pi + 2 * np.pi * np.arange(8) / 8},
     ).to_netcdf(tmp_path / "F.nc")
     return tmp_path / "F.nc"
+
+
+@pytest.fixture(scope="module")
+def rough_surface(tmp_path_factory):
+    """File of a coarse rough surface of the library."""
+    path = tmp_path_factory.mktemp("surface") / "surface.nc"
+    cf.random_surface(0.1, 0.05, side=4, error=0.1, seed=3).to_netcdf(path)
+    return path
 
 
 def cycle(field, tmp_path, *more, penetration=1, step=0.25):
@@ -307,7 +319,9 @@ def test_the_status_counts_what_is_done_failed_running_and_waiting(tmp_path):
     journal.append(Entry(flat[1].key, flat[1].label, flat[1].parts))
     result = run("status", tmp_path)
     assert result.exit_code == 0, result.output
-    [_, first, second, sentence] = result.output.splitlines()
+    [_, first, second, process, sentence] = result.output.splitlines()
+    who = f"process {os.getpid()} on {socket.gethostname()}: {flat[1].label}, last sign of life "
+    assert process.startswith(who)
     assert first.split()[:5] == ["flat", "0", "1", "1", "2"]
     assert float(first.split()[5]) > 0
     assert second.split() == ["rough", "4", "0", "0", "0", "0"]
@@ -315,13 +329,42 @@ def test_the_status_counts_what_is_done_failed_running_and_waiting(tmp_path):
     assert sentence.endswith("minutes are left on 1 rank(s)")
 
 
-def test_a_process_that_has_not_shown_itself_for_long_does_not_run(tmp_path):
-    run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
-    one = load_configuration(TEST).shard(load_configuration(TEST).spectra[0])[0]
-    Journal(tmp_path / "journals").append(Entry(one.key, one.label, one.parts))
-    for path in (tmp_path / "journals").iterdir():
+@pytest.fixture
+def begun(tmp_path):
+    """Folder of a sweep, and the journal in it of a process that has begun a simulation."""
+    sweep = load_configuration(TEST)
+    write_text(tmp_path / "configuration.yaml", TEST.read_text())
+    one = sweep.shard(sweep.spectra[0])[0]
+    journal = Journal(tmp_path / "journals")
+    journal.append(Entry(one.key, one.label, one.parts))
+    return tmp_path, journal
+
+
+def last_line_of_status(folder):
+    """What the status says at its end."""
+    return run("status", folder).output.splitlines()[-1]
+
+
+def test_a_process_runs_as_long_as_it_lives_and_not_until_its_journal_is_old(begun):
+    folder, journal = begun
+    for path in (folder / "journals").iterdir():
         os.utime(path, (1e9, 1e9))
-    assert run("status", tmp_path).output.splitlines()[-1].endswith("have ended; nothing runs")
+    assert last_line_of_status(folder).endswith("left on 1 rank(s)")
+    journal.let_go()
+    for path in (folder / "journals").iterdir():
+        os.utime(path)
+    assert last_line_of_status(folder).endswith("have ended; nothing runs")
+
+
+def test_a_process_elsewhere_runs_as_long_as_it_shows_signs_of_life(begun):
+    folder, journal = begun
+    journal.let_go()
+    [path] = (folder / "journals").iterdir()
+    path = path.rename(path.with_name("another-host-12-abcd.jsonl"))
+    told = json.loads(run("status", folder, "--json").output)["processes"]
+    assert [(one["host"], one["process"]) for one in told] == [("another-host", "12")]
+    os.utime(path, (1e9, 1e9))
+    assert last_line_of_status(folder).endswith("have ended; nothing runs")
 
 
 def test_the_status_of_a_folder_without_a_sweep_is_refused(tmp_path):
@@ -480,7 +523,7 @@ def test_the_examples_of_the_help_name_options_that_exist(name, line):
 
 def test_the_exit_codes_of_the_help_are_those_of_the_commands():
     text = run("--help").output
-    for code in (0, 1, 2, TRY_AGAIN):
+    for code in (0, 1, 2, StoppedError.exit_code):
         assert re.search(rf"^ +{code} +\w", text, re.MULTILINE)
 
 
@@ -537,7 +580,106 @@ def test_machines_read_how_a_cycle_ended(smooth_tile, tmp_path):
         "status": "lost_contact",
         "end_penetration": dataset.attrs["end_penetration"],
         "lowest_force": float(dataset["force"].min()),
+        "jump_in_force": float(dataset["force"][0]),
+        **dict.fromkeys(("w_appr", "w_retr", "hysteresis")),
     }
+
+
+def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_path):
+    result = cycle(rough_surface, tmp_path, "--figure", tmp_path / "pictures/loop", step=0.02)
+    assert result.exit_code == 0, result.output
+    found = xr.load_dataset(tmp_path / "out.nc")
+    count, pdf, png, told, lost = result.stdout.splitlines()
+    assert count == f"{found.sizes['step']} states: {tmp_path / 'out.nc'}"
+    assert [pdf, png] == [f"figure: {tmp_path / 'pictures/loop'}.{kind}" for kind in ("pdf", "png")]
+    assert (tmp_path / "pictures/loop.png").stat().st_size > 10_000
+    numbers = re.fullmatch(
+        r"w_appr (\S+) ± \S+, w_retr (\S+) ± \S+, hysteresis (\S+) ± \S+ \(w_int\); "
+        r"jump-in force (\S+), pull-off force (\S+) \(pi w_int R\)",
+        told,
+    )
+    measures = [float(found[name]) for name in ("w_appr", "w_retr", "hysteresis")]
+    measures += [float(found.force[0]), float(found.force.min())]
+    assert list(map(float, numbers.groups())) == pytest.approx(measures, rel=0.02)
+    assert found.attrs["result"] == told
+    assert lost.startswith("contact was lost at penetration")
+    assert float(found.e_el) == pytest.approx(0.05, rel=0.3)
+
+
+def test_the_plots_draw_what_a_cycle_wrote_on_a_tile_and_on_rays(
+    rough_surface, rough_rays, tmp_path
+):
+    for field, step in ((rough_surface, 0.1), (rough_rays, 0.25)):
+        assert cycle(field, tmp_path, "--record", "fronts", step=step).exit_code == 0
+        found = xr.load_dataset(tmp_path / "out.nc")
+        loop, fronts = (
+            draw(found, axes=Figure().add_subplot()) for draw in (cf.plot_loop, cf.plot_fronts)
+        )
+        approach = next(one for one in loop.get_lines() if one.get_label() == "approach")
+        drawn = found.mean_radius[found.direction == 1]
+        np.testing.assert_array_equal(approach.get_xdata(), drawn)
+        assert len(fronts.get_lines()) > 1
+
+
+def test_a_field_of_heights_that_jump_at_the_edge_is_refused(rough_surface, tmp_path):
+    tilted = xr.load_dataarray(rough_surface)
+    tilted = (tilted + 0.5 * tilted.x).rename("height").assign_attrs(tilted.attrs)
+    tilted.to_netcdf(tmp_path / "tilted.nc")
+    result = cycle(tmp_path / "tilted.nc", tmp_path)
+    assert result.exit_code == 2
+    assert "the tile is not periodic. Level the map and mirror or window it" in result.stderr
+
+
+@pytest.mark.usefixtures("_heeded_signals")
+@pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
+    rough_surface, tmp_path, monkeypatch, signal_number
+):
+    options = ("--record", "fronts", "--record", "energy")
+    whole = cycle(rough_surface, tmp_path, *options)
+    assert whole.exit_code == 0
+    undisturbed = xr.load_dataset(tmp_path / "out.nc")
+
+    def interrupted(self, recorder):
+        if len(recorder.states) == 7:
+            signal.raise_signal(signal_number)
+
+    with monkeypatch.context() as patched:
+        patched.setattr("crackfront.cli.watch.Progress.__call__", interrupted)
+        stopped = cycle(rough_surface, tmp_path, *options)
+    assert stopped.exit_code == StoppedError.exit_code
+    kept = tmp_path / "out.checkpoint.nc"
+    assert stopped.stderr == (
+        f"Stopped as told: 7 states are kept in {kept}; the same command goes on from there\n"
+    )
+    again = cycle(rough_surface, tmp_path, *options)
+    assert again.exit_code == 0
+    assert f"going on from the 7 states in {kept}" in again.stderr
+    assert again.stdout == whole.stdout
+    assert not kept.exists()
+    xr.testing.assert_equal(xr.load_dataset(tmp_path / "out.nc"), undisturbed)
+
+
+def test_what_another_cycle_kept_is_told_and_left_alone(rough_surface, tmp_path):
+    (tmp_path / "out.checkpoint.nc").write_text("something else")
+    result = cycle(rough_surface, tmp_path)
+    assert result.exit_code == 0
+    assert "out.checkpoint.nc is of another cycle, which begins anew" in result.stderr
+
+
+@pytest.mark.usefixtures("_heeded_signals")
+@pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM])
+def test_any_command_that_is_told_to_end_says_so_with_the_same_exit_code(
+    monkeypatch, signal_number
+):
+    def interrupted(**options):
+        signal.raise_signal(signal_number)
+
+    monkeypatch.setattr(main.commands["law"], "callback", interrupted)
+    result = run("law")
+    assert result.exit_code == StoppedError.exit_code
+    assert result.stderr.startswith("Stopped as told: nothing is half-written; the same command")
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
 def test_help_imports_nothing_heavy():

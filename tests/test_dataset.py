@@ -19,10 +19,15 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
-from crackfront.data.files import UnreadableFileError, write_text
+from crackfront.data.files import UnreadableFileError, write_dataset, write_text
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.fields import PolarSamples, read_field, write_field
-from crackfront.simulate.files import read_cycle, read_simulation, write_cycle, write_simulation
+from crackfront.simulate.files import (
+    cycle_dataset,
+    read_cycle,
+    read_simulation,
+    write_simulation,
+)
 from crackfront.simulate.run import SimulationResult, run_simulation
 from crackfront.simulate.simulation import numerical_error
 from crackfront.sweep.configuration import load_configuration
@@ -62,19 +67,19 @@ def without_states(record: CycleRecord, status: Status):
 
 def test_a_cycle_is_read_back_in_every_bit(tmp_path, result):
     path = tmp_path / "new" / "cycle.nc"
-    write_cycle(path, result.record, ORIGIN)
+    write_dataset(path, cycle_dataset(result.record), ORIGIN)
     assert_same(read_cycle(path), result.record)
 
 
 def test_a_cycle_without_fronts_and_energy_is_read_back(tmp_path, result):
     record = replace(result.record, fronts=None, dissipated_energy=None)
-    write_cycle(tmp_path / "cycle.nc", record, ORIGIN)
+    write_dataset(tmp_path / "cycle.nc", cycle_dataset(record), ORIGIN)
     assert_same(read_cycle(tmp_path / "cycle.nc"), record)
 
 
 def test_a_cycle_without_states_is_read_back(tmp_path, result):
     record = without_states(result.record, Status.STEP_LIMIT)
-    write_cycle(tmp_path / "cycle.nc", record, ORIGIN)
+    write_dataset(tmp_path / "cycle.nc", cycle_dataset(record), ORIGIN)
     assert_same(read_cycle(tmp_path / "cycle.nc"), record)
 
 
@@ -94,7 +99,7 @@ def test_every_variable_says_what_it_is_and_in_which_units(tmp_path, result):
 
 
 def test_every_file_says_where_it_comes_from(tmp_path, result):
-    write_cycle(tmp_path / "cycle.nc", result.record, ORIGIN)
+    write_dataset(tmp_path / "cycle.nc", cycle_dataset(result.record), ORIGIN)
     attributes = xr.load_dataset(tmp_path / "cycle.nc").attrs
     for item in fields(Provenance):
         assert attributes[item.name] == getattr(ORIGIN, item.name)
@@ -148,7 +153,7 @@ def test_a_file_of_something_else_is_refused(tmp_path):
 
 def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, result, monkeypatch):
     path = tmp_path / "cycle.nc"
-    write_cycle(path, result.record, ORIGIN)
+    write_dataset(path, cycle_dataset(result.record), ORIGIN)
     before = path.read_bytes()
 
     def fail(*args, **options):
@@ -157,7 +162,7 @@ def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, result, monke
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
     with pytest.raises(OSError, match="no space"):
-        write_cycle(path, result.record, ORIGIN)
+        write_dataset(path, cycle_dataset(result.record), ORIGIN)
     assert path.read_bytes() == before
     assert [item.name for item in tmp_path.iterdir()] == ["cycle.nc"]
 

@@ -16,7 +16,8 @@ DOCS = ROOT / "docs"
 
 @pytest.fixture
 def _elsewhere(tmp_path, monkeypatch):
-    """A folder for what the pages write, and no other figure of pyplot."""
+    """A folder for what the pages write, with the examples, and no other figure of pyplot."""
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
     monkeypatch.chdir(tmp_path)
     pyplot.close("all")
     yield

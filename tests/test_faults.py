@@ -66,6 +66,7 @@ def running(configuration, folder, *more, until=3):
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
+        process_group=0,
     ) as process:
         for line in process.stdout:
             if line.startswith(f"[{until}/"):
@@ -176,14 +177,26 @@ def test_two_controllers_at_the_same_shard_do_no_harm(configuration, same, tmp_p
     assert same(tmp_path)
 
 
-@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.mpi)])
-def test_notice_keeps_what_runs_and_ends_cleanly(configuration, same, tmp_path, ranks):
+@pytest.mark.usefixtures("_heeded_signals")
+@pytest.mark.parametrize(
+    ("ranks", "told"),
+    [
+        (1, signal.SIGTERM),
+        (1, signal.SIGINT),
+        pytest.param(2, signal.SIGTERM, marks=pytest.mark.mpi),
+        pytest.param(2, signal.SIGINT, marks=pytest.mark.mpi),
+        pytest.param(2, signal.SIGHUP, marks=[pytest.mark.mpi, pytest.mark.slow]),
+    ],
+)
+def test_notice_keeps_what_runs_and_ends_cleanly(configuration, same, tmp_path, ranks, told):
     with running(configuration, tmp_path, "--ranks", str(ranks)) as process:
         found = children(process.pid)
-        process.terminate()
+        # As a terminal does it, which knows the group alone and not the ranks.
+        os.killpg(process.pid, told)
         output = process.stdout.read()
     assert process.returncode == 75
-    assert "Stopped as told: " in output
+    assert output.count("Stopped as told: ") == 1
+    assert "Error" not in output
     assert "Traceback" not in output
     assert gone(found)
     kept = len(stored(tmp_path))
@@ -197,10 +210,14 @@ def test_notice_keeps_what_runs_and_ends_cleanly(configuration, same, tmp_path, 
 
 
 def test_a_killed_process_goes_on_from_its_last_checkpoint(configuration, same, tmp_path):
+    status = [sys.executable, "-m", "crackfront", "status", str(tmp_path)]
     with running(configuration, tmp_path, "--checkpoint", "0") as process:
         while not any((tmp_path / "checkpoints").glob("[!.]*.nc")):
             time.sleep(0.01)
+        os.kill(process.pid, signal.SIGSTOP)
+        assert f"process {process.pid} on " in run(*status).stdout
         process.kill()
+    assert run(*status).stdout.endswith("have ended; nothing runs\n")
     [checkpoint] = (tmp_path / "checkpoints").glob("[!.]*.nc")
     known = xr.load_dataset(checkpoint)["force"]
     kept = len(stored(tmp_path))

@@ -8,7 +8,11 @@ from scipy.optimize import brentq
 
 from crackfront.core.adhesion import AdhesionMap, correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.cycle.instabilities import larkin_length, resolved_motion, swept_clusters
+from crackfront.core.cycle.instabilities import (
+    resolved_motion,
+    shortest_instability,
+    swept_clusters,
+)
 from crackfront.core.field.fields import polar_field
 from crackfront.core.geometry.line import line_field, straight_front
 from crackfront.core.geometry.sphere import sphere
@@ -173,8 +177,8 @@ def test_a_straight_front_on_a_wave_jumps_once_a_period_from_where_its_load_turn
         assert whole.extent == pytest.approx(n_y)
 
 
-def test_the_larkin_length_of_white_disorder_is_that_of_the_literature():
+def test_the_shortest_instability_of_white_disorder_is_that_of_the_literature():
     white = SelfAffineSpectrum(short_cutoff=1.0, roll_off=1.0, hurst=1.0)
     length = correlation_length("chemical", white)
-    assert larkin_length(length, 1.0) == pytest.approx(0.12, abs=0.001)
-    assert larkin_length(length, 0.5) == pytest.approx(4 * larkin_length(length, 1.0))
+    assert shortest_instability(length, 1.0) == pytest.approx(0.12, abs=0.001)
+    assert shortest_instability(length, 0.5) == pytest.approx(4 * shortest_instability(length, 1.0))

@@ -3,7 +3,7 @@
 import ast
 import subprocess
 import sys
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,14 +17,23 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.files import cycle_record
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.surfaces import chosen_simulation
+from crackfront.simulate.surfaces import chosen_simulation, surface_adhesion
 from crackfront.simulate.tiles import measured_correlation_length
+from crackfront.topography.measures import measured_surface
+from crackfront.topography.prediction import predicted, prediction_notes
+from crackfront.topography.reading import Treatment, read_measurements
+from crackfront.topography.report import prediction_text, surface_text
+from crackfront.topography.tile import measured_adhesion
 
+ROOT = Path(__file__).parents[1]
+TEST = ROOT / "config/test.yaml"
+SCAN = ROOT / "examples/scans/nanodiamond-detail.al3d"
 SPHERE = cf.Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
 FLAT = cf.SelfAffineSpectrum(0.4, 0.4, hurst=1.0)
 COARSE = {"short_cutoff": 0.4, "elastic_energy": 0.05, "side": 4.0, "error": 0.05, "seed": 3}
@@ -175,6 +184,20 @@ def test_the_energies_of_a_loop_sum_up_to_its_work(loop):
     assert float(loop.dissipated_energy.sum()) + pull_off == pytest.approx(work, abs=1e-3)
 
 
+def test_a_loop_without_a_steady_part_says_so_where_it_is_shown(surface):
+    found = cf.run_loop(surface, step=0.5, error=0.05, fronts=False)
+    assert np.isnan(found.w_retr)
+    assert "no steady part: w_appr and w_retr are unknown" in repr(found)
+    assert "states" in found.attrs["steady_sentence"]
+
+
+def test_a_loop_with_a_steady_part_tells_its_works_of_adhesion():
+    found = cf.run_loop(cf.random_surface(0.1, 0.02, seed=1), step=0.05, error=0.1, fronts=False)
+    error = float(found.w_retr_error)
+    digits = 1 - int(np.floor(np.log10(error)))
+    assert f"w_retr {float(found.w_retr):.{digits}f} ± {error:.{digits}f}" in found.attrs["result"]
+
+
 def test_si_units_and_back_change_nothing(surface, loop, jumps):
     for data in (surface, loop, jumps):
         back = cf.in_reduced_units(cf.in_si_units(data, SPHERE), SPHERE)
@@ -301,6 +324,129 @@ def test_a_surface_that_cannot_be_used_is_refused(surface, change, sentence):
 
 
 @pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda: cf.Scales(None, 1, 1), "radius is None; give a number of m, or a text"),
+        (lambda: cf.Scales(1, [1], 1), "work_of_adhesion is a list; give a number of J/m"),
+        (lambda: cf.run_loop(np.zeros((4, 4))), "surface is a numpy.ndarray; give an xarray"),
+        (lambda: cf.run_loop("scan.ibw"), "surface is 'scan.ibw'; give an xarray.DataArray"),
+        (lambda: cf.run_loop(tile(np.zeros((4, 4))), step="1"), "step is '1'; give a number"),
+        (lambda: cf.find_instabilities(3.0), "surface is 3.0; give an xarray.DataArray"),
+        (lambda: cf.random_surface("1mm", 0.1), "short_cutoff is '1mm'; give a number"),
+        (lambda: cf.random_surface(0.1, None), "elastic_energy is None; give a number"),
+        (lambda: cf.random_surface(0.1, 0.1, seed=1.5), "seed is 1.5; give a whole number"),
+        (lambda: cf.in_si_units(tile(np.zeros((4, 4))), 1e-3), "sphere is 0.001; give crackf"),
+        (lambda: cf.in_si_units([1], SPHERE), "data is a list; give an xarray.DataArray or"),
+        (lambda: cf.plot_loop(tile(np.zeros((4, 4)))), "loop is a xarray.DataArray; give an"),
+        (lambda: cf.plot_instabilities(None), "jumps is None; give what find_instabilities"),
+        (lambda: cf.read_scan(7, SPHERE), "scan is 7; give the path of a file"),
+        (lambda: cf.predict(7, SPHERE), "scans is 7; give the path of a file, or a list"),
+        (lambda: cf.predict([SCAN], "1mm"), "sphere is '1mm'; give crackfront.Scales"),
+        (lambda: cf.sweep(7), "configuration is 7; give the path"),
+    ],
+)
+def test_an_argument_of_another_type_is_refused_with_what_is_wanted(call, sentence):
+    with pytest.raises(TypeError, match=sentence):
+        call()
+
+
+def test_scales_take_texts_with_units():
+    given = cf.Scales("1.25mm", "63mJ/m2", contact_modulus="0.9333333333333333 MPa")
+    assert asdict(given) == pytest.approx(asdict(SPHERE), rel=1e-12)
+    with pytest.raises(ValueError, match="radius is '1kg', which is no length; write a number"):
+        cf.Scales("1kg", 1, 1)
+    with pytest.raises(ValueError, match=r"radius is -1\.0; it must be positive and finite"):
+        cf.Scales(-1, 1, 1)
+
+
+def test_heights_that_do_not_go_on_across_the_edge_are_refused_unless_that_is_meant(surface):
+    tilted = (surface + 0.3 * surface.y).rename("height").assign_attrs(surface.attrs)
+    with pytest.raises(ValueError, match=r"from one end of y to the other, .* is not periodic"):
+        cf.run_loop(tilted)
+    bare = tilted.drop_attrs(deep=False).assign_attrs(units=VERTICAL, periodic=1)
+    # A tilt has an energy of its own, which would be computed in silence.
+    assert float(cf.run_loop(bare, step=0.5).e_el) > 1.5 * 0.05
+
+
+def test_a_part_of_a_larger_map_is_refused_as_a_tile(rng):
+    whole = gaussian_field(FLAT.with_elastic_energy(0.05), 160, 8.0, rng)
+    assert cf.plot_surface(tile(whole, spacing=0.05), axes_of_a_figure())
+    with pytest.raises(ValueError, match="the tile is not periodic"):
+        cf.plot_surface(tile(whole[:80, :80], spacing=0.05))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_surface_that_is_periodic_is_never_refused_for_its_edge(seed):
+    noise = np.random.default_rng(seed).standard_normal((8, 8))
+    assert cf.plot_surface(tile(1e-3 * noise), axes_of_a_figure())
+
+
+def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
+    small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
+    found = cf.read_scan(SCAN, small, shortest="0.4um")
+    [measurement] = read_measurements([SCAN], Treatment(shortest=0.4e-6))
+    adhesion = measured_adhesion(measurement, small)
+    np.testing.assert_allclose(
+        surface_adhesion(found).work_of_adhesion, adhesion.work_of_adhesion, rtol=1e-9
+    )
+    assert found.sizes == {"x": 288, "y": 288}
+    assert float(found.x[144]) == 0
+    told = found.attrs
+    assert told["source"].startswith(f"{SCAN}, al3d, checksum ")
+    assert told["levelling"].startswith("the paraboloid that fits best was taken off")
+    assert told["tile"].startswith("mirrored at its edges, where a scan does not go on")
+    assert told["waves"].startswith("those shorter than 400 nm were taken away")
+    assert "larger than the scan of 7.2 um" in told["contact"]
+
+
+def test_a_prediction_shows_itself_with_intervals_limits_and_notes():
+    found = cf.predict(SCAN, SPHERE)
+    surface = measured_surface(read_measurements([SCAN]))
+    expected = predicted(surface, SPHERE)
+    assert found.w_retr == expected.w_retr
+    assert found.surface.checksum == surface.checksum
+    shown = repr(found)
+    assert prediction_text(surface, expected) in shown
+    assert surface_text(surface) in shown
+    for note in prediction_notes(surface, expected):
+        assert note in shown
+    assert repr(cf.predict([str(SCAN)], SPHERE)) == shown
+
+
+def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
+    asked = []
+
+    def notice():
+        asked.append(1)
+        return len(asked) > 150
+
+    with monkeypatch.context() as patched:
+        patched.setattr("crackfront.sweep.parallel.notice_is_given", notice)
+        with pytest.raises(KeyboardInterrupt, match="what ran is kept; the same call goes on"):
+            cf.sweep(TEST, tmp_path, progress=False)
+    assert 0 < len(list((tmp_path / "curves").iterdir())) < 8
+    found = cf.sweep(TEST, tmp_path, progress=False)
+    assert found.w_retr.dims == ("spectrum", "amplitude", "realisation")
+    assert bool((found.w_retr > found.w_appr).all())
+    xr.testing.assert_identical(found, xr.load_dataset(tmp_path / "hysteresis.nc"))
+    assert (tmp_path / "shards/flat.json").is_file()
+
+    def run_again(*arguments):
+        raise AssertionError("nothing is missing")
+
+    monkeypatch.setattr("crackfront.sweep.tasks.run_simulation", run_again)
+    xr.testing.assert_equal(cf.sweep(str(TEST), str(tmp_path)), found)
+
+
+def test_simulations_without_a_value_are_warned_of(tmp_path):
+    limited = tmp_path / "limited.yaml"
+    limited.write_text(TEST.read_text().replace("max_sweeps: 100000", "max_sweeps: 2"))
+    with pytest.warns(UserWarning, match="8 of 8 simulations have no value: 8 step_limit"):
+        found = cf.sweep(limited, tmp_path / "out", progress=False)
+    assert bool(np.isnan(found.w_retr).all())
+
+
+@pytest.mark.parametrize(
     ("given", "sentence"),
     [
         ({"solver": "magic"}, "solver is 'magic'; choose one of newton, reference"),
@@ -362,6 +508,36 @@ def test_plots_draw_on_given_axes_and_leave_nothing_behind(surface, loop, jumps)
     assert pyplot.get_fignums() == []
 
 
+def test_what_is_in_si_units_is_drawn_in_them(surface, loop, jumps):
+    surface_si, loop_si, jumps_si = (cf.in_si_units(one, SPHERE) for one in (surface, loop, jumps))
+    drawn = cf.plot_loop(loop_si, axes_of_a_figure())
+    approach = next(line for line in drawn.get_lines() if line.get_label() == "approach")
+    branch = loop_si.isel(step=loop_si.direction.values == 1)
+    np.testing.assert_allclose(approach.get_xdata(), branch.mean_radius, rtol=1e-12)
+    np.testing.assert_allclose(approach.get_ydata(), branch.force, rtol=1e-12)
+    assert drawn.xaxis.get_major_formatter()(50e-6) == "50 µm"
+    assert drawn.yaxis.get_major_formatter()(-2e-4) == "−200 µN"
+    image = cf.plot_surface(surface_si, axes_of_a_figure()).get_images()[0]
+    np.testing.assert_allclose(image.get_array(), surface_si.values.T, rtol=1e-12)
+    density = cf.plot_spectrum(surface_si, axes_of_a_figure()).get_lines()[0].get_data()
+    reduced = cf.plot_spectrum(surface, axes_of_a_figure()).get_lines()[0].get_data()
+    np.testing.assert_allclose(density[0], reduced[0] / SPHERE.lateral, rtol=1e-9)
+    square = (SPHERE.lateral * SPHERE.vertical) ** 2
+    np.testing.assert_allclose(density[1], reduced[1] * square, rtol=1e-9)
+    for one in (surface, surface_si):
+        fronts = cf.plot_fronts(loop_si, one, axes_of_a_figure()).get_lines()
+        assert np.max(np.hypot(*fronts[0].get_data())) <= float(loop_si.radius.max())
+    [patches] = cf.plot_instabilities(jumps_si, axes_of_a_figure()).collections
+    assert patches.get_array().max() == pytest.approx(float(jumps_si.dissipated_energy.max()))
+
+
+def test_a_loop_in_si_units_is_drawn_from_its_file_as_well(loop, tmp_path):
+    cf.in_si_units(loop, SPHERE).to_netcdf(tmp_path / "loop.nc")
+    with xr.open_dataset(tmp_path / "loop.nc") as found:
+        labels = cf.plot_loop(found, axes_of_a_figure()).get_legend_handles_labels()[1]
+    assert "approach" in labels
+
+
 def test_without_axes_a_plot_makes_a_figure_of_pyplot(loop):
     axes = cf.plot_loop(loop)
     assert pyplot.get_fignums() == [axes.figure.number]
@@ -399,7 +575,6 @@ def test_the_rms_values_of_a_spectrum_are_those_of_the_surface():
 @pytest.mark.parametrize(
     ("call", "sentence"),
     [
-        (lambda surface, loop, jumps: cf.plot_loop(cf.in_si_units(loop, SPHERE)), "'m'; the attr"),
         (lambda surface, loop, jumps: cf.plot_loop(loop.drop_vars("force")), "it lacks force"),
         (lambda surface, loop, jumps: cf.plot_fronts(loop.drop_vars("radius")), "fronts=True"),
         (lambda surface, loop, jumps: cf.plot_fronts(loop, most=0), "most is 0"),

@@ -1,11 +1,14 @@
 """The straight front: closed forms, the scalar problem, the reference, and its command."""
 
+import signal
+
 import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
 from crackfront.cli import main
 from crackfront.core.adhesion import AdhesionMap
@@ -17,6 +20,7 @@ from crackfront.core.geometry.line import line_field, straight_front
 from crackfront.core.solver.forces import line_force
 from crackfront.core.solver.relax import SOLVERS, Newton, Reference, front_force
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.plots.library import plot_fronts, plot_loop
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 
@@ -223,6 +227,30 @@ def test_the_command_writes_a_cycle_of_the_line(command):
     assert np.all(found.iterations > 0)
     expected, _ = run(noisy(3), 32.0, there_and_back(300.0, 360.0, 10.0), Newton(1e-8))
     assert np.array_equal(found.position, expected.fronts)
+    most, least = float(found.pinning_force.max()), float(found.pinning_force.min())
+    told = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
+    assert result.stdout.splitlines()[-1] == told
+    loop, fronts = (draw(found, axes=Figure().add_subplot()) for draw in (plot_loop, plot_fronts))
+    np.testing.assert_array_equal(loop.get_lines()[0].get_xdata(), loads[:7])
+    np.testing.assert_array_equal(fronts.get_lines()[0].get_xdata(), found.position[6])
+    with pytest.raises(ValueError, match="straight fronts are drawn without a surface"):
+        plot_fronts(found, surface=found.position)
+
+
+def test_a_cycle_of_the_line_with_its_fronts_goes_on_to_the_same_bits(command, monkeypatch):
+    assert command().exit_code == 0
+    undisturbed = xr.load_dataset(command.output)
+
+    def interrupted(self, recorder):
+        if len(recorder.states) == 9:
+            signal.raise_signal(signal.SIGTERM)
+
+    with monkeypatch.context() as patched:
+        patched.setattr("crackfront.cli.watch.Progress.__call__", interrupted)
+        assert command().exit_code == 75
+    again = command()
+    assert "going on from the 9 states" in again.stderr
+    xr.testing.assert_equal(xr.load_dataset(command.output), undisturbed)
 
 
 @pytest.mark.parametrize(

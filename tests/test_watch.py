@@ -9,6 +9,7 @@ import struct
 import subprocess
 import sys
 import termios
+from types import SimpleNamespace
 
 import click
 import numpy as np
@@ -17,7 +18,7 @@ import xarray as xr
 from click.testing import CliRunner
 
 from crackfront.cli import main
-from crackfront.cli.watch import Canvas, Watch, frame, state_line
+from crackfront.cli.watch import Canvas, Progress, Watch, duration, frame, state_line
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -138,7 +139,7 @@ def test_a_terminal_without_room_for_the_panels_shows_the_line_alone(
     monkeypatch.setattr(terminal, "fileno", lambda: 2)
     monkeypatch.setattr(os, "get_terminal_size", lambda _: os.terminal_size(size))
     monkeypatch.setattr(sys, "stderr", terminal)
-    shown = Watch(1.0)
+    shown = Watch(1, 1.0)
     shown(circle)
     shown.finish()
     first, second = terminal.getvalue().split(f"\x1b[{height}A\x1b[J")
@@ -155,3 +156,48 @@ def test_watching_a_cycle_does_not_change_it(rays, tmp_path):
         )
     plain, watched = (xr.load_dataset(tmp_path / name) for name in ("plain", "watched"))
     xr.testing.assert_equal(plain, watched)
+
+
+class _Clock:
+    """A clock that goes on by a second a state."""
+
+    def __init__(self):
+        self.now = 0.0
+
+    def monotonic(self):
+        """Seconds."""
+        return self.now
+
+
+def test_the_time_that_is_left_is_that_of_the_states_to_come(circle, monkeypatch):
+    clock, terminal = _Clock(), io.StringIO()
+    monkeypatch.setattr("crackfront.cli.watch.time", clock)
+    monkeypatch.setattr(sys, "stderr", terminal)
+    shown = Progress(expected=100)
+    for count in range(1, 41):
+        clock.now = 10.0 * count
+        shown(SimpleNamespace(states=circle.states[:1] * count, front=circle.front))
+    shown.finish()
+    lines = terminal.getvalue().splitlines()
+    # The first state begins the count; from then on there is a line every ten seconds.
+    assert len(lines) == 39
+    assert lines[0].startswith("state 2, approach: penetration")
+    assert lines[0].endswith("; about 16 min left")
+    assert lines[-1].startswith("state 40, ")
+    assert lines[-1].endswith("; about 10 min left")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(0.2, "1 s"), (12.34, "12 s"), (89.9, "90 s"), (5000, "83 min"), (9e4, "25 h")],
+)
+def test_a_time_is_told_in_the_unit_that_a_person_would_take(seconds, text):
+    assert duration(seconds) == text
+
+
+def test_without_watch_a_terminal_shows_one_line_that_replaces_itself(rays, tmp_path):
+    text = on_a_terminal([*rays, "--output", str(tmp_path / "out.nc")], columns=100)
+    *_, last, end = text.split("\r")
+    found = xr.load_dataset(tmp_path / "out.nc")
+    assert last.startswith(f"state {found.sizes['step']}, retraction: ")
+    assert end == "\n"

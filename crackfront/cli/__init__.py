@@ -11,11 +11,12 @@ from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.cycle import cycle
 from crackfront.cli.figure import check_figures, compare_figures, draw_figure, figure, gallery
 from crackfront.cli.law import law
-from crackfront.cli.report import examples
+from crackfront.cli.report import StoppedError, examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.cli.validate import validate
+from crackfront.sweep.parallel import ending_alike
 
 
 class _RefusalError(click.ClickException):
@@ -38,7 +39,13 @@ class _Commands(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
         try:
-            return super().invoke(ctx)
+            with ending_alike():
+                return super().invoke(ctx)
+        except KeyboardInterrupt as error:
+            raise StoppedError(
+                "nothing is half-written; the same command begins anew, or goes on from its last "
+                "checkpoint"
+            ) from error
         except BrokenPipeError:
             raise
         except OSError as error:
@@ -87,7 +94,8 @@ Exit codes:
   1   computed, but not what was asked for: too many simulations without a value,
       a cycle that ended early, ranks that failed
   2   the input cannot be used; one sentence says why, and nothing was computed
-  75  told to end (SIGTERM) before it was done; the same command goes on
+  75  told to end (Ctrl-C or SIGTERM) before it was done; the same command goes on,
+      or begins anew where it says so
 
 \b
 Examples:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-import sys
+import hashlib
+import math
+import time
 from collections.abc import Callable
 from dataclasses import MISSING, fields
 from pathlib import Path
@@ -10,13 +12,29 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, as_json, echo_json, examples
-from crackfront.cli.watch import Watch, state_line
+from crackfront.cli.report import (
+    FILE,
+    StoppedError,
+    announce_compilation,
+    as_json,
+    echo_json,
+    examples,
+    refuse_unwritable,
+)
+from crackfront.cli.watch import Progress, Watch
 from crackfront.simulate.cases import CASES, Resolution
+from crackfront.sweep.parallel import heeding_notice, notice_is_given
 
 if TYPE_CHECKING:
-    from crackfront.core.cycle.record import Recorder
+    from xarray import Dataset
+
+    from crackfront.core.cycle.record import Checkpoint, Recorder
     from crackfront.core.field.fields import Interpolation
+    from crackfront.core.geometry.base import Geometry
+
+_SECONDS_BETWEEN_CHECKPOINTS = 60.0
+_MEASURES = ("w_appr", "w_retr", "hysteresis")
+"""Measures of a loop that machines are told."""
 
 
 def _case_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -49,6 +67,8 @@ def _parameter(flag: str) -> str:
 @click.command(
     epilog=examples(
         "crackfront cycle --field tile.nc --max-penetration 1 --output cycle.nc --watch",
+        "crackfront cycle --field surface.nc --max-penetration 1 --step 0.02 --output cycle.nc \\",
+        "  --figure cycle",
         "crackfront cycle --field tile.nc --max-penetration 1 --step 0.05 --record fronts \\",
         "  --record energy --output cycle.nc",
         "crackfront cycle --geometry line --spring 32 --field tile.nc --from 300 --to 1100 \\",
@@ -106,6 +126,7 @@ def _parameter(flag: str) -> str:
     help="Pieces between samples of a ray.  [default: cubic on a tile, linear on polar samples]",
 )
 @click.option("--output", type=FILE, required=True, help="netCDF file of the cycle.")
+@click.option("--figure", type=FILE, help="Figure of the loop, without suffix; PDF and PNG.")
 @click.option(
     "--watch",
     is_flag=True,
@@ -123,6 +144,7 @@ def cycle(
     samples_per_pixel: float | None,
     interpolation: Interpolation | None,
     output: Path,
+    figure: Path | None,
     watch: bool,
     as_json: bool,
     **given: float | None,
@@ -140,14 +162,17 @@ def cycle(
     tile, and the springs do not pull where the front feels the mean of the tile.
 
     The exit code is 0 where the cycle came to its end (on a sphere, by losing contact) and 1 where
-    it ended early; the output is written in both cases. It is 2 where the input cannot be used.
+    it ended early; the output is written in both cases. It is 2 where the input cannot be used, and
+    75 after Ctrl-C or SIGTERM: the states so far are then kept beside the output, and the same
+    command goes on from there.
     """
     from crackfront.core.cycle.record import Recorder
     from crackfront.core.outcome import Status
     from crackfront.core.solver.relax import named_solver
+    from crackfront.data.files import write_dataset
     from crackfront.data.provenance import provenance
     from crackfront.simulate.fields import read_field
-    from crackfront.simulate.files import write_cycle
+    from crackfront.simulate.loops import loop_dataset
 
     case = _case(geometry, given)
     solution = named_solver(solver, tolerance, max_sweeps)
@@ -160,18 +185,27 @@ def cycle(
             "--record fronts: on rings the front is a circle, whose radius every record holds as "
             "mean_radius; leave it out"
         )
+    for path in (output, figure or output):
+        refuse_unwritable(path.parent)
     announce_compilation(err=as_json)
-    shown = Watch(getattr(case, "max_penetration", None)) if watch else None
+    asked = (geometry, given, tolerance, solver, max_sweeps, record, angles, samples_per_pixel)
+    keeper = _Keeper(output, _key(field_file, *asked, interpolation), problem.field.geometry)
+    resumed, deepest = keeper.found(), getattr(case, "max_penetration", None)
+    shown = Watch(problem.expected, deepest) if watch else Progress(problem.expected)
     recorder = Recorder(
         fronts="fronts" in record,
         energy="energy" in record,
-        observers=[_report if shown is None else shown],
+        observers=[shown, keeper],
+        resume=resumed,
     )
-    recorder.run(problem.field, problem.front, problem.loads, solution)
-    if shown is not None:
-        shown.finish()
+    with heeding_notice():
+        recorder.run(problem.field, problem.front, problem.loads, solution)
+    shown.finish()
     outcome = recorder.record()
-    write_cycle(output, outcome, provenance(), problem.field.geometry, problem.sites)
+    found = loop_dataset(outcome, problem.measures, problem.field.geometry, problem.sites)
+    write_dataset(output, found, provenance())
+    keeper.path.unlink(missing_ok=True)
+    drawn = () if figure is None else _draw(found, figure)
     count, load = len(recorder.states), recorder.load_name
     if as_json:
         forces = [state.force for state in recorder.states if hasattr(state, "force")]
@@ -182,14 +216,90 @@ def cycle(
                 "status": outcome.status.name.lower(),
                 f"end_{load}": outcome.end_load,
                 "lowest_force": min(forces, default=None),
+                "jump_in_force": next(iter(forces), None),
+                **{name: _number(found, name) for name in _MEASURES},
             }
         )
     else:
         click.echo(f"{count} states: {output}")
+        for path in drawn:
+            click.echo(f"figure: {path}")
+        click.echo(found.attrs["result"])
     if outcome.status is not Status[case.ends_by]:
         raise click.ClickException(f"at {load} {outcome.end_load:.6g} {outcome.status.value}")
     if not as_json and outcome.status is Status.LOST_CONTACT:
         click.echo(f"contact was lost at {load} {outcome.end_load:.6g}")
+
+
+class _Keeper:
+    """What keeps the states of a cycle beside its output, and ends it where notice was given."""
+
+    def __init__(self, output: Path, key: str, geometry: Geometry) -> None:
+        self.path = output.with_name(f"{output.stem}.checkpoint.nc")
+        self._key, self._geometry = key, geometry
+        self._next = time.monotonic() + _SECONDS_BETWEEN_CHECKPOINTS
+
+    def found(self) -> Checkpoint | None:
+        """What an earlier run of the same cycle has kept."""
+        from crackfront.data.files import UnreadableFileError, read_dataset
+        from crackfront.simulate.files import known_checkpoint
+
+        if not self.path.exists():
+            return None
+        try:
+            found = known_checkpoint(read_dataset(self.path), self._key, self.path)
+        except UnreadableFileError:
+            found = None
+        if found is None:
+            click.echo(f"{self.path} is of another cycle, which begins anew", err=True)
+        else:
+            count = found.record.states.direction.size
+            click.echo(f"going on from the {count} states in {self.path}", err=True)
+        return found
+
+    def __call__(self, recorder: Recorder) -> None:
+        """Keep the states where it is time to; end where notice was given."""
+        from crackfront.data.files import write_dataset
+        from crackfront.data.provenance import provenance
+        from crackfront.simulate.files import checkpoint_dataset
+
+        stop = notice_is_given()
+        if not stop and time.monotonic() < self._next:
+            return
+        kept = checkpoint_dataset(recorder.checkpoint(), self._key, self._geometry)
+        write_dataset(self.path, kept, provenance())
+        self._next = time.monotonic() + _SECONDS_BETWEEN_CHECKPOINTS
+        if stop:
+            count = len(recorder.states)
+            raise StoppedError(
+                f"{count} states are kept in {self.path}; the same command goes on from there"
+            )
+
+
+def _key(field_file: Path, *asked: object) -> str:
+    """What changes with the field, with what is asked for and with the solver."""
+    from crackfront.core.fingerprint import solver_fingerprint
+
+    with field_file.open("rb") as file:
+        content = hashlib.file_digest(file, "sha256").hexdigest()
+    return hashlib.sha256(repr((content, *asked, solver_fingerprint())).encode()).hexdigest()
+
+
+def _number(found: Dataset, name: str) -> float | None:
+    """A measure of a loop, if it has one."""
+    value = float(found[name]) if name in found else math.nan
+    return value if math.isfinite(value) else None
+
+
+def _draw(found: Dataset, stem: Path) -> tuple[Path, ...]:
+    """Draw the figure of a loop."""
+    from crackfront.plots.library import plot_loop
+    from crackfront.plots.style import COLUMN, blank_figure, house_style, save_figure
+
+    with house_style():
+        figure = blank_figure(COLUMN, 0.82 * COLUMN)
+        plot_loop(found, figure.add_subplot())
+        return save_figure(figure, stem)
 
 
 def _case(geometry: str, given: dict[str, float | None]) -> Any:
@@ -205,9 +315,3 @@ def _case(geometry: str, given: dict[str, float | None]) -> Any:
         if name in own and value is not None:
             values[own[name].name] = value
     return CASES[geometry](**values)
-
-
-def _report(recorder: Recorder) -> None:
-    """Tell on a terminal which state was found last."""
-    if sys.stderr.isatty():
-        click.echo(f"\r{state_line(recorder.states)}", nl=False, err=True)

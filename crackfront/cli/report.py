@@ -17,6 +17,17 @@ as_json = click.option(
 """Option of a command whose answer machines may want."""
 
 
+class StoppedError(click.ClickException):
+    """A command was told to end before it was done; what is kept, and how it goes on."""
+
+    exit_code = 75
+    """EX_TEMPFAIL of sysexits.h."""
+
+    def show(self, file: Any = None) -> None:
+        """Print the sentence."""
+        click.echo(f"Stopped as told: {self.message}", err=True)
+
+
 def examples(*lines: str) -> str:
     """End of the help of a command: command lines that show its use."""
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)

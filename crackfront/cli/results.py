@@ -27,20 +27,19 @@ if TYPE_CHECKING:
 def aggregate(configuration: Path, output: Path | None) -> None:
     """Collect the stored simulations of a sweep in hysteresis.nc."""
     from crackfront.data.provenance import provenance
+    from crackfront.sweep.library import without_value
     from crackfront.sweep.table import COMPLETE
 
     sweep, store = sweep_and_store(configuration, output)
     path, statuses = store.aggregate(sweep, provenance(configuration.read_text(encoding="utf-8")))
-    others = {status: count for status, count in statuses.items() if status not in COMPLETE}
-    failed, total = sum(others.values()), sweep.n_simulation
-    told = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
-    sentence = f"{failed} of {total} simulations have no value: {told}"
-    if failed > sweep.failed_fraction * total:
+    failed = sum(count for status, count in statuses.items() if status not in COMPLETE)
+    sentence = without_value(statuses)
+    if failed > sweep.failed_fraction * sweep.n_simulation:
         raise click.ClickException(
             f"{sentence}; failed_fraction of the configuration allows {sweep.failed_fraction:g}. "
             f"What they ended by stands in status_sentence of {path}"
         )
-    if failed:
+    if sentence:
         click.echo(f"Warning: {sentence}", err=True)
     click.echo(f"hysteresis: {path}")
 

@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, as_json, echo_json, examples
+from crackfront.cli.report import (
+    FILE,
+    StoppedError,
+    announce_compilation,
+    as_json,
+    echo_json,
+    examples,
+)
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
@@ -20,8 +27,8 @@ if TYPE_CHECKING:
     from crackfront.sweep.sweep import NamedSpectrum, Sweep
     from crackfront.sweep.tasks import Finished
 
-TRY_AGAIN = 75
-"""Exit code of a command that was told to end before it was done (EX_TEMPFAIL of sysexits.h)."""
+_MOST_PROCESSES = 16
+"""Processes that status names to a reader."""
 
 configuration_argument = click.argument("configuration", type=FILE)
 output_option = click.option(
@@ -188,8 +195,8 @@ def simulate(
 ) -> None:
     """Run the simulations of a sweep that are not stored yet.
 
-    SIGTERM is taken as notice: running simulations are kept as far as they are, and the exit code
-    is 75. The same command then goes on from there.
+    Ctrl-C and SIGTERM are taken as notice: running simulations are kept as far as they are, and
+    the exit code is 75. The same command then goes on from there.
     """
     from crackfront.sweep import parallel
 
@@ -231,6 +238,8 @@ def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path
 
     folder.mkdir(parents=True, exist_ok=True)
     code = parallel.launch_ranks(arguments, ranks, launcher, folder)
+    if code == StoppedError.exit_code:
+        sys.exit(code)  # the manager has told it
     if code != 0:
         click.echo(
             f"Error: the ranks ended with exit code {code}; finished simulations are stored, and "
@@ -261,12 +270,10 @@ def _fill(
                     "command continues with the others"
                 )
             if finished.status == STOPPED:
-                click.echo(
-                    f"Stopped as told: {count} of {len(missing)} simulations were stored and the "
-                    "running ones kept; the same command continues with the others",
-                    err=True,
+                raise StoppedError(
+                    f"{count} of {len(missing)} simulations were stored and the running ones "
+                    "kept; the same command continues with the others"
                 )
-                sys.exit(TRY_AGAIN)
     if missing:
         click.echo(f"{len(missing)} simulations in {time.monotonic() - started:.1f} s")
 
@@ -301,16 +308,23 @@ def _reported(
 @click.argument("folder", type=FILE)
 @as_json
 def status(folder: Path, as_json: bool) -> None:
-    """Tell how far the sweep in a folder is; also while it runs, here or elsewhere."""
+    """Tell how far the sweep in a folder is, and which processes are at it, here or elsewhere.
+
+    A process on this machine is told to run as long as it lives, one on another machine as long as
+    it shows signs of life.
+    """
     from crackfront.sweep.configuration import load_configuration
+    from crackfront.sweep.journal import running
     from crackfront.sweep.store import Store
 
     store = Store(folder)
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
     found = store.progress(load_configuration(store.configuration))
+    processes = running(store.journals)
     if as_json:
-        echo_json({"spectra": [asdict(item) for item in found]})
+        spectra, at_work = ([asdict(item) for item in items] for items in (found, processes))
+        echo_json({"spectra": spectra, "processes": at_work})
         return
     click.echo("spectrum             done  failed  running  waiting  core hours left")
     for item in found:
@@ -318,12 +332,19 @@ def status(folder: Path, as_json: bool) -> None:
             f"{item.name:16}  {item.done:7}  {item.failed:6}  {item.running:7}  {item.waiting:7}"
             f"  {item.seconds / 3600:15.3g}"
         )
-    left, at_work = sum(item.seconds for item in found), sum(item.running for item in found)
+    for one in processes[:_MOST_PROCESSES]:
+        click.echo(
+            f"process {one.process} on {one.host}: {one.label}, last sign of life "
+            f"{one.silent_seconds:.0f} s ago"
+        )
+    if len(processes) > _MOST_PROCESSES:
+        click.echo(f"and {len(processes) - _MOST_PROCESSES} more, which --json tells")
+    left, ranks = sum(item.seconds for item in found), sum(item.running for item in found)
     total = sum(item.done + item.failed + item.running + item.waiting for item in found)
     ended = sum(item.done + item.failed for item in found)
     sentence = f"{ended} of {total} simulations have ended"
-    if at_work:
-        sentence += f"; about {left / at_work / 60:.3g} minutes are left on {at_work} rank(s)"
+    if ranks:
+        sentence += f"; about {left / ranks / 60:.3g} minutes are left on {ranks} rank(s)"
     elif ended < total:
         sentence += "; nothing runs"
     click.echo(sentence)

@@ -6,7 +6,13 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, examples, refuse_unwritable
+from crackfront.cli.report import (
+    FILE,
+    StoppedError,
+    announce_compilation,
+    examples,
+    refuse_unwritable,
+)
 
 
 @click.command(
@@ -35,4 +41,7 @@ def validate(configuration: Path, output: Path | None) -> None:
     refuse_unwritable(folder)
     origin = provenance(configuration.read_text(encoding="utf-8"))
     announce_compilation()
-    write_validation(folder, parameters, origin, click.echo)
+    try:
+        write_validation(folder, parameters, origin, click.echo)
+    except KeyboardInterrupt as error:
+        raise StoppedError("the same command goes on with the next load step") from error

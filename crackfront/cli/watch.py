@@ -28,6 +28,9 @@ _NARROWEST = 60
 _SECONDS = 0.1
 """Time between two frames, so that drawing costs next to nothing."""
 
+_SECONDS_BETWEEN_LINES = 10.0
+"""Time between two lines where there is no terminal."""
+
 _DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 """Bits of the dots of a Braille character, two to the right and four down."""
 
@@ -74,53 +77,113 @@ class Canvas:
         ]
 
 
-class Watch:
-    """What is called at every new state: frames on a terminal, a line a state elsewhere.
+class Progress:
+    """What is called at every new state: its line and the time that is left.
+
+    On a terminal the line replaces the last one, elsewhere there is one now and then.
 
     Parameters
     ----------
+    expected : int
+        States that the cycle will have, roughly.
+    """
+
+    _seconds_between_lines = _SECONDS_BETWEEN_LINES
+
+    def __init__(self, expected: int) -> None:
+        self._expected = expected
+        self._begun: tuple[float, int] | None = None
+        self._next = 0.0
+        self._last: Recorder | None = None
+
+    def __call__(self, recorder: Recorder) -> None:
+        """Show the last state, if there was nothing shown just now."""
+        now, terminal = time.monotonic(), sys.stderr.isatty()
+        wait = _SECONDS if terminal else self._seconds_between_lines
+        if self._begun is None:
+            self._begun = now, len(recorder.states)
+            self._next = now if terminal else now + wait
+        self._last = recorder
+        if now < self._next:
+            return
+        if terminal:
+            self._show(recorder)
+        else:
+            click.echo(self._line(recorder), err=True)
+        self._next = time.monotonic() + wait
+
+    def finish(self) -> None:
+        """Show the last state of all, which may have come just after another one."""
+        if self._last is not None and sys.stderr.isatty():
+            self._show(self._last)
+            self._end()
+
+    def _line(self, recorder: Recorder) -> str:
+        """Last state, and how long the others will take if they take as long as those before."""
+        line, count = state_line(recorder.states), len(recorder.states)
+        begun, known = self._begun or (0.0, count)
+        left = self._expected - count
+        if count == known or left <= 0:
+            return line
+        seconds = (time.monotonic() - begun) * left / (count - known)
+        return f"{line}; about {duration(seconds)} left"
+
+    def _show(self, recorder: Recorder) -> None:
+        """Replace the last line."""
+        click.echo(f"\r{self._line(recorder)}\x1b[K", nl=False, err=True)
+
+    def _end(self) -> None:
+        """Leave the line."""
+        click.echo(err=True)
+
+
+class Watch(Progress):
+    """The same with the front and the loop as they grow; a line a state without a terminal.
+
+    Parameters
+    ----------
+    expected : int
+        As of :class:`Progress`.
     max_penetration : float or None
         Largest penetration of the cycle, which decides how much the panels show; without one, as
         where no sphere is pressed, there are lines alone.
     """
 
-    def __init__(self, max_penetration: float | None) -> None:
+    _seconds_between_lines = 0.0
+
+    def __init__(self, expected: int, max_penetration: float | None) -> None:
         from crackfront.core import jkr
 
+        super().__init__(expected)
         self._panels: tuple[float, tuple[float, float]] | None = None
         if max_penetration is not None:
             # Room for a contact that sticks more than a smooth one, or less.
             smooth = jkr.equilibrium_radius(max_penetration)
             highest = float(jkr.equilibrium_force(smooth)) + 0.7
             self._panels = 1.15 * smooth, (1.5 * jkr.pull_off_force(), highest)
-        self._last: Recorder | None = None
         self._drawn = 0
-        self._next = 0.0
-
-    def __call__(self, recorder: Recorder) -> None:
-        """Show the last state, if the last frame was not just now."""
-        self._last = recorder
-        if not sys.stderr.isatty():
-            click.echo(state_line(recorder.states), err=True)
-        elif time.monotonic() >= self._next:
-            self._show(recorder)
-            self._next = time.monotonic() + _SECONDS
-
-    def finish(self) -> None:
-        """Show the last state of all, which may have come just after a frame."""
-        if self._last is not None and sys.stderr.isatty():
-            self._show(self._last)
 
     def _show(self, recorder: Recorder) -> None:
         """Replace the last frame."""
         columns, rows = os.get_terminal_size(sys.stderr.fileno())
-        lines = [state_line(recorder.states)]
+        lines = [self._line(recorder)]
         # A frame that does not fit cannot be replaced.
         if self._panels and columns >= _NARROWEST and rows > _ROWS + 2:
             lines += frame(recorder.states, recorder.front, columns - 1, *self._panels)
         back = f"\x1b[{self._drawn}A\x1b[J" if self._drawn else ""
         click.echo(back + "\n".join(lines), err=True)
         self._drawn = len(lines)
+
+    def _end(self) -> None:
+        """A frame ends with a line of its own."""
+
+
+def duration(seconds: float) -> str:
+    """A time in the unit that a person would take."""
+    for unit, size in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= 1.5 * size:
+            return f"{seconds / size:.2g} {unit}"
+    return f"{seconds:.2g} s" if seconds >= 1 else "1 s"
 
 
 def state_line(states: Sequence[Any]) -> str:

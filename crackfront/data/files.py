@@ -134,7 +134,7 @@ def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset
             return dataset.drop_vars(others).load()
     except (OSError, RuntimeError, ValueError) as error:
         raise UnreadableFileError(
-            f"{path} is no complete netCDF file; remove it or write it again"
+            f"{path} is no complete netCDF file; write it again, or name another"
         ) from error
 
 

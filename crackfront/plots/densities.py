@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crackfront.plots.parts import LATERAL_UNIT
 from crackfront.plots.style import BLACK, BLUE
+from crackfront.plots.units import REDUCED, AxisUnits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,6 +31,7 @@ def draw_spectrum(
     shortest: Array,
     longest: Array,
     ideal: Array | None = None,
+    units: AxisUnits = REDUCED,
 ) -> None:
     """Isotropic density of a surface, with bars of the scales that dominate its rms measures.
 
@@ -43,24 +45,35 @@ def draw_spectrum(
         Wavelengths between which 80% of their squares lie. (Units: reduced lateral length)
     ideal : (n_wave,) array, optional
         Density of the spectrum that the surface was made from, zero where it has none.
+    units : AxisUnits, optional
+        In which all of it is drawn.
     """
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.plot(wavevector, density, color=BLUE, label="surface")
-    names = [
-        rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$"
-        for order, value in zip(("0", "1/2", "1"), rms, strict=True)
-    ]
-    axes.set_xlim(0.7 * wavevector[0], 1.4 * wavevector[-1])
-    _add_bars(axes, names, 2 * np.pi / longest, 2 * np.pi / shortest)
+    wave, power = wavevector / units.lateral, (units.vertical * units.lateral) ** 2
+    axes.plot(wave, power * density, color=BLUE, label="surface")
+    axes.set_xlim(0.7 * wave[0], 1.4 * wave[-1])
+    waves = (2 * np.pi / (units.lateral * ends) for ends in (longest, shortest))
+    if units.scales is None:
+        names = [
+            rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$"
+            for order, value in zip(("0", "1/2", "1"), rms, strict=True)
+        ]
+        _add_bars(axes, names, *waves)
+        axes.set_xlabel(rf"wavevector $q$ $\times$ {LATERAL_UNIT}")
+        axes.set_ylabel(r"$C^\mathrm{iso}$ / $(3\pi w_\mathrm{int}R/4E')^2$")
+    else:
+        orders = np.array([0.0, 0.5, 1.0])
+        _add_bars(
+            axes, _measured_names((units.vertical * rms / units.lateral**orders) ** 2), *waves
+        )
+        axes.set_xlabel(WAVEVECTOR_LABEL)
+        axes.set_ylabel(ISOTROPIC_LABEL)
     if ideal is not None:
         kept = ideal > 0
-        axes.plot(
-            wavevector[kept], ideal[kept], color=BLACK, dashes=(4, 2), label="spectrum", zorder=3
-        )
-    axes.set_ylim(bottom=0.1 * float(density.min()))
-    axes.set_xlabel(rf"wavevector $q$ $\times$ {LATERAL_UNIT}")
-    axes.set_ylabel(r"$C^\mathrm{iso}$ / $(3\pi w_\mathrm{int}R/4E')^2$")
+        curve = wave[kept], power * ideal[kept]
+        axes.plot(*curve, color=BLACK, dashes=(4, 2), label="spectrum", zorder=3)
+    axes.set_ylim(bottom=0.1 * power * float(density.min()))
     axes.legend(loc="lower left")
 
 
@@ -75,13 +88,17 @@ def draw_dominant_scales(axes: Axes, mean_square: Array, shortest: Array, longes
         Mean squares of heights, half-derivatives and slopes, and the ends of their scales.
         (Units: m^(2 - 2 order), m)
     """
-    names = (
+    _add_bars(axes, _measured_names(mean_square), 2 * np.pi / longest, 2 * np.pi / shortest)
+
+
+def _measured_names(mean_square: Array) -> tuple[str, ...]:
+    """Names of the bars over wavevectors in 1/m; arguments as of :func:`draw_dominant_scales`."""
+    return (
         rf"$h_\mathrm{{rms}}^{{(0)}} = {1e9 * mean_square[0] ** 0.5:.0f}$ nm",
         rf"$h_\mathrm{{rms}}^{{(1/2)}} = {1e4 * mean_square[1] ** 0.5:.1f}"
         r"\times10^{-4}$ m$^{1/2}$",
         rf"$h_\mathrm{{rms}}^{{(1)}} = {mean_square[2] ** 0.5:.2f}$",
     )
-    _add_bars(axes, names, 2 * np.pi / longest, 2 * np.pi / shortest)
 
 
 def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -> None:

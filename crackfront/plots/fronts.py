@@ -9,8 +9,9 @@ from matplotlib.colors import BoundaryNorm
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from crackfront.plots.parts import ADHESION_LABEL, HEIGHT_LABEL, LATERAL_UNIT, field_colours
+from crackfront.plots.parts import field_colours
 from crackfront.plots.style import BLUE, VERMILION
+from crackfront.plots.units import REDUCED, AxisUnits
 
 Array = NDArray[np.float64]
 
@@ -22,7 +23,13 @@ _MARGIN = 1.15
 
 
 def draw_field(
-    axes: Axes, x: Array, y: Array, adhesion: NDArray[np.floating], mean: float, reach: float
+    axes: Axes,
+    x: Array,
+    y: Array,
+    adhesion: NDArray[np.floating],
+    mean: float,
+    reach: float,
+    units: AxisUnits = REDUCED,
 ) -> None:
     """Work of adhesion in a few shades, mean - reach to mean + reach, with a colour bar.
 
@@ -34,37 +41,53 @@ def draw_field(
         Work of adhesion. (Units: w_int)
     mean, reach : float
         Middle of the shades, and how far they go to either side. (Units: w_int)
+    units : AxisUnits, optional
+        In which they are drawn.
     """
-    levels = MaxNLocator(_MOST_GREYS).tick_values(mean - reach, mean + reach)
+    ends = units.adhesion * (mean - reach), units.adhesion * (mean + reach)
+    levels = MaxNLocator(_MOST_GREYS).tick_values(*ends)
     shades = ScalarMappable(BoundaryNorm(levels, field_colours().N), field_colours())
     # Coloured once, not once a frame.
     axes.imshow(
-        shades.to_rgba(adhesion.T, bytes=True),
+        shades.to_rgba(units.adhesion * adhesion.T, bytes=True),
         origin="lower",
-        extent=(x[0], x[-1], y[0], y[-1]),
+        extent=_extent(x, y, units),
         interpolation="nearest",
     )
     bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, format="%.1f", extend="both")
-    bar.set_label(rf"local {ADHESION_LABEL}")
-    label_plane(axes)
+    units.name(bar.ax.yaxis, "local work of adhesion", "adhesion")
+    label_plane(axes, units)
 
 
-def draw_heights(axes: Axes, x: Array, y: Array, heights: Array) -> None:
+def draw_heights(
+    axes: Axes, x: Array, y: Array, heights: Array, units: AxisUnits = REDUCED
+) -> None:
     """Heights in colours, peaks bright, with a colour bar; arrays as of :func:`draw_field`."""
     image = axes.imshow(
-        heights.T,
+        units.vertical * heights.T,
         origin="lower",
-        extent=(x[0], x[-1], y[0], y[-1]),
+        extent=_extent(x, y, units),
         interpolation="nearest",
         cmap="cividis",
     )
     bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
-    bar.set_label(HEIGHT_LABEL.format("height"))
-    label_plane(axes)
+    units.name(bar.ax.yaxis, "height", "vertical")
+    label_plane(axes, units)
+
+
+def _extent(x: Array, y: Array, units: AxisUnits) -> tuple[float, float, float, float]:
+    """Edges of an image."""
+    left, right, bottom, top = (float(units.lateral * end) for end in (x[0], x[-1], y[0], y[-1]))
+    return left, right, bottom, top
 
 
 def draw_fronts(
-    axes: Axes, angle: Array, radius: Array, direction: NDArray[np.int64], most: int = 24
+    axes: Axes,
+    angle: Array,
+    radius: Array,
+    direction: NDArray[np.int64],
+    most: int = 24,
+    units: AxisUnits = REDUCED,
 ) -> None:
     """Fronts of both branches as closed curves, at most so many of a branch, its last among them.
 
@@ -78,27 +101,54 @@ def draw_fronts(
         +1 in approach, -1 in retraction.
     """
     for sign, colour, label in ((1, BLUE, "approach"), (-1, VERMILION, "retraction")):
-        branch = radius[direction == sign]
-        every = -(-len(branch) // most) or 1
-        for count, front in enumerate(branch[::-1][::every]):
+        for count, front in enumerate(_few(radius[direction == sign], most)):
             name = label if count == 0 else None
-            axes.plot(*closed_front(angle, front), color=colour, linewidth=0.7, label=name)
-    frame_plane(axes, _MARGIN * float(np.max(radius)))
+            curve = closed_front(angle, units.lateral * front)
+            axes.plot(*curve, color=colour, linewidth=0.7, label=name)
+    frame_plane(axes, _MARGIN * float(np.max(radius)), units)
     axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
 
 
-def frame_plane(axes: Axes, reach: float) -> None:
+def draw_straight_fronts(
+    axes: Axes, y: Array, position: Array, direction: NDArray[np.int64], most: int = 24
+) -> None:
+    """Straight fronts of both branches, at most so many of a branch, its last among them.
+
+    Parameters
+    ----------
+    y : (n_site,) array
+        Places of the sites along the front. (Units: length of the tile)
+    position : (n_step, n_site) array
+        The fronts. (Units: length of the tile)
+    direction : (n_step,) int array
+        +1 where the load advances, -1 where it recedes.
+    """
+    for sign, colour, label in ((1, BLUE, "forward"), (-1, VERMILION, "back")):
+        for count, front in enumerate(_few(position[direction == sign], most)):
+            name = label if count == 0 else None
+            axes.plot(front, y, color=colour, linewidth=0.7, label=name)
+    axes.set_xlabel("$x$, along the motion (unit of the tile)")
+    axes.set_ylabel("$y$, along the front (unit of the tile)")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
+
+
+def _few(fronts: Array, most: int) -> Array:
+    """At most so many fronts of a branch, from its last backwards."""
+    return fronts[::-1][:: -(-len(fronts) // most) or 1]
+
+
+def frame_plane(axes: Axes, reach: float, units: AxisUnits = REDUCED) -> None:
     """A square of the plane around the apex, with its names and units."""
-    axes.set_xlim(-reach, reach)
-    axes.set_ylim(-reach, reach)
+    axes.set_xlim(-units.lateral * reach, units.lateral * reach)
+    axes.set_ylim(-units.lateral * reach, units.lateral * reach)
     axes.set_aspect("equal")
-    label_plane(axes)
+    label_plane(axes, units)
 
 
-def label_plane(axes: Axes) -> None:
+def label_plane(axes: Axes, units: AxisUnits = REDUCED) -> None:
     """Names and units of both lateral axes."""
-    axes.set_xlabel(rf"$x$ / {LATERAL_UNIT}")
-    axes.set_ylabel(rf"$y$ / {LATERAL_UNIT}")
+    units.name(axes.xaxis, "$x$", "lateral")
+    units.name(axes.yaxis, "$y$", "lateral")
 
 
 def closed_front(angle: Array, radius: Array) -> tuple[Array, Array]:

@@ -12,14 +12,22 @@ from matplotlib.colors import LogNorm
 from numpy.typing import NDArray
 
 from crackfront.plots.fronts import frame_plane
+from crackfront.plots.parts import ENERGY_UNIT
+from crackfront.plots.units import REDUCED, AxisUnits
 
 Array = NDArray[np.float64]
 
-ENERGY_LABEL = r"dissipated energy / $(9\pi^5 w_\mathrm{int}^5R^4/16E'^2)^{1/3}$"
+ENERGY_LABEL = f"dissipated energy / {ENERGY_UNIT}"
 
 
 def draw_instabilities(
-    axes: Axes, angle: Array, before: Array, after: Array, energy: Array, travel: float
+    axes: Axes,
+    angle: Array,
+    before: Array,
+    after: Array,
+    energy: Array,
+    travel: float,
+    units: AxisUnits = REDUCED,
 ) -> None:
     """The instabilities of a branch, with a colour bar.
 
@@ -35,6 +43,8 @@ def draw_instabilities(
         Dissipated energies. (Units: pi w_int R times a reduced vertical length)
     travel : float
         Smallest motion of a site that is drawn. (Units: reduced lateral length)
+    units : AxisUnits, optional
+        In which they are drawn.
 
     Raises
     ------
@@ -43,15 +53,16 @@ def draw_instabilities(
     """
     if energy.size == 0:
         raise ValueError("the branch has no instability; there is none to draw")
-    shades = energy_shades(energy)
+    shades = energy_shades(units.energy * energy)
     # Around from the site that moved least, so that no patch spans the ends of the array.
     start = np.argmin(np.abs(after - before), axis=1)
     site = (start[:, None] + np.arange(angle.size + 1)) % angle.size
-    fronts = [np.take_along_axis(values, site, axis=1) for values in (before, after)]
-    draw_patches(axes, angle[site], fronts, energy, travel, shades)
+    length = units.lateral
+    fronts = [length * np.take_along_axis(values, site, axis=1) for values in (before, after)]
+    draw_patches(axes, angle[site], fronts, units.energy * energy, length * travel, shades)
     bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, extend="min")
-    bar.set_label(ENERGY_LABEL)
-    frame_plane(axes, 1.05 * max(float(np.max(before)), float(np.max(after))))
+    units.name(bar.ax.yaxis, "dissipated energy", "energy")
+    frame_plane(axes, 1.05 * max(float(np.max(before)), float(np.max(after))), units)
 
 
 def energy_shades(energy: Array) -> ScalarMappable:

@@ -1,7 +1,11 @@
-"""Figures of surfaces, loops, fronts and instabilities, each on axes that are given or new."""
+"""Figures of surfaces, loops, fronts and instabilities, each on axes that are given or new.
+
+What is in SI units is drawn in them.
+"""
 
 from __future__ import annotations
 
+import math
 from contextlib import AbstractContextManager, nullcontext
 
 import numpy as np
@@ -9,13 +13,15 @@ from matplotlib.axes import Axes
 from xarray import DataArray, Dataset
 
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.data.arguments import refuse_other_type
 from crackfront.plots.densities import draw_spectrum
-from crackfront.plots.fronts import draw_field, draw_fronts, draw_heights
+from crackfront.plots.fronts import draw_field, draw_fronts, draw_heights, draw_straight_fronts
 from crackfront.plots.instabilities import draw_instabilities
-from crackfront.plots.loop import draw_loop
+from crackfront.plots.loop import draw_loop, draw_pinning
 from crackfront.plots.style import shown_axes
+from crackfront.plots.units import AxisUnits
 from crackfront.simulate.files import cycle_record
-from crackfront.simulate.si_units import refuse_other_units
+from crackfront.simulate.si_units import Labelled, in_reduced_units, stated_scales
 from crackfront.simulate.surfaces import surface_adhesion, surface_kind
 from crackfront.simulate.tiles import stated_spectrum, tile_modes
 
@@ -31,13 +37,29 @@ def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
     return shown_axes() if axes is None else nullcontext(axes)
 
 
+def _reduced(data: Labelled) -> tuple[Labelled, AxisUnits]:
+    """Data in reduced units, and the units that they had."""
+    scales = stated_scales(data)
+    if scales is None:
+        return data, AxisUnits()
+    return in_reduced_units(data, scales), AxisUnits(scales)
+
+
+def _loop(loop: object) -> Dataset:
+    """Dataset that a loop is."""
+    wanted = "an xarray.Dataset, as run_loop returns it or crackfront cycle has written it"
+    refuse_other_type("loop", loop, Dataset, wanted)
+    assert isinstance(loop, Dataset)
+    return loop
+
+
 def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     """Heights, or works of adhesion, on the tile.
 
     Parameters
     ----------
     surface : xarray.DataArray
-        A surface in reduced units.
+        A surface in reduced units, or what :func:`in_si_units` made of it.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default axes of a new figure, which are returned.
 
@@ -46,14 +68,16 @@ def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     ValueError
         If the surface cannot be used.
     """
+    kind = surface_kind(surface)
+    surface, units = _reduced(surface)
     adhesion = surface_adhesion(surface)
     x, y = surface.x.values, surface.y.values
     with _drawing(axes) as drawn:
-        if surface_kind(surface) == "roughness":
-            draw_heights(drawn, x, y, surface.transpose("x", "y").values)
+        if kind == "roughness":
+            draw_heights(drawn, x, y, surface.transpose("x", "y").values, units)
         else:
             values = adhesion.work_of_adhesion / WORK_OF_ADHESION
-            draw_field(drawn, x, y, values, 1.0, 2 * adhesion.w_rms)
+            draw_field(drawn, x, y, values, 1.0, 2 * adhesion.w_rms, units)
     return drawn
 
 
@@ -70,6 +94,7 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     """
     if surface_kind(surface) != "roughness":
         raise ValueError(f"{surface.name} has no height spectrum; plot that of height(x, y)")
+    surface, units = _reduced(surface)
     pixel = surface_adhesion(surface).pixel
     modes = tile_modes(surface.transpose("x", "y").values, pixel)
     if modes.power.size == 0:
@@ -85,29 +110,49 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
         ideal = shape.with_elastic_energy(float(energy)).density(wavevector)
     rms = np.sqrt(totals[:, -1])
     with _drawing(axes) as drawn:
-        draw_spectrum(drawn, wavevector, density, rms, shortest, longest, ideal)
+        draw_spectrum(drawn, wavevector, density, rms, shortest, longest, ideal, units)
     return drawn
 
 
 def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     """Force against mean radius, between the JKR curves of both branches and those of the paper.
 
-    `loop` is what :func:`run_loop` has returned, `axes` as of :func:`plot_surface`.
+    `loop` is what :func:`run_loop` has returned or `crackfront cycle` written, in reduced units or
+    in SI; `axes` as of :func:`plot_surface`. Of a straight front it is the force of its springs
+    against their place.
 
     Raises
     ------
     ValueError
-        If it is no loop in reduced units, or holds no state.
+        If it is no loop, or holds no state.
     """
-    refuse_other_units(loop)
+    loop = _loop(loop)
+    if "pinning_force" in loop:
+        states = cycle_record(loop).states
+        with _drawing(axes) as drawn:
+            draw_pinning(drawn, states)
+        return drawn
+    loop, units = _reduced(loop)
     states = cycle_record(loop).states
     names = (("w_appr", "w_retr"), ("lowest_radius", "highest_radius"))
-    works, window = ((float(loop[one]), float(loop[other])) for one, other in names)
+    works, window = ((_number(loop, one), _number(loop, other)) for one, other in names)
+    energy = _number(loop, "e_el")
     with _drawing(axes) as drawn:
         draw_loop(
-            drawn, states, works, window, elastic_energy=float(loop.e_el), kind=loop.attrs["kind"]
+            drawn,
+            states,
+            works,
+            window,
+            elastic_energy=None if math.isnan(energy) else energy,
+            kind=loop.attrs.get("kind", "roughness"),
+            units=units,
         )
     return drawn
+
+
+def _number(loop: Dataset, name: str) -> float:
+    """A measure of a loop, NaN where it has none, as one on rays."""
+    return float(loop[name]) if name in loop else math.nan
 
 
 def plot_fronts(
@@ -116,27 +161,39 @@ def plot_fronts(
     """Fronts of both branches, over the work of adhesion that pins them if the surface is given.
 
     `loop` and `axes` are as of :func:`plot_loop`; the loop holds its fronts, at most `most` of
-    which are drawn of a branch.
+    which are drawn of a branch. A surface may be in other units than the loop.
 
     Raises
     ------
     ValueError
         If loop or surface cannot be used, or the loop holds no fronts.
     """
-    refuse_other_units(loop)
-    if "radius" not in loop or loop.sizes["step"] == 0:
-        raise ValueError("the loop holds no fronts; run it with fronts=True")
+    loop = _loop(loop)
+    if ("radius" not in loop and "position" not in loop) or loop.sizes["step"] == 0:
+        raise ValueError(
+            "the loop holds no fronts; run it with fronts=True, or crackfront cycle with "
+            "--record fronts"
+        )
     if most < 1:
         raise ValueError(f"most is {most}; draw 1 front or more")
+    if "position" in loop:
+        if surface is not None:
+            raise ValueError("straight fronts are drawn without a surface; leave it out")
+        with _drawing(axes) as drawn:
+            curves = loop.y.values, loop.position.values, loop.direction.values
+            draw_straight_fronts(drawn, *curves, most)
+        return drawn
+    loop, units = _reduced(loop)
     with _drawing(axes) as drawn:
         if surface is not None:
-            adhesion = surface_adhesion(surface)
+            adhesion = surface_adhesion(_reduced(surface)[0])
             values = adhesion.work_of_adhesion / WORK_OF_ADHESION
             # The apex is the centre of the tile, whatever the coordinates of a given surface.
             x, y = (adhesion.pixel * (np.arange(count) - count / 2) for count in values.shape)
             reach = max(2 * adhesion.w_rms, 0.05)
-            draw_field(drawn, x, y, values, float(np.mean(values)), reach)
-        draw_fronts(drawn, loop.angle.values, loop.radius.values, loop.direction.values, most)
+            draw_field(drawn, x, y, values, float(np.mean(values)), reach, units)
+        curves = loop.angle.values, loop.radius.values, loop.direction.values
+        draw_fronts(drawn, *curves, most, units)
     return drawn
 
 
@@ -148,9 +205,10 @@ def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        If there is no instability, or the units are not reduced.
+        If there is no instability.
     """
-    refuse_other_units(jumps)
+    refuse_other_type("jumps", jumps, Dataset, "what find_instabilities returns")
+    jumps, units = _reduced(jumps)
     with _drawing(axes) as drawn:
         draw_instabilities(
             drawn,
@@ -159,5 +217,6 @@ def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
             jumps.after.values,
             jumps.dissipated_energy.values,
             float(jumps.attrs["travel"]),
+            units,
         )
     return drawn

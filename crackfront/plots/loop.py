@@ -13,6 +13,7 @@ from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
+from crackfront.plots.units import REDUCED, AxisUnits
 
 Array = NDArray[np.float64]
 
@@ -84,6 +85,7 @@ def draw_loop(
     *,
     elastic_energy: float | None = None,
     kind: FieldKind = "roughness",
+    units: AxisUnits = REDUCED,
 ) -> None:
     """Draw the two branches, their JKR curves and the window of the averages.
 
@@ -101,6 +103,8 @@ def draw_loop(
         Measured e_el, for the curves that the paper predicts. (Units: w_int)
     kind : {"roughness", "chemical"}, optional
         Whether they lie around w_int - e_el or w_int.
+    units : AxisUnits, optional
+        In which all of it is drawn.
 
     Raises
     ------
@@ -110,6 +114,7 @@ def draw_loop(
     if states.mean_radius.size == 0:
         raise ValueError("the record holds no state; there is no loop to draw")
     radius = np.linspace(0.0, 1.2 * np.max(states.mean_radius), 300)
+    length = units.lateral
     branches = (
         (1, "approach", "appr", BLUE, "o", works[0]),
         (-1, "retraction", "retr", VERMILION, "s", works[1]),
@@ -117,8 +122,8 @@ def draw_loop(
     for direction, name, short, colour, marker, adhesion in branches:
         branch = states.direction == direction
         axes.plot(
-            states.mean_radius[branch],
-            states.force[branch],
+            length * states.mean_radius[branch],
+            units.force * states.force[branch],
             linestyle="none",
             marker=marker,
             markevery=max(1, np.count_nonzero(branch) // MOST_MARKERS),
@@ -130,27 +135,28 @@ def draw_loop(
             zorder=3,
         )
         if np.isfinite(adhesion):
-            label = rf"JKR, $w_\mathrm{{{short}}} = {adhesion:.3f}\,w_\mathrm{{int}}$"
-            curve = jkr.equilibrium_force(radius, adhesion)
-            axes.plot(radius, curve, color=colour, linewidth=1.0, label=label, zorder=2)
+            label = rf"JKR, $w_\mathrm{{{short}}} = {units.adhesion_text(adhesion)}$"
+            curve = units.force * jkr.equilibrium_force(radius, adhesion)
+            axes.plot(length * radius, curve, color=colour, linewidth=1.0, label=label, zorder=2)
     if elastic_energy is not None:
         centre = 1 - elastic_energy if kind == "roughness" else 1.0
-        _draw_prediction(axes, radius, centre, PAPER_FACTOR * elastic_energy)
+        _draw_prediction(axes, radius, centre, PAPER_FACTOR * elastic_energy, units)
     if np.isfinite(window[0]):
         axes.axvspan(
-            *window,
+            *(length * end for end in window),
             color="0.93",
             linewidth=0,
             zorder=0,
             label="window of the averages",
         )
     axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
-    _set_limits(axes, states)
+    _set_limits(axes, states, units)
     for direction, _, _, colour, _, _ in branches:
         branch = states.direction == direction
-        _draw_motion(axes, states.mean_radius[branch], states.force[branch], colour)
-    axes.set_xlabel(r"mean contact radius / $(3\pi w_\mathrm{int}R^2/4E')^{1/3}$")
-    axes.set_ylabel(r"normal force / $\pi w_\mathrm{int} R$")
+        places = length * states.mean_radius[branch], units.force * states.force[branch]
+        _draw_motion(axes, *places, colour)
+    units.name(axes.xaxis, "mean contact radius", "lateral")
+    units.name(axes.yaxis, "normal force", "force")
     axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
 
 
@@ -169,8 +175,14 @@ def pinning_figure(
         return figure
 
 
-def draw_pinning(axes: Axes, states: LineStates, n_period: int, *, elastic_energy: float) -> None:
-    """Draw both branches, and their means over the last period of the tile.
+def draw_pinning(
+    axes: Axes,
+    states: LineStates,
+    n_period: int | None = None,
+    *,
+    elastic_energy: float | None = None,
+) -> None:
+    """Draw both branches, and their means over the last period of the tile if that is told.
 
     Parameters
     ----------
@@ -178,26 +190,30 @@ def draw_pinning(axes: Axes, states: LineStates, n_period: int, *, elastic_energ
         Where to draw.
     states : LineStates
         States of a straight front, forward and back.
-    n_period : int
+    n_period : int, optional
         States at the end of each branch that are one period.
-    elastic_energy : float
-        Measured e_el: the mean is k e_el. (Units: w_int)
+    elastic_energy : float, optional
+        Measured e_el, with which the mean is k e_el. (Units: w_int)
 
     Raises
     ------
     ValueError
-        If a branch has fewer states than a period.
+        If there is no state, or a branch has fewer of them than a period.
     """
+    if states.load.size == 0:
+        raise ValueError("the record holds no state; there is no loop to draw")
     for direction, name, colour in ((1, "forward", BLUE), (-1, "back", VERMILION)):
         branch = states.direction == direction
         load, pinning = states.load[branch], states.pinning_force[branch]
+        axes.plot(load, pinning, color=colour, linewidth=0.8, label=name, zorder=3)
+        if n_period is None or elastic_energy is None:
+            continue
         if load.size < n_period:
             raise ValueError(
                 f"the branch {name} has {load.size} states, fewer than the {n_period} of a period; "
                 "the front was left before it had passed the tile"
             )
         mean = float(np.mean(pinning[-n_period:]))
-        axes.plot(load, pinning, color=colour, linewidth=0.8, label=name, zorder=3)
         factor = direction * mean / elastic_energy
         axes.plot(
             load[[-n_period, -1]],
@@ -211,20 +227,21 @@ def draw_pinning(axes: Axes, states: LineStates, n_period: int, *, elastic_energ
     axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.45 * (high - low))
-    axes.set_xlabel("load $X$, place of the springs (reduced length)")
+    unit = "unit of the tile" if n_period is None else "reduced length"
+    axes.set_xlabel(f"load $X$, place of the springs ({unit})")
     axes.set_ylabel(r"pinning force / $w_\mathrm{int}$")
     axes.legend(loc="upper left")
 
 
-def _set_limits(axes: Axes, states: LoopStates) -> None:
+def _set_limits(axes: Axes, states: LoopStates, units: AxisUnits) -> None:
     """Limits around the states, with room for the legend at the upper left."""
-    for values, setter, below, above in (
-        (states.mean_radius, axes.set_xlim, 0.12, 0.08),
-        (states.force, axes.set_ylim, 0.15, 0.2),
+    for values, setter, unit, below, above in (
+        (states.mean_radius, axes.set_xlim, units.lateral, 0.12, 0.08),
+        (states.force, axes.set_ylim, units.force, 0.15, 0.2),
     ):
         low, high = float(np.min(values)), float(np.max(values))
         span = max(high - low, 0.1)
-        setter(low - below * span, high + above * span)
+        setter(unit * (low - below * span), unit * (high + above * span))
 
 
 def _draw_motion(axes: Axes, radius: Array, force: Array, colour: str) -> None:
@@ -247,13 +264,15 @@ def _draw_motion(axes: Axes, radius: Array, force: Array, colour: str) -> None:
     )
 
 
-def _draw_prediction(axes: Axes, radius: Array, centre: float, reach: float) -> None:
+def _draw_prediction(
+    axes: Axes, radius: Array, centre: float, reach: float, units: AxisUnits
+) -> None:
     """JKR curves of the works of adhesion centre - reach, not below zero, and centre + reach."""
     label: str | None = f"JKR, $k = {PAPER_FACTOR:g}$ (paper)"
     for adhesion in (max(centre - reach, 0.0), centre + reach):
         axes.plot(
-            radius,
-            jkr.equilibrium_force(radius, adhesion),
+            units.lateral * radius,
+            units.force * jkr.equilibrium_force(radius, adhesion),
             color="0.35",
             linewidth=0.6,
             dashes=(4, 2),

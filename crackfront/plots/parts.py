@@ -24,9 +24,12 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 LATERAL_UNIT = r"$(3\pi w_\mathrm{int}R^2/4E')^{1/3}$"
+VERTICAL_UNIT = r"$(9\pi^2 w_\mathrm{int}^2 R/16E'^2)^{1/3}$"
+ENERGY_UNIT = r"$(9\pi^5 w_\mathrm{int}^5R^4/16E'^2)^{1/3}$"
+FORCE_UNIT = r"$\pi w_\mathrm{int} R$"
 RADIUS_LABEL = rf"contact radius / {LATERAL_UNIT}"
-PENETRATION_LABEL = r"penetration / $(9\pi^2 w_\mathrm{int}^2 R/16E'^2)^{1/3}$"
-FORCE_LABEL = r"normal force / $\pi w_\mathrm{int} R$"
+PENETRATION_LABEL = f"penetration / {VERTICAL_UNIT}"
+FORCE_LABEL = f"normal force / {FORCE_UNIT}"
 ADHESION_LABEL = r"work of adhesion / $w_\mathrm{int}$"
 LENGTH_LABEL = r"{} / $(3\pi w_\mathrm{{int}}R^2/4E')^{{1/3}}$"
 HEIGHT_LABEL = r"{} / $(9\pi^2 w_\mathrm{{int}}^2 R/16E'^2)^{{1/3}}$"

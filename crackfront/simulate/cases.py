@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from crackfront.core.cycle.follow import Load
     from crackfront.core.field.fields import Field, Interpolation
     from crackfront.simulate.fields import PolarSamples
+    from crackfront.simulate.tiles import TileMeasures
 
     Array = NDArray[np.float64]
 
@@ -39,12 +40,26 @@ def option(text: str, *, flag: str | None = None, default: Any = MISSING) -> Any
 
 
 class Problem(NamedTuple):
-    """What a cycle is run on; `sites` are coordinates that are not those of the geometry."""
+    """What a cycle is run on.
+
+    Attributes
+    ----------
+    field, front, loads
+        As of :func:`crackfront.core.cycle.follow.follow`.
+    expected : int
+        States that it will have, roughly.
+    sites : (n_site,) array or None
+        Coordinates that are not those of the geometry.
+    measures : TileMeasures or None
+        What the tile tells of the loop of a sphere.
+    """
 
     field: Field
     front: Array
     loads: Iterable[Load]
+    expected: int
     sites: Array | None = None
+    measures: TileMeasures | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,25 +88,30 @@ class SphereCase:
 
         The load goes from first contact to the largest penetration, and back to pull-off.
         """
+        from crackfront.core import jkr
         from crackfront.core.adhesion import AdhesionMap
         from crackfront.core.cycle.run import checked_touch
         from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule, loads
         from crackfront.simulate.contact import tile_contact
+        from crackfront.simulate.tiles import tile_measures
 
         step = DEFAULT_STEP if self.step is None else self.step
         way = loads(LoadSchedule(self.max_penetration, step))
+        # A smooth sphere comes off there; a rough one goes somewhat further.
+        expected = int((2 * self.max_penetration - jkr.pull_off_penetration()) / step) + 1
         given, angles, density = read(), asked.angles, asked.samples_per_pixel
         if isinstance(given, AdhesionMap):
             pieces = asked.interpolation or "cubic"
             field = tile_contact(given, self.max_penetration, angles, density, pieces)
-            return Problem(field, checked_touch(field, self.max_penetration), way)
+            front = checked_touch(field, self.max_penetration)
+            return Problem(field, front, way, expected, measures=tile_measures(given))
         if angles is not None or density is not None:
             raise ValueError(
                 "--angles and --samples-per-pixel are for tiles; a polar field brings its own "
                 "samples"
             )
         front = checked_touch(given.field, self.max_penetration)
-        return Problem(given.field, front, way, given.angles)
+        return Problem(given.field, front, way, expected, given.angles)
 
 
 @dataclass(frozen=True)
@@ -124,7 +144,7 @@ class LineCase:
             interpolation=asked.interpolation or "cubic",
         )
         front = straight_front(field, given, self.first)
-        return Problem(field, front, [way[0]._replace(start=front), *way[1:]])
+        return Problem(field, front, [way[0]._replace(start=front), *way[1:]], len(way))
 
 
 CASES: dict[str, type[Any]] = {"sphere": SphereCase, "line": LineCase}

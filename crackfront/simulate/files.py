@@ -35,17 +35,6 @@ TURNING_FRONT = Variable("turning_front", ("angle",), LATERAL, "front at which i
 """Fronts of a checkpoint."""
 
 
-def write_cycle(
-    path: Path,
-    record: CycleRecord,
-    origin: Provenance,
-    geometry: Geometry | None = None,
-    sites: Array | None = None,
-) -> None:
-    """Write the record of one cycle; arguments as of :func:`cycle_dataset`."""
-    write_dataset(path, cycle_dataset(record, geometry, sites), origin)
-
-
 def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> None:
     """Write what one simulation of a sweep found and what it cost."""
     simulation = result.simulation
@@ -79,42 +68,53 @@ def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
     """
     dataset = read_dataset(path)
     if dataset.attrs.get("key") != simulation.key:
-        raise UnreadableFileError(f"{path} is not the result of {simulation.label}; remove it")
+        raise UnreadableFileError(f"{path} is not the result of {simulation.label}; move it away")
     record = cycle_record(dataset, path)
     names = [item.name for item in variables(RunMeasures)]
     if missing := [name for name in names if name not in dataset]:
-        raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; remove it")
+        raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; move it away")
     measures = RunMeasures(**{name: float(dataset[name]) for name in names})
     return SimulationResult(simulation, record, measures)
 
 
 def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> None:
     """Write what a simulation needs to go on later."""
-    checkpoint = partial.checkpoint
-    dataset = cycle_dataset(checkpoint.record).assign(
-        {
-            LAST_FRONT.name: labelled(LAST_FRONT, checkpoint.front),
-            TURNING_FRONT.name: labelled(TURNING_FRONT, checkpoint.turn),
-        }
-    )
+    dataset = checkpoint_dataset(partial.checkpoint, partial.simulation.key)
     dataset.attrs |= {
         "simulation": partial.simulation.label,
-        "key": partial.simulation.key,
         "seconds": partial.seconds,
         "cpu_seconds": partial.cpu_seconds,
     }
     write_dataset(path, dataset, origin)
 
 
+def checkpoint_dataset(
+    checkpoint: Checkpoint, key: str, geometry: Geometry | None = None
+) -> xr.Dataset:
+    """What a run of a key needs to go on later; the geometry as of :func:`cycle_dataset`."""
+    fronts = {
+        LAST_FRONT.name: labelled(LAST_FRONT, checkpoint.front),
+        TURNING_FRONT.name: labelled(TURNING_FRONT, checkpoint.turn),
+    }
+    return cycle_dataset(checkpoint.record, geometry).assign(fronts).assign_attrs(key=key)
+
+
 def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
     """What a simulation needs to go on; refusals as of :func:`read_simulation`."""
     dataset = read_dataset(path)
-    if dataset.attrs.get("key") != simulation.key or LAST_FRONT.name not in dataset:
-        raise UnreadableFileError(f"{path} is no checkpoint of {simulation.label}; remove it")
-    fronts = (np.asarray(dataset[item.name]) for item in (LAST_FRONT, TURNING_FRONT))
-    checkpoint = Checkpoint(cycle_record(dataset, path), *fronts)
+    checkpoint = known_checkpoint(dataset, simulation.key, path)
+    if checkpoint is None:
+        raise UnreadableFileError(f"{path} is no checkpoint of {simulation.label}; move it away")
     costs = (float(dataset.attrs[name]) for name in ("seconds", "cpu_seconds"))
     return PartialRun(simulation, checkpoint, *costs)
+
+
+def known_checkpoint(dataset: xr.Dataset, key: str, place: Path) -> Checkpoint | None:
+    """What a dataset of :func:`checkpoint_dataset` holds; None where it is that of another key."""
+    if dataset.attrs.get("key") != key or LAST_FRONT.name not in dataset:
+        return None
+    fronts = (np.asarray(dataset[item.name]) for item in (LAST_FRONT, TURNING_FRONT))
+    return Checkpoint(cycle_record(dataset, place), *fronts)
 
 
 def cycle_dataset(
@@ -158,7 +158,8 @@ def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> Cycl
     if missing or name not in Status.__members__ or end not in dataset.attrs:
         what = ", ".join(missing) or "a known status"
         raise UnreadableFileError(f"{place} holds no cycle: it lacks {what}")
-    pull_off, fronts = dataset.attrs.get("pull_off_energy"), dataset.get("radius")
+    pull_off = dataset.attrs.get("pull_off_energy")
+    fronts = dataset.get("position" if states is LineState else "radius")
     lost = dataset.get("dissipated_energy")
     return CycleRecord(
         status=Status[name],

@@ -7,21 +7,26 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, get_args
 
+import numpy as np
+from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
 from crackfront.analysis.steady import SteadyAdhesion, steady_adhesion
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.instabilities import measured_instabilities, resolved_motion
-from crackfront.core.cycle.record import Recorder
+from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import first_touch, run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import TileField
 from crackfront.core.fingerprint import solver_fingerprint
+from crackfront.core.geometry.base import Geometry
+from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
-from crackfront.core.outcome import Direction
+from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
+from crackfront.data.arguments import refuse_no_numbers
 from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.provenance import __version__
 from crackfront.simulate.contact import contact_field, tile_contact
@@ -34,7 +39,9 @@ from crackfront.simulate.surfaces import (
     surface_adhesion,
     surface_kind,
 )
-from crackfront.simulate.tiles import measured_correlation_length, stated_spectrum
+from crackfront.simulate.tiles import TileMeasures, stated_spectrum, tile_measures
+
+Array = NDArray[np.float64]
 
 _KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
 
@@ -76,7 +83,7 @@ def run_loop(
     error : float, optional
         Standard error of the factor k of either branch that the numerics may leave; measured
         laws choose sites, samples and tolerance. They need the attributes `short_cutoff`,
-        `roll_off` and `hurst` of the surface, as :func:`random_surface` sets them. Without these
+        `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them. Without these
         the front has a site a pixel or more, and two samples a pixel along a ray.
     solver : {"newton", "reference"}, optional
         Solver; both find the same fronts.
@@ -90,13 +97,16 @@ def run_loop(
     xarray.Dataset
         The curves over `step`, the fronts `radius(step, angle)`, and measures of the whole:
         `e_el`, `w_rms`, `correlation_length`, `w_appr`, `w_retr`, their errors and `hysteresis`.
-        The last four are NaN where the loop has no steady part; `steady_sentence` says why.
+        The last four are NaN where the loop has no steady part; the attribute `result` says so and
+        tells the forces of jump-in and pull-off, `steady_sentence` says why.
 
     Raises
     ------
     ValueError
         If the surface, a length or the solver cannot be used, or the pixels are too coarse for
         the asked error.
+    TypeError
+        If an argument is of another type.
 
     Examples
     --------
@@ -106,6 +116,7 @@ def run_loop(
     >>> loop.attrs["status"], loop.radius.dims
     ('lost_contact', ('step', 'angle'))
     """
+    refuse_no_numbers(max_penetration=max_penetration, step=step)
     solution = named_solver(solver, _TOLERANCE)
     schedule = LoadSchedule(max_penetration, step)
     contact = surface_contact(surface, schedule, error)
@@ -117,27 +128,90 @@ def run_loop(
         replace(solution, tolerance=contact.tolerance),
         Recorder(fronts=fronts, energy=energy, observers=told),
     )
-    steady = steady_adhesion(record, contact.correlation_length)
-    loop = cycle_dataset(record).assign(_measures(contact, steady))
+    loop = loop_dataset(record, contact.measures, simulation=contact.simulation)
     return loop.assign_attrs(
-        kind=surface_kind(surface),
         solver=solver,
         tolerance=contact.tolerance,
-        steady_sentence=steady.sentence,
         crackfront_version=__version__,
         solver_fingerprint=solver_fingerprint(),
     )
 
 
-def _measures(contact: SurfaceContact, steady: SteadyAdhesion) -> dict[str, Any]:
+def loop_dataset(
+    record: CycleRecord,
+    measures: TileMeasures | None = None,
+    geometry: Geometry | None = None,
+    sites: Array | None = None,
+    simulation: Simulation | None = None,
+) -> Dataset:
+    """Labelled curves of a cycle, and what they tell as a whole.
+
+    Parameters
+    ----------
+    record : CycleRecord
+        The states of a cycle.
+    measures : TileMeasures, optional
+        What the tile tells; without it the curves stand alone.
+    geometry, sites
+        As of :func:`crackfront.simulate.files.cycle_dataset`.
+    simulation : Simulation, optional
+        Whose numerical errors are known.
+    """
+    curves = cycle_dataset(record, geometry, sites)
+    if measures is None:
+        return curves.assign_attrs({"result": result_sentence(record)} | curves.attrs)
+    steady = steady_adhesion(record, measures.correlation_length)
+    told = {"result": result_sentence(record, steady), "steady_sentence": steady.sentence}
+    labels = curves.attrs | {"kind": measures.kind}
+    whole = curves.assign(_measures(measures, steady, simulation))
+    return whole.drop_attrs(deep=False).assign_attrs(told | labels)
+
+
+def result_sentence(record: CycleRecord, steady: SteadyAdhesion | None = None) -> str:
+    """What a cycle found, in one line; without steady parts the forces alone."""
+    states = record.states
+    if states.direction.size == 0:
+        return "no state was found"
+    if isinstance(states, LineState):
+        most, least = float(np.max(states.pinning_force)), float(np.min(states.pinning_force))
+        return f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
+    forces = f"jump-in force {states.force[0]:.4g}"
+    if record.status is Status.LOST_CONTACT:
+        forces += f", pull-off force {np.min(states.force):.4g}"
+    forces += " (pi w_int R)"
+    if steady is None:
+        return forces
+    if steady.sentence:
+        return f"no steady part: w_appr and w_retr are unknown; {forces}"
+    both = math.hypot(steady.w_appr_error, steady.w_retr_error)
+    works = (
+        ("w_appr", steady.w_appr, steady.w_appr_error),
+        ("w_retr", steady.w_retr, steady.w_retr_error),
+        ("hysteresis", steady.hysteresis, both),
+    )
+    told = ", ".join(f"{name} {_with_error(value, error)}" for name, value, error in works)
+    return f"{told} (w_int); {forces}"
+
+
+def _with_error(value: float, error: float) -> str:
+    """A number with its standard error, to two digits of that."""
+    if not error > 0:
+        return f"{value:.4g}"
+    digits = max(0, 1 - math.floor(math.log10(error)))
+    return f"{value:.{digits}f} ± {error:.{digits}f}"
+
+
+def _measures(
+    measures: TileMeasures, steady: SteadyAdhesion, simulation: Simulation | None
+) -> dict[str, Any]:
     """Labelled measures of a loop."""
     numerical = (math.nan, math.nan)
-    if contact.simulation is not None and not steady.sentence:
-        numerical = stated_error(contact.simulation, steady, contact.correlation_length)
+    if simulation is not None and not steady.sentence:
+        numerical = stated_error(simulation, steady, measures.correlation_length)
     values = {
-        "e_el": contact.e_el,
-        "w_rms": contact.w_rms,
-        "correlation_length": contact.correlation_length,
+        "e_el": measures.e_el,
+        "w_rms": measures.w_rms,
+        "correlation_length": measures.correlation_length,
         "w_appr_numerical_error": numerical[0],
         "w_retr_numerical_error": numerical[1],
         **{name: getattr(steady, name) for name in _MEASURES},
@@ -188,11 +262,14 @@ def find_instabilities(
     """
     if direction not in get_args(Direction):
         raise ValueError(f"direction is {direction}; give 1 for approach or -1 for retraction")
+    refuse_no_numbers(
+        max_penetration=max_penetration, step=step, travel=travel, precision=precision
+    )
     schedule = LoadSchedule(max_penetration, step)
     contact = surface_contact(surface, schedule, error)
     compile_solver("newton")
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
-    reach = travel * contact.correlation_length
+    reach = travel * contact.measures.correlation_length
     start = 0.0 if direction > 0 else max_penetration
     touched = front_at(field, first_touch(field), Load(start, 1), solver)
     loads = schedule.approach() if direction > 0 else schedule.retraction()
@@ -220,15 +297,12 @@ _TOLERANCE = 1e-8
 class SurfaceContact:
     """A sphere on a surface: the field, the tolerance of its solver, and what its tile measures.
 
-    e_el and w_rms are in units of w_int, the correlation length in reduced lateral lengths; the
-    simulation, with its expected errors, is there where the spectrum is known.
+    The simulation, with its expected errors, is there where the spectrum is known.
     """
 
     field: TileField
     tolerance: float
-    e_el: float
-    w_rms: float
-    correlation_length: float
+    measures: TileMeasures
     simulation: Simulation | None
 
 
@@ -239,14 +313,12 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
     """
     refuse_no_fraction("error", error)
     adhesion = surface_adhesion(surface)
-    length = measured_correlation_length(adhesion.work_of_adhesion, adhesion.pixel)
+    kind = surface_kind(surface)
+    measures = replace(tile_measures(adhesion), kind=kind)
     spectrum, deepest = stated_spectrum(surface), schedule.max_penetration
     if spectrum is None or adhesion.e_el == 0:
-        field = tile_contact(adhesion, deepest)
-        return SurfaceContact(field, _TOLERANCE, adhesion.e_el, adhesion.w_rms, length, None)
-    chosen = chosen_simulation(
-        surface_kind(surface), spectrum, adhesion.e_el, schedule, error=error
-    )
+        return SurfaceContact(tile_contact(adhesion, deepest), _TOLERANCE, measures, None)
+    chosen = chosen_simulation(kind, spectrum, adhesion.e_el, schedule, error=error)
     n_point = min(adhesion.work_of_adhesion.shape)
     sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
     simulation = replace(chosen, resolution=sizes)
@@ -259,6 +331,4 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
     field = contact_field(
         adhesion, sizes.n_angle, sizes.spacing, deepest, sizes.interpolation, band_limited=True
     )
-    return SurfaceContact(
-        field, chosen.solver.tolerance, adhesion.e_el, adhesion.w_rms, length, simulation
-    )
+    return SurfaceContact(field, chosen.solver.tolerance, measures, simulation)

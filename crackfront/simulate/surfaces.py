@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from numbers import Integral
 from typing import get_args
 
 import numpy as np
@@ -16,6 +17,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, Variable
+from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.files import labelled
 from crackfront.data.tiles import tile_samples
 from crackfront.simulate.contact import simulation_adhesion
@@ -106,6 +108,9 @@ def random_surface(
 def _shape(short_cutoff: float | Spectrum, roll_off: float | None, hurst: float | None) -> Spectrum:
     """Spectrum that the arguments of :func:`random_surface` name."""
     if not isinstance(short_cutoff, Spectrum):
+        optional = {"roll_off": roll_off, "hurst": hurst}
+        named = {name: one for name, one in optional.items() if one is not None}
+        refuse_no_numbers(short_cutoff=short_cutoff, **named)
         long = short_cutoff if roll_off is None else roll_off
         return SelfAffineSpectrum(short_cutoff, long, 1.0 if hurst is None else hurst)
     for name, value in (("roll_off", roll_off), ("hurst", hurst)):
@@ -133,7 +138,10 @@ def chosen_simulation(
         raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
     refuse_no_fraction("error", error)
     refuse_no_fraction("elastic_energy", elastic_energy)
+    if side is not None:
+        refuse_no_numbers(side=side)
     for name, number in (("seed", seed), ("realisation", realisation)):
+        refuse_other_type(name, number, Integral, "a whole number")
         if number < 0:
             raise ValueError(f"{name} is {number}; it must be 0 or more")
     if side is not None and not spectrum.short_cutoff <= side < math.inf:
@@ -150,6 +158,7 @@ def chosen_simulation(
 
 def refuse_no_fraction(name: str, value: float) -> None:
     """Raise if a number does not lie between 0 and 1."""
+    refuse_no_numbers(**{name: value})
     if not 0 < value < 1:
         raise ValueError(f"{name} is {value}; it must lie between 0 and 1")
 
@@ -194,7 +203,19 @@ def surface_array(
 
 
 def surface_kind(surface: xr.DataArray) -> FieldKind:
-    """What the values of a surface are, by its name; ValueError if it is none of a surface."""
+    """What the values of a surface are, by its name; ValueError if it is none of a surface.
+
+    Raises
+    ------
+    TypeError
+        If it is no array with labels at all.
+    """
+    refuse_other_type(
+        "surface",
+        surface,
+        xr.DataArray,
+        "an xarray.DataArray height(x, y), as random_surface and read_scan make it",
+    )
     for kind, item in SURFACES.items():
         if surface.name == item.name:
             return kind
@@ -216,8 +237,9 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
     Raises
     ------
     ValueError
-        If name, dimensions, units or values are not those of a surface in reduced units, or its
-        energy of full conformity is not below w_int.
+        If name, dimensions, units or values are not those of a surface in reduced units, heights
+        jump from one edge of the tile to the other, or the energy of full conformity is not below
+        w_int.
     """
     kind = surface_kind(surface)
     if set(surface.dims) != {"x", "y"}:
@@ -234,5 +256,26 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
             f"{bad[0, 1]} ({len(bad)} such values); replace them by finite values"
         )
     if kind == "roughness":
+        if not surface.attrs.get("periodic"):
+            _refuse_seam(samples)
         return rough_adhesion(samples, pixel)
     return chemical_adhesion(samples - 1.0, pixel)
+
+
+_SEAM = 2.0
+"""Rms step of heights from one edge of a tile to the other over the largest one inside, from which
+on the tile is not periodic: on one that is, the edges are lines like all others."""
+
+
+def _refuse_seam(heights: Array) -> None:
+    """Raise if heights do not go on from one edge of a tile to the other."""
+    for axis, name in enumerate("xy"):
+        steps = np.diff(heights, axis=axis, append=np.take(heights, [0], axis=axis))
+        *inside, seam = np.sqrt(np.mean(steps**2, axis=1 - axis))
+        if seam > _SEAM * max(inside):
+            raise ValueError(
+                f"the heights jump by {seam:.3g} from one end of {name} to the other, where those "
+                f"of neighbouring points differ by up to {max(inside):.3g}: the tile is not "
+                "periodic. Level the map and mirror or window it, as read_scan does; an edge that "
+                "is meant is said by the attribute periodic=1"
+            )

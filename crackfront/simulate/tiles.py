@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from scipy.fft import fftfreq, rfft2, rfftfreq
 from xarray import DataArray
 
+from crackfront.core.adhesion import AdhesionMap, FieldKind
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
+from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
 
@@ -137,3 +139,35 @@ def measured_correlation_length(work_of_adhesion: Array, pixel: float) -> float:
     if modes.power.size == 0:
         return pixel
     return 2 * math.pi * float(np.sum(modes.power) / np.sum(modes.power * modes.wavevector))
+
+
+@dataclass(frozen=True, slots=True)
+class TileMeasures:
+    """What a tile tells of a loop on it.
+
+    Attributes
+    ----------
+    kind : {"roughness", "chemical"}
+        Whether the mean work of adhesion lies below w_int by e_el, as that of a rough surface.
+    e_el, w_rms : float
+        Energy of full conformity and rms work of adhesion. (Units: w_int)
+    correlation_length : float
+        That of the work of adhesion. (Units: reduced lateral length)
+    """
+
+    kind: FieldKind
+    e_el: float
+    w_rms: float
+    correlation_length: float
+
+
+def tile_measures(adhesion: AdhesionMap) -> TileMeasures:
+    """Measures of a tile."""
+    values, energy = adhesion.work_of_adhesion, adhesion.e_el
+    lacking = 1 - float(np.mean(values)) / WORK_OF_ADHESION
+    return TileMeasures(
+        "chemical" if abs(lacking) < abs(lacking - energy) else "roughness",
+        energy,
+        adhesion.w_rms,
+        measured_correlation_length(values, adhesion.pixel),
+    )

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
 import functools
 import hashlib
 import json
 import os
 import secrets
 import socket
+import time
 import zlib
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,11 +58,16 @@ class Entry:
 
 
 class Journal:
-    """The journal of this process in a folder; it is created with its first line."""
+    """The journal of this process in a folder; it is created with its first line.
+
+    While the process is at a simulation it holds a lock on the file, which the system takes from it
+    in whatever way it ends.
+    """
 
     def __init__(self, folder: Path) -> None:
         name = f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(4)}.jsonl"
         self._path = folder / name
+        self._held: BinaryIO | None = None
 
     def append(self, entry: Entry) -> None:
         """Write a line and have it on disk.
@@ -81,10 +90,87 @@ class Journal:
             except OSError:
                 file.truncate(length)
                 raise
+        self._hold()
+
+    def _hold(self) -> None:
+        """Lock the file, where the file system knows locks and nobody just looks at it."""
+        if self._held is None:
+            with contextlib.ExitStack() as stack, contextlib.suppress(OSError):
+                file = stack.enter_context(self._path.open("rb"))
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                self._held = file
+                stack.pop_all()
+
+    def let_go(self) -> None:
+        """Unlock the file until the next line."""
+        if self._held is not None:
+            self._held.close()
+            self._held = None
+
+    def __del__(self) -> None:
+        self.let_go()
 
     def beat(self) -> None:
         """Show that this process lives."""
         os.utime(self._path)
+
+
+@dataclass(frozen=True, slots=True)
+class Running:
+    """A simulation that a living process is at.
+
+    Attributes
+    ----------
+    key, label : str
+        Key and label of the simulation.
+    host, process : str
+        Machine and number of the process.
+    silent_seconds : float
+        Time since its last sign of life, by the clock of this machine. (Units: s)
+    """
+
+    key: str
+    label: str
+    host: str
+    process: str
+    silent_seconds: float
+
+
+_SECONDS_TO_LIVE = 120.0
+"""Age of a journal, against the newest, from which its process has ended where no lock tells."""
+
+_SECONDS_OF_CLOCKS = 600.0
+"""Age of the newest journal by this machine's clock from which no such process lives any more."""
+
+
+def running(folder: Path) -> list[Running]:
+    """What the living processes of the journals of a folder have begun last."""
+    moments = {path: path.stat().st_mtime for path in journal_paths(folder)}
+    newest, now = max(moments.values(), default=0.0), time.time()
+    found = []
+    for path, moment in moments.items():
+        alive = _is_alive(path)
+        if alive is None:
+            alive = newest - moment < _SECONDS_TO_LIVE and now - newest <= _SECONDS_OF_CLOCKS
+        entries = [entry for _, entry in read_journal(path, "")] if alive else []
+        if entries and not entries[-1].definition:
+            host, process, _ = path.stem.rsplit("-", 2)
+            key, label = entries[-1].key, entries[-1].label
+            found.append(Running(key, label, host, process, max(0.0, now - moment)))
+    return found
+
+
+def _is_alive(path: Path) -> bool | None:
+    """Whether the process of a journal lives; None where its lock does not tell."""
+    with path.open("rb") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        except OSError:
+            return None  # a file system without locks
+    # Locks of other machines may be unknown here.
+    return False if path.stem.rsplit("-", 2)[0] == socket.gethostname() else None
 
 
 def journal_paths(folder: Path) -> list[Path]:

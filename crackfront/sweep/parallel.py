@@ -1,8 +1,9 @@
 """Tasks over MPI ranks, or one after the other without MPI, until notice is given that they end.
 
-This is the only importer of mpi4py. A batch system sends SIGTERM some time before it kills.
-Launchers differ in whether they pass it on to their ranks or kill them, so that whoever started a
-launcher leaves the ranks a file instead: notice is that signal, or that file.
+This is the only importer of mpi4py. A batch system sends SIGTERM some time before it kills, a
+person presses Ctrl-C or closes the terminal. Launchers differ in whether they pass that on to their
+ranks or kill them, so that whoever started a launcher leaves the ranks a file instead: notice is
+one of these signals, or that file.
 """
 
 from __future__ import annotations
@@ -29,6 +30,9 @@ Result = TypeVar("Result")
 _NOTICE_FILE = "CRACKFRONT_NOTICE"
 """Environment variable that names the file of a notice."""
 
+_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+"""Signals by which a process is told to end; one that was ignored at its start stays ignored."""
+
 _received = threading.Event()
 
 
@@ -40,26 +44,47 @@ def notice_is_given() -> bool:
 
 @contextlib.contextmanager
 def heeding_notice() -> Iterator[None]:
-    """Take SIGTERM as the notice, and not as the end, of this process."""
+    """Take what tells this process to end as the notice; a second Ctrl-C ends it at once."""
+
+    def receive(number: int) -> None:
+        if number == signal.SIGINT and _received.is_set():
+            raise KeyboardInterrupt
+        _received.set()
+
     try:
-        with _on_sigterm(_received.set):
+        with _when_told_to_end(receive):
             yield
     finally:
         _received.clear()
 
 
 @contextlib.contextmanager
-def _on_sigterm(act: Callable[[], None]) -> Iterator[None]:
-    """Do something else than to end where this process is told to end."""
+def ending_alike() -> Iterator[None]:
+    """Raise KeyboardInterrupt whatever tells this process to end, as Ctrl-C does."""
+
+    def receive(number: int) -> None:
+        raise KeyboardInterrupt
+
+    with _when_told_to_end(receive):
+        yield
+
+
+@contextlib.contextmanager
+def _when_told_to_end(act: Callable[[int], None]) -> Iterator[None]:
+    """Do something, given the number of the signal, where this process is told to end."""
 
     def receive(number: int, frame: FrameType | None) -> None:
-        act()
+        act(number)
 
-    before = signal.signal(signal.SIGTERM, receive)
+    # Signals reach the main thread, and only that may say what becomes of them.
+    ours = threading.current_thread() is threading.main_thread()
+    heeded = [number for number in _SIGNALS if ours and signal.getsignal(number) != signal.SIG_IGN]
+    before = {number: signal.signal(number, receive) for number in heeded}
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def under_mpi() -> bool:
@@ -155,7 +180,8 @@ def launch_ranks(
 ) -> int:
     """Exit code of a crackfront command that is run on a manager and a number of workers.
 
-    SIGTERM leaves the ranks the file of a notice; a second SIGTERM ends the launcher.
+    What tells this process to end leaves the ranks the file of a notice; the second time it ends
+    the launcher.
 
     Parameters
     ----------
@@ -181,20 +207,24 @@ def launch_ranks(
     file = folder / f".notice-{secrets.token_hex(8)}"
     environment = {"OMP_NUM_THREADS": "1"} | dict(os.environ) | {_NOTICE_FILE: str(file)}
     try:
-        process = subprocess.Popen(command, env=environment)
+        # A group of its own: Ctrl-C reaches this process alone, and not the launcher, which would
+        # kill the ranks. From the background none of them may read the terminal.
+        process = subprocess.Popen(
+            command, env=environment, stdin=subprocess.DEVNULL, process_group=0
+        )
     except OSError as error:
         raise ValueError(
             f"launcher {command[0]!r} cannot be started ({error.strerror}); name another one"
         ) from error
 
-    def leave_notice() -> None:
+    def leave_notice(number: int) -> None:
         try:
             file.touch(exist_ok=False)
         except OSError:  # the second time, or where nothing can be written
             process.terminate()
 
     try:
-        with _on_sigterm(leave_notice):
+        with _when_told_to_end(leave_notice):
             return process.wait()
     finally:
         if process.poll() is None:

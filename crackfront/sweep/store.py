@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import statistics
-import time
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -18,15 +17,9 @@ from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.journal import Ledger, journal_paths, read_journal
+from crackfront.sweep.journal import Ledger, running
 from crackfront.sweep.sweep import Shard, Sweep, shard_fingerprint
-from crackfront.sweep.table import COMPLETE, row_fingerprint, sweep_row, write_hysteresis
-
-SECONDS_TO_LIVE = 120.0
-"""Age of a journal, against the newest, from which its process counts as ended."""
-
-SECONDS_OF_CLOCKS = 600.0
-"""Age of the newest journal by this machine's clock from which nothing runs any more."""
+from crackfront.sweep.table import COMPLETE, sweep_row, write_hysteresis
 
 _COMPRESSED = {".nc", ".png", ".pdf", ".gif", ".zip"}
 """Files that become no smaller."""
@@ -153,7 +146,7 @@ class Store:
         The expected times are those of the cost model, in proportion to what the stored simulations
         of the sweep took.
         """
-        running, ledger = self._running(), Ledger(self.folder)
+        begun, ledger = {one.key for one in running(self.journals)}, Ledger(self.folder)
         found, paces = [], []
         for item in sweep.spectra:
             counts: Counter[str] = Counter()
@@ -161,7 +154,7 @@ class Store:
             for held in self.holdings(sweep.simulations(item), ledger):
                 expected = expected_cost(held.simulation).seconds
                 if held.row is None:
-                    counts["running" if held.simulation.key in running else "waiting"] += 1
+                    counts["running" if held.simulation.key in begun else "waiting"] += 1
                     seconds += expected
                     continue
                 counts["done" if held.row.status in COMPLETE else "failed"] += 1
@@ -171,20 +164,6 @@ class Store:
             found.append(Progress(item.name, **numbers, seconds=seconds))
         pace = statistics.median(paces) if paces else 1.0
         return [replace(one, seconds=pace * one.seconds) for one in found]
-
-    def _running(self) -> set[str]:
-        """Keys that the journals of living processes have begun last."""
-        moments = {path: path.stat().st_mtime for path in journal_paths(self.journals)}
-        newest = max(moments.values(), default=0.0)
-        if time.time() - newest > SECONDS_OF_CLOCKS:
-            return set()
-        found = set()
-        for path, moment in moments.items():
-            if newest - moment < SECONDS_TO_LIVE:
-                entries = [entry for _, entry in read_journal(path, row_fingerprint())]
-                if entries and not entries[-1].definition:
-                    found.add(entries[-1].key)
-        return found
 
     def write_manifest(self, shard: Shard, simulations: Sequence[Simulation]) -> Path:
         """Write the file that says that all simulations of a shard are stored."""

@@ -115,14 +115,17 @@ def _run_task(task: _Task) -> Finished:
     """Run one simulation and store its result; one that cannot be done becomes a row as well."""
     if parallel.notice_is_given():
         return Finished(STOPPED)
+    journal = _journal(task.store.journals)
     try:
-        return _run(task, _journal(task.store.journals))
+        return _run(task, journal)
     except _NoticeGivenError:
         return Finished(STOPPED)
     except MemoryError:
         return Finished(NOT_STORED, sentence="the memory does not suffice; start fewer ranks")
     except _NotStoredError as error:
         return Finished(NOT_STORED, sentence=str(error))
+    finally:
+        journal.let_go()
 
 
 def _run(task: _Task, journal: Journal) -> Finished:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Literal, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
 from crackfront.core import jkr
@@ -15,6 +16,8 @@ from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.units import Scales
 from crackfront.topography.densities import topography
 from crackfront.topography.reading import Measurement, surface_library
+
+Array = NDArray[np.float64]
 
 Placement = Literal["tiled", "within"]
 """Whether the contact may go on to mirror images of the scan, or must fit in the scan itself."""
@@ -48,11 +51,6 @@ def measured_adhesion(
         If the measurement is a line, the contact must fit in the scan and does not, or the surface
         is too rough for full conformity.
     """
-    if measurement.is_line:
-        raise ValueError(
-            f"{measurement.path} is a line scan, which is no field; use its spectrum, as "
-            "crackfront predict --simulate does"
-        )
     if placement not in get_args(Placement):
         raise ValueError(
             f"placement is {placement!r}; choose one of {', '.join(get_args(Placement))}"
@@ -62,6 +60,23 @@ def measured_adhesion(
         raise ValueError(
             f"{measurement.path}: the scan of {_micrometres(measurement.size)} is smaller than the "
             f"contact at zero load, {1e6 * across:.3g} um across; tile it, or use its spectrum"
+        )
+    heights, pixel = tile_heights(measurement)
+    return rough_adhesion(heights / scales.vertical, pixel / scales.lateral)
+
+
+def tile_heights(measurement: Measurement) -> tuple[Array, float]:
+    """Heights of the tile of :func:`measured_adhesion`, and its pixel (Units: m).
+
+    Raises
+    ------
+    ValueError
+        If the measurement is a line.
+    """
+    if measurement.is_line:
+        raise ValueError(
+            f"{measurement.path} is a line scan, which is no field; use its spectrum, as "
+            "crackfront predict --simulate does"
         )
     scan = topography(_with_square_pixels(measurement))
     whole = scan if measurement.periodic else scan.mirror_stitch()
@@ -74,10 +89,8 @@ def measured_adhesion(
         heights = tile.shortcut(cutoff_wavelength=measurement.shortest).heights()
     # Mirror images stand behind the scan: half a scan further its centre is that of the tile.
     behind = [0 if measurement.periodic else count // 4 for count in heights.shape]
-    centred = np.roll(heights, behind, axis=(0, 1))
-    return rough_adhesion(
-        np.ascontiguousarray(centred) / scales.vertical, tile.pixel_size[0] / scales.lateral
-    )
+    centred = np.ascontiguousarray(np.roll(heights, behind, axis=(0, 1)))
+    return centred, float(tile.pixel_size[0])
 
 
 def zero_load_radius(scales: Scales) -> float:

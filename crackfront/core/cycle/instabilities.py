@@ -247,15 +247,18 @@ def swept_clusters(
     return sorted(clusters, key=lambda cluster: cluster.area, reverse=True)
 
 
-def larkin_length(correlation_length: float, rms: float) -> float:
-    r"""Length over which weak disorder bends the front by about its own correlation length.
+def shortest_instability(correlation_length: float, rms: float) -> float:
+    r"""Length on which disorder is as stiff as the line, below which a front has one state.
 
-    Over it the slope of w_loc, summed along the front, is as stiff as the line:
+    On it the slope of w_loc, summed along the front, equals the stiffness of the line:
 
     .. math:: \ell^{-1} = w_{int}^{-2} \int \frac{dq}{2\pi}\, q^2 C_w(q, 0)
               = \frac{4\pi}{\xi} \left(\frac{w_{rms}}{w_{int}}\right)^2
 
-    for an isotropic spectrum C_w whose mean wavevector, weighted by variance, is 2 pi / xi.
+    for an isotropic spectrum C_w whose mean wavevector, weighted by variance, is 2 pi / xi. The
+    paper calls it Larkin length. That of the law of k,
+    :func:`crackfront.core.adhesion.larkin_length`, on which the front has wandered by as much as
+    its force is correlated over, is 13 times as long for a flat spectrum.
 
     Parameters
     ----------
@@ -267,13 +270,13 @@ def larkin_length(correlation_length: float, rms: float) -> float:
     Returns
     -------
     float
-        Larkin length; its factor is a convention. (Units: length)
+        The length; its factor is a convention. (Units: length)
 
     Examples
     --------
     A flat spectrum of heights up to the wavelength 1 has a correlation length of 4/3:
 
-    >>> round(larkin_length(4 / 3, 1.0), 3)
+    >>> round(shortest_instability(4 / 3, 1.0), 3)
     0.106
     """
     return correlation_length / (4 * math.pi * rms**2)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.power_law import PowerLaw, truncated_power_law
+from crackfront.core.adhesion import force_correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.instabilities import resolved_motion, swept_clusters
 from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
@@ -63,8 +64,8 @@ class AvalancheParameters(RetractionParameters):
         Penetration to which an avalanche is located; avalanches that are closer come out as one.
         (Units: reduced vertical length)
     smallest_area : float
-        Where the power law begins, over the area of a Larkin length (or a correlation length, if
-        that is longer) times a correlation length.
+        Where the power law begins, over the Larkin length times the correlation length of the
+        force.
     line : EventParameters
         Straight fronts, and how their events are told apart.
     springs : tuple of float
@@ -141,8 +142,9 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
             surfaces[-1].append(_surface(parameters, energy, realisation))
             count = len(surfaces[-1][-1].avalanches)
             progress(f"{name} disorder, surface {realisation}: {count} avalanches")
-    correlation = flat_spectrum(parameters.short_cutoff).correlation_length
+    spectrum = flat_spectrum(parameters.short_cutoff)
     larkin = surface_means(surfaces, "larkin_length")
+    unit = larkin * force_correlation_length("roughness", spectrum)
     events = [[event for one in kind for event in one.avalanches] for kind in surfaces]
 
     def each(name: str) -> NDArray[Any]:
@@ -151,13 +153,13 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
     return AvalancheRecord(
         **{one.name: getattr(whole, one.name) for one in fields(whole)},
         short_cutoff=parameters.short_cutoff,
-        correlation_length=correlation,
+        correlation_length=spectrum.correlation_length,
         precision=parameters.precision,
         seed=parameters.seed,
         elastic_energy=np.array([parameters.strong, parameters.weak]),
         rms=surface_means(surfaces, "rms"),
         larkin_length=larkin,
-        smallest_area=parameters.smallest_area * correlation * np.maximum(larkin, correlation),
+        smallest_area=parameters.smallest_area * unit,
         circle_length=surface_means(surfaces, "circle_length"),
         smooth_area=surface_means(surfaces, "smooth_area"),
         disorder_index=np.repeat([STRONG, WEAK], [len(kind) for kind in events]),

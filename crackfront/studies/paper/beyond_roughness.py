@@ -273,11 +273,11 @@ def fitted_roughness(record: RoughnessRecord, index: int) -> _Fit:
     used = (wavelength >= record.shortest[index]) & (wavelength <= record.longest[index])
     wavevector = stiffness_wavevector(record, index)[used]
     weight = record.mode[used] ** -0.5
-    lines = [
-        np.polyfit(np.log(wavevector), np.log(power[used]), 1, w=weight)
-        for power in record.power[index]
-    ]
-    slopes, levels = np.array(lines).T
+    power = record.power[index][:, used]
+    slopes = np.polyfit(np.log(wavevector), np.log(power).T, 1, w=weight)[0]
+    # The logarithm of a few fronts' mean lies below that of the mean over all surfaces.
+    freed = np.log(power.mean(axis=0)) - slopes.mean() * np.log(wavevector)
+    level = np.average(freed, weights=weight**2)
     exponents = -(1 + slopes) / 2
     error = np.std(exponents, ddof=1) / np.sqrt(exponents.size)
     ends = wavevector[[0, -1]]
@@ -285,7 +285,7 @@ def fitted_roughness(record: RoughnessRecord, index: int) -> _Fit:
         exponent=float(exponents.mean()),
         reach=float(student.ppf(0.975, exponents.size - 1) * error),
         wavevector=ends,
-        power=np.exp(levels.mean() + slopes.mean() * np.log(ends)),
+        power=np.exp(level + slopes.mean() * np.log(ends)),
     )
 
 

@@ -13,7 +13,12 @@ from scipy.signal import resample
 
 from crackfront.core import jkr
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.cycle.instabilities import Motion, measured_instabilities, resolved_motion
+from crackfront.core.cycle.instabilities import (
+    Motion,
+    measured_instabilities,
+    resolved_motion,
+    shortest_instability,
+)
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.outcome import Direction
 from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
@@ -77,7 +82,9 @@ class InstabilityRecord:
     travel: float = variable("smallest motion that counts as a jump", LATERAL)
     elastic_energy: Array = variable("requested e_el", ADHESION, _DISORDER)
     rms: Array = variable("w_rms measured on the tile", ADHESION, _DISORDER)
-    larkin_length: Array = variable("Larkin length", LATERAL, _DISORDER)
+    shortest: Array = variable(
+        "length on which disorder is as stiff as the line", LATERAL, _DISORDER
+    )
     work: Array = variable("work of the load in retraction", ENERGY, _DISORDER)
     energy_change: Array = variable("change of energy in retraction", ENERGY, _DISORDER)
     smooth_energy: Array = variable("energy lost in the smooth steps", ENERGY, _DISORDER)
@@ -153,6 +160,7 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
         retractions.append(_branch(parameters, contact, -1))
         progress(f"retraction, {name} disorder: {len(retractions[-1].jumps)} instabilities")
     travel = parameters.travel * parameters.short_cutoff
+    correlation = flat_spectrum(parameters.short_cutoff).correlation_length
     found = [measured_instabilities(one.jumps, one.contact.field, travel) for one in retractions]
 
     def both(name: str) -> Array:
@@ -165,7 +173,7 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
         travel=travel,
         elastic_energy=np.array([parameters.strong, parameters.weak]),
         rms=np.array([contact.w_rms for contact in contacts]),
-        larkin_length=np.array([contact.larkin_length for contact in contacts]),
+        shortest=np.array([shortest_instability(correlation, one.w_rms) for one in contacts]),
         work=np.array([branch.work for branch in retractions]),
         energy_change=np.array([branch.energy_change for branch in retractions]),
         smooth_energy=np.array([branch.smooth_energy for branch in retractions]),
@@ -221,7 +229,7 @@ def instability_checks(record: InstabilityRecord) -> tuple[Check, ...]:
     """What the instabilities dissipate, how wide they are, and the radii at b = 0."""
     inner, outer = _radii_at_zero(record)
     smallest = [_smallest_extent(record, index) for index in (STRONG, WEAK)]
-    larkin = record.larkin_length[WEAK] / record.larkin_length[STRONG]
+    expected = record.shortest[WEAK] / record.shortest[STRONG]
     return (
         *_disorder_checks(record, STRONG, "strong"),
         *_disorder_checks(record, WEAK, "weak"),
@@ -230,7 +238,7 @@ def instability_checks(record: InstabilityRecord) -> tuple[Check, ...]:
             "> 1",
             f"{smallest[WEAK] / smallest[STRONG]:.3g} times",
             smallest[WEAK] > smallest[STRONG],
-            f"Larkin lengths: {larkin:.3g} times",
+            f"lengths on which disorder is as stiff as the line: {expected:.3g} times",
         ),
         Check(
             "b = 0: the radius in approach (A) is below that in retraction (B)",
@@ -274,18 +282,17 @@ def _disorder_checks(record: InstabilityRecord, index: int, name: str) -> Iterat
         "fixed penetration, in proportion to its size; integral of F db by trapezia over all "
         "steps, from the turn to the last state, pull-off not included",
     )
-    # The length that pins collectively.
-    larkin, found = float(record.larkin_length[index]), _smallest_extent(record, index)
+    shortest, found = float(record.shortest[index]), _smallest_extent(record, index)
     correlation = flat_spectrum(record.short_cutoff).correlation_length
-    expected = max(larkin, correlation)
+    expected = max(shortest, correlation)
     yield Check(
-        f"{name} disorder: smallest extent, the Larkin length or, if that is shorter, the "
-        "correlation length of w_loc",
+        f"{name} disorder: smallest extent, the length on which disorder is as stiff as the line "
+        "or, if that is shorter, the correlation length of w_loc",
         f"{expected:.3g}, within a factor of 2",
         f"{found:.3g}",
         expected / 2 < found < expected * 2,
-        f"tenth percentile of area over depth; Larkin length {larkin:.3g}, whose factor is a "
-        f"convention; correlation length {correlation:.3g}",
+        f"tenth percentile of area over depth; disorder is as stiff as the line on {shortest:.3g}, "
+        f"whose factor is a convention; correlation length {correlation:.3g}",
     )
 
 
@@ -316,7 +323,7 @@ def instability_figure(record: InstabilityRecord) -> Drawing:
         shades = energy_shades(record.energy)
         for index in (STRONG, WEAK):
             _draw_quarter(left, record, index, shades)
-            _draw_larkin_length(left, record, index)
+            _draw_shortest(left, record, index)
         _finish_quarters(left, record)
         bar = figure.colorbar(
             shades,
@@ -353,9 +360,9 @@ def _quarter(fronts: Array, index: int) -> Array:
     return np.asarray(resample(fronts, count, axis=1)[:, first : first + count // 4 + 1])
 
 
-def _draw_larkin_length(axes: Axes, record: InstabilityRecord, index: int) -> None:
-    """Bar of the Larkin length outside the perimeter."""
-    length, side = float(record.larkin_length[index]), 1 if index == WEAK else -1
+def _draw_shortest(axes: Axes, record: InstabilityRecord, index: int) -> None:
+    """Bar of the length on which disorder is as stiff as the line, outside the perimeter."""
+    length, side = float(record.shortest[index]), 1 if index == WEAK else -1
     radius = 1.06 * record.before.max()
     middle = np.pi / 2 - side * 0.3 * np.pi
     angle = middle + np.linspace(-0.5, 0.5, 20) * length / radius
@@ -367,7 +374,7 @@ def _draw_larkin_length(axes: Axes, record: InstabilityRecord, index: int) -> No
         solid_capstyle="butt",
     )
     axes.annotate(
-        r"$\ell$",
+        r"$\ell_0$",
         (side * _GAP + radius * np.cos(middle), radius * np.sin(middle)),
         xytext=(6 * side, 4),
         textcoords="offset points",
@@ -387,7 +394,7 @@ def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
         axes.annotate(
             f"{name} disorder\n"
             rf"$w_\mathrm{{rms}} = {record.rms[index]:.2f}\,w_\mathrm{{int}}$" + "\n"
-            rf"Larkin length $\ell = {record.larkin_length[index]:.3f}$",
+            rf"shortest jump $\ell_0 = {record.shortest[index]:.3f}$",
             (side * reach, 1.28 * reach),
             ha="left" if side < 0 else "right",
             va="top",

@@ -12,8 +12,8 @@ from pydantic import Field, model_validator
 from scipy.ndimage import map_coordinates
 
 from crackfront.core import jkr
+from crackfront.core.adhesion import larkin_length
 from crackfront.core.cycle.follow import Load, front_at
-from crackfront.core.cycle.instabilities import larkin_length
 from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import first_touch, refuse_outgrown
@@ -167,7 +167,7 @@ class DisorderParameters(Section):
             field=simulation_field(simulation, adhesion),
             solver=Newton(min(tolerance, simulation.solver.tolerance)),
             w_rms=adhesion.w_rms,
-            larkin_length=larkin_length(spectrum.correlation_length, adhesion.w_rms),
+            larkin_length=larkin_length("roughness", spectrum, adhesion.w_rms),
         )
 
 

@@ -1,0 +1,39 @@
+"""Arguments of the library: what is said of one that is of another type than it must be."""
+
+from __future__ import annotations
+
+from numbers import Real
+from typing import Any
+
+_SAYS_ITSELF = (str, int, float, bool, type(None))
+"""Types whose values say more than their names."""
+
+
+def refuse_other_type(
+    name: str, value: object, kind: type[Any] | tuple[type[Any], ...], wanted: str
+) -> None:
+    """Raise TypeError if an argument is none of a type, with what is wanted instead.
+
+    Examples
+    --------
+    >>> refuse_other_type("surface", "scan.ibw", list, "a list of heights")
+    Traceback (most recent call last):
+    TypeError: surface is 'scan.ibw'; give a list of heights
+    """
+    if not isinstance(value, kind):
+        raise TypeError(f"{name} is {_told(value)}; give {wanted}")
+
+
+def refuse_no_numbers(**values: object) -> None:
+    """Raise TypeError if one of some arguments is no number."""
+    for name, value in values.items():
+        refuse_other_type(name, value, Real, "a number")
+
+
+def _told(value: object) -> str:
+    """A value, or of which type it is."""
+    if isinstance(value, _SAYS_ITSELF):
+        return repr(value)
+    kind = type(value)
+    home = "" if kind.__module__ == "builtins" else f"{kind.__module__.partition('.')[0]}."
+    return f"a {home}{kind.__qualname__}"

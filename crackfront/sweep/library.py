@@ -1,0 +1,92 @@
+"""A sweep in the library: run or gone on with, one simulation after the other, to its table."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+
+from tqdm import tqdm
+from xarray import Dataset
+
+from crackfront.data.arguments import refuse_other_type
+from crackfront.data.files import read_dataset
+from crackfront.data.provenance import provenance
+from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.parallel import heeding_notice
+from crackfront.sweep.store import Store
+from crackfront.sweep.table import COMPLETE
+from crackfront.sweep.tasks import NOT_STORED, STOPPED, fill
+
+
+def sweep(
+    configuration: str | PathLike[str],
+    output: str | PathLike[str] | None = None,
+    *,
+    progress: bool = True,
+) -> Dataset:
+    """Table of a sweep; what is not stored yet is run here, one simulation after the other.
+
+    `crackfront simulate` runs the same on many ranks, into the same folder.
+
+    Parameters
+    ----------
+    configuration : str or path
+        File of the sweep, as config/default.yaml.
+    output : str or path, optional
+        Folder of the results, by default results/<name of the configuration>.
+    progress : bool, optional
+        Whether a bar on standard error shows how far it is.
+
+    Returns
+    -------
+    xarray.Dataset
+        w_appr, w_retr, their errors, status and costs over `spectrum`, `amplitude` and
+        `realisation`, as they stand in hysteresis.nc.
+
+    Raises
+    ------
+    ValueError
+        If the configuration cannot be used.
+    OSError
+        If nothing can be stored.
+    KeyboardInterrupt
+        After Ctrl-C or SIGTERM. What ran is kept as far as it was: the same call goes on.
+    """
+    for name, given in (("configuration", configuration), ("output", output or "")):
+        refuse_other_type(name, given, (str, PathLike), "the path of a file or folder")
+    path = Path(configuration)
+    found, origin = load_configuration(path), provenance(path.read_text(encoding="utf-8"))
+    store = Store(results_folder(path) if output is None else Path(output))
+    missing = store.inventory(found.simulations()).missing
+    with (
+        heeding_notice(),
+        tqdm(
+            total=len(missing),
+            unit="simulation",
+            disable=not (progress and missing),
+            file=sys.stderr,
+        ) as bar,
+    ):
+        for simulation, finished in fill(store, missing, origin):
+            if finished.status == STOPPED:
+                raise KeyboardInterrupt("what ran is kept; the same call goes on")
+            if finished.status == NOT_STORED:
+                raise OSError(f"{simulation.label}: {finished.sentence}")
+            bar.update()
+    for item in found.spectra:
+        store.write_manifest(found.named_shard(item, range(found.n_realisation)), found.shard(item))
+    table, statuses = store.aggregate(found, origin)
+    if sentence := without_value(statuses):
+        warnings.warn(sentence, stacklevel=2)
+    return read_dataset(table)
+
+
+def without_value(statuses: Mapping[str, int]) -> str:
+    """How many simulations have no value and how they ended; empty where all have one."""
+    others = {status: count for status, count in statuses.items() if status not in COMPLETE}
+    told = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
+    failed, total = sum(others.values()), sum(statuses.values())
+    return f"{failed} of {total} simulations have no value: {told}" if failed else ""
