@@ -211,7 +211,7 @@ def test_the_limits_say_by_how_much_the_theory_applies(surface, prediction):
 
 
 def test_a_small_sphere_is_outside_of_the_limits(surface):
-    small = replace(SCENE, radius=5e-6)
+    small = replace(SCENE, radius=4e-6)
     found = predicted(surface, small)
     assert not theory_limits(surface, found)[2].holds
 
