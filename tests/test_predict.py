@@ -417,8 +417,10 @@ def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
     upper, force, lower = prediction_figure(surface, prediction).axes[:3]
     if upper.get_ylabel() == "" or "force" in lower.get_ylabel():
         force, lower = lower, force
-    for axes, densities in ((upper, surface.isotropic), (lower, surface.profiles)):
-        for line, density in zip(axes.lines, densities, strict=False):
+    trusted = [one.trusted for one in surface.scans]
+    # Behind the points of every scan stands the whole of its density.
+    for lines, densities in ((upper.lines[::2], trusted), (lower.lines, surface.profiles)):
+        for line, density in zip(lines, densities, strict=False):
             np.testing.assert_array_equal(line.get_ydata(), density.value)
     radius, values = force.lines[1].get_data()
     assert values.min() == pytest.approx(-1e3 * prediction.pull_off_force.value, rel=1e-3)
@@ -480,7 +482,7 @@ def test_every_kind_of_bad_scan_is_refused_with_a_sentence(tmp_path, monkeypatch
         (plain, ("--unit", "um", "--size", "5x5"), "--size is '5x5'"),
         (tmp_path / "absent.al3d", (), "cannot be used"),
         (OVERVIEW, ("--shortest", "5"), "--shortest is '5', without a unit"),
-        (OVERVIEW, ("--shortest", "15um"), "a spectrum needs 2 octaves"),
+        (OVERVIEW, ("--shortest", "15um"), "less than an octave; use a better scan"),
     ):
         assert sentence in refused("predict", scan, *sphere(), *figure, *more)
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
