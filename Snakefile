@@ -4,21 +4,24 @@
 #
 # Every rule calls the command `crackfront`, which can be called by hand as well.
 import os
+import shlex
 import sys
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
+from crackfront.data.files import date_back, set_aside_damaged
 from crackfront.data.provenance import package_fingerprint
 from crackfront.studies.paper.figure import (
     FIGURES,
     SCALES,
     figure,
-    figure_files,
     figure_fingerprint,
     load_figure,
+    settings_fingerprint,
 )
 from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import shard_fingerprint
 
 unknown = set(config) - {"sweep", "ranks", "block", "scale", "validation"}
@@ -49,8 +52,9 @@ except ValueError as error:
 
 SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
 
-# The command stands beside the Python that runs Snakemake.
-shell.prefix(f"set -euo pipefail; export PATH='{Path(sys.executable).parent}':$PATH; ")
+# The command stands beside the Python that runs Snakemake, in a folder of any name.
+BESIDE = shlex.quote(str(Path(sys.executable).parent))
+shell.prefix("set -euo pipefail; export PATH={BESIDE}:$PATH; ")
 
 
 report: "workflow/report/workflow.rst"
@@ -70,6 +74,9 @@ rule all:
             suffix=["pdf", "png"],
         ),
         f"{RESULTS}/summary.html",
+        f"{RESULTS}/hysteresis.nc",
+        multiext(f"{RESULTS}/fit", ".nc", ".json", ".md"),
+        expand("{results}/shards/{shard}.json", results=RESULTS, shard=SHARDS),
 
 
 include: "workflow/rules/simulate.smk"
@@ -79,3 +86,17 @@ include: "workflow/rules/figures.smk"
 include: "workflow/rules/accuracy.smk"
 include: "workflow/rules/paper.smk"
 include: "workflow/rules/validation.smk"
+
+
+# Configurations are parameters of rules, by what they mean: the date of a file decides nothing. What
+# is damaged or missing is taken back here, so that the rules find it missing and make it anew.
+if workflow.is_main_process:
+    for folder in (RESULTS, "results/figures", ACCURACY, VALIDATED):
+        date_back(Path(folder))
+    renewed = list(Store(Path(RESULTS)).renewed(SWEEP, Path(CONFIGURATION)))
+    renewed += set_aside_damaged(Path("results/figures"))
+    renewed += set_aside_damaged(Path(ACCURACY))
+    if damaged := list(set_aside_damaged(Path(VALIDATED))):
+        Path(VALIDATED, "validation.md").unlink(missing_ok=True)
+    for sentence in renewed + damaged:
+        print(sentence, file=sys.stderr)

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from crackfront.plots.library import plot_loop as plot_loop
     from crackfront.plots.library import plot_spectrum as plot_spectrum
     from crackfront.plots.library import plot_surface as plot_surface
+    from crackfront.simulate.files import load_result as load_result
+    from crackfront.simulate.files import save_result as save_result
     from crackfront.simulate.loops import find_instabilities as find_instabilities
     from crackfront.simulate.loops import run_loop as run_loop
     from crackfront.simulate.si_units import Scales as Scales
@@ -37,6 +39,8 @@ _HOMES = {
     "plot_loop": "plots.library",
     "plot_spectrum": "plots.library",
     "plot_surface": "plots.library",
+    "load_result": "simulate.files",
+    "save_result": "simulate.files",
     "find_instabilities": "simulate.loops",
     "run_loop": "simulate.loops",
     "Scales": "simulate.si_units",

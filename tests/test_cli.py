@@ -1,5 +1,6 @@
 """The command: one cycle on any field, the steps of a sweep, exit codes and sentences."""
 
+import errno
 import json
 import os
 import re
@@ -194,7 +195,7 @@ def test_a_contact_that_outgrows_its_field_is_refused_before_it_starts(rough_ray
     [
         (("--max-penetration", -1), "max penetration -1.0 never makes contact"),
         (("--step", 0), "load step is 0.0; it must be positive"),
-        (("--step", "nan"), "load step is nan; it must be positive"),
+        (("--step", "nan"), "'--step': nan is no number"),
         (("--solver", "none"), "solver"),
         (("--field", "none.nc"), "none.nc does not exist"),
         (("--angles", 16), "--angles and --samples-per-pixel are for tiles"),
@@ -699,12 +700,54 @@ def test_an_output_that_cannot_be_written_is_refused_with_its_path(tmp_path):
     assert "cannot be used: Not a directory; check the path and its permissions" in sentence
 
 
+@pytest.mark.parametrize(
+    ("output", "reason"),
+    [
+        ("/dev/null", "it is a device or pipe, which is not replaced"),
+        ("/proc/none/cycle.nc", "No such file or directory"),
+        (".", "Is a directory"),
+    ],
+)
+def test_a_cycle_that_could_not_be_written_is_not_computed(
+    smooth_tile, monkeypatch, output, reason
+):
+    monkeypatch.setattr("crackfront.simulate.fields.read_field", None)
+    options = ("--field", smooth_tile, "--max-penetration", "0.5")
+    assert f"cannot be used: {reason}" in refused("cycle", *options, "--output", output)
+
+
+def test_a_full_disk_is_told_as_that_whatever_netcdf_says(smooth_tile, tmp_path, monkeypatch):
+    def write(*_, **__):
+        raise AttributeError("'NoneType' object has no attribute 'pos'")
+
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", write)
+    module = sys.modules["crackfront.cli.cycle"]
+    monkeypatch.setattr(module, "refuse_unwritable", lambda folder: None)
+    monkeypatch.setattr("crackfront.data.files.tempfile.TemporaryFile", full)
+    options = ("--field", smooth_tile, "--max-penetration", "0.1", "--step", "0.1")
+    sentence = refused("cycle", *options, "--output", tmp_path / "cycle.nc")
+    told = f"{tmp_path / 'cycle.nc'} cannot be written: No space left on device; make room and rep"
+    assert told in sentence
+
+
+def test_the_status_of_a_damaged_configuration_is_refused(tmp_path):
+    path = tmp_path / "configuration.yaml"
+    write_text(path, TEST.read_text(encoding="utf-8"), sealed=True)
+    assert run("status", tmp_path).exit_code == 0
+    path.write_text(path.read_text().replace("realisations: 2", "realisations: 3"))
+    assert f"{path} is damaged" in refused("status", tmp_path)
+
+
 def test_an_archive_has_the_whole_name_of_its_folder_and_an_empty_one_is_refused(tmp_path):
     folder = tmp_path / "of.2026"
     folder.mkdir()
-    refused = run("archive", folder)
-    assert refused.exit_code == 2
-    assert "holds no hysteresis.nc; run the sweep before it is archived" in refused.output
+    sentence = refused("archive", folder)
+    assert "holds no hysteresis.nc; run the sweep before it is archived" in sentence
     (folder / "hysteresis.nc").write_bytes(b"data")
+    assert "1 files of" in refused("archive", folder)
+    xr.Dataset().to_netcdf(folder / "hysteresis.nc")
     assert run("archive", folder).exit_code == 0
     assert [path.name for path in tmp_path.glob("*.zip")] == ["of.2026.zip"]

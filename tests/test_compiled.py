@@ -1,3 +1,4 @@
+import os
 from pathlib import Path
 
 import numpy as np
@@ -16,32 +17,65 @@ def fresh_cache(tmp_path, monkeypatch):
     return tmp_path / "cache"
 
 
+@pytest.fixture
+def no_home(tmp_path, monkeypatch):
+    """A folder for temporary files, where the cache of the user cannot be."""
+    (tmp_path / "file").write_text("not a folder")
+    (tmp_path / "spare").mkdir()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    monkeypatch.setattr(compiled.tempfile, "tempdir", str(tmp_path / "spare"))
+    return tmp_path / "spare"
+
+
 def test_the_cache_lies_in_a_folder_of_these_sources(fresh_cache):
     folder = compiled.cache_folder.__wrapped__()
     assert folder == fresh_cache / "crackfront" / compiled.solver_fingerprint()
     assert folder.is_dir()
+    assert folder.stat().st_mode & 0o077 == 0
 
 
-def test_the_cache_moves_to_the_temporary_folder_where_home_cannot_be_written(
-    tmp_path, monkeypatch
-):
-    blocked, spare = tmp_path / "file", tmp_path / "spare"
-    blocked.write_text("not a folder")
-    spare.mkdir()
-    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
-    monkeypatch.setattr(compiled.tempfile, "gettempdir", lambda: str(spare))
-    assert compiled.cache_folder.__wrapped__().is_relative_to(spare)
+def test_the_cache_moves_to_a_temporary_folder_of_this_user_where_home_cannot_be_written(no_home):
+    folder = compiled.cache_folder.__wrapped__()
+    assert folder.parent == no_home / f"crackfront-{os.geteuid()}"
+    assert folder == compiled.cache_folder.__wrapped__()
 
 
 def test_no_writable_folder_for_compiled_code_is_an_error_that_says_what_to_set(
-    tmp_path, monkeypatch
+    no_home, monkeypatch
 ):
-    blocked = tmp_path / "file"
-    blocked.write_text("not a folder")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
-    monkeypatch.setattr(compiled.tempfile, "gettempdir", lambda: str(blocked))
-    with pytest.raises(OSError, match="is writable; set XDG_CACHE_HOME to a folder"):
+    monkeypatch.setattr(compiled.tempfile, "tempdir", str(no_home / "none"))
+    monkeypatch.setattr(compiled, "_is_private", lambda folder: False)
+    with pytest.raises(OSError, match="set XDG_CACHE_HOME to a folder that is writable"):
         compiled.cache_folder.__wrapped__()
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files to another user")
+@pytest.mark.parametrize("depth", [0, 1])
+def test_code_in_a_folder_of_another_user_is_not_run(no_home, depth):
+    theirs = [no_home / f"crackfront-{os.geteuid()}"]
+    theirs.append(theirs[0] / compiled.solver_fingerprint())
+    theirs[1].mkdir(parents=True, mode=0o700)
+    os.chown(theirs[depth], 12345, 12345)
+    folder = compiled.cache_folder.__wrapped__()
+    assert folder.parent == no_home
+    assert folder not in theirs
+    assert folder.stat().st_uid == os.geteuid()
+
+
+def test_a_link_in_the_place_of_the_cache_is_not_followed(no_home, tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (no_home / f"crackfront-{os.geteuid()}").symlink_to(tmp_path / "elsewhere")
+    assert compiled.cache_folder.__wrapped__().name.startswith("crackfront-")
+    assert not any((tmp_path / "elsewhere").iterdir())
+
+
+def test_a_cache_in_which_others_may_write_is_made_anew(fresh_cache):
+    folder = compiled.cache_folder.__wrapped__()
+    (folder / "planted.nbi").write_bytes(b"code")
+    folder.chmod(0o770)
+    assert compiled.cache_folder.__wrapped__() == folder
+    assert not any(folder.iterdir())
+    assert folder.stat().st_mode & 0o077 == 0
 
 
 def test_kernels_count_as_cached_once_an_index_of_one_is_there(fresh_cache, monkeypatch):
@@ -51,6 +85,42 @@ def test_kernels_count_as_cached_once_an_index_of_one_is_there(fresh_cache, monk
     folder.mkdir()
     (folder / "kernel.nbi").write_bytes(b"")
     assert compiled.kernels_are_cached()
+
+
+def quotient(a, b):
+    return a / b
+
+
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+def test_a_damaged_file_of_the_cache_is_made_anew(tmp_path, monkeypatch, ending):
+    monkeypatch.setattr(compiled.numba.config, "CACHE_DIR", str(tmp_path))
+
+    def hits():
+        """Cached versions that a new kernel finds, once it has given the right answer."""
+        kernel = compiled.jit(quotient)
+        assert kernel(1.0, 4.0) == 0.25
+        return sum(kernel.stats.cache_hits.values())
+
+    assert (hits(), hits()) == (0, 1)
+    [path] = tmp_path.rglob(f"*quotient*.{ending}")
+    content = path.read_bytes()
+    flipped = bytearray(content)
+    flipped[len(content) // 2] ^= 4
+    for wrong in (b"", content[: len(content) // 2], bytes(flipped)):
+        path.write_bytes(wrong)
+        assert (hits(), hits()) == (0, 1)
+
+
+def test_who_has_neither_home_nor_name_has_a_temporary_folder(tmp_path, monkeypatch):
+    def nobody(number):
+        raise KeyError(number)
+
+    for name in ("HOME", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("pwd.getpwuid", nobody)
+    monkeypatch.setattr(compiled.tempfile, "tempdir", str(tmp_path))
+    folder = compiled.cache_folder.__wrapped__()
+    assert folder.parent == tmp_path / f"crackfront-{os.geteuid()}"
 
 
 def test_a_compiled_division_by_zero_is_infinite():

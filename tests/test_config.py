@@ -201,6 +201,42 @@ def test_steady_loads_are_read_in_both_units(tmp_path):
 
 
 BAD = {
+    "seed beyond what a file holds": (
+        ("seed: 1", "seed: 18446744073709551616"),
+        "seed is 18446744073709551616; it must lie between 0 and 9.22337e+18",
+    ),
+    "bootstrap of one sample": (
+        ("bootstrap: 500", "bootstrap: 1"),
+        "fit.bootstrap is 1; it must lie between 100 and 1e+07",
+    ),
+    "realisations without end": (
+        ("realisations: 2", "realisations: 1000000000"),
+        "realisations: 4e+09 simulations would need 2 TB of memory; here are",
+    ),
+    "cutoff of nothing": (
+        ("{name: flat, short_cutoff: 0.1", "{name: flat, short_cutoff: 1e-300"),
+        "spectra[0].short_cutoff is 1e-300; it must lie between 1e-15 and 1e+15",
+    ),
+    "cutoff below an atom": (
+        ("{name: flat, short_cutoff: 0.1", "{name: flat, short_cutoff: 1e-12"),
+        "short_cutoff is 1e-12 reduced lateral lengths; it must lie between 1e-09 and 1e+09",
+    ),
+    "tile larger than any machine": (
+        ("roll_offs: 10", "roll_offs: 1e+12"),
+        "tiles of 4e+12 x 4e+12 points would need 5.12e+08 EB of memory; here are",
+    ),
+    "front larger than any machine": (
+        ("angles_per_cutoff: 2", "angles: 1000000000000"),
+        "fronts of 1e+12 sites would need 512 TB of memory; here are",
+    ),
+    "load without end": (
+        ("step: 0.1", "step: 1e-14"),
+        "of memory; here are",
+    ),
+    "years": (
+        ("angles_per_cutoff: 2", "angles: 1000000000"),
+        "years of processor time; ask for fewer, coarser or larger load steps",
+    ),
     "unknown key": (
         ("realisations: 2", "realisation: 2\nrealisations: 2"),
         "unknown key realisation; did you mean realisations?",
@@ -214,7 +250,7 @@ BAD = {
         "unknown key numerics.tile.sides; the keys here are roll_offs, cutoffs",
     ),
     "missing key": (("seed: 1\n", ""), "key seed is missing; add it"),
-    "key twice": (("seed: 1", "seed: 1\nseed: 2"), "is no valid YAML in line 2: key 'seed' stands"),
+    "key twice": (("seed: 1", "seed: 1\nseed: 2"), "is no valid YAML in line 3: key 'seed' stands"),
     "hurst above one": (
         ("hurst: 0.8", "hurst: 1.2"),
         "spectra[1].hurst is 1.2; it must be less than or equal to 1",
@@ -517,3 +553,45 @@ def test_no_scan_is_read_for_spectra_that_are_given(tmp_path):
 )
 def test_a_spectrum_that_is_no_measured_one_is_refused(tmp_path, text, sentence):
     assert refusal(tmp_path, text).startswith(sentence)
+
+
+HARSH = {
+    "an anchor that refers to itself": ("x: &a [*a]\n", "line 1: anchor a refers to itself"),
+    "one within a mapping": ("x: &a {b: {c: *a}}\n", "line 1: anchor a refers to itself"),
+    "a billion laughs": (
+        "l0: &l0 [lol, lol]\n"
+        + "".join(f"l{k}: &l{k} [{', '.join([f'*l{k - 1}'] * 9)}]\n" for k in range(1, 12)),
+        "with what its anchors repeat it has over 200000 values",
+    ),
+    "depth": ("x: " + "[" * 10**5 + "]" * 10**5, "more than 30 lists and mappings are nested"),
+    "size": ("#" * 10**6, "has 1 MB; more than 0.5 MB are not read"),
+    "a date": ("x: 2026-99-99\n", "is no valid YAML: month must be in 1..12"),
+    "digits": ("x: " + "9" * 5000 + "\n", "is no valid YAML: Exceeds the limit"),
+    "a tag that is not met": ("x: !!bool maybe\n", "is no valid YAML: 'maybe'"),
+    "a key twice as number and text": ("1: a\n'1': b\n", "line 2: key '1' stands twice"),
+    "unknown keys": (
+        "".join(f"key_{k}: {k}\n" for k in range(20_000)),
+        "more such keys and values",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", HARSH)
+def test_yaml_that_grows_without_end_is_refused_with_a_sentence(tmp_path, case):
+    text, sentence = HARSH[case]
+    message = refusal(tmp_path, text)
+    assert sentence in message
+    assert len(message) < 5000
+
+
+def test_an_anchor_may_be_used_as_often_as_it_is_useful(tmp_path):
+    text = changed("angles_per_cutoff: 2", "angles_per_cutoff: &two 2").replace(
+        "realisations: 2", "realisations: 3"
+    )
+    text = text.replace("samples_per_cutoff: 4", "samples_per_cutoff: *two")
+    assert load_configuration(written(tmp_path, text)).numerics.knobs.samples_per_cutoff == 2
+
+
+def test_many_realisations_are_no_reason_to_refuse(tmp_path):
+    text = changed("realisations: 2", "realisations: 100000")
+    assert load_configuration(written(tmp_path, text)).n_simulation == 400_000

@@ -2,7 +2,9 @@
 
 import json
 import math
+import os
 import re
+import time
 from dataclasses import asdict, fields, replace
 from pathlib import Path
 
@@ -19,7 +21,7 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
-from crackfront.data.files import UnreadableFileError, write_dataset, write_text
+from crackfront.data.files import UnreadableFileError, date_back, write_dataset, write_text
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.fields import PolarSamples, read_field, write_field
 from crackfront.simulate.files import (
@@ -137,7 +139,7 @@ def test_a_truncated_file_is_refused_with_its_name(tmp_path, result, kept):
     write_simulation(path, result, ORIGIN)
     content = path.read_bytes()
     path.write_bytes(content[: int(kept * len(content))])
-    with pytest.raises(UnreadableFileError, match=r"one.nc is no complete netCDF file"):
+    with pytest.raises(UnreadableFileError, match=r"one.nc is (no complete netCDF|damaged)"):
         read_simulation(path, result.simulation)
 
 
@@ -165,6 +167,17 @@ def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, result, monke
         write_dataset(path, cycle_dataset(result.record), ORIGIN)
     assert path.read_bytes() == before
     assert [item.name for item in tmp_path.iterdir()] == ["cycle.nc"]
+
+
+def test_files_of_the_future_get_one_date_of_now_and_others_keep_theirs(tmp_path):
+    for name, moment in (("a.nc", 4e9), ("b.nc", 4e9 + 5), ("old.nc", 1e9), ("run.jsonl", 4e9)):
+        (tmp_path / name).write_text("text")
+        os.utime(tmp_path / name, (moment, moment))
+    before = time.time()
+    date_back(tmp_path)
+    found = {path.name: path.stat().st_mtime for path in tmp_path.iterdir()}
+    assert before <= found["a.nc"] == found["b.nc"] <= time.time()
+    assert (found["old.nc"], found["run.jsonl"]) == (1e9, 4e9)
 
 
 def test_a_text_is_replaced_as_a_whole(tmp_path):

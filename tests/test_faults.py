@@ -244,6 +244,7 @@ def test_a_full_disk_ends_the_run_and_room_lets_it_go_on(configuration, same, sm
     done = run(*command(configuration, small_disk / "out"))
     assert done.returncode == 1
     assert "nothing can be stored" in done.stderr
+    assert "No space left on device" in done.stderr
     assert "Traceback" not in done.stderr
     kept = len(stored(small_disk / "out"))
     assert 1 <= kept < N_SIMULATION

@@ -16,9 +16,10 @@ from matplotlib.figure import Figure
 
 from crackfront.cli import main
 from crackfront.core.variables import variable
+from crackfront.data.comparison import comparison
 from crackfront.data.files import UnreadableFileError, read_attributes
 from crackfront.data.provenance import provenance
-from crackfront.data.records import largest_differences, read_record, write_record
+from crackfront.data.records import read_record, write_record
 from crackfront.data.section import ConfigurationError
 from crackfront.studies.paper.figure import (
     FIGURES,
@@ -192,16 +193,22 @@ def test_data_are_compared_with_a_reference_variable_by_variable(smooth, tmp_pat
     shorter = replace(smooth, **{name: getattr(smooth, name)[1:] for name in STATES})
     for path, loop in zip(paths, (smooth, changed, shorter), strict=True):
         write_record(path, loop, provenance(), title="smooth")
-    found = largest_differences(paths[1], paths[0])
-    assert found.pop("force") == pytest.approx(1e-6, rel=1e-3)
-    assert set(found.values()) == {0.0}
-    assert largest_differences(paths[2], paths[0])["radius"] == np.inf
-    result = CliRunner().invoke(main, ["compare-figures", str(paths[1]), str(paths[0])])
-    assert "force                        1.0e-06" in result.output
-    arguments = ["compare-figures", str(paths[2]), str(paths[0]), "--json"]
+    found = comparison(paths[1], paths[0]).by_variable()
+    assert found.pop("force").largest == pytest.approx(1e-6, rel=1e-3)
+    assert {item.largest for item in found.values()} == {0.0}
+    assert all(item.in_bits for item in found.values())
+    assert comparison(paths[2], paths[0]).by_variable()["radius"].largest == np.inf
+    result = CliRunner().invoke(main, ["compare", str(paths[1]), str(paths[0])])
+    assert result.exit_code == 1
+    assert "force                                1.0e-06" in result.output
+    arguments = ["compare", str(paths[2]), str(paths[0]), "--json"]
     told = json.loads(CliRunner().invoke(main, arguments).stdout)
-    assert told["radius"] is None
-    assert told["approach"] == 0.0
+    assert told["variables"]["radius"] is None
+    assert told["variables"]["approach"] == 0.0
+    loose = ["compare", str(paths[1]), str(paths[0]), "--tolerance", "1e-5"]
+    result = CliRunner().invoke(main, loose)
+    assert result.exit_code == 0
+    assert "1 files agree in values, not in bits within 1.0e-06" in result.output
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(

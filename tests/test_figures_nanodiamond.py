@@ -10,7 +10,7 @@ from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.data.section import ConfigurationError
 from crackfront.studies.paper.advances import Perimeters, advances
-from crackfront.studies.paper.figure import figure, figure_files, load_figure
+from crackfront.studies.paper.figure import figure, load_figure, settings_fingerprint
 from crackfront.studies.paper.main_5bc import NanodiamondParameters
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "figures" / "main-5bc.yaml"
@@ -151,10 +151,13 @@ def test_a_configuration_with_a_wrong_csv_is_refused_before_any_work(tmp_path):
         load_figure(path, "quick")
 
 
-def test_a_measured_file_is_an_input_of_its_figure(tmp_path):
+def test_a_measured_file_decides_what_a_figure_is_made_of_and_a_comment_does_not(tmp_path):
     configuration = with_measured(tmp_path, MEASURED)
-    assert figure_files(configuration, "paper") == [str(tmp_path / "measured.csv")]
-    assert figure_files(CONFIGURATION, "paper") == []
+    before = settings_fingerprint(configuration, "paper")
+    configuration.write_text(f"# a remark\n{configuration.read_text()}")
+    assert settings_fingerprint(configuration, "paper") == before
+    with_measured(tmp_path, MEASURED.replace("0.5,110", "0.5,111"))
+    assert settings_fingerprint(configuration, "paper") != before
 
 
 @pytest.mark.parametrize(

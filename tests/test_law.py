@@ -275,3 +275,11 @@ def test_the_command_draws_the_law(tmp_path):
     )
     assert path.name == "law.png"
     assert path.stat().st_size > 10_000
+
+
+def test_a_contact_is_refused_up_to_the_radius_at_which_it_is_lost_in_retraction():
+    with pytest.raises(ValueError, match=r"at or below that of pull-off \(0\.56") as caught:
+        sphere_factors("roughness", FLAT, 0.05, 0.5)
+    lost = float(str(caught.value).split("(")[1].split(")")[0])
+    k = sphere_factors("roughness", FLAT, 0.05, lost + 5e-4).retraction.factor.value
+    assert jkr.pull_off_radius(1 - 0.05 + k * 0.05) == pytest.approx(lost, rel=1e-3)

@@ -1,28 +1,39 @@
 """The store: what is finished stays, what is missing or broken is found and run."""
 
+import itertools
 import json
 import os
+import shutil
 import subprocess
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
+from click.testing import CliRunner
 
+from crackfront.cli import main
+from crackfront.data.comparison import comparison
+from crackfront.data.digests import Integrity
 from crackfront.data.files import leftover_parts, read_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.files import read_simulation
+from crackfront.simulate.files import read_simulation, write_checkpoint
 from crackfront.simulate.run import run_simulation
+from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import journal, tasks
 from crackfront.sweep import table as tables
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, Journal
 from crackfront.sweep.store import Store
 from crackfront.sweep.table import read_table
+from crackfront.sweep.verification import verification
 
-SWEEP = load_configuration(Path(__file__).parents[1] / "config/test.yaml")
+TEST = Path(__file__).parents[1] / "config/test.yaml"
+SWEEP = load_configuration(TEST)
 FLAT = SWEEP.shard(SWEEP.spectra[0])
 
 
@@ -315,8 +326,245 @@ def test_memory_that_does_not_suffice_ends_the_run_and_leaves_no_row(store, monk
     assert store.inventory(FLAT).missing == FLAT
 
 
+def test_two_hundred_starts_in_one_instant_do_not_meet(store):
+    with ThreadPoolExecutor(50) as starts:
+        outcomes = starts.map(lambda _: fill(store, []), range(200), timeout=120)
+        assert list(outcomes) == [[]] * 200
+    assert store.configuration.read_text(encoding="utf-8").startswith("text")
+    assert not list(store.folder.rglob(".*.part"))
+
+
+def flip(path, place=0.5):
+    """Change one bit of a file."""
+    content = bytearray(path.read_bytes())
+    content[int(place * len(content))] ^= 16
+    path.write_bytes(content)
+
+
+@pytest.mark.parametrize("journals", [True, False])
+@pytest.mark.parametrize("place", [0.0, 0.3, 0.6, 0.999])
+def test_a_curve_with_a_flipped_bit_is_named_and_computed_anew(store, journals, place):
+    fill(store, FLAT[:2])
+    expected = [held.row for held in store.holdings(FLAT[:2])]
+    flip(store.path(FLAT[1]), place)
+    if not journals:
+        shutil.rmtree(store.journals)
+    inventory = store.inventory(FLAT[:2])
+    assert inventory.missing == (FLAT[1],)
+    [sentence] = inventory.unreadable
+    assert str(store.path(FLAT[1])) in sentence
+    assert "is damaged, its content does not have the digest that it states" in sentence
+    fill(store, inventory.missing)
+    found = [held.row for held in store.holdings(FLAT[:2])]
+    assert [row.w_retr for row in found] == [row.w_retr for row in expected]
+
+
+def test_a_valid_file_of_another_simulation_is_not_believed(store):
+    fill(store, FLAT[:2])
+    shutil.copyfile(store.path(FLAT[0]), store.path(FLAT[1]))
+    shutil.rmtree(store.journals)
+    inventory = store.inventory(FLAT[:2])
+    assert inventory.missing == (FLAT[1],)
+    assert "is not the result of" in inventory.unreadable[0]
+
+
+def test_files_of_an_earlier_version_without_digests_count(store):
+    fill(store, FLAT[:2])
+    for path in (store.folder / "curves").iterdir():
+        content = path.read_bytes()
+        path.write_bytes(content[: content.rindex(b"crackfront digest") - 1])
+    shutil.rmtree(store.journals)
+    assert store.inventory(FLAT[:2]).missing == ()
+    assert verification(store.folder).counts["curves"] == {Integrity.UNKNOWN: 2}
+
+
+def damaging(checkpoint):
+    """What a checkpoint may be: damaged, cut, of another load, or no netCDF at all."""
+    content = checkpoint.read_bytes()
+    yield content[:200] + bytes([content[200] ^ 1]) + content[201:]
+    yield content[: len(content) // 2]
+    with xr.open_dataset(checkpoint) as dataset:
+        wrong = dataset.load()
+    wrong["penetration"] = wrong["penetration"] + 0.5
+    wrong.to_netcdf(checkpoint)
+    yield checkpoint.read_bytes()
+    wrong.drop_vars("turning_front").to_netcdf(checkpoint)
+    yield checkpoint.read_bytes()
+    yield b"text"
+
+
+def test_a_checkpoint_that_is_of_no_use_costs_time_and_no_refusal_is_stored(store):
+    fill(store, FLAT[:1])
+    [expected] = [held.row for held in store.holdings(FLAT[:1])]
+    kept = []
+    run_simulation(FLAT[0], keep=lambda make: kept.append(make()))
+    path = store.checkpoint(FLAT[0])
+    write_checkpoint(path, kept[3], provenance())
+    for content in list(damaging(path)):
+        shutil.rmtree(store.folder)
+        path.parent.mkdir(parents=True)
+        path.write_bytes(content)
+        [(_, finished)] = fill(store, FLAT[:1])
+        assert finished.status == "lost_contact"
+        assert finished.sentence.startswith("begun anew without its checkpoint: ")
+        [held] = store.holdings(FLAT[:1])
+        assert held.row.w_appr == expected.w_appr
+        assert held.row.iterations == expected.iterations
+        assert not path.exists()
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A store with everything that the workflow makes of a sweep but figures."""
+    store = Store(tmp_path_factory.mktemp("made") / "sweep")
+    for shard in SWEEP.shards():
+        simulations = SWEEP.shard(shard.item, shard.realisations)
+        fill(store, simulations)
+        store.write_manifest(shard, simulations)
+    store.aggregate(SWEEP, provenance("text"))
+    return store
+
+
+@pytest.fixture
+def whole(made, store):
+    """A copy of that store."""
+    shutil.copytree(made.folder, store.folder)
+    return store
+
+
+def test_nothing_is_taken_back_of_a_store_that_is_whole(whole, tmp_path):
+    assert list(whole.renewed(SWEEP, tmp_path / "none.yaml")) == []
+    assert len(list((whole.folder / "shards").iterdir())) == 2
+
+
+@pytest.mark.parametrize("damage", ["flipped", "removed"])
+def test_the_lists_of_what_is_damaged_or_gone_are_taken_back(whole, tmp_path, damage):
+    path = whole.path(FLAT[0])
+    flip(path) if damage == "flipped" else path.unlink()
+    told = list(whole.renewed(SWEEP, tmp_path / "none.yaml"))
+    assert any(f"{path} is damaged" in line for line in told) == (damage == "flipped")
+    assert "1 list(s) of shards are made anew with what they lack" in told[-1]
+    assert [path.name for path in (whole.folder / "shards").iterdir()] == ["rough.json"]
+
+
+@pytest.mark.parametrize("name", ["hysteresis.nc", "shards/flat.json", "configuration.yaml"])
+@pytest.mark.parametrize("damage", ["flipped", "truncated"])
+def test_a_damaged_file_is_set_aside_and_told(whole, tmp_path, name, damage):
+    path = whole.folder / name
+    if damage == "flipped":
+        flip(path)
+    else:
+        path.write_bytes(path.read_bytes()[:-40])
+    (tmp_path / "sweep.yaml").write_text("text")
+    [first, *_] = whole.renewed(SWEEP, tmp_path / "sweep.yaml")
+    assert first.startswith(f"{path} is damaged; it is made anew, and set aside as {path.name}.dam")
+    assert path.exists() == (name == "configuration.yaml")
+    assert path.with_name(f"{path.name}.damaged").exists()
+
+
+def test_a_list_of_a_shard_that_is_no_json_is_taken_back(whole):
+    for path, content in zip((whole.folder / "shards").iterdir(), (b"", b"[1]"), strict=True):
+        path.write_bytes(content)
+    whole.path(FLAT[0]).unlink()
+    with pytest.raises(ValueError, match="1 of 8 simulations are missing"):
+        whole.aggregate(SWEEP, provenance())
+    assert not any((whole.folder / "shards").iterdir())
+
+
+def test_the_table_of_another_configuration_is_refused(whole):
+    other = replace(SWEEP, fit=replace(SWEEP.fit, n_bootstrap=7))
+    assert whole.table(other).w_appr.shape == (2, 2, 2)
+    with pytest.raises(ValueError, match="is the table of another configuration than the one gi"):
+        whole.table(replace(SWEEP, n_realisation=1))
+
+
+def test_a_damaged_file_is_not_archived(whole, tmp_path):
+    flip(whole.path(FLAT[0]))
+    with pytest.raises(ValueError, match=r"1 files of .* are damaged, the first is .*flat-e"):
+        whole.archive(tmp_path / "sweep.zip", curves=True)
+    assert not (tmp_path / "sweep.zip").exists()
+    whole.archive(tmp_path / "sweep.zip", curves=False)
+
+
+def test_a_folder_and_its_archive_are_verified(whole, tmp_path):
+    archive = tmp_path / "sweep.zip"
+    whole.archive(archive, curves=True)
+    for place in (whole.folder, archive):
+        found = verification(place)
+        assert found.damaged == found.missing == ()
+        assert found.counts["curves"] == {Integrity.WHOLE: 8}
+        assert found.counts["lines of journals"] == {Integrity.WHOLE: 16}
+    flip(whole.path(FLAT[0]))
+    flip(next(whole.journals.iterdir()), 0.01)
+    whole.path(FLAT[1]).unlink()
+    found = verification(whole.folder)
+    assert {name.partition("/")[0] for name in found.damaged} == {"curves", "journals"}
+    assert found.missing == (f"curves/{FLAT[1].stem}.nc",)
+    result = CliRunner().invoke(main, ["verify", str(whole.folder)])
+    assert result.exit_code == 1
+    assert "2 files are damaged and 1 missing" in result.output
+    flip(archive)
+    result = CliRunner().invoke(main, ["verify", str(archive)])
+    assert result.exit_code in (1, 2)
+    assert "Traceback" not in result.output
+
+
+def test_two_stores_of_one_sweep_agree_in_bits_and_another_sweep_does_not(whole, tmp_path):
+    twin, other = Store(tmp_path / "twin"), Store(tmp_path / "other")
+    changed = replace(SWEEP, seed=SWEEP.seed + 1)
+    for store, sweep in ((twin, SWEEP), (other, changed)):
+        fill(store, list(sweep.simulations()))
+        store.aggregate(sweep, provenance())
+    found = comparison(whole.folder, twin.folder)
+    assert found.in_bits
+    assert found.n_file == 9
+    found = comparison(whole.folder, other.folder)
+    assert found.n_file == 9  # keys do not matter
+    assert not found.in_bits
+    assert found.by_variable()["force"].largest > 0
+    result = CliRunner().invoke(main, ["compare", str(whole.folder), str(twin.folder)])
+    assert result.exit_code == 0
+    assert "9 files agree in bits" in result.output
+
+
+def test_the_fit_of_a_sweep_that_was_interrupted_is_that_of_an_undisturbed_one(
+    made, whole, tmp_path
+):
+    undisturbed = tmp_path / "undisturbed"
+    shutil.copytree(made.folder, undisturbed)
+    # What a killed process leaves: some curves, one on its way, and half a line.
+    simulations = list(SWEEP.simulations())
+    for one in simulations[3:]:
+        whole.path(one).unlink()
+    [journal_file] = whole.journals.iterdir()
+    journal_file.write_bytes(journal_file.read_bytes()[:-300])
+    kept = []
+    run_simulation(simulations[3], keep=lambda make: kept.append(make()))
+    write_checkpoint(whole.checkpoint(simulations[3]), kept[5], provenance())
+    assert len(fill(whole, whole.inventory(simulations).missing)) == 5
+    folders = (undisturbed, whole.folder)
+    for folder, name in itertools.product(folders, ("aggregate", "fit")):
+        result = CliRunner().invoke(main, [name, str(TEST), "--output", str(folder)])
+        assert result.exit_code == 0, result.output
+    one, other = ((folder / "fit.md").read_bytes() for folder in folders)
+    assert one == other
+    assert comparison(*(folder / "fit.nc" for folder in folders)).in_bits
+    one, other = (json.loads((folder / "fit.json").read_text()) for folder in folders)
+    assert {name for name in one if one[name] != other[name]} <= {"origin", "digest"}
+    differing = {name for name, text in one["origin"].items() if text != other["origin"][name]}
+    assert differing <= {"date", "command"}
+
+
 def test_a_part_that_its_writer_renames_meanwhile_is_left_alone(tmp_path, monkeypatch):
     glob = Path.glob
     gone = tmp_path / ".renamed.part"
     monkeypatch.setattr(Path, "glob", lambda folder, pattern: [*glob(folder, pattern), gone])
     assert leftover_parts(tmp_path) == []
+
+
+def test_keys_are_made_of_stored_simulations_alone_as_they_take_long(store, monkeypatch):
+    fill(store, FLAT[:1])
+    many, asked, key = replace(SWEEP, n_realisation=300), [], Simulation.key.fget
+    monkeypatch.setattr(Simulation, "key", property(lambda one: asked.append(one) or key(one)))
+    assert len(store.inventory(many.simulations()).missing) == many.n_simulation - 1
+    assert len(asked) < 10

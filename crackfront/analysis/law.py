@@ -33,6 +33,7 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, larkin_length
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.variables import variable
+from crackfront.data.bounds import LENGTH, refuse_outside
 
 Array = NDArray[np.float64]
 
@@ -528,14 +529,16 @@ def sphere_factors(
         )
     if not 0 < contact_radius < math.inf:
         raise ValueError(f"contact radius is {contact_radius:g}; it must be positive and finite")
+    refuse_outside("contact radius", contact_radius, LENGTH)
     w_rms = 2 * math.sqrt(elastic_energy)
     larkin = larkin_length(kind, spectrum, w_rms)
     mean, breadth = _mean_adhesion(kind, elastic_energy), _measured(slope_breadth(kind, spectrum))
-    approach, retraction = (
+    # Contact is lost in retraction at the larger radius, which a refusal names.
+    retraction, approach = (
         pinning_factor(
             w_rms, _branch_size(w_rms, larkin, mean, sign, contact_radius, breadth), kind, breadth
         )
-        for sign in (-1, 1)
+        for sign in (1, -1)
     )
     approach, retraction = _on_a_circle(approach), _on_a_circle(retraction)
     one, other = approach.factor, retraction.factor
@@ -565,11 +568,14 @@ def _branch_size(
     """G of a branch, whose work of adhesion mean + sign k e_el depends on k itself."""
     coefficients = shipped_law().coefficients
 
-    def size(factor: float) -> float:
-        adhesion = max(mean + sign * factor * w_rms**2 / 4, _LEAST_ADHESION)
-        return jkr.spring(contact_radius, adhesion) / larkin
+    def adhesion(factor: float) -> float:
+        return max(mean + sign * factor * w_rms**2 / 4, _LEAST_ADHESION)
 
     def excess(factor: float) -> float:
-        return float(law_value(coefficients, w_rms, size(factor), breadth)) - factor
+        # Towards pull-off nothing holds the edge; whether it is beyond, the root decides.
+        held = contact_radius > jkr.pull_off_radius(adhesion(factor))
+        size = jkr.spring(contact_radius, adhesion(factor)) / larkin if held else math.inf
+        return float(law_value(coefficients, w_rms, size, breadth)) - factor
 
-    return size(float(brentq(excess, 0.0, coefficients[0], xtol=1e-6)))
+    root = float(brentq(excess, 0.0, coefficients[0], xtol=1e-6))
+    return jkr.spring(contact_radius, adhesion(root)) / larkin

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from typing import Any
 
 import click
@@ -9,7 +10,8 @@ from click.shell_completion import get_completion_class
 
 from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.cycle import cycle
-from crackfront.cli.figure import check_figures, compare_figures, draw_figure, figure, gallery
+from crackfront.cli.figure import check_figures, draw_figure, figure, gallery
+from crackfront.cli.integrity import compare, verify
 from crackfront.cli.law import law
 from crackfront.cli.report import StoppedError, examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
@@ -58,6 +60,8 @@ def _file_sentence(error: OSError) -> str:
     """What is wrong with a file or folder."""
     if error.filename is None or error.strerror is None:
         return str(error)
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return f"{error.filename} cannot be written: {error.strerror}; make room and repeat"
     return f"{error.filename} cannot be used: {error.strerror}; check the path and its permissions"
 
 
@@ -82,7 +86,8 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Predictions": (predict, surface, law),
     "One contact": (cycle,),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
-    "Figures of the paper": (figure, draw_figure, check_figures, compare_figures, gallery),
+    "Figures of the paper": (figure, draw_figure, check_figures, gallery),
+    "Stored results": (verify, compare),
     "Numerical errors, validation": (accuracy, accuracy_report, validate),
     "The shell": (completion,),
 }
@@ -92,7 +97,8 @@ _EPILOG = """\b
 Exit codes:
   0   done
   1   computed, but not what was asked for: too many simulations without a value,
-      a cycle that ended early, ranks that failed
+      a cycle that ended early, ranks that failed, results that are damaged or do not
+      agree
   2   the input cannot be used; one sentence says why, and nothing was computed
   75  told to end (Ctrl-C or SIGTERM) before it was done; the same command goes on,
       or begins anew where it says so

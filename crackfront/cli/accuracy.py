@@ -7,7 +7,8 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, examples
+from crackfront.cli.report import FILE, announce_compilation, examples, refuse_unwritable, whole
+from crackfront.data.bounds import Range
 
 _output = click.option(
     "--output",
@@ -35,7 +36,7 @@ _output = click.option(
     "errors beside the stated ones.",
 )
 @click.option(
-    "--realisations", type=click.IntRange(min=2), default=8, show_default=True, help="Surfaces."
+    "--realisations", type=whole(Range(2, 1e6)), default=8, show_default=True, help="Surfaces."
 )
 def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
     """Measure the errors of one scene."""
@@ -50,6 +51,7 @@ def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
         names = ", ".join(SCENES)
         hint = f"did you mean {near[0]}?" if near else f"choose one of {names}"
         raise click.BadParameter(f"there is no scene {scene!r}; {hint}")
+    refuse_unwritable(output)
     announce_compilation()
     compile_solver("newton")
     found = STUDIES[study](SCENES[scene], realisations, click.echo)

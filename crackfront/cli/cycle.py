@@ -14,14 +14,18 @@ import click
 
 from crackfront.cli.report import (
     FILE,
+    Number,
     StoppedError,
     announce_compilation,
+    announce_cost,
     as_json,
     echo_json,
     examples,
     refuse_unwritable,
+    whole,
 )
 from crackfront.cli.watch import Progress, Watch
+from crackfront.data.bounds import COUNT, DENSITY, TOLERANCE, Range
 from crackfront.simulate.cases import CASES, Resolution
 from crackfront.sweep.parallel import heeding_notice, notice_is_given
 
@@ -41,16 +45,18 @@ def _case_options(command: Callable[..., None]) -> Callable[..., None]:
     """Give a command the options of all cases."""
     known: dict[str, list[str]] = {}
     texts: dict[str, str] = {}
+    bounds: dict[str, Range] = {}
     for name, case in CASES.items():
         for item in fields(case):
             flag = _flag(item)
             known.setdefault(flag, []).append(name)
             texts.setdefault(flag, item.metadata["text"])
+            bounds.setdefault(flag, item.metadata["bounds"])
     for flag, names in reversed(known.items()):
         owner = "" if len(names) == len(CASES) else f"({', '.join(names)}) "
-        command = click.option(flag, _parameter(flag), type=float, help=owner + texts[flag])(
-            command
-        )
+        command = click.option(
+            flag, _parameter(flag), type=Number(bounds[flag]), help=owner + texts[flag]
+        )(command)
     return command
 
 
@@ -86,7 +92,7 @@ def _parameter(flag: str) -> str:
 @_case_options
 @click.option(
     "--tolerance",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Number(TOLERANCE),
     default=1e-8,
     show_default=True,
     help="Force that may be left, relative to w_int per front length.",
@@ -99,7 +105,7 @@ def _parameter(flag: str) -> str:
 )
 @click.option(
     "--max-sweeps",
-    type=click.IntRange(min=1),
+    type=whole(COUNT),
     default=10_000_000,
     show_default=True,
     help="Limit on the sweeps of one load step.",
@@ -112,12 +118,12 @@ def _parameter(flag: str) -> str:
 )
 @click.option(
     "--angles",
-    type=click.IntRange(min=4),
+    type=whole(Range(4, COUNT.most)),
     help="Sites of the front on a tile.  [default: one or more a pixel on the largest circle]",
 )
 @click.option(
     "--samples-per-pixel",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Number(DENSITY),
     help="Samples along a ray on a tile, per pixel.  [default: 2, or 4 where linear]",
 )
 @click.option(
@@ -169,12 +175,14 @@ def cycle(
     from crackfront.core.cycle.record import Recorder
     from crackfront.core.outcome import Status
     from crackfront.core.solver.relax import named_solver
-    from crackfront.data.files import write_dataset
+    from crackfront.data.files import refuse_no_file, write_dataset
     from crackfront.data.provenance import provenance
     from crackfront.simulate.fields import read_field
     from crackfront.simulate.loops import loop_dataset
 
     case = _case(geometry, given)
+    refuse_no_file(output)
+    refuse_unwritable(output.parent)
     solution = named_solver(solver, tolerance, max_sweeps)
     problem = case.problem(
         lambda: read_field(field_file, interpolation or "linear"),
@@ -188,6 +196,7 @@ def cycle(
     for path in (output, figure or output):
         refuse_unwritable(path.parent)
     announce_compilation(err=as_json)
+    announce_cost(problem.seconds)
     asked = (geometry, given, tolerance, solver, max_sweeps, record, angles, samples_per_pixel)
     keeper = _Keeper(output, _key(field_file, *asked, interpolation), problem.field.geometry)
     resumed, deepest = keeper.found(), getattr(case, "max_penetration", None)

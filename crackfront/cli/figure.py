@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import shutil
 import time
 from dataclasses import asdict
@@ -118,36 +117,11 @@ def check_figures(output: Path, as_json: bool) -> None:
         raise ValueError(f"{output} holds no data of figures; run crackfront figure first")
     count, failed = len(found), sum(not check["passed"] for check in found)
     lines += ["", f"{count - failed} of {count} checks pass.", ""]
-    write_text(output / "checks.md", "\n".join(lines))
+    write_text(output / "checks.md", "\n".join(lines), sealed=True)
     if as_json:
         echo_json(found)
         return
     click.echo(f"checks: {output / 'checks.md'}, {failed} of {count} fail")
-
-
-@click.command(
-    "compare-figures",
-    epilog=examples(
-        "crackfront compare-figures results/figures/paper/main-3cd.nc docs/reference/main-3cd.nc",
-    ),
-)
-@click.argument("data", type=FILE)
-@click.argument("reference", type=FILE)
-@as_json
-def compare_figures(data: Path, reference: Path, as_json: bool) -> None:
-    """Tell how much the data of a figure differ from those of a reference, as docs/reference has.
-
-    The numbers are largest differences relative to the largest magnitude, a variable each.
-    """
-    from crackfront.data.records import largest_differences
-
-    differences = largest_differences(data, reference)
-    if as_json:
-        # Shapes that disagree are infinitely different, for which JSON has no number.
-        echo_json({name: None if math.isinf(one) else one for name, one in differences.items()})
-        return
-    for name, difference in differences.items():
-        click.echo(f"{name:28} {difference:.1e}")
 
 
 @click.command(epilog=examples("crackfront gallery --page docs/gallery.md"))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from crackfront.cli.report import as_json, echo_json, examples
+from crackfront.data.bounds import LENGTH, refuse_outside
 
 if TYPE_CHECKING:
     from crackfront.core.adhesion import FieldKind
@@ -167,6 +168,8 @@ def _shape(text: str) -> SelfAffineSpectrum:
             f"--spectrum is {text!r}; write short cutoff, roll-off and Hurst exponent, as in "
             "0.005,0.1,0.3"
         ) from error
+    for length in (short_cutoff, roll_off):
+        refuse_outside("--spectrum: a wavelength", length, LENGTH)
     return SelfAffineSpectrum(short_cutoff, roll_off, hurst)
 
 

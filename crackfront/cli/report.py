@@ -3,13 +3,36 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
 import click
 
+from crackfront.data.bounds import Range, in_time
+
 FILE = click.Path(path_type=Path)
 """Type of a parameter that names a file or folder."""
+
+
+class Number(click.FloatRange):
+    """A number within bounds; NaN, which no comparison excludes, is none."""
+
+    def __init__(self, bounds: Range) -> None:
+        super().__init__(*bounds)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number of a text."""
+        number = super().convert(value, param, ctx)
+        if math.isnan(number):
+            self.fail("nan is no number", param, ctx)
+        return number
+
+
+def whole(bounds: Range) -> click.IntRange:
+    """Type of a parameter that is a whole number within bounds."""
+    return click.IntRange(int(bounds.least), int(bounds.most))
+
 
 as_json = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON value instead, for machines."
@@ -49,6 +72,16 @@ def announce_compilation(*, err: bool = False) -> None:
 
     if not kernels_are_cached():
         click.echo("compiling the solver (once)", err=err)
+
+
+def announce_cost(seconds: float, *, err: bool = True) -> None:
+    """Tell how much processor time is expected, where that is more than a moment."""
+    if seconds > _MOMENT:
+        click.echo(f"about {in_time(seconds)} of processor time", err=err)
+
+
+_MOMENT = 20.0
+"""Time that needs no announcement. (Units: s)"""
 
 
 def refuse_unwritable(folder: Path) -> None:

@@ -9,7 +9,12 @@ from typing import TYPE_CHECKING
 import click
 
 from crackfront.cli.report import FILE, as_json, examples
-from crackfront.cli.sweep import configuration_argument, output_option, sweep_and_store
+from crackfront.cli.sweep import (
+    configuration_argument,
+    fill_store,
+    output_option,
+    sweep_and_store,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -55,6 +60,7 @@ def aggregate(configuration: Path, output: Path | None) -> None:
 @as_json
 def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the last."""
+    from crackfront.analysis.report import fit_table
     from crackfront.data.provenance import provenance
     from crackfront.sweep.fit_files import write_fit
 
@@ -64,7 +70,7 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     if as_json:
         click.echo(paths[1].read_text(encoding="utf-8"))
         return
-    click.echo(paths[2].read_text(encoding="utf-8"))
+    click.echo(fit_table(fitted))
     click.echo(f"fit: {', '.join(map(str, paths))}")
 
 
@@ -80,6 +86,8 @@ def figures(configuration: Path, output: Path | None) -> None:
     sweep, store = sweep_and_store(configuration, output)
     fitted = _fitted(sweep, store)
     simulation = _loop_example(sweep)
+    # Its file may have gone since the table was made.
+    fill_store(store, store.inventory([simulation]).missing, configuration)
     result = read_simulation(store.path(simulation), simulation)
     drawn = {
         "hysteresis": hysteresis_figure(fitted.table, fitted),
@@ -96,21 +104,22 @@ def figures(configuration: Path, output: Path | None) -> None:
 @output_option
 def summary(configuration: Path, output: Path | None) -> None:
     """Write summary.html: the fit, how the simulations ended, the configuration, the origin."""
-    from crackfront.data.files import read_attributes, write_text
+    from crackfront.analysis.report import fit_table
+    from crackfront.data.files import write_text
     from crackfront.sweep.summary import summary_page
     from crackfront.sweep.table import read_statuses
 
     sweep, store = sweep_and_store(configuration, output)
-    attributes = {name: str(value) for name, value in read_attributes(store.hysteresis).items()}
+    about = {name: text for name, text in store.about(sweep).items() if name != "configuration"}
     page = summary_page(
         f"Adhesion hysteresis: {configuration.stem}",
-        (store.folder / "fit.md").read_text(encoding="utf-8"),
+        fit_table(_fitted(sweep, store)),
         read_statuses(store.hysteresis),
-        attributes.pop("configuration"),
-        attributes | {"seed of the sweep": str(sweep.seed)},
+        configuration.read_text(encoding="utf-8"),
+        about | {"seed of the sweep": str(sweep.seed)},
     )
     path = store.folder / "summary.html"
-    write_text(path, page)
+    write_text(path, page, sealed=True)
     click.echo(f"summary: {path}")
 
 
@@ -152,12 +161,10 @@ def _fitted(sweep: Sweep, store: Store) -> SweepFit:
     """Fit of a sweep, always the same for the same table."""
     from crackfront.analysis.sweep import fit_sweep
     from crackfront.simulate.lines import LineLoad
-    from crackfront.sweep.table import read_table
 
-    table = read_table(store.hysteresis)
     schedule = sweep.schedule
     return fit_sweep(
-        table,
+        store.table(sweep),
         **asdict(sweep.fit),
         seed=sweep.seed,
         kind=sweep.kind,

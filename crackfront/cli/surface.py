@@ -12,12 +12,15 @@ import click
 
 from crackfront.cli.report import (
     FILE,
+    Number,
     announce_compilation,
     as_json,
     echo_json,
     examples,
     refuse_unwritable,
+    whole,
 )
+from crackfront.data.bounds import SEED, Range, in_time
 
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
@@ -105,7 +108,7 @@ def _sphere_options(*, required: bool) -> Callable[[Command], Command]:
         click.option("--modulus", required=required, help="Young's modulus, as in 0.7MPa."),
         click.option(
             "--poisson",
-            type=click.FloatRange(-1, 0.5, min_open=True),
+            type=Number(Range(-0.99, 0.5)),
             required=required,
             help="Poisson's ratio.",
         ),
@@ -129,14 +132,12 @@ def _sphere_options(*, required: bool) -> Callable[[Command], Command]:
 )
 @click.option(
     "--realisations",
-    type=click.IntRange(min=1),
+    type=whole(Range(1, 1e6)),
     default=3,
     show_default=True,
     help="Synthesised surfaces that --simulate runs.",
 )
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of their noise."
-)
+@click.option("--seed", type=whole(SEED), default=0, show_default=True, help="Seed of their noise.")
 @click.option(
     "--figure",
     type=FILE,
@@ -199,7 +200,9 @@ def _simulated(
         announce_compilation()
         if plan.remark:
             click.echo(plan.remark)
-        click.echo(f"simulating {realisations} surface(s), about {plan.expected_seconds:.3g} s ...")
+        click.echo(
+            f"simulating {realisations} surface(s), about {in_time(plan.expected_seconds)} ..."
+        )
     return simulated(plan, scales)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -13,12 +14,16 @@ import click
 
 from crackfront.cli.report import (
     FILE,
+    Number,
     StoppedError,
     announce_compilation,
+    announce_cost,
     as_json,
     echo_json,
     examples,
+    whole,
 )
+from crackfront.data.bounds import COUNT, Range, in_bytes, refuse_beyond_memory
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
@@ -53,16 +58,13 @@ def sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, St
 )
 @configuration_argument
 @output_option
-@click.option(
-    "--block", type=click.IntRange(min=1), help="Realisations of a shard.  [default: all]"
-)
+@click.option("--block", type=whole(COUNT), help="Realisations of a shard.  [default: all]")
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
     sweep, store = sweep_and_store(configuration, output)
     shards = sweep.shards(block)
-    shapes = {item: sweep.shard(item) for item in sweep.spectra}
-    inventory = store.inventory([one for simulations in shapes.values() for one in simulations])
+    inventory = store.inventory(sweep.simulations())
     if as_json:
         echo_json(
             {
@@ -79,10 +81,13 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         return
     click.echo("spectrum          lambda_s  lambda_r     H         angles         points    stored")
     rows = []
-    for item, simulations in shapes.items():
-        missing = [one for one in inventory.missing if one.spectrum_name == item.name]
-        stored = len(simulations) - len(missing)
-        click.echo(f"{_sizes(item, simulations)}  {stored:5}/{len(simulations)}")
+    left = defaultdict(list)
+    for one in inventory.missing:
+        left[one.spectrum_name].append(one)
+    for item in sweep.spectra:
+        missing, total = left[item.name], sweep.n_simulation // len(sweep.spectra)
+        examples = [sweep.simulation(item, energy, 0) for energy in sweep.elastic_energies]
+        click.echo(f"{_sizes(item, examples)}  {total - len(missing):5}/{total}")
         rows.append(_row(item.name, sum(shard.item is item for shard in shards), missing))
     if sentence := inventory.stale_sentence():
         click.echo(sentence)
@@ -100,12 +105,15 @@ def _costs(missing: Sequence[Simulation]) -> dict[str, float]:
     """What simulations are expected to cost, under the names that machines read."""
     from crackfront.simulate.costs import expected_cost
 
-    costs = [expected_cost(one) for one in missing]
+    # All realisations cost the same.
+    alike = Counter((one.spectrum_name, one.elastic_energy) for one in missing)
+    examples = {(one.spectrum_name, one.elastic_energy): one for one in missing}
+    costs = [(expected_cost(examples[name]), count) for name, count in alike.items()]
     return {
-        "core_seconds": sum(cost.seconds for cost in costs),
-        "longest_seconds": max((cost.seconds for cost in costs), default=0.0),
-        "bytes_a_rank": max((cost.memory for cost in costs), default=0.0),
-        "bytes_on_disk": sum(cost.disk for cost in costs),
+        "core_seconds": sum(count * cost.seconds for cost, count in costs),
+        "longest_seconds": max((cost.seconds for cost, _ in costs), default=0.0),
+        "bytes_a_rank": max((cost.memory for cost, _ in costs), default=0.0),
+        "bytes_on_disk": sum(count * cost.disk for cost, count in costs),
     }
 
 
@@ -166,7 +174,7 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
 )
 @click.option(
     "--ranks",
-    type=click.IntRange(min=1),
+    type=whole(Range(1, 1e6)),
     default=1,
     show_default=True,
     help="MPI ranks that simulate, beside one that hands out the work; 1 runs without MPI.",
@@ -179,7 +187,7 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
 )
 @click.option(
     "--checkpoint",
-    type=click.FloatRange(min=0),
+    type=Number(Range(0, 1e9)),
     default=60.0,
     show_default=True,
     help="Seconds between checkpoints of a running simulation.",
@@ -211,6 +219,14 @@ def simulate(
     simulations = [one for item in items for one in sweep.shard(item, chosen)]
     inventory = store.inventory(simulations)
     busy = min(ranks, len(inventory.missing))
+    if inventory.missing and not parallel.under_mpi():
+        costs = _costs(inventory.missing)
+        refuse_beyond_memory(
+            f"{busy} rank(s) of {in_bytes(costs['bytes_a_rank'])}",
+            costs["bytes_a_rank"] * (busy if launcher is None else 1),
+            "ask for fewer ranks, coarser numerics or a smaller tile",
+        )
+        announce_cost(costs["core_seconds"])
     if busy > 1 and not parallel.under_mpi():
         arguments = ["simulate", str(configuration), "--ranks", str(busy)]
         arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
@@ -226,7 +242,7 @@ def simulate(
         click.echo(f"Warning: {sentence}; it is computed anew", err=True)
     if sentence := inventory.stale_sentence():
         click.echo(sentence)
-    _fill(store, inventory.missing, configuration, checkpoint)
+    fill_store(store, inventory.missing, configuration, checkpoint)
     for shard in shards:
         manifest = store.write_manifest(shard, sweep.shard(shard.item, shard.realisations))
     click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
@@ -249,8 +265,11 @@ def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path
         sys.exit(code if 0 < code < 126 else 1)
 
 
-def _fill(
-    store: Store, missing: tuple[Simulation, ...], configuration: Path, checkpoint_seconds: float
+def fill_store(
+    store: Store,
+    missing: tuple[Simulation, ...],
+    configuration: Path,
+    checkpoint_seconds: float = 60.0,
 ) -> None:
     """Run what is missing and report every simulation as it ends."""
     from crackfront.data.provenance import provenance
@@ -313,6 +332,7 @@ def status(folder: Path, as_json: bool) -> None:
     A process on this machine is told to run as long as it lives, one on another machine as long as
     it shows signs of life.
     """
+    from crackfront.data.files import refuse_damaged
     from crackfront.sweep.configuration import load_configuration
     from crackfront.sweep.journal import running
     from crackfront.sweep.store import Store
@@ -320,6 +340,7 @@ def status(folder: Path, as_json: bool) -> None:
     store = Store(folder)
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
+    refuse_damaged(store.configuration)
     found = store.progress(load_configuration(store.configuration))
     processes = running(store.journals)
     if as_json:

@@ -1,21 +1,29 @@
 """Compilation of the kernels: one decorator, and a cache that a change of the sources empties.
 
 numba looks for changes only in the file that holds a kernel, not in the kernels that it calls
-from other files. The cache therefore lies in a folder named after the sources of all kernels.
+from other files. The cache therefore lies in a folder named after the sources of all kernels. What
+lies there is run: the folder is of this user alone, and its files are compiled anew where they are
+damaged.
 """
 
 from __future__ import annotations
 
+import atexit
+import contextlib
 import functools
+import hashlib
 import inspect
 import os
+import shutil
+import stat
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
 from numba import types
+from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.extending import overload
 
 from crackfront.core.fingerprint import solver_fingerprint
@@ -23,20 +31,93 @@ from crackfront.core.fingerprint import solver_fingerprint
 
 @functools.cache
 def cache_folder() -> Path:
-    """Folder of the compiled kernels of these sources, created on first use."""
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
-    for parent in (home, Path(tempfile.gettempdir())):
-        folder = parent / "crackfront" / solver_fingerprint()
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError:
-            continue
-        if os.access(folder, os.W_OK):
-            return folder
-    raise OSError(
-        f"neither {home} nor {tempfile.gettempdir()} is writable; set XDG_CACHE_HOME to a folder "
-        "for compiled code"
-    )
+    """Folder of the compiled kernels of these sources, created on first use.
+
+    It stands in the cache of this user or, where that cannot be, in the folder for temporary
+    files. Where no place is this user's alone, it lives as long as the process.
+
+    Raises
+    ------
+    OSError
+        If there is no place for a folder.
+    """
+    for parent in _caches():
+        if _is_private(parent) and _is_private(parent / solver_fingerprint()):
+            return parent / solver_fingerprint()
+    try:
+        folder = tempfile.mkdtemp(prefix="crackfront-")
+    except OSError as error:
+        places = " or ".join(map(str, _caches()))
+        raise OSError(
+            f"compiled code can be kept neither in {places}; set XDG_CACHE_HOME to a folder that "
+            "is writable"
+        ) from error
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
+
+
+def _caches() -> Iterator[Path]:
+    """Folders in which compiled kernels may stand, the best first."""
+    # A container that runs as a number has neither HOME nor a name.
+    with contextlib.suppress(RuntimeError):
+        yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "crackfront")
+    yield Path(tempfile.gettempdir(), f"crackfront-{os.geteuid()}")
+
+
+def _is_private(folder: Path) -> bool:
+    """Whether nobody but this user writes in a folder; made, or made anew, where that helps."""
+    with contextlib.suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        found = folder.lstat()
+        if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.geteuid():
+            return False
+        if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+            shutil.rmtree(folder)
+            folder.mkdir(mode=0o700)
+        return os.access(folder, os.W_OK)
+    return False
+
+
+class _CheckedFiles(IndexDataCacheFile):  # type: ignore[misc]
+    """Files of one compiled kernel that end with the digest of what stands before it."""
+
+    def _load_index(self) -> Any:
+        """Names of the data files, none where the index is damaged."""
+        return super()._load_index() if _is_whole(self._index_path) else {}
+
+    def _load_data(self, name: str) -> Any:
+        """What a data file holds; an OSError tells numba that it is to compile anew."""
+        if not _is_whole(self._data_path(name)):
+            raise OSError(f"{name} is damaged")
+        return super()._load_data(name)
+
+    @contextlib.contextmanager
+    def _open_for_write(self, path: str) -> Iterator[Any]:
+        """A file that gets its digest and then its name."""
+        with super()._open_for_write(path) as file:
+            yield file
+            file.flush()
+            file.write(hashlib.sha256(Path(file.name).read_bytes()).digest())
+
+
+class _CheckedCache(FunctionCache):  # type: ignore[misc]
+    """Cache of one compiled kernel whose files are checked."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        self._cache_file = _CheckedFiles(
+            self._cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp()
+        )
+
+
+def _is_whole(path: str) -> bool:
+    """Whether a file of the cache ends with its digest."""
+    try:
+        content = Path(path).read_bytes()
+    except FileNotFoundError:
+        return False
+    length = hashlib.sha256().digest_size
+    return hashlib.sha256(content[:-length]).digest() == content[-length:]
 
 
 def kernels_are_cached() -> bool:
@@ -47,8 +128,16 @@ def kernels_are_cached() -> bool:
 if not os.environ.get("NUMBA_CACHE_DIR"):
     numba.config.CACHE_DIR = str(cache_folder())
 
-jit = functools.partial(numba.njit, cache=True, error_model="numpy")
-"""Compile to machine code, keep it on disk; division by zero follows IEEE rules."""
+
+def jit(function: Callable[..., Any] | None = None, *, cache: bool = True, **options: Any) -> Any:
+    """Compile to machine code, keep it on disk; division by zero follows IEEE rules."""
+    if function is None:
+        return functools.partial(jit, cache=cache, **options)
+    compiled = numba.njit(function, error_model="numpy", **options)
+    if cache and not numba.config.DISABLE_JIT:
+        compiled._cache = _CheckedCache(function)
+    return compiled
+
 
 kernel = functools.partial(jit, _nrt=False)
 """The same without reference counts, for inner functions that only use arrays they are given.

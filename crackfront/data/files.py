@@ -1,11 +1,13 @@
-"""Files: written whole or not at all, with their origin; read whole or refused."""
+"""Files: written whole or not at all, with origin and digest; read as written, or refused."""
 
 from __future__ import annotations
 
+import errno
 import math
 import os
 import tempfile
-from collections.abc import Callable, Collection
+import time
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,8 @@ import numpy as np
 import xarray as xr
 
 from crackfront.core.variables import Variable, variables
+from crackfront.data.bounds import TooLargeError, refuse_beyond_memory
+from crackfront.data.digests import Integrity, integrity, seal
 from crackfront.data.provenance import Provenance, utc_now
 
 PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
@@ -27,8 +31,12 @@ os.umask(_UMASK)
 """Permissions that new files of this process do not get."""
 
 
+DAMAGED_SUFFIX = ".damaged"
+"""Ending of the name of a file that was set aside."""
+
+
 class UnreadableFileError(ValueError):
-    """A file that is missing, truncated, or not what its reader needs."""
+    """A file that is missing, damaged, or not what its reader needs."""
 
 
 def labelled(variable: Variable, values: Any) -> tuple[tuple[str, ...], Any, dict[str, str]]:
@@ -50,10 +58,11 @@ def write_dataset(
     dataset: xr.Dataset,
     origin: Provenance,
     fill: Callable[[Path], None] | None = None,
-) -> None:
-    """Write a dataset as netCDF with its origin, atomically; the folder is created.
+) -> str:
+    """Write a dataset as netCDF with its origin, atomically, and return its digest.
 
-    Where `fill` is given, it writes more into the file before that gets its name.
+    The folder is created. Where `fill` is given, it writes more into the file before that gets its
+    name.
     """
     stamped = dataset.assign_attrs(asdict(origin), date=utc_now())
     encoding: dict[str, dict[str, Any]] = {
@@ -67,16 +76,37 @@ def write_dataset(
         if fill is not None:
             fill(part)
 
-    replace_atomically(path, write)
+    return replace_atomically(path, write, sealed=True)
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write a text file atomically."""
-    replace_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
+def write_text(path: Path, text: str, *, sealed: bool = False) -> None:
+    """Write a text file atomically, where it is asked for with a digest."""
+    replace_atomically(path, lambda part: part.write_text(text, encoding="utf-8"), sealed=sealed)
 
 
-def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
-    """Let a function write a file beside the final one, and rename it once it is on disk."""
+def replace_atomically(path: Path, write: Callable[[Path], Any], *, sealed: bool = False) -> str:
+    """Let a function write a file beside the final one, and rename it once it is on disk.
+
+    Parameters
+    ----------
+    path : Path
+        The final file; its folder is created.
+    write : callable
+        What writes the file beside it.
+    sealed : bool, optional
+        Whether the file gets a digest, as :func:`crackfront.data.digests.seal` adds it.
+
+    Returns
+    -------
+    str
+        The digest, or nothing.
+
+    Raises
+    ------
+    OSError
+        If the place is none for a file, or the disk is full; what was there before stays.
+    """
+    refuse_no_file(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     # A name of its own: after a killed controller two writers of one file do happen.
     handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=".part", dir=path.parent)
@@ -84,12 +114,38 @@ def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
     part = Path(name)
     try:
         write(part)
+        digest = seal(part, path.suffix) if sealed else ""
         with part.open("rb+") as file:
             os.fsync(file.fileno())
         part.chmod(0o666 & ~_UMASK)
         part.replace(path)
+    except Exception as error:
+        # What netCDF says of a full disk names anything but the disk.
+        _refuse_full_disk(path, error)
+        raise
     finally:
         part.unlink(missing_ok=True)
+    return digest
+
+
+def refuse_no_file(path: Path) -> None:
+    """Raise an OSError if something stands at a path that is no ordinary file."""
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "it is a device or pipe, which is not replaced", str(path))
+
+
+def _refuse_full_disk(path: Path, error: Exception) -> None:
+    """Raise that the disk is full if a folder takes no mebibyte any more."""
+    try:
+        with tempfile.TemporaryFile(dir=path.parent) as probe:
+            probe.write(bytes(2**20))
+            probe.flush()
+            os.fsync(probe.fileno())
+    except OSError as full:
+        if full.errno in (errno.ENOSPC, errno.EDQUOT):
+            raise OSError(full.errno, os.strerror(full.errno), str(path)) from error
 
 
 def leftover_parts(folder: Path) -> list[Path]:
@@ -111,7 +167,9 @@ def _changed(path: Path) -> float:
         return math.inf
 
 
-def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset:
+def read_dataset(
+    path: Path, names: Collection[str] | None = None, *, copies: float = 1.0
+) -> xr.Dataset:
     """Dataset of a netCDF file, in memory.
 
     Parameters
@@ -120,22 +178,89 @@ def read_dataset(path: Path, names: Collection[str] | None = None) -> xr.Dataset
         The file.
     names : collection of str, optional
         Variables to read beside the coordinates, those that are there; by default all.
+    copies : float, optional
+        Memory that is needed at once, relative to that of the variables.
 
     Raises
     ------
+    TooLargeError
+        If they need more than there is, whatever the file holds of them.
     UnreadableFileError
-        If there is no such file or it is no complete netCDF file.
+        If there is no such file, it is damaged, or it is no complete netCDF file.
     """
-    if not path.is_file():
-        raise UnreadableFileError(f"{path} does not exist; check the name")
+    refuse_damaged(path)
     try:
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
             others = [] if names is None else [name for name in dataset if name not in names]
-            return dataset.drop_vars(others).load()
-    except (OSError, RuntimeError, ValueError) as error:
+            chosen = dataset.drop_vars(others)
+            refuse_beyond_memory(
+                f"the variables of {path}", copies * chosen.nbytes, "use smaller ones"
+            )
+            return chosen.load()
+    except TooLargeError:
+        raise
+    except Exception as error:  # a file without a digest may be wrong in any way
         raise UnreadableFileError(
             f"{path} is no complete netCDF file; write it again, or name another"
         ) from error
+
+
+def refuse_damaged(path: Path) -> None:
+    """Raise an `UnreadableFileError` if there is no such file, or it is not as it was written.
+
+    A file that states no digest, as one of others or of an earlier version, is not refused.
+    """
+    if not path.is_file():
+        raise UnreadableFileError(f"{path} does not exist; check the name")
+    if integrity(path)[0] is Integrity.DAMAGED:
+        raise UnreadableFileError(
+            f"{path} is damaged, its content does not have the digest that it states; restore it "
+            "or write it again"
+        )
+
+
+def integrities(folder: Path) -> Iterator[tuple[Path, Integrity]]:
+    """All files of a folder, and whether they are as they were written.
+
+    Hidden ones, links, journals, and what was set aside are left out. What states no digest counts
+    as damaged if it is netCDF that cannot be read.
+    """
+    for path in sorted(folder.rglob("[!.]*")):
+        if path.is_symlink() or not path.is_file() or path.suffix in (DAMAGED_SUFFIX, ".jsonl"):
+            continue
+        found, _ = integrity(path)
+        if found is Integrity.UNKNOWN and path.suffix == ".nc":
+            try:
+                read_dataset(path)
+            except UnreadableFileError:
+                found = Integrity.DAMAGED
+        yield path, found
+
+
+def set_aside_damaged(folder: Path, but: Collection[str] = ()) -> Iterator[str]:
+    """Rename the damaged files of a folder, so that they are made anew; a sentence each.
+
+    Those of the folders in it whose names are given are left.
+    """
+    for path, found in integrities(folder):
+        if found is Integrity.DAMAGED and path.relative_to(folder).parts[0] not in but:
+            yield f"{path} is damaged; it is made anew, and set aside as {set_aside(path).name}"
+
+
+def date_back(folder: Path) -> None:
+    """Give files of a folder that are dated in the future, but journals, the date of now.
+
+    Snakemake refuses to make anything of them.
+    """
+    now = time.time()
+    for path in folder.rglob("[!.]*"):
+        if path.is_file() and path.suffix != ".jsonl" and path.stat().st_mtime > now:
+            os.utime(path, (now, now))
+
+
+def set_aside(path: Path) -> Path:
+    """Rename a file that is of no use, and return its new path."""
+    return path.replace(path.with_name(path.name + DAMAGED_SUFFIX))
 
 
 def read_attributes(path: Path) -> dict[str, Any]:

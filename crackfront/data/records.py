@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from pathlib import Path
@@ -171,42 +170,3 @@ def _columns(
             "dimensions; compute it again"
         )
     return [(item.name, np.asarray(dataset[item.name])) for item in known]
-
-
-def largest_differences(one: Path, other: Path) -> dict[str, float]:
-    """How much two files of one kind of record differ.
-
-    Returns
-    -------
-    dict of float
-        Of every variable of both the largest difference, relative to the largest magnitude in the
-        second; of texts 0 or 1. Infinite where the shapes disagree.
-
-    Raises
-    ------
-    UnreadableFileError
-        If a file is missing or truncated, or the variables are not the same.
-    """
-    first, second = read_dataset(one), read_dataset(other)
-    unequal = set(first.variables) ^ set(second.variables)
-    if unequal:
-        raise UnreadableFileError(
-            f"{one} and {other} are not of one kind: only one of them has "
-            f"{', '.join(sorted(map(str, unequal)))}"
-        )
-    return {
-        str(name): _difference(np.asarray(first[name]), np.asarray(second[name]))
-        for name in first.variables
-    }
-
-
-def _difference(one: NDArray[Any], other: NDArray[Any]) -> float:
-    """Largest difference of two arrays, relative to the second."""
-    if one.shape != other.shape:
-        return math.inf
-    if not np.issubdtype(other.dtype, np.number):
-        return float(np.any(one != other))
-    if np.array_equal(one, other, equal_nan=True):
-        return 0.0
-    scale = float(np.nanmax(np.abs(other))) or 1.0
-    return float(np.max(np.nan_to_num(np.abs(one - other), nan=math.inf))) / scale

@@ -4,17 +4,52 @@ from __future__ import annotations
 
 import difflib
 import re
+import reprlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Count = Annotated[int, Field(ge=1)]
-Energy = Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False)]
+from crackfront.data.bounds import COUNT, DENSITY, NUMBER, SEED, Range, regular_file
+
+
+def refusal(message: str) -> PydanticCustomError:
+    """A refusal that keeps its own sentence."""
+    return PydanticCustomError("section", "{message}", {"message": message})
+
+
+def within(bounds: Range) -> AfterValidator:
+    """What refuses a number that is not within bounds."""
+
+    def bounded(value: float) -> float:
+        if not bounds.least <= value <= bounds.most:
+            must = f"it must lie between {bounds.least:g} and {bounds.most:g}"
+            raise PydanticCustomError("range", "{must}", {"must": must})
+        return value
+
+    return AfterValidator(bounded)
+
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), within(NUMBER)]
+Density = Annotated[float, Field(gt=0, allow_inf_nan=False), within(DENSITY)]
+Count = Annotated[int, Field(ge=1), within(COUNT)]
+Seed = Annotated[int, Field(ge=0), within(SEED)]
+Energy = Annotated[float, Field(gt=0, lt=1), within(NUMBER)]
+
+_MOST_BYTES = 5e5
+"""Size of a file; that of a person has some thousands."""
+
+_MOST_NODES = 200_000
+"""Values of a file, what an anchor stands for counted wherever it stands."""
+
+_DEEPEST = 30
+"""Levels of lists and mappings within each other."""
+
+_MOST_SENTENCES = 20
+"""Refusals of one file that are told."""
 
 InputFile = Annotated[Path, Field(strict=False)]
 """A file that a configuration names, from the folder in which the command runs."""
@@ -31,11 +66,6 @@ class Section(BaseModel):
 
 
 Kind = TypeVar("Kind", bound=Section)
-
-
-def refusal(message: str) -> PydanticCustomError:
-    """A refusal that keeps its own sentence."""
-    return PydanticCustomError("section", "{message}", {"message": message})
 
 
 def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
@@ -58,22 +88,57 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
     try:
         return schema.model_validate(content)
     except ValidationError as error:
-        lines = _sentences(error.errors(), schema)
-        raise ConfigurationError("\n".join(f"{path}: {line}" for line in lines)) from error
+        found = error.errors(include_url=False, include_context=False)
+        lines = [f"{path}: {line}" for line in _sentences(found[:_MOST_SENTENCES], schema)]
+        if len(found) > _MOST_SENTENCES:
+            lines.append(f"{path}: and {len(found) - _MOST_SENTENCES} more such keys and values")
+        raise ConfigurationError("\n".join(lines)) from error
 
 
 class _Loader(yaml.SafeLoader):
-    """Safe YAML that reads 1e-6 as a number and refuses repeated keys."""
+    """Safe YAML that reads 1e-6 as a number, and refuses repeated keys and what grows too large."""
+
+    def __init__(self, stream: str) -> None:
+        super().__init__(stream)
+        self._depth, self._count = 0, 0
+        self._sizes: dict[int, int] = {}
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        """Node with all that stands in it; what an anchor stands for counts at every place."""
+        event: yaml.Event = self.peek_event()  # type: ignore[no-untyped-call]
+        before = self._count
+        if self._depth > _DEEPEST:
+            raise self._refusal(f"more than {_DEEPEST} lists and mappings are nested", event)
+        self._depth += 1
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        if not isinstance(event, yaml.AliasEvent):
+            self._count += 1
+            self._sizes[id(node)] = self._count - before
+        elif id(node) not in self._sizes:
+            raise self._refusal(f"anchor {event.anchor} refers to itself", event)
+        else:
+            self._count += self._sizes[id(node)]
+        if self._count > _MOST_NODES:
+            raise self._refusal(
+                f"with what its anchors repeat it has over {_MOST_NODES} values", event
+            )
+        return node
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         """Mapping of a node, each key once."""
-        keys = [self.construct_object(key) for key, _ in node.value]
-        for key, (mark, _) in zip(keys, node.value, strict=True):
-            if keys.count(key) > 1:
-                raise yaml.constructor.ConstructorError(
-                    None, None, f"key {key!r} stands twice; remove one", mark.start_mark
-                )
+        names = set()
+        for key, _ in node.value:
+            name = str(self.construct_object(key, deep=True))
+            if name in names:
+                raise self._refusal(f"key {name!r} stands twice; remove one", key)
+            names.add(name)
         return super().construct_mapping(node, deep)
+
+    @staticmethod
+    def _refusal(problem: str, place: Any) -> yaml.MarkedYAMLError:
+        """A refusal at a node or an event."""
+        return yaml.MarkedYAMLError(problem=problem, problem_mark=place.start_mark)
 
 
 _Loader.add_implicit_resolver(
@@ -83,24 +148,33 @@ _Loader.add_implicit_resolver(
 )
 
 
+_NO_VALUE = (ValueError, KeyError, AttributeError, IndexError, TypeError, OverflowError)
+"""What the constructors of YAML raise at dates, numbers and tags that are none."""
+
+
 def content_of(path: Path) -> dict[str, Any]:
     """Mapping that a YAML file holds, with tuples for lists.
 
     Raises
     ------
     ConfigurationError
-        If the file cannot be read, or holds no mapping.
+        If the file cannot be read, holds no mapping, or is too large or deep for what a person
+        writes.
     """
     try:
-        content = yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)
+        text = regular_file(path, _MOST_BYTES).read_text(encoding="utf-8")
     except OSError as error:
         raise ConfigurationError(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise ConfigurationError(f"{path} is no UTF-8 text; save it as UTF-8") from error
+    except ValueError as error:
+        raise ConfigurationError(str(error)) from error
+    try:
+        content = yaml.load(text, Loader=_Loader)
     except yaml.MarkedYAMLError as error:
         line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise ConfigurationError(f"{path} is no valid YAML{line}: {error.problem}") from error
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, *_NO_VALUE) as error:
         raise ConfigurationError(f"{path} is no valid YAML: {error}") from error
     if content is None:
         raise ConfigurationError(f"{path} is empty; write a configuration like config/test.yaml")
@@ -122,12 +196,10 @@ def _frozen(value: Any) -> Any:
 
 def _sentences(errors: list[ErrorDetails], schema: type[Section]) -> Iterator[str]:
     """What errors of pydantic mean, one sentence each."""
+    around = {item["loc"][:depth] for item in errors for depth in range(len(item["loc"]))}
     for error in errors:
         # A list whose entries are refused is also called too short.
-        inner = [item["loc"] for item in errors if len(item["loc"]) > len(error["loc"])]
-        if error["type"] != "too_short" or error["loc"] not in [
-            place[: len(error["loc"])] for place in inner
-        ]:
+        if error["type"] != "too_short" or error["loc"] not in around:
             yield _sentence(error, schema)
 
 
@@ -146,8 +218,12 @@ def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
     must = _SHORT.get(error["type"], must)
     value = list(error["input"]) if isinstance(error["input"], tuple) else error["input"]
     meaning = "" if error["type"] == "too_short" else _MEANING.get(_field(error["loc"]), "")
-    return f"{place} is {value!r}; {must}{meaning}"
+    return f"{place} is {_SHOWN.repr(value)}; {must}{meaning}"
 
+
+_SHOWN = reprlib.Repr()
+_SHOWN.maxlist, _SHOWN.maxstring, _SHOWN.maxother = 8, 80, 80
+"""How a value is shown that may be long."""
 
 _SHORT = {
     "model_type": "it must be a mapping of keys",

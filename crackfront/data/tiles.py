@@ -6,6 +6,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crackfront.data.bounds import ADHESION, NUMBER, refuse_outside
+
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-6
@@ -41,11 +43,27 @@ def _spacing(values: xr.DataArray, name: str) -> float:
             f"{'a' if name in values.coords else 'no'} coordinate {name}; give 2 or more with "
             "their positions"
         )
-    steps = np.diff(np.asarray(values[name], dtype=float))
-    mean = float(np.mean(steps))
-    if not (mean > 0 and np.max(np.abs(steps - mean)) <= TOLERANCE * mean):
+    # Places of 1e308 are infinitely far from each other.
+    with np.errstate(over="ignore", invalid="ignore"):
+        steps = np.diff(np.asarray(values[name], dtype=float))
+        mean = float(np.mean(steps))
+    if not (0 < mean < np.inf and np.max(np.abs(steps - mean)) <= TOLERANCE * mean):
         raise ValueError(
             f"{name} advances by {np.min(steps):.6g} to {np.max(steps):.6g}; it must "
             "increase in equal steps"
         )
+    refuse_outside(f"spacing of {name}", mean, NUMBER)
     return mean
+
+
+def refuse_extreme(name: str, values: Array, unit: float = 1.0) -> None:
+    """Raise if a value is finite, but so large that no surface has it; NaN is left to others."""
+    beyond = (values < ADHESION.least * unit) | (values > ADHESION.most * unit)
+    beyond &= np.isfinite(values)
+    if np.any(beyond):
+        place = tuple(map(int, np.unravel_index(np.argmax(beyond), beyond.shape)))
+        bounds = f"{ADHESION.least:g} and {ADHESION.most:g}"
+        raise ValueError(
+            f"{name} is {float(values[place]) / unit:g} at index {', '.join(map(str, place))} "
+            f"({np.count_nonzero(beyond)} such values); it must lie between {bounds}"
+        )

@@ -8,6 +8,8 @@ import re
 from tokenize import TokenError
 from typing import Any
 
+from crackfront.data.bounds import SI, refuse_outside
+
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 """A number and what stands behind it."""
 
@@ -58,6 +60,7 @@ def si_value(text: str, unit: str, *, what: str) -> float:
         ) from error
     if not (math.isfinite(value) and value > 0):
         raise ValueError(f"{what} is {text!r}; it must be positive and finite")
+    refuse_outside(what, value, SI[unit], unit)
     return value
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
+from crackfront.data.files import replace_atomically
 from crackfront.plots.style import house_style
 
 _FRAMES_PER_SECOND = 12
@@ -30,7 +32,6 @@ class Animation:
 
 def save_animation(animation: Animation, stem: Path) -> Path:
     """Write a GIF (100 dpi, 12 frames a second) that runs for ever; equal ones give equal bytes."""
-    stem.parent.mkdir(parents=True, exist_ok=True)
     path = stem.with_name(stem.name + ".gif")
     with house_style():
         frames = _frames(animation)
@@ -38,7 +39,15 @@ def save_animation(animation: Animation, stem: Path) -> Path:
     palette = frames[-1].quantize()
     first, *others = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     milliseconds = 1000 / _FRAMES_PER_SECOND
-    first.save(path, save_all=True, append_images=others, duration=milliseconds, loop=0)
+    written = functools.partial(
+        first.save,
+        format="GIF",
+        save_all=True,
+        append_images=others,
+        duration=milliseconds,
+        loop=0,
+    )
+    replace_atomically(path, written, sealed=True)
     return path
 
 

@@ -5,11 +5,14 @@ matplotlib is imported by the functions that draw, so that who only computes doe
 
 from __future__ import annotations
 
+import functools
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from crackfront.data.files import replace_atomically
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -106,11 +109,13 @@ def shown_axes() -> Iterator[Axes]:
 
 def save_figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
     """Write a figure as PDF and PNG (300 dpi), its folder too; equal figures give equal bytes."""
-    stem.parent.mkdir(parents=True, exist_ok=True)
     pdf, png = (stem.with_name(stem.name + suffix) for suffix in (".pdf", ".png"))
     with house_style(), _fonts_without_dates():
-        figure.savefig(pdf, metadata={"CreationDate": None})
-        figure.savefig(png, metadata={"Software": None})
+        for path, undated in ((pdf, "CreationDate"), (png, "Software")):
+            written = functools.partial(
+                figure.savefig, format=path.suffix[1:], metadata={undated: None}
+            )
+            replace_atomically(path, written, sealed=True)
     return pdf, png
 
 

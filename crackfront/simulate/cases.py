@@ -6,10 +6,13 @@ computes is imported where it is used, so that the command's help does not wait 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import MISSING, dataclass
 from dataclasses import field as dataclass_field
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+from crackfront.data.bounds import NUMBER, PENETRATION, Range
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,19 +27,25 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
-def option(text: str, *, flag: str | None = None, default: Any = MISSING) -> Any:
+_PLACE, _DEPTH = (Range(-bounds.most, bounds.most) for bounds in (NUMBER, PENETRATION))
+"""What is refused by the parser; why a negative step or penetration is none, its user says."""
+
+
+def option(text: str, bounds: Range, *, flag: str | None = None, default: Any = MISSING) -> Any:
     """A field of a case, which an option of the command line fills.
 
     Parameters
     ----------
     text : str
         Its help.
+    bounds : Range
+        What it may be.
     flag : str, optional
         How it is written, if not as the field.
     default : optional
         Its value where it is not given; by default it has to be.
     """
-    return dataclass_field(default=default, metadata={"text": text, "flag": flag})
+    return dataclass_field(default=default, metadata={"text": text, "flag": flag, "bounds": bounds})
 
 
 class Problem(NamedTuple):
@@ -48,6 +57,8 @@ class Problem(NamedTuple):
         As of :func:`crackfront.core.cycle.follow.follow`.
     expected : int
         States that it will have, roughly.
+    seconds : float
+        Processor time that they will take, roughly.
     sites : (n_site,) array or None
         Coordinates that are not those of the geometry.
     measures : TileMeasures or None
@@ -58,6 +69,7 @@ class Problem(NamedTuple):
     front: Array
     loads: Iterable[Load]
     expected: int
+    seconds: float
     sites: Array | None = None
     measures: TileMeasures | None = None
 
@@ -77,9 +89,10 @@ class SphereCase:
 
     ends_by: ClassVar[str] = "LOST_CONTACT"
 
-    max_penetration: float = option("Largest penetration.")
+    max_penetration: float = option("Largest penetration.", _DEPTH)
     step: float | None = option(
         "Difference of loads.  [default on a sphere: 0.004, dissipated energies to 1%]",
+        _PLACE,
         default=None,
     )
 
@@ -93,25 +106,41 @@ class SphereCase:
         from crackfront.core.cycle.run import checked_touch
         from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule, loads
         from crackfront.simulate.contact import tile_contact
+        from crackfront.simulate.costs import affordable_seconds
         from crackfront.simulate.tiles import tile_measures
 
         step = DEFAULT_STEP if self.step is None else self.step
-        way = loads(LoadSchedule(self.max_penetration, step))
+        way, radius = (
+            loads(LoadSchedule(self.max_penetration, step)),
+            jkr.equilibrium_radius(self.max_penetration),
+        )
         # A smooth sphere comes off there; a rough one goes somewhat further.
-        expected = int((2 * self.max_penetration - jkr.pull_off_penetration()) / step) + 1
+        n_state = 3 + (2 * self.max_penetration - jkr.pull_off_penetration()) / step
         given, angles, density = read(), asked.angles, asked.samples_per_pixel
         if isinstance(given, AdhesionMap):
             pieces = asked.interpolation or "cubic"
+            seconds = affordable_seconds(
+                n_angle=angles or 2 * math.pi * radius / given.pixel,
+                n_point=given.work_of_adhesion.size,
+                n_state=n_state,
+                n_sample=2 * radius / given.pixel * (density or 4.0),
+            )
             field = tile_contact(given, self.max_penetration, angles, density, pieces)
-            front = checked_touch(field, self.max_penetration)
-            return Problem(field, front, way, expected, measures=tile_measures(given))
+            front, measures = checked_touch(field, self.max_penetration), tile_measures(given)
+            return Problem(field, front, way, int(n_state), seconds, measures=measures)
         if angles is not None or density is not None:
             raise ValueError(
                 "--angles and --samples-per-pixel are for tiles; a polar field brings its own "
                 "samples"
             )
+        seconds = affordable_seconds(
+            n_angle=given.angles.size,
+            n_point=given.field.products.size,
+            n_state=n_state,
+            n_sample=2 * given.field.places.size,
+        )
         front = checked_touch(given.field, self.max_penetration)
-        return Problem(given.field, front, way, expected, given.angles)
+        return Problem(given.field, front, way, int(n_state), seconds, given.angles)
 
 
 @dataclass(frozen=True)
@@ -120,21 +149,35 @@ class LineCase:
 
     ends_by: ClassVar[str] = "CONVERGED"
 
-    spring: float = option("Length of the springs, w_int / kappa, in the unit of the tile.")
-    first: float = option("First load, and the last.", flag="--from")
-    last: float = option("Load at which the motion turns.", flag="--to")
-    step: float | None = option("Difference of loads.")
+    spring: float = option("Length of the springs, w_int / kappa, in the unit of the tile.", NUMBER)
+    first: float = option("First load, and the last.", _PLACE, flag="--from")
+    last: float = option("Load at which the motion turns.", _PLACE, flag="--to")
+    step: float | None = option("Difference of loads.", _PLACE)
 
     def problem(self, read: Callable[[], AdhesionMap | PolarSamples], asked: Resolution) -> Problem:
         """Field on the points of a tile, one site for every y unless asked for otherwise."""
+        import numpy as np
+
         from crackfront.core.adhesion import AdhesionMap
         from crackfront.core.cycle.schedule import there_and_back
         from crackfront.core.geometry.line import line_field, straight_front
+        from crackfront.core.units import WORK_OF_ADHESION
+        from crackfront.simulate.costs import affordable_seconds
 
-        way = there_and_back(self.first, self.last, self.step or 0.0)
+        step, travel = self.step or 0.0, self.last - self.first
         given, density = read(), asked.samples_per_pixel or 1.0
         if not isinstance(given, AdhesionMap):
             raise ValueError("a line needs a tile work_of_adhesion(x, y), not samples on rays")
+        # The first front lies as far behind its load as pinning may pull the springs.
+        values = given.work_of_adhesion / WORK_OF_ADHESION
+        behind = 1.25 * self.spring * float(np.ptp(values))
+        seconds = affordable_seconds(
+            n_angle=asked.angles or values.shape[1],
+            n_point=values.size,
+            n_state=3 + max(2 * travel / step, 0.0) if step > 0 else 0.0,
+            n_sample=2 * (abs(travel) + behind) / given.pixel * density,
+        )
+        way = there_and_back(self.first, self.last, step)
         field = line_field(
             given,
             self.spring,
@@ -144,7 +187,7 @@ class LineCase:
             interpolation=asked.interpolation or "cubic",
         )
         front = straight_front(field, given, self.first)
-        return Problem(field, front, [way[0]._replace(start=front), *way[1:]], len(way))
+        return Problem(field, front, [way[0]._replace(start=front), *way[1:]], len(way), seconds)
 
 
 CASES: dict[str, type[Any]] = {"sphere": SphereCase, "line": LineCase}

@@ -28,8 +28,16 @@ from crackfront.core import jkr
 from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
-from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.simulation import Simulation
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
+from crackfront.data.bounds import (
+    LENGTH,
+    PENETRATION,
+    refuse_beyond_memory,
+    refuse_beyond_time,
+    refuse_outside,
+)
+from crackfront.simulate.laws import Knobs
+from crackfront.simulate.simulation import Numerics, Simulation
 
 Array = NDArray[np.float64]
 
@@ -41,6 +49,9 @@ _TILES, _SITE_BYTES = 4, 512
 
 _FILE_BYTES, _STATE_BYTES, _FRONT_PART = 22e3, 104.0, 0.72
 """Bytes of a file and its row without states, of a state, and what compression leaves of fronts."""
+
+_RECORD_BYTES = 1e3
+"""Memory of a state that is recorded."""
 
 _LEAD_IN, _FEWEST_STEADY, _NOISE = 2.0, 9.0, 1.2
 """States of a branch before it is steady; the fewest of an approach; variance of k from state to
@@ -65,7 +76,7 @@ class Features:
         States that it is expected to find.
     """
 
-    n_angle: int
+    n_angle: float
     n_point: float
     elastic_energy: float
     tolerance: float
@@ -103,15 +114,105 @@ def expected_cost(simulation: Simulation) -> Cost:
 @functools.lru_cache(maxsize=4096)
 def _cost(simulation: Simulation) -> Cost:
     """What all realisations of a simulation are expected to cost."""
-    item, sizes = features(simulation), simulation.resolution
-    fronts = 8 * item.n_state * sizes.n_angle if simulation.record_fronts else 0.0
+    return featured_cost(features(simulation), fronts=simulation.record_fronts)
+
+
+def featured_cost(item: Features, *, fronts: bool) -> Cost:
+    """What a run of some features is expected to cost, with its fronts recorded or not."""
+    recorded = 8 * item.n_state * item.n_angle if fronts else 0.0
     return Cost(
         seconds=float(_seconds(_coefficients(), [item])[0]),
         memory=_PROCESS_BYTES
-        + 8 * _TILES * math.prod(simulation.tile[0])
-        + _SITE_BYTES * sizes.n_angle
-        + fronts,
-        disk=_FILE_BYTES + _STATE_BYTES * item.n_state + _FRONT_PART * fronts,
+        + 8 * _TILES * item.n_point**2
+        + _SITE_BYTES * item.n_angle
+        + _RECORD_BYTES * item.n_state
+        + recorded,
+        disk=_FILE_BYTES + _STATE_BYTES * item.n_state + _FRONT_PART * recorded,
+    )
+
+
+def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_sample: float) -> float:
+    """Processor time that a cycle on a given field is expected to take, roughly.
+
+    Parameters
+    ----------
+    n_angle : float
+        Sites of the front.
+    n_point : float
+        Points of the field.
+    n_state : float
+        Load steps.
+    n_sample : float
+        Samples that each site passes.
+
+    Raises
+    ------
+    TooLargeError
+        If time or memory are more than there is.
+    """
+    usual = Features(n_angle, math.sqrt(n_point), _USUAL, 1e-8, 1.0, 1.0, True, n_state)
+    cost = featured_cost(usual, fronts=False)
+    cost = replace(cost, seconds=cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample)
+    told = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
+    refuse_unaffordable(cost, f"{told} {n_sample:.3g} samples a ray", "take fewer, or larger steps")
+    return cost.seconds
+
+
+_USUAL, _SAMPLE_SECONDS = 0.05, 1e-7
+"""e_el where it is not known (Units: w_int); time of one sample. (Units: s)"""
+
+
+def refuse_unaffordable(cost: Cost, what: str, remedy: str, processes: int = 1) -> None:
+    """Raise if what is about to be run needs more memory or time than there is.
+
+    Parameters
+    ----------
+    cost : Cost
+        Expected cost of each process.
+    what : str
+        What is run.
+    remedy : str
+        What to do.
+    processes : int, optional
+        How many run on this machine at once.
+    """
+    refuse_beyond_memory(what, processes * cost.memory, remedy)
+    refuse_beyond_time(what, cost.seconds, remedy)
+
+
+def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepest: float) -> None:
+    """Raise if the tile or the front of a sphere is larger than any machine holds.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        Its shape. (Units: reduced lateral length)
+    numerics : Numerics
+        How simulations are resolved, with their knobs for this spectrum.
+    knobs : Knobs
+        Those knobs.
+    deepest : float
+        Largest penetration. (Units: reduced vertical length)
+    """
+    lengths = {"short_cutoff": spectrum.short_cutoff, "roll_off": spectrum.longest_feature}
+    for name, value in lengths.items():
+        refuse_outside(name, value, LENGTH, "reduced lateral lengths")
+    refuse_outside("max_penetration", deepest, PENETRATION, "reduced vertical lengths")
+    cutoff = spectrum.short_cutoff
+    points = numerics.tile_side(spectrum) / cutoff * knobs.pixels_per_cutoff
+    refuse_beyond_memory(
+        f"tiles of {points:.2g} x {points:.2g} points",
+        8 * _TILES * points**2,
+        "lower roll_offs, cutoffs or pixels_per_cutoff, or raise short_cutoff",
+        anywhere=True,
+    )
+    circle = 2 * math.pi * jkr.equilibrium_radius(deepest)
+    sites = knobs.angles or circle / cutoff * knobs.angles_per_cutoff
+    refuse_beyond_memory(
+        f"fronts of {sites:.2g} sites",
+        _SITE_BYTES * sites,
+        "lower angles or angles_per_cutoff, or raise short_cutoff",
+        anywhere=True,
     )
 
 
@@ -125,7 +226,8 @@ def features(simulation: Simulation) -> Features:
         lost_at = jkr.pull_off_penetration(1 + 2 * simulation.elastic_energy)
         n_state = (2 * schedule.max_penetration - lost_at) / schedule.step
     elif isinstance(schedule, LineSchedule):
-        travel, n_state = schedule.step / length, 2.0 * schedule.loads.size
+        steps = math.ceil(schedule.lead_in / schedule.period * schedule.n_period)
+        travel, n_state = schedule.step / length, 2.0 * (steps + schedule.n_period + 1)
     else:
         travel = schedule.travel
         n_state = _expected_steady(simulation, schedule, length)

@@ -13,9 +13,10 @@ from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.field.fields import Interpolation, RayField, polar_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL
+from crackfront.data.bounds import LENGTH, refuse_outside
 from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
 from crackfront.data.provenance import Provenance
-from crackfront.data.tiles import TOLERANCE, tile_samples
+from crackfront.data.tiles import TOLERANCE, refuse_extreme, tile_samples
 from crackfront.simulate.si_units import SURFACES
 from crackfront.simulate.surfaces import surface_adhesion
 
@@ -23,6 +24,9 @@ Array = NDArray[np.float64]
 
 NAME = SURFACES["chemical"].name
 _HEIGHT = SURFACES["roughness"].name
+
+_COPIES = 6
+"""Memory of a field in use over that of its values: as numbers of double precision, as splines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +59,7 @@ def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionM
     ValueError
         If the file is missing or truncated, or its content is not as said.
     """
-    dataset = read_dataset(path)
+    dataset = read_dataset(path, copies=_COPIES)
     if NAME not in dataset and _HEIGHT in dataset:
         return _map_of(path, dataset[_HEIGHT])
     if NAME not in dataset:
@@ -66,15 +70,24 @@ def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionM
     values = dataset[NAME]
     dims = {str(name) for name in values.dims}
     known = dims in ({"x", "y"}, {"radius", "angle"}, {"radius"})
-    if not known or not np.issubdtype(values.dtype, np.number):
+    if not known or not _is_real(values):
         raise UnreadableFileError(
             f"{path}: {NAME} is {values.dtype} of ({', '.join(map(str, values.dims))}); it must be "
-            "numbers of (x, y) or of (radius, angle), or of (radius) for rings"
+            "real numbers of (x, y) or of (radius, angle), or of (radius) for rings"
+        )
+    if others := [name for name in values.coords if not _is_real(values[name])]:
+        raise UnreadableFileError(
+            f"{path}: {others[0]} is {values[others[0]].dtype}; places must be real numbers"
         )
     _refuse_other_units(path, values)
     if values.attrs.get("units") == ADHESION:
         values = values * WORK_OF_ADHESION
     return _tile(path, values) if "x" in dims else _rays(path, values, interpolation)
+
+
+def _is_real(values: xr.DataArray) -> bool:
+    """Whether values are real numbers."""
+    return np.issubdtype(values.dtype, np.floating) or np.issubdtype(values.dtype, np.integer)
 
 
 def write_field(
@@ -108,6 +121,14 @@ def _refuse_other_units(path: Path, values: xr.DataArray) -> None:
             )
 
 
+def _refuse_extreme(path: Path, samples: Array) -> None:
+    """Raise if a sample is larger than any work of adhesion."""
+    try:
+        refuse_extreme(f"{NAME} / w_int", samples, WORK_OF_ADHESION)
+    except ValueError as error:
+        raise UnreadableFileError(f"{path}: {error}") from error
+
+
 def _map_of(path: Path, heights: xr.DataArray) -> AdhesionMap:
     """Map that is equivalent to the heights of a file."""
     try:
@@ -122,6 +143,7 @@ def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
         samples, pixel = tile_samples(values)
     except ValueError as error:
         raise UnreadableFileError(f"{path}: {error}") from error
+    _refuse_extreme(path, samples)
     # The refusal of values that are not finite, with their place, is that of the field.
     with np.errstate(invalid="ignore"):
         rms = float(np.std(samples) / WORK_OF_ADHESION)
@@ -146,5 +168,11 @@ def _rays(path: Path, values: xr.DataArray, interpolation: Interpolation) -> Pol
                 f"{np.max(angles):.6g}; they must be equally spaced over the whole circle, in rad"
             )
     samples = np.asarray(values.transpose("radius", "angle"), dtype=float)
+    _refuse_extreme(path, samples)
     radii = np.asarray(values["radius"], dtype=float)
+    with np.errstate(invalid="ignore", over="ignore"):
+        for distance in (np.max(radii, initial=LENGTH.least), np.min(np.diff(radii), initial=1.0)):
+            # The refusal of radii that do not increase is that of the field.
+            if distance > 0:
+                refuse_outside(f"{path}: a radius or the distance of two", float(distance), LENGTH)
     return PolarSamples(polar_field(radii, samples, interpolation), angles)

@@ -23,8 +23,9 @@ from crackfront.data.files import (
     read_dataset,
     write_dataset,
 )
-from crackfront.data.provenance import Provenance
+from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.run import PartialRun, SimulationResult
+from crackfront.simulate.si_units import SURFACES
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.tiles import shape_attributes
 
@@ -35,8 +36,8 @@ TURNING_FRONT = Variable("turning_front", ("angle",), LATERAL, "front at which i
 """Fronts of a checkpoint."""
 
 
-def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> None:
-    """Write what one simulation of a sweep found and what it cost."""
+def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> str:
+    """Write what one simulation of a sweep found and what it cost; the digest of the file."""
     simulation = result.simulation
     dataset = cycle_dataset(result.record).assign(labelled_fields(result.measures))
     dataset.attrs |= {
@@ -50,7 +51,7 @@ def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -
         **shape_attributes(simulation.spectrum),
         **asdict(simulation.resolution),
     }
-    write_dataset(path, dataset, origin)
+    return write_dataset(path, dataset, origin)
 
 
 def read_cycle(path: Path) -> CycleRecord:
@@ -64,7 +65,7 @@ def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
     Raises
     ------
     UnreadableFileError
-        If the file is missing, truncated or that of another simulation.
+        If the file is missing, damaged or that of another simulation.
     """
     dataset = read_dataset(path)
     if dataset.attrs.get("key") != simulation.key:
@@ -109,11 +110,57 @@ def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
     return PartialRun(simulation, checkpoint, *costs)
 
 
+def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
+    """Save a surface or a loop as netCDF with a digest, atomically.
+
+    A file that is damaged later is refused wherever it is read. What `to_netcdf` of xarray writes
+    can be read as well, but states no digest.
+
+    Parameters
+    ----------
+    result : xarray.DataArray or xarray.Dataset
+        What a function of the library returned.
+    path : str or Path
+        The file; it is replaced if it is there.
+
+    Raises
+    ------
+    ValueError
+        If the array has no name.
+    OSError
+        If the file cannot be written.
+    """
+    if isinstance(result, xr.DataArray) and result.name is None:
+        raise ValueError("the array has no name; give it one, as in surface.rename('height')")
+    dataset = result.to_dataset() if isinstance(result, xr.DataArray) else result
+    write_dataset(Path(path), dataset, provenance())
+
+
+def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
+    """What :func:`save_result` saved: a surface as an array, anything else as a dataset.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Raises
+    ------
+    ValueError
+        If the file is missing, damaged, or no netCDF.
+    """
+    dataset = read_dataset(Path(path))
+    names = [item.name for item in SURFACES.values()]
+    single = [name for name in names if [*dataset] == [name]]
+    return dataset[single[0]] if single else dataset
+
+
 def known_checkpoint(dataset: xr.Dataset, key: str, place: Path) -> Checkpoint | None:
     """What a dataset of :func:`checkpoint_dataset` holds; None where it is that of another key."""
-    if dataset.attrs.get("key") != key or LAST_FRONT.name not in dataset:
+    names = (LAST_FRONT.name, TURNING_FRONT.name)
+    if dataset.attrs.get("key") != key or not dataset.variables.keys() >= {*names}:
         return None
-    fronts = (np.asarray(dataset[item.name]) for item in (LAST_FRONT, TURNING_FRONT))
+    fronts = (np.asarray(dataset[name]) for name in names)
     return Checkpoint(cycle_record(dataset, place), *fronts)
 
 

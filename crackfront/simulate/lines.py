@@ -16,6 +16,7 @@ from crackfront.core.adhesion import (
 )
 from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.spectrum import Spectrum
+from crackfront.data.bounds import refuse_beyond_memory
 from crackfront.simulate.simulation import Numerics
 
 SpringUnit = Literal["correlation_length", "larkin_length"]
@@ -90,5 +91,11 @@ def expected_rms(kind: FieldKind, spectrum: Spectrum, size: float) -> float:
 
 
 def _points(least: float) -> int:
-    """Points of a side, an even product of small primes."""
+    """Points of a side, an even product of small primes; refused where no machine holds them."""
+    refuse_beyond_memory(
+        f"sides of {least:.2g} points",
+        32.0 * least,
+        "lower length, period, springs or pixels_per_cutoff",
+        anywhere=True,
+    )
     return 2 * int(next_fast_len(math.ceil(least / 2 * (1 - 1e-12)), real=True))

@@ -18,9 +18,11 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, Variable
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.data.bounds import SEED, refuse_beyond_memory
 from crackfront.data.files import labelled
-from crackfront.data.tiles import tile_samples
+from crackfront.data.tiles import refuse_extreme, tile_samples
 from crackfront.simulate.contact import simulation_adhesion
+from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.si_units import SURFACES, refuse_other_units
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 from crackfront.simulate.tiles import shape_attributes
@@ -142,8 +144,8 @@ def chosen_simulation(
         refuse_no_numbers(side=side)
     for name, number in (("seed", seed), ("realisation", realisation)):
         refuse_other_type(name, number, Integral, "a whole number")
-        if number < 0:
-            raise ValueError(f"{name} is {number}; it must be 0 or more")
+        if not SEED.least <= number <= SEED.most:
+            raise ValueError(f"{name} is {number}; it must lie between 0 and {SEED.most}")
     if side is not None and not spectrum.short_cutoff <= side < math.inf:
         raise ValueError(
             f"side is {side}; the tile must hold the short cutoff, {spectrum.short_cutoff:g}"
@@ -151,9 +153,17 @@ def chosen_simulation(
     numerics = Numerics(error)
     if side is not None:
         numerics = Numerics(error, tile_roll_offs=0.0, tile_cutoffs=side / spectrum.short_cutoff)
-    return simulation_of(
+    knobs = numerics.knobs_of(kind, spectrum, elastic_energy)
+    refuse_oversized(spectrum, numerics, knobs, schedule.max_penetration)
+    found = simulation_of(
         kind, spectrum, elastic_energy, schedule, numerics, seed=seed, realisation=realisation
     )
+    refuse_beyond_memory(
+        f"tiles of {found.resolution.n_point} x {found.resolution.n_point} points",
+        expected_cost(found).memory,
+        "take a smaller side or a longer short_cutoff",
+    )
+    return found
 
 
 def refuse_no_fraction(name: str, value: float) -> None:
@@ -255,6 +265,7 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
             f"{surface.name} is {samples[tuple(bad[0])]} at x index {bad[0, 0]}, y index "
             f"{bad[0, 1]} ({len(bad)} such values); replace them by finite values"
         )
+    refuse_extreme(SURFACES[kind].name, samples)
     if kind == "roughness":
         if not surface.attrs.get("periodic"):
             _refuse_seam(samples)

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from crackfront.analysis.sweep import FEWEST_BOOTSTRAP
 from crackfront.core.adhesion import FieldKind, larkin_length
 from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -20,17 +21,27 @@ from crackfront.core.field.fields import Interpolation
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.core.units import Scales
+from crackfront.data.bounds import (
+    SI,
+    Range,
+    refuse_beyond_memory,
+    refuse_beyond_time,
+)
 from crackfront.data.section import (
     ConfigurationError,
     Count,
+    Density,
     Energy,
     InputFile,
     Positive,
     Section,
+    Seed,
     content_of,
     refusal,
     validated,
+    within,
 )
+from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineLoad, SpringUnit
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error
@@ -44,9 +55,9 @@ Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 class ScalesSection(Section):
     """Scene in SI units."""
 
-    radius: Positive
-    work_of_adhesion: Positive
-    contact_modulus: Positive
+    radius: Annotated[float, within(SI["m"])]
+    work_of_adhesion: Annotated[float, within(SI["J/m^2"])]
+    contact_modulus: Annotated[float, within(SI["Pa"])]
 
 
 def _several(value: Any) -> Any:
@@ -153,18 +164,18 @@ class TileSection(Section):
     """Side of the periodic tile."""
 
     roll_offs: Positive
-    cutoffs: Annotated[float, Field(ge=1, allow_inf_nan=False)]
+    cutoffs: Annotated[Positive, Field(ge=1)]
 
 
 class NumericsSection(Section):
     """An error or a resolution, and the solver, as in `Numerics`."""
 
     error: Annotated[float, Field(gt=0, lt=1)] | None = None
-    angles: Annotated[int, Field(ge=4)] | None = None
-    angles_per_cutoff: Positive | None = None
-    samples_per_cutoff: Positive | None = None
+    angles: Annotated[Count, Field(ge=4)] | None = None
+    angles_per_cutoff: Density | None = None
+    samples_per_cutoff: Density | None = None
     interpolation: Interpolation | None = None
-    pixels_per_cutoff: Positive | None = None
+    pixels_per_cutoff: Density | None = None
     tile: TileSection
     tolerance: Annotated[float, Field(gt=0, lt=1)] | None = None
     max_sweeps: Count
@@ -224,9 +235,9 @@ class LineSection(Section):
 
     springs: Annotated[tuple[Positive, ...], Field(min_length=1)]
     spring_unit: SpringUnit = "correlation_length"
-    length: Annotated[float, Field(ge=8, allow_inf_nan=False)]
-    period: Annotated[float, Field(ge=20, allow_inf_nan=False)]
-    transient: Annotated[float, Field(ge=3, allow_inf_nan=False)]
+    length: Annotated[Positive, Field(ge=8)]
+    period: Annotated[Positive, Field(ge=20)]
+    transient: Annotated[Positive, Field(ge=3)]
     step: Positive
     uncorrelated: bool = False
 
@@ -289,7 +300,7 @@ class FitSection(Section):
 
     lowest_elastic_energy: Positive
     highest_elastic_energy: Energy
-    bootstrap: Count
+    bootstrap: Annotated[int, within(Range(FEWEST_BOOTSTRAP, 10**7))]
 
     @model_validator(mode="after")
     def _ordered(self) -> FitSection:
@@ -304,7 +315,7 @@ class FitSection(Section):
 class Configuration(Section):
     """The whole file."""
 
-    seed: Annotated[int, Field(ge=0)]
+    seed: Seed
     field: FieldKind
     scales: ScalesSection | None = None
     spectra: Annotated[tuple[SpectrumSection, ...], Field(min_length=1)]
@@ -375,9 +386,11 @@ class Configuration(Section):
 
 def _refuse_repeated(what: str, values: Any) -> None:
     """Raise if a value stands twice."""
-    for position, value in enumerate(values):
-        if value in values[:position]:
+    known = set()
+    for value in values:
+        if value in known:
             raise refusal(f"{what} {value!r} stands twice; remove or change one")
+        known.add(value)
 
 
 def _refuse_overruled(section: Section, decider: str, keys: Iterable[str]) -> None:
@@ -411,10 +424,40 @@ def load_configuration(path: Path) -> Sweep:
     configuration = validated(path, content_of(path), Configuration)
     try:
         sweep = configuration.sweep()
+        _refuse_endless(sweep)
         _refuse_unreachable(sweep)
-    except ConfigurationError as error:
+    except ValueError as error:
         raise ConfigurationError(f"{path}: {error}") from error
     return sweep
+
+
+_LISTED_BYTES = 500.0
+"""Memory of a simulation in a list."""
+
+
+def _refuse_endless(sweep: Sweep) -> None:
+    """Raise if a sweep is larger than can be listed, fitted or run."""
+    refuse_beyond_memory(
+        f"realisations: {sweep.n_simulation:.3g} simulations",
+        _LISTED_BYTES * sweep.n_simulation,
+        "lower their number",
+    )
+    refuse_beyond_memory(
+        f"fit: {sweep.fit.n_bootstrap} bootstrap samples of {sweep.n_realisation} realisations",
+        16.0 * sweep.fit.n_bootstrap * sweep.n_realisation,
+        "lower bootstrap",
+    )
+    seconds = 0.0
+    for item in sweep.spectra:
+        for energy in sweep.elastic_energies:
+            knobs = sweep.numerics.knobs_of(sweep.kind, item.spectrum, energy)
+            deepest = getattr(sweep.schedule, "max_penetration", 0.0)
+            refuse_oversized(item.spectrum, sweep.numerics, knobs, deepest)
+            cost = expected_cost(sweep.simulation(item, energy, 0))
+            coarser = "ask for fewer, coarser or larger load steps, or for smaller tiles"
+            refuse_beyond_memory(f"simulations of {item.name}", cost.memory, coarser, anywhere=True)
+            seconds += sweep.n_realisation * cost.seconds
+    refuse_beyond_time("the simulations", seconds, coarser)
 
 
 def _refuse_unreachable(sweep: Sweep) -> None:

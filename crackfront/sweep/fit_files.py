@@ -35,8 +35,8 @@ def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Pa
         "notes": list(fit_notes(fit)),
         "columns": entries,
     }
-    write_text(paths[1], json.dumps(content, indent=1, allow_nan=False) + "\n")
-    write_text(paths[2], fit_table(fit))
+    write_text(paths[1], json.dumps(content, indent=1, allow_nan=False) + "\n", sealed=True)
+    write_text(paths[2], fit_table(fit), sealed=True)
     return paths
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
 import functools
 import hashlib
@@ -23,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.table import SweepRow
+from crackfront.data.digests import Integrity, integrity
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.table import ROWS_AT_ONCE, row_fingerprint
 
@@ -47,6 +49,8 @@ class Entry:
         the simulation was only begun.
     row : SweepRow or None
         Its row, where the simulation ended and a row is still that.
+    digest : str
+        Digest of its file, empty where it has none or an earlier version wrote it.
     """
 
     key: str
@@ -55,6 +59,7 @@ class Entry:
     size: int = 0
     definition: str = ""
     row: SweepRow | None = None
+    digest: str = ""
 
 
 class Journal:
@@ -86,7 +91,7 @@ class Journal:
                 written = file.write(line)
                 os.fsync(file.fileno())
                 if written != len(line):
-                    raise OSError(f"{self._path} took only {written} of {len(line)} bytes")
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self._path))
             except OSError:
                 file.truncate(length)
                 raise
@@ -214,10 +219,17 @@ class Ledger:
     """Rows of all journals of a store as they are now, found by simulation.
 
     It holds 28 bytes of every row; the rows themselves are read when they are asked for.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the store.
+    checked : bool, optional
+        Whether the content of the files counts that the rows name, and not their sizes alone.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._curves = folder / "curves"
+    def __init__(self, folder: Path, *, checked: bool = True) -> None:
+        self._curves, self._checked = folder / "curves", checked
         self._journals = journal_paths(folder / "journals")
         lines = np.fromiter(self._ended(), dtype=_LINE)
         self._lines = lines[np.argsort(lines["identity"], kind="stable")]
@@ -233,12 +245,23 @@ class Ledger:
     def parts(self, label: str) -> dict[str, str] | None:
         """What the key is made of with which a simulation of a label was stored last, if it was."""
         labels = self._lines["label"]
+        if not labels.size:
+            return None
         last = np.searchsorted(labels, _hash(label), side="right", sorter=self._by_label) - 1
         if last < 0:
             return None
         line = self._lines[self._by_label[last]]
         entries = self._entries(int(line["journal"]), [int(line["place"])])
         return next((one.parts for one in entries if one.label == label), None)
+
+    def _begun(self, simulations: Sequence[Simulation]) -> Sequence[bool]:
+        """Whether there is a line of the label of each simulation."""
+        if not self._lines.size:
+            return [False] * len(simulations)
+        labels = np.array([_hash(one.label) for one in simulations], dtype="u8")
+        places = np.searchsorted(self._lines["label"], labels, sorter=self._by_label)
+        nearest = self._by_label[np.minimum(places, self._lines.size - 1)]
+        return (self._lines["label"][nearest] == labels).tolist()
 
     @functools.cached_property
     def _by_label(self) -> NDArray[np.int64]:
@@ -255,9 +278,19 @@ class Ledger:
 
     def _rows(self, simulations: Sequence[Simulation]) -> Iterator[SweepRow | None]:
         """Rows of a few simulations, journal by journal."""
+        # A key takes long, and what has no line needs none.
+        begun = self._begun(simulations)
+        if not any(begun):
+            yield from (None for _ in simulations)
+            return
         # Spectra of one shape and different names have the same keys.
-        names = [(one.key, one.label) for one in simulations]
-        hashes = np.array([_hash(f"{key} {label}") for key, label in names], dtype="u8")
+        names = [
+            (one.key if known else "", one.label)
+            for one, known in zip(simulations, begun, strict=True)
+        ]
+        hashes = np.array(
+            [_hash(f"{key} {label}") if key else 0 for key, label in names], dtype="u8"
+        )
         first, last = (
             np.searchsorted(self._lines["identity"], hashes, side=side)
             for side in ("left", "right")
@@ -282,13 +315,17 @@ class Ledger:
                     yield entry
 
     def _valid(self, entry: Entry) -> bool:
-        """Whether an entry has a row, and the file that the row names, if any, has its size."""
+        """Whether an entry has a row, and the file that the row names, if any, is that of then."""
         if entry.row is None or not entry.row.curve:
             return entry.row is not None
+        path = self._curves / entry.row.curve
         try:
-            return (self._curves / entry.row.curve).stat().st_size == entry.size
+            if path.stat().st_size != entry.size or not self._checked:
+                return path.stat().st_size == entry.size
+            found, digest = integrity(path)
         except FileNotFoundError:
             return False
+        return found is not Integrity.DAMAGED and digest == entry.digest
 
 
 def _hash(text: str) -> int:

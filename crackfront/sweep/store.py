@@ -11,15 +11,32 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
-from crackfront.analysis.table import SweepRow
-from crackfront.data.files import UnreadableFileError, replace_atomically, write_text
+from crackfront.analysis.table import SweepRow, SweepTable
+from crackfront.data.digests import Integrity, integrity
+from crackfront.data.files import (
+    UnreadableFileError,
+    integrities,
+    read_attributes,
+    replace_atomically,
+    set_aside_damaged,
+    write_text,
+)
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.journal import Ledger, running
+from crackfront.sweep.journal import Ledger, journal_paths, running
 from crackfront.sweep.sweep import Shard, Sweep, shard_fingerprint
-from crackfront.sweep.table import COMPLETE, sweep_row, write_hysteresis
+from crackfront.sweep.table import (
+    COMPLETE,
+    SWEEP_FINGERPRINT,
+    read_table,
+    sweep_row,
+    write_hysteresis,
+)
+
+SUMS = "SHA256SUMS"
+"""File of an archive that lists the checksums of all others."""
 
 _COMPRESSED = {".nc", ".png", ".pdf", ".gif", ".zip"}
 """Files that become no smaller."""
@@ -79,6 +96,21 @@ class Progress:
     seconds: float
 
 
+class _Curves:
+    """Files of simulations by all of their names but the keys, which take long."""
+
+    def __init__(self, folder: Path) -> None:
+        self._names = {path.stem.rpartition("-")[0] for path in folder.glob("*.nc")}
+        self._beginnings: dict[tuple[str, float], str] = {}
+
+    def __contains__(self, simulation: Simulation) -> bool:
+        """Whether there may be a file of a simulation."""
+        alike = simulation.spectrum_name, simulation.elastic_energy
+        if alike not in self._beginnings:
+            self._beginnings[alike] = simulation.stem.rsplit("-", 2)[0]
+        return f"{self._beginnings[alike]}-r{simulation.realisation}" in self._names
+
+
 @dataclass(frozen=True, slots=True)
 class Store:
     """Results of a sweep in a folder."""
@@ -112,8 +144,9 @@ class Store:
         self, simulations: Iterable[Simulation], ledger: Ledger | None = None
     ) -> Iterator[Holding]:
         """What is stored of simulations, by the journals or a ledger that was made of them."""
+        curves = _Curves(self.folder / "curves")
         for simulation, row in (ledger or Ledger(self.folder)).rows(simulations):
-            if row is not None or not self.path(simulation).is_file():
+            if row is not None or simulation not in curves or not self.path(simulation).is_file():
                 yield Holding(simulation, row)
                 continue
             try:
@@ -131,12 +164,9 @@ class Store:
             missing,
             unreadable=tuple(one.unreadable for one in absent if one.unreadable),
             stale=tuple(
-                Stale(
-                    one.label,
-                    tuple(name for name, part in one.parts.items() if part != known.get(name)),
-                )
+                Stale(one.label, changed)
                 for one in missing
-                if (known := ledger.parts(one.label)) is not None
+                if (changed := _changed_parts(one, ledger.parts(one.label)))
             ),
         )
 
@@ -146,7 +176,8 @@ class Store:
         The expected times are those of the cost model, in proportion to what the stored simulations
         of the sweep took.
         """
-        begun, ledger = {one.key for one in running(self.journals)}, Ledger(self.folder)
+        begun = {one.key for one in running(self.journals)}
+        ledger = Ledger(self.folder, checked=False)
         found, paces = [], []
         for item in sweep.spectra:
             counts: Counter[str] = Counter()
@@ -175,8 +206,56 @@ class Store:
             ],
         }
         path = self.folder / "shards" / f"{shard.name}.json"
-        write_text(path, json.dumps(content, indent=1) + "\n")
+        write_text(path, json.dumps(content, indent=1) + "\n", sealed=True)
         return path
+
+    def table(self, sweep: Sweep) -> SweepTable:
+        """Arrays of the file of the whole sweep.
+
+        Raises
+        ------
+        ValueError
+            If the file is missing or damaged, or the table of another configuration.
+        """
+        self.about(sweep)
+        return read_table(self.hysteresis)
+
+    def about(self, sweep: Sweep) -> dict[str, str]:
+        """What the file of the whole sweep says of itself; refused as by :meth:`table`."""
+        about = read_attributes(self.hysteresis)
+        if about.get(SWEEP_FINGERPRINT) != sweep.table_fingerprint:
+            raise ValueError(
+                f"{self.hysteresis} is the table of another configuration than the one given; run "
+                "crackfront simulate and crackfront aggregate with this one, or make"
+            )
+        return {name: str(value) for name, value in about.items()}
+
+    def renewed(self, sweep: Sweep, configuration: Path) -> Iterator[str]:
+        """Take back what is damaged or missing, so that the workflow makes it anew.
+
+        Parameters
+        ----------
+        sweep : Sweep
+            What the folder is about.
+        configuration : Path
+            Its configuration.
+
+        Yields
+        ------
+        str
+            A sentence for every damaged file, and one for all simulations that run again.
+        """
+        if not self.folder.is_dir():
+            return
+        yield from set_aside_damaged(self.folder, {"curves", "checkpoints"})
+        if any(self._lists()):
+            if not self.configuration.is_file():
+                text = configuration.read_text(encoding="utf-8")
+                write_text(self.configuration, text, sealed=True)
+            lacking = self.inventory(sweep.simulations())
+            yield from (f"{sentence}; it is computed anew" for sentence in lacking.unreadable)
+            if count := self._forget(lacking.missing):
+                yield f"{self.folder}: {count} list(s) of shards are made anew with what they lack"
 
     def aggregate(self, sweep: Sweep, origin: Provenance) -> tuple[Path, dict[str, int]]:
         """Write the file of the whole sweep; it, and the number of simulations of every status.
@@ -206,13 +285,21 @@ class Store:
                 "this configuration and output, or `make` again"
             )
 
-    def _forget(self, missing: Sequence[Simulation]) -> None:
-        """Remove the lists of shards that lack simulations."""
-        keys = {one.key for one in missing}
-        for path in (self.folder / "shards").glob("*.json"):
-            content = json.loads(path.read_text(encoding="utf-8"))
-            if not keys.isdisjoint(entry["key"] for entry in content["simulations"]):
+    def _forget(self, missing: Sequence[Simulation]) -> int:
+        """Remove the lists of shards that lack simulations, or are damaged; how many they are."""
+        keys, count = {one.key for one in missing}, 0
+        for path in self._lists():
+            whole = integrity(path)[0] is Integrity.WHOLE
+            content = json.loads(path.read_text(encoding="utf-8")) if whole else {}
+            listed = {entry["key"] for entry in content.get("simulations", ())}
+            if not whole or not keys.isdisjoint(listed):
                 path.unlink()
+                count += 1
+        return count
+
+    def _lists(self) -> Iterator[Path]:
+        """Files of the lists of shards."""
+        return (self.folder / "shards").glob("*.json")
 
     def archive(self, path: Path, *, curves: bool) -> int:
         """Write the files of the sweep and their checksums into a ZIP file; the number of files.
@@ -231,21 +318,26 @@ class Store:
         Raises
         ------
         ValueError
-            If the folder holds no file of a sweep.
+            If the folder holds no file of a sweep, or a file that belongs to the archive is
+            damaged.
         """
         if not self.hysteresis.is_file():
             raise ValueError(
                 f"{self.folder} holds no hysteresis.nc; run the sweep before it is archived"
             )
         left_out = {"checkpoints"} if curves else {"checkpoints", "curves"}
-        files = [
-            file
-            for file in sorted(self.folder.rglob("[!.]*"))
-            if file.is_file()
-            and not file.is_symlink()
-            and file.relative_to(self.folder).parts[0] not in left_out
+        found = {
+            file: state
+            for file, state in integrities(self.folder)
+            if file.relative_to(self.folder).parts[0] not in left_out
             and file.resolve() != path.resolve()
-        ]
+        }
+        if damaged := [file for file, state in found.items() if state is Integrity.DAMAGED]:
+            raise ValueError(
+                f"{len(damaged)} files of {self.folder} are damaged, the first is {damaged[0]}; "
+                "run make, which makes them anew, before it is archived"
+            )
+        files = sorted([*found, *journal_paths(self.journals)])
 
         def write(part: Path) -> None:
             root, sums = Path(self.folder.name), []
@@ -253,10 +345,17 @@ class Store:
                 for file in files:
                     name = file.relative_to(self.folder)
                     sums.append(f"{_added(archive, file, str(root / name))}  {name}\n")
-                archive.writestr(str(root / "SHA256SUMS"), "".join(sums))
+                archive.writestr(str(root / SUMS), "".join(sums))
 
         replace_atomically(path, write)
         return len(files)
+
+
+def _changed_parts(simulation: Simulation, known: dict[str, str] | None) -> tuple[str, ...]:
+    """Parts of a key that are not as they were when a simulation of the label was stored."""
+    if known is None:
+        return ()
+    return tuple(name for name, part in simulation.parts.items() if part != known.get(name))
 
 
 def _added(archive: ZipFile, file: Path, name: str) -> str:

@@ -6,7 +6,7 @@ import difflib
 import hashlib
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Literal
 
 from crackfront.core.adhesion import FieldKind
@@ -136,6 +136,16 @@ class Sweep:
         return tuple(self.simulations(item, realisations))
 
     @property
+    def fingerprint(self) -> str:
+        """Twelve hexadecimal digits that change with what a configuration means."""
+        return _fingerprint(self)
+
+    @property
+    def table_fingerprint(self) -> str:
+        """The same without what is done with the table of the sweep."""
+        return _fingerprint(self, "failed_fraction", "fit")
+
+    @property
     def n_simulation(self) -> int:
         """Number of simulations."""
         return len(self.spectra) * len(self.elastic_energies) * self.n_realisation
@@ -167,13 +177,19 @@ class Sweep:
     def named_shard(self, item: NamedSpectrum, realisations: range) -> Shard:
         """Shard of a spectrum and a block of realisations, which the sweep must have."""
         everything = range(self.n_realisation)
-        if not realisations or not set(realisations) <= set(everything):
+        if not realisations or realisations[0] < 0 or realisations[-1] >= everything.stop:
             raise ValueError(
                 f"realisations {realisations.start} to {realisations.stop - 1} are not among those "
                 f"of the sweep, 0 to {self.n_realisation - 1}"
             )
         block = f".{realisations.start}-{realisations.stop - 1}"
         return Shard(item, realisations, item.name + ("" if realisations == everything else block))
+
+
+def _fingerprint(sweep: Sweep, *without: str) -> str:
+    """Digits that change with any parameter of a sweep but some."""
+    parts = [getattr(sweep, item.name) for item in fields(sweep) if item.name not in without]
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:12]
 
 
 def shard_fingerprint(shard: Sequence[Simulation]) -> str:

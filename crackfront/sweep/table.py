@@ -46,6 +46,9 @@ ROWS_AT_ONCE = 4096
 COMPLETE = ("lost_contact", "steady")
 """Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
 
+SWEEP_FINGERPRINT = "sweep_fingerprint"
+"""Attribute that says of which configuration a table is."""
+
 _WINDOW = ("lowest_radius", "highest_radius")
 """Ends of the steady window."""
 
@@ -223,6 +226,7 @@ def _attributes(sweep: Sweep) -> dict[str, str | float]:
         "kind": sweep.kind,
         "definition": STEADY_DEFINITION,
         "sweep_seed": sweep.seed,
+        SWEEP_FINGERPRINT: sweep.table_fingerprint,
     }
     if sweep.scales is not None:
         attributes |= {f"scale_{name}": value for name, value in asdict(sweep.scales).items()}

@@ -9,11 +9,16 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from crackfront.data.files import UnreadableFileError, leftover_parts, write_text
+from crackfront.data.files import leftover_parts, write_text
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_checkpoint, write_checkpoint, write_simulation
-from crackfront.simulate.run import PartialRun, compile_solver, run_simulation
+from crackfront.simulate.run import (
+    PartialRun,
+    SimulationResult,
+    compile_solver,
+    run_simulation,
+)
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
 from crackfront.sweep.journal import Entry, Journal
@@ -56,7 +61,7 @@ def fill(
         (store.folder / name).mkdir(parents=True, exist_ok=True)
         for part in leftover_parts(store.folder / name):
             part.unlink(missing_ok=True)
-    write_text(store.configuration, origin.configuration)
+    write_text(store.configuration, origin.configuration, sealed=True)
     longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
     tasks = [_Task(one, store, origin, checkpoint_seconds) for one in longest_first]
     for solver in {item.solver.name for item in simulations}:
@@ -89,12 +94,20 @@ class _Keeper:
         self._task, self._journal = task, journal
         self._written = self._beaten = time.monotonic()
 
-    def found(self) -> PartialRun | None:
-        """An earlier run to go on from."""
-        try:
-            return read_checkpoint(self._task.checkpoint, self._task.simulation)
-        except UnreadableFileError:
-            return None
+    def result(self) -> tuple[SimulationResult, str]:
+        """Result of the task, from its checkpoint on if that is of use, and what is wrong with it.
+
+        A refusal is never that of a checkpoint: what it leads to is tried without it.
+        """
+        path, simulation = self._task.checkpoint, self._task.simulation
+        wrong = ""
+        if path.is_file():
+            try:
+                resume = read_checkpoint(path, simulation)
+                return run_simulation(simulation, resume=resume, keep=self.keep), ""
+            except (ValueError, ArithmeticError, RuntimeError, LookupError, TypeError) as error:
+                wrong = f"begun anew without its checkpoint: {error}"
+        return run_simulation(simulation, keep=self.keep), wrong
 
     def keep(self, make: Callable[[], PartialRun]) -> None:
         """Store a checkpoint where it is time to; end where notice was given."""
@@ -135,20 +148,21 @@ def _run(task: _Task, journal: Journal) -> Finished:
     with _storing():
         journal.append(begun)
     try:
-        result = run_simulation(simulation, resume=keeper.found(), keep=keeper.keep)
+        result, wrong = keeper.result()
     except (ValueError, ArithmeticError, RuntimeError) as error:
         # The surface or the load cannot be simulated, or the solver found a defect in itself.
         status = "refused" if isinstance(error, ValueError) else "defect"
         sentence = str(error) or type(error).__name__
-        row, size, seconds = failed_row(simulation, status, sentence), 0, 0.0
+        row, size, digest, seconds = failed_row(simulation, status, sentence), 0, "", 0.0
     else:
         curve = task.store.path(simulation)
         with _storing():
-            write_simulation(curve, result, task.origin)
+            digest = write_simulation(curve, result, task.origin)
             size = curve.stat().st_size
-        row, sentence, seconds = sweep_row(result), "", result.measures.seconds
+        row, sentence, seconds = sweep_row(result), wrong, result.measures.seconds
+    ended = replace(begun, size=size, digest=digest, definition=row_fingerprint(), row=row)
     with _storing():
-        journal.append(replace(begun, size=size, definition=row_fingerprint(), row=row))
+        journal.append(ended)
     task.checkpoint.unlink(missing_ok=True)
     return Finished(row.status, seconds, sentence)
 

@@ -1,15 +1,18 @@
 """The whole workflow by Snakemake on the configuration `test`, with real ranks of MPI."""
 
 import base64
+import json
 import os
 import shutil
 import subprocess
 import sys
 import time
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 import xarray as xr
+import yaml
 
 ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
@@ -101,10 +104,23 @@ def test_the_report_is_one_page_that_a_browser_shows_without_a_network(tmp_path,
     assert (ROOT / "config/test.yaml").read_text(encoding="utf-8").splitlines()[-1] in summary
 
 
-def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path):
-    sweep = tmp_path / "sweep.yaml"
+def flat_sweep(folder):
+    """The configuration `test` with one spectrum."""
+    path = folder / "sweep.yaml"
     lines = (ROOT / "config/test.yaml").read_text(encoding="utf-8").splitlines(keepends=True)
-    sweep.write_text("".join(line for line in lines if "name: rough" not in line))
+    path.write_text("".join(line for line in lines if "name: rough" not in line))
+    return path
+
+
+def date(moment, *paths):
+    """Give files the date of another year."""
+    seconds = datetime(moment, 1, 1, tzinfo=UTC).timestamp()
+    for path in paths:
+        os.utime(path, (seconds, seconds))
+
+
+def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path):
+    sweep = flat_sweep(tmp_path)
     assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
     results = tmp_path / "results/sweep"
     before = states(results)
@@ -112,6 +128,7 @@ def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path):
     assert idle.returncode == 0
     assert states(results) == before
     sweep.write_text(sweep.read_text().replace("realisations: 2", "realisations: 3"))
+    date(2001, sweep)  # no date matters
     more = snakemake(tmp_path, sweep=sweep, ranks=1)
     assert more.returncode == 0, more.stderr
     after = states(results)
@@ -120,6 +137,101 @@ def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path):
     kept = {path for path in before if before[path] == after[path]}
     assert {path for path in kept if path.parent.name != "journals"} == curves & set(before)
     assert xr.load_dataset(results / "hysteresis.nc").sizes["realisation"] == 3
+
+
+@pytest.mark.slow
+def test_a_changed_fit_is_fitted_and_a_remark_is_not_whatever_the_dates(tmp_path):
+    sweep = flat_sweep(tmp_path)
+    assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
+    results = tmp_path / "results/sweep"
+    sweep.write_text("# a remark\n" + sweep.read_text())
+    before = states(results)
+    assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
+    assert states(results) == before
+    content = yaml.safe_load(sweep.read_text())
+    content["fit"]["bootstrap"] += 50
+    sweep.write_text(yaml.safe_dump(content))
+    date(2001, sweep)
+    date(2096, *before)
+    done = snakemake(tmp_path, sweep=sweep, ranks=1)
+    assert done.returncode == 0, done.stderr
+    fitted = json.loads((results / "fit.json").read_text())
+    assert fitted["about"]["n_bootstrap"] == content["fit"]["bootstrap"]
+    assert (
+        "bootstrap: " + str(content["fit"]["bootstrap"]) in (results / "summary.html").read_text()
+    )
+
+
+@pytest.mark.slow
+def test_the_workflow_makes_anew_what_is_damaged_or_missing_and_no_more(tmp_path):
+    sweep = flat_sweep(tmp_path)
+    assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
+    results = tmp_path / "results/sweep"
+    names = [str(path.relative_to(results)) for path in states(results)]
+    expected = xr.load_dataset(results / "hysteresis.nc").drop_vars(COSTS)
+    curves = sorted((results / "curves").iterdir())
+
+    def flip(path):
+        content = bytearray(path.read_bytes())
+        content[len(content) // 2] ^= 1
+        path.write_bytes(content)
+
+    def remove_curves():
+        for path in (*curves, results / "figures/loop.png"):
+            path.unlink()
+
+    faults = {
+        "a flipped bit in a curve": lambda: flip(curves[0]),
+        "all curves and a figure gone": remove_curves,
+        "metadata of a curve": lambda: curves[1].write_bytes(b"x" + curves[1].read_bytes()[1:]),
+        "a corrupt list": lambda: (results / "shards/flat.json").write_bytes(b"{"),
+        "a truncated table": lambda: (results / "hysteresis.nc").write_bytes(b"CDF"),
+        "a flipped bit in the table": lambda: flip(results / "hysteresis.nc"),
+        "a flipped bit in the fit": lambda: flip(results / "fit.json"),
+        "a flipped bit in a picture": lambda: flip(results / "figures/factor.pdf"),
+        "no page": (results / "summary.html").unlink,
+        "a flipped bit in the configuration": lambda: flip(results / "configuration.yaml"),
+    }
+    for what, harm in faults.items():
+        harm()
+        done = snakemake(tmp_path, sweep=sweep, ranks=1)
+        assert done.returncode == 0, f"{what}: {done.stderr}"
+        assert "Traceback" not in done.stderr
+        missing = [name for name in names if not (results / name).is_file()]
+        assert not missing, what
+        found = xr.load_dataset(results / "hysteresis.nc").drop_vars(COSTS)
+        assert found.equals(expected), what
+        check = [sys.executable, "-m", "crackfront", "verify", str(results)]
+        assert subprocess.run(check, check=False).returncode == 0, what
+    before = states(results)
+    assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
+    assert states(results) == before
+
+
+@pytest.mark.slow
+def test_a_clone_may_stand_under_a_name_with_quotes_and_braces(tmp_path):
+    clone = tmp_path / 'it\'s a {clone} "of mine"'
+    clone.mkdir()
+    for name in ("Snakefile", "workflow", "config"):
+        (clone / name).symlink_to(ROOT / name)
+    (clone / ".venv").symlink_to(Path(sys.executable).parents[1])
+    python = clone / ".venv/bin" / Path(sys.executable).name
+    sweep = flat_sweep(clone)
+    for target in ("results/sweep/fit.md", "results/figures/quick/main-1d.pdf"):
+        done = subprocess.run(
+            [
+                *(python, "-m", "snakemake", "--snakefile", clone / "Snakefile", "--cores", "1"),
+                *("--profile", clone / "workflow/profiles/default", "--directory", clone),
+                *("--config", f"sweep={sweep}", "ranks=1", "--", target),
+            ],
+            capture_output=True,
+            text=True,
+            timeout=240,
+            check=False,
+            cwd=tmp_path,
+        )
+        assert done.returncode == 0, done.stderr
+        assert (clone / target).is_file()
 
 
 @pytest.mark.parametrize(

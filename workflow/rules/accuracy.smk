@@ -15,7 +15,13 @@ wildcard_constraints:
 
 rule accuracy:
     input:
-        f"{ACCURACY}/accuracy.md",
+        multiext(f"{ACCURACY}/", "accuracy.md", "laws.csv"),
+        expand(
+            "{results}/{figure}.{suffix}",
+            results=ACCURACY,
+            figure=["work-precision", "laws"],
+            suffix=["pdf", "png"],
+        ),
 
 
 rule accuracy_study:

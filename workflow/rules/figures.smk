@@ -1,6 +1,5 @@
 rule sweep_figures:
     input:
-        CONFIGURATION,
         f"{RESULTS}/hysteresis.nc",
     output:
         expand("{results}/figures/{figure}.pdf", results=RESULTS, figure=SWEEP_FIGURES),
@@ -15,5 +14,6 @@ rule sweep_figures:
         ],
     params:
         sources=package_fingerprint(),
+        sweep=SWEEP.fingerprint,
     shell:
         "crackfront figures {CONFIGURATION:q} --output {RESULTS:q}"

@@ -1,20 +1,18 @@
 rule fit:
     input:
-        CONFIGURATION,
         f"{RESULTS}/hysteresis.nc",
     output:
         multiext(f"{RESULTS}/fit", ".nc", ".json", ".md"),
     params:
         sources=package_fingerprint(),
+        sweep=SWEEP.fingerprint,
     shell:
         "crackfront fit {CONFIGURATION:q} --output {RESULTS:q}"
 
 
 rule summary:
     input:
-        CONFIGURATION,
         f"{RESULTS}/hysteresis.nc",
-        f"{RESULTS}/fit.md",
     output:
         report(
             f"{RESULTS}/summary.html",
@@ -23,5 +21,6 @@ rule summary:
         ),
     params:
         sources=package_fingerprint(),
+        sweep=SWEEP.fingerprint,
     shell:
         "crackfront summary {CONFIGURATION:q} --output {RESULTS:q}"

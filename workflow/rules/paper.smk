@@ -19,39 +19,40 @@ rule figures:
             "{results}/{figure}.{suffix}",
             results=PAPER,
             figure=FIGURES,
-            suffix=["pdf", "png"],
+            suffix=["nc", "pdf", "png"],
         ),
         expand("{results}/{figure}.gif", results=PAPER, figure=ANIMATED),
         "results/figures/checks.md",
 
 
-def measured_files(wildcards):
-    """Files that the configuration of a figure names."""
-    return figure_files(Path(FIGURE_SETTINGS, f"{wildcards.figure}.yaml"), SCALE)
+def settings_of(wildcards):
+    """What the data of a figure are computed from beside the sources."""
+    name = getattr(wildcards, "figure", "si-5")
+    return settings_fingerprint(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
 
 
 rule figure_data:
-    input:
-        configuration=f"{FIGURE_SETTINGS}/{{figure}}.yaml",
-        measured=measured_files,
     output:
         f"{PAPER}/{{figure}}.nc",
     params:
         sources=lambda wildcards: figure_fingerprint(wildcards.figure),
+        settings=settings_of,
     shell:
-        "crackfront figure {input.configuration:q} --scale {SCALE} --output results/figures"
+        "crackfront figure {FIGURE_SETTINGS:q}/{wildcards.figure}.yaml --scale {SCALE}"
+        " --output results/figures"
 
 
 rule figure_of_sweep:
     input:
-        f"{FIGURE_SETTINGS}/si-5.yaml",
         f"results/{Path(SWEEPS[SCALE]).stem}/hysteresis.nc",
     output:
         f"{PAPER}/si-5.nc",
     params:
         sources=figure_fingerprint("si-5"),
+        settings=settings_of,
+        sweep=lambda wildcards: load_configuration(Path(SWEEPS[SCALE])).fingerprint,
     shell:
-        "crackfront figure {input[0]:q} --scale {SCALE} --output results/figures"
+        "crackfront figure {FIGURE_SETTINGS:q}/si-5.yaml --scale {SCALE} --output results/figures"
 
 
 ruleorder: figure_of_sweep > figure_data
@@ -65,6 +66,7 @@ rule figure_drawing:
         f"{PAPER}/{{figure}}.png",
     params:
         sources=package_fingerprint(),
+        settings=settings_of,
     shell:
         "crackfront draw-figure {input:q}"
 
@@ -80,6 +82,7 @@ rule figure_animation:
         figure="|".join(ANIMATED),
     params:
         sources=package_fingerprint(),
+        settings=settings_of,
     shell:
         "crackfront draw-figure {input:q}"
 

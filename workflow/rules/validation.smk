@@ -1,17 +1,19 @@
 # `make validate`: the crack-front model against boundary elements. The cycles of the boundary
 # elements are resumed from their last load step; the rule owns what is made of them.
+from crackfront.studies.boundary_elements.parameters import load_validation
+
 VALIDATION = config.get("validation", "config/validation.yaml")
 VALIDATED = str(results_folder(Path(VALIDATION)))
 
 
 rule validation:
     input:
-        f"{VALIDATED}/validation.md",
+        f"{VALIDATED}/differences.nc",
+        f"{VALIDATED}/picture.nc",
+        multiext(f"{VALIDATED}/validation", ".md", ".pdf", ".png"),
 
 
 rule validate:
-    input:
-        VALIDATION,
     output:
         f"{VALIDATED}/validation.md",
         f"{VALIDATED}/differences.nc",
@@ -19,5 +21,6 @@ rule validate:
         multiext(f"{VALIDATED}/validation", ".pdf", ".png"),
     params:
         sources=package_fingerprint(),
+        settings=lambda wildcards: repr(load_validation(Path(VALIDATION))),
     shell:
-        "crackfront validate {input:q} --output {VALIDATED:q}"
+        "crackfront validate {VALIDATION:q} --output {VALIDATED:q}"

@@ -81,7 +81,7 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     write_text(folder / "laws.csv", laws_text(laws))
     tables = _tables(list(studies.values()), samples.values(), coverages.values())
     parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
-    write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]))
+    write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]), sealed=True)
     if page is not None:
         write_text(page, filled_page(page.read_text(encoding="utf-8"), tables))
     shown = [studies[name] for name in _SHOWN if name in studies]

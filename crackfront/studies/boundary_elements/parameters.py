@@ -17,13 +17,17 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.fingerprint import fingerprint
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
+from crackfront.data.bounds import NUMBER, Range, refuse_beyond_memory
 from crackfront.data.section import (
+    Count,
     Energy,
     Positive,
     Section,
+    Seed,
     content_of,
     refusal,
     validated,
+    within,
 )
 from crackfront.studies.boundary_elements.contact import (
     HalfSpaceContact,
@@ -32,6 +36,10 @@ from crackfront.studies.boundary_elements.contact import (
 )
 
 Array = NDArray[np.float64]
+
+
+_POINT_BYTES = 500.0
+"""Memory of a point of a grid, twice as wide in both directions, with some fifteen arrays."""
 
 
 class CaseSection(Section):
@@ -47,7 +55,7 @@ class CaseSection(Section):
         Energy of full conformity, 0 for a smooth sphere. (Units: w_int)
     """
 
-    n_point: Annotated[int, Field(ge=16)]
+    n_point: Annotated[Count, Field(ge=16)]
     interaction_range: Positive
     elastic_energy: Annotated[float, Field(ge=0, lt=1)]
     step: Positive | None = None
@@ -56,15 +64,15 @@ class CaseSection(Section):
 class FrontSection(Section):
     """Resolution of the front model."""
 
-    n_angle: Annotated[int, Field(ge=4)]
+    n_angle: Annotated[Count, Field(ge=4)]
     spacing: Positive
 
 
 class StatisticsSection(Section):
     """Surfaces on which the front is run with and without the rotation of the crack."""
 
-    surfaces: Annotated[int, Field(ge=2)]
-    n_point: Annotated[int, Field(ge=16)]
+    surfaces: Annotated[Count, Field(ge=2)]
+    n_point: Annotated[Count, Field(ge=16)]
     elastic_energy: Energy
 
 
@@ -82,12 +90,12 @@ class ValidationParameters(Section):
         Largest pressure out of balance, relative to the largest tension.
     """
 
-    seed: Annotated[int, Field(ge=0)]
+    seed: Seed
     short_cutoff: Positive
     side: Positive
     max_penetration: Positive
     step: Positive
-    shown_penetration: Annotated[float, Field(allow_inf_nan=False)]
+    shown_penetration: Annotated[float, within(Range(-NUMBER.most, NUMBER.most))]
     tolerance: Annotated[float, Field(gt=0, lt=1)]
     front: FrontSection
     statistics: StatisticsSection | None = None
@@ -106,6 +114,11 @@ class ValidationParameters(Section):
                     f"({2 * pixel:.4g}); take n_point {needed} or more"
                 )
             try:
+                refuse_beyond_memory(
+                    f"a grid of {case.n_point} x {case.n_point} points",
+                    _POINT_BYTES * float(case.n_point) ** 2,
+                    "lower n_point",
+                )
                 refuse_unresolved(pixel, case.n_point, case.interaction_range, self.max_penetration)
             except ValueError as error:
                 raise refusal(f"cases[{number}]: {error}") from error

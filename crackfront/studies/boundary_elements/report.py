@@ -40,7 +40,7 @@ def write_validation(
         for path in save_figure(validation_figure(found.picture), folder / "validation"):
             progress(f"figure: {path}")
     report = validation_report(found.differences, found.speeds, found.effects)
-    write_text(folder / "validation.md", report)
+    write_text(folder / "validation.md", report, sealed=True)
     progress(f"tables: {folder / 'validation.md'}")
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.optional_libraries import MissingExtraError
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.data.files import UnreadableFileError, set_aside
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.studies.boundary_elements.comparison import (
@@ -173,7 +174,12 @@ def _stored_cycle(case: Case, path: Path, origin: Provenance, progress: Progress
             f"{cycle.seconds[-1]:.2f} s"
         )
 
-    known = read_record(path, BoundaryCycle) if path.exists() else None
+    known = None
+    if path.exists():
+        try:
+            known = read_record(path, BoundaryCycle)
+        except UnreadableFileError as error:
+            progress(f"{error}; it is computed anew, and set aside as {set_aside(path).name}")
     if known is not None and known.status != RUNNING:
         return known
     return boundary_cycle(case, known, keep)

@@ -7,6 +7,7 @@ config/figures with _ for -: parameters, computation, checks and drawing stand i
 from __future__ import annotations
 
 import functools
+import hashlib
 import importlib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -226,8 +227,10 @@ def load_figure(path: Path, scale: str) -> Section:
     return validated(path, given, section_type)
 
 
-def figure_files(path: Path, scale: str) -> list[str]:
-    """Files that a figure reads beside its configuration.
+def settings_fingerprint(path: Path, scale: str) -> str:
+    """Twelve hexadecimal digits that change with the parameters of a figure.
+
+    So they do with the content of the files that these name.
 
     Parameters
     ----------
@@ -235,4 +238,8 @@ def figure_files(path: Path, scale: str) -> list[str]:
         As in :func:`load_figure`.
     """
     parameters = load_figure(path, scale)
-    return [str(value) for _, value in parameters if isinstance(value, Path)]
+    files = [value for _, value in parameters if isinstance(value, Path) and value.is_file()]
+    digest = hashlib.sha256(repr(parameters).encode())
+    for file in files:
+        digest.update(file.read_bytes())
+    return digest.hexdigest()[:12]

@@ -18,7 +18,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field, tile_mean_square
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL, variable
-from crackfront.data.section import Count, Energy, Positive, Section, refusal
+from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.plots.parts import HEIGHT_LABEL, LENGTH_LABEL, label_panel
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
@@ -57,7 +57,7 @@ class MappingParameters(Section):
         Points along a side of the tile.
     """
 
-    seed: Annotated[int, Field(ge=0)]
+    seed: Seed
     short_cutoff: Positive
     roll_off: Positive
     hurst: Annotated[float, Field(gt=0, le=1)]

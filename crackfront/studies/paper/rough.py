@@ -23,7 +23,7 @@ from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Newton, Solver
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.data.section import Count, Energy, Positive, Section, refusal
+from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error, simulation_of
@@ -54,7 +54,7 @@ class RoughParameters(Section):
         Side of the periodic tile in roll-off wavelengths; it has at least 200 short cutoffs.
     """
 
-    seed: Annotated[int, Field(ge=0)]
+    seed: Seed
     error: Annotated[float, Field(gt=0, lt=1)]
     tile_roll_offs: Positive
 

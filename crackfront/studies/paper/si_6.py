@@ -14,7 +14,7 @@ from scipy.signal import periodogram
 from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.synthesis import gaussian_field, tile_mean_square
 from crackfront.core.variables import variable
-from crackfront.data.section import Count, Positive, refusal
+from crackfront.data.section import Count, Positive, Seed, refusal
 from crackfront.plots.densities import (
     CONVERTED_LABEL,
     PROFILE_LABEL,
@@ -60,7 +60,7 @@ class SyntheticFilmParameters(FilmParameters):
     tile_roll_offs: Annotated[float, Field(ge=2, allow_inf_nan=False)]
     longest: Positive
     realisations: Count
-    seed: Annotated[int, Field(ge=0)]
+    seed: Seed
 
     @model_validator(mode="after")
     def _inside(self) -> SyntheticFilmParameters:

@@ -1,0 +1,178 @@
+"""Whether two results agree, file by file and variable by variable, in values and in bits."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.data.files import UnreadableFileError, read_dataset
+from crackfront.data.provenance import Provenance
+
+_COSTS = {"s", "byte"}
+"""Units of what no two runs share."""
+
+_OF_ONE_RUN = {item.name for item in fields(Provenance)} | {
+    *("date", "key", "seconds", "cpu_seconds", "sweep_fingerprint"),
+}
+"""Attributes that say where, when and how a file was made."""
+
+_KEY = re.compile(r"-[0-9a-f]{16}(?=\.nc$)")
+"""What the name of a file has of the sources that made it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """How much a variable or an attribute of two files differs.
+
+    Attributes
+    ----------
+    file, variable : str
+        Where it stands; the name of the file is empty where two files are compared.
+    largest : float
+        Largest difference relative to the largest magnitude in the second; of texts 0 or 1.
+        Infinite where the shapes disagree, or one of the two lacks it.
+    in_bits : bool
+        Whether the values are the same bit by bit.
+    """
+
+    file: str
+    variable: str
+    largest: float
+    in_bits: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Differences of two results, of all variables of all their files, and files of one alone."""
+
+    n_file: int
+    differences: tuple[Difference, ...]
+    alone: tuple[Path, ...]
+
+    @property
+    def largest(self) -> float:
+        """Largest of all differences; infinite where files have no counterpart."""
+        if self.alone:
+            return math.inf
+        return max((item.largest for item in self.differences), default=0.0)
+
+    @property
+    def in_bits(self) -> bool:
+        """Whether all values are the same bit by bit."""
+        return not self.alone and all(item.in_bits for item in self.differences)
+
+    def by_variable(self) -> dict[str, Difference]:
+        """Of every variable the file in which it differs most."""
+        most: dict[str, Difference] = {}
+        for item in self.differences:
+            known = most.get(item.variable, item)
+            worse = (known.largest, not known.in_bits) < (item.largest, not item.in_bits)
+            most[item.variable] = item if worse else known
+        return most
+
+
+def comparison(one: Path, other: Path) -> Comparison:
+    """Two files of results, or the files of that kind in two folders.
+
+    What a run cost and where it comes from is left out. Files of simulations are paired by their
+    names without the key, which changes with the sources.
+
+    Parameters
+    ----------
+    one, other : Path
+        Two netCDF files, or two folders.
+
+    Raises
+    ------
+    UnreadableFileError
+        If a file is missing or damaged, two files are not of one kind, or the folders hold none.
+    """
+    if not one.is_dir() or not other.is_dir():
+        return Comparison(1, tuple(_differences("", one, other)), ())
+    pairs, alone = _pairs(_results(one), _results(other))
+    if not pairs and not alone:
+        raise UnreadableFileError(f"{one} and {other} hold no results; name two folders of results")
+    found = (_differences(name, *paths) for name, paths in pairs.items())
+    return Comparison(len(pairs), tuple(item for items in found for item in items), alone)
+
+
+def _results(folder: Path) -> dict[str, Path]:
+    """Results of a folder by their names in it; what is only on its way is none."""
+    paths = {str(path.relative_to(folder)): path for path in folder.rglob("[!.]*.nc")}
+    return {name: path for name, path in paths.items() if "checkpoints" not in Path(name).parts}
+
+
+def _pairs(
+    ones: dict[str, Path], others: dict[str, Path]
+) -> tuple[dict[str, tuple[Path, Path]], tuple[Path, ...]]:
+    """Files of equal names, or of names that are equal without a key, and those that are alone."""
+    pairs = {name: (ones[name], others[name]) for name in sorted(ones.keys() & others.keys())}
+    left = [_by_short_name(paths, pairs) for paths in (ones, others)]
+    alone = []
+    for name in sorted(left[0].keys() | left[1].keys()):
+        first, second = left[0][name], left[1][name]
+        if len(first) == len(second) == 1:
+            pairs[name] = first[0], second[0]
+        else:
+            alone += [*first, *second]
+    return pairs, tuple(alone)
+
+
+def _by_short_name(paths: dict[str, Path], without: Iterable[str]) -> dict[str, list[Path]]:
+    """Paths by their names without keys, but for some."""
+    found: dict[str, list[Path]] = defaultdict(list)
+    for name in paths.keys() - set(without):
+        found[_KEY.sub("", name)].append(paths[name])
+    return found
+
+
+def _differences(file: str, one: Path, other: Path) -> Iterator[Difference]:
+    """Differences of the variables of two files, and of their attributes."""
+    first, second = read_dataset(one), read_dataset(other)
+    if not first.variables.keys() & second.variables.keys():
+        raise UnreadableFileError(
+            f"{one} and {other} are not of one kind: they share no variable; compare results of "
+            "one command"
+        )
+    for name in map(str, dict.fromkeys([*first.variables, *second.variables])):
+        known = [data[name] for data in (first, second) if name in data.variables]
+        if any(item.attrs.get("units") in _COSTS for item in known):
+            continue
+        if len(known) == 1:
+            yield Difference(file, name, math.inf, in_bits=False)
+        else:
+            yield _difference(file, name, *(np.asarray(item) for item in known))
+    for name in sorted(map(str, first.attrs.keys() & second.attrs.keys() - _OF_ONE_RUN)):
+        values = (np.asarray(data.attrs[name]) for data in (first, second))
+        yield _difference(file, f"attribute {name}", *values)
+
+
+def _difference(file: str, name: str, one: NDArray[Any], other: NDArray[Any]) -> Difference:
+    """How much two arrays differ."""
+    if one.shape != other.shape or (one.dtype.kind in "OU") != (other.dtype.kind in "OU"):
+        return Difference(file, name, math.inf, in_bits=False)
+    if one.dtype.kind in "OU":
+        equal = [_KEY.sub("", str(text)) for text in one.flat] == [
+            _KEY.sub("", str(text)) for text in other.flat
+        ]
+        return Difference(file, name, float(not equal), in_bits=equal)
+    if one.dtype == other.dtype and one.tobytes() == other.tobytes():
+        return Difference(file, name, 0.0, in_bits=True)
+    if np.array_equal(one, other, equal_nan=True):
+        return Difference(file, name, 0.0, in_bits=False)
+    finite = np.abs(other[np.isfinite(other)], dtype=float)
+    scale = float(np.max(finite, initial=0.0)) or 1.0
+    with np.errstate(invalid="ignore", over="ignore"):
+        apart = np.abs(np.subtract(one, other, dtype=float))
+    # What is equal is not apart, infinity and NaN included; what is a number in one alone is.
+    same = (one == other) | (np.isnan(one) & np.isnan(other))
+    largest = float(np.max(np.where(same, 0.0, np.nan_to_num(apart, nan=math.inf)), initial=0.0))
+    return Difference(file, name, largest / scale, in_bits=False)

@@ -1,0 +1,96 @@
+"""Digests: a file states at its end what its content hashes to, which is checked on reading.
+
+The statement is a line of its own, or what the format has for a remark: netCDF, PNG, PDF and GIF
+end where they say themselves, Markdown, YAML and HTML have comments, and JSON gets a last key. The
+SHA-256 is that of all bytes of the file but its own 64 digits.
+"""
+
+from __future__ import annotations
+
+import enum
+import hashlib
+import operator
+import os
+from pathlib import Path
+
+_MARK = b"crackfront digest sha256 "
+"""What stands before the digits."""
+
+_DIGITS = 64
+
+_TAIL = 160
+"""Bytes at the end of a file among which its digest stands."""
+
+_RESEMBLES = 18
+"""Bytes of a damaged mark that are right, so that it is known as one."""
+
+_COMMENT = {
+    ".json": (b',\n "digest": "', b'"\n}\n'),
+    ".md": (b"<!-- ", b" -->\n"),
+    ".html": (b"<!-- ", b" -->\n"),
+    ".yaml": (b"# ", b"\n"),
+    ".pdf": (b"% ", b"\n"),
+}
+"""What stands around a digest in a file of a format; elsewhere it is a line."""
+
+
+class Integrity(enum.Enum):
+    """Whether the content of a file is that which was written."""
+
+    WHOLE = "whole"
+    DAMAGED = "damaged"
+    UNKNOWN = "without a digest"
+
+
+def seal(path: Path, suffix: str) -> str:
+    """Add the digest to a file that is finished otherwise, and return it.
+
+    Parameters
+    ----------
+    path : Path
+        The file; JSON must be a mapping that ends in a brace and a new line.
+    suffix : str
+        Ending of the name that it will have, which tells its format.
+    """
+    before, after = _COMMENT.get(suffix, (b"\n", b"\n"))
+    with path.open("rb+") as file:
+        if suffix == ".json":
+            file.truncate(file.seek(-len(b"\n}\n"), os.SEEK_END))
+        file.seek(0, os.SEEK_END)
+        file.write(before + _MARK)
+        file.seek(0)
+        content = hashlib.file_digest(file, "sha256")
+        content.update(after)
+        file.write(content.hexdigest().encode() + after)
+    return content.hexdigest()
+
+
+def integrity(path: Path) -> tuple[Integrity, str]:
+    """Whether a file is as it was written, and the digest that it states; empty where none is."""
+    with path.open("rb") as file:
+        start = max(0, file.seek(0, os.SEEK_END) - _TAIL)
+        file.seek(start)
+        tail = file.read()
+        place = _place_of_mark(tail)
+        if place is None:
+            return Integrity.UNKNOWN, ""
+        digits = place + len(_MARK)
+        stated, left = tail[digits : digits + _DIGITS], start + digits
+        content = hashlib.sha256()
+        file.seek(0)
+        while left and (block := file.read(min(left, 2**20))):
+            content.update(block)
+            left -= len(block)
+    content.update(tail[digits + _DIGITS :])
+    if content.hexdigest().encode() != stated:
+        return Integrity.DAMAGED, ""
+    return Integrity.WHOLE, content.hexdigest()
+
+
+def _place_of_mark(tail: bytes) -> int | None:
+    """Where the mark of a digest begins in the end of a file, even if it is damaged or cut off."""
+    if (place := tail.rfind(_MARK)) >= 0:
+        return place
+    alike = [sum(map(operator.eq, tail[place:], _MARK)) for place in range(len(tail))]
+    most = max(alike, default=0)
+    return alike.index(most) if most >= _RESEMBLES else None

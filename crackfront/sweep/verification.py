@@ -1,0 +1,138 @@
+"""Whether the files of a folder of results, or of its archive, are as they were written."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import tempfile
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from zipfile import BadZipFile, ZipFile
+
+from crackfront.data.digests import Integrity, integrity
+from crackfront.data.files import UnreadableFileError, integrities, read_attributes
+from crackfront.sweep.journal import journal_paths, read_journal
+from crackfront.sweep.store import SUMS
+from crackfront.sweep.table import row_fingerprint
+
+LINES = "lines of journals"
+"""What journals are counted as, which have a checksum a line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """What was found in a folder.
+
+    Attributes
+    ----------
+    counts : dict
+        Number of files by the folder that they stand in, and of lines of journals, each by whether
+        they are as they were written.
+    damaged, missing : tuple of str
+        Files that are not as they were written, and files that a list or a journal names and that
+        are not there.
+    """
+
+    counts: dict[str, Counter[Integrity]]
+    damaged: tuple[str, ...]
+    missing: tuple[str, ...]
+
+
+def verification(place: Path) -> Verification:
+    """Check all files of a folder, or of an archive of it.
+
+    Raises
+    ------
+    UnreadableFileError
+        If there is no such folder, or the archive cannot be read.
+    """
+    with _folder(place) as folder:
+        named = _named_curves(folder)
+        found = [*_files(folder, named), *_lines(folder), *_sums(folder)]
+        counts: dict[str, Counter[Integrity]] = defaultdict(Counter)
+        for group, _, state in found:
+            if group:
+                counts[group][state] += 1
+        damaged = [name for _, name, state in found if state is Integrity.DAMAGED]
+        wanted = [*(f"curves/{name}" for name in named), *(name for name, _ in _listed(folder))]
+        missing = [name for name in wanted if not (folder / name).is_file()]
+    return Verification(dict(counts), tuple(dict.fromkeys(damaged)), tuple(dict.fromkeys(missing)))
+
+
+def _files(folder: Path, named: dict[str, set[str]]) -> Iterator[tuple[str, str, Integrity]]:
+    """Files of a folder, by the folder in it, and whether they are as they were written."""
+    for path, state in integrities(folder):
+        name = path.relative_to(folder)
+        curve = name.parts[0] == "curves" and state is Integrity.WHOLE
+        strange = curve and not _is_own(path, named)
+        yield str(name.parent), str(name), Integrity.DAMAGED if strange else state
+
+
+def _lines(folder: Path) -> Iterator[tuple[str, str, Integrity]]:
+    """The same of the lines of its journals."""
+    for path in journal_paths(folder / "journals"):
+        with path.open("rb") as lines:
+            n_line = sum(1 for _ in lines)
+        n_whole = sum(1 for _ in read_journal(path, ""))
+        for state, count in ((Integrity.WHOLE, n_whole), (Integrity.DAMAGED, n_line - n_whole)):
+            yield from [(LINES, str(path.relative_to(folder)), state)] * count
+
+
+def _sums(folder: Path) -> Iterator[tuple[str, str, Integrity]]:
+    """Files, counted elsewhere, that do not have the checksum of the list of an archive."""
+    for name, checksum in _listed(folder):
+        if (folder / name).is_file() and _checksum(folder / name) != checksum:
+            yield "", name, Integrity.DAMAGED
+
+
+@contextlib.contextmanager
+def _folder(place: Path) -> Iterator[Path]:
+    """A folder, or that which an archive holds."""
+    if place.is_dir():
+        yield place
+        return
+    if not place.is_file():
+        raise UnreadableFileError(f"{place} does not exist; name a folder of results or an archive")
+    with tempfile.TemporaryDirectory() as temporary:
+        try:
+            with ZipFile(place) as archive:
+                archive.extractall(temporary)
+        except (BadZipFile, EOFError, ValueError, OSError, NotImplementedError) as error:
+            raise UnreadableFileError(
+                f"{place} is no archive, or damaged ({error}); restore it or pack it again"
+            ) from error
+        inner = list(Path(temporary).iterdir())
+        yield inner[0] if len(inner) == 1 else Path(temporary)
+
+
+def _named_curves(folder: Path) -> dict[str, set[str]]:
+    """Files that journals name, with the digests that they state."""
+    named: dict[str, set[str]] = defaultdict(set)
+    for path in journal_paths(folder / "journals"):
+        for _, entry in read_journal(path, row_fingerprint()):
+            if entry.row is not None and entry.row.curve:
+                named[entry.row.curve].add(entry.digest)
+    return named
+
+
+def _is_own(path: Path, named: dict[str, set[str]]) -> bool:
+    """Whether a file that is whole is that of the simulation after which it is named."""
+    if integrity(path)[1] in named.get(path.name, ()):
+        return True
+    return path.stem.endswith(f"-{read_attributes(path).get('key')}")
+
+
+def _listed(folder: Path) -> Iterator[tuple[str, str]]:
+    """Names and checksums that the list of an archive states."""
+    if (folder / SUMS).is_file():
+        for line in (folder / SUMS).read_text(encoding="utf-8", errors="replace").splitlines():
+            checksum, _, name = line.partition("  ")
+            yield name, checksum
+
+
+def _checksum(path: Path) -> str:
+    """SHA-256 of a whole file."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
