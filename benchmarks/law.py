@@ -32,7 +32,8 @@ import click
 import numpy as np
 
 from benchmarks.law_page import renewed_page
-from crackfront.analysis.estimate import REACH, mean_estimate
+from crackfront.analysis.estimate import REACH, mean_estimate, with_error
+from crackfront.analysis.finding import departure_of_spheres, finding
 from crackfront.analysis.law import (
     LawCell,
     SphereFactors,
@@ -339,6 +340,12 @@ def text_of(rows: Sequence[Any]) -> str:
     return lines.getvalue()
 
 
+def departures(rows: Sequence[SphereRow]) -> list[float]:
+    """How far the law's k are from simulated ones where g is above 1, relative to these."""
+    found = ((law_of(row), row) for row in rows)
+    return [law.both.value / row.both - 1 for law, row in found if law.size > 1]
+
+
 def sphere_table(rows: Sequence[SphereRow]) -> str:
     """Markdown table of simulated and predicted k, and how far they are apart for g above 1.
 
@@ -348,17 +355,16 @@ def sphere_table(rows: Sequence[SphereRow]) -> str:
         "| spectrum | e_el/w_int | radius | g | k, line alone | k, simulated | difference |",
         "| --- | --- | --- | --- | --- | --- | --- |",
     ]
-    apart, inside = [], 0
+    apart, inside = departures(rows), 0
     for row in rows:
         law = law_of(row)
         difference = law.both.value / row.both - 1
         if law.size > 1:
-            apart.append(difference)
             inside += is_covered(row, law)
         lines.append(
             f"| {row.spectrum} | {row.elastic_energy:.3g} | {row.contact_radius:.3g} | "
             f"{law.size:.2g} | {law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f}) | "
-            f"{row.both:.2f} ± {row.both_error:.2f} | {difference:+.1%} |"
+            f"{with_error(row.both, row.both_error)} | {difference:+.1%} |"
         )
     rms, worst = np.sqrt(np.mean(np.square(apart))), np.max(np.abs(apart))
     lines += [
@@ -410,9 +416,12 @@ def draw_law(folder: Path, rows: Sequence[SphereRow]) -> tuple[Path]:
 def renew_pages(folder: Path, rows: Sequence[SphereRow]) -> tuple[Path, ...]:
     """Write the numbers of the shipped law into the pages of a checkout."""
     paths = tuple(folder / name for name in PAGES)
+    apart = departures(rows)
+    rms = float(np.sqrt(np.mean(np.square(apart))))
+    found = finding(departure_of_spheres(rms, len(apart), len(rows)))
     for path in paths:
         text = path.read_text(encoding="utf-8")
-        renewed = renewed_page(text, shipped_law(), measured_cells(), sphere_table(rows))
+        renewed = renewed_page(text, shipped_law(), measured_cells(), sphere_table(rows), found)
         write_text(path, renewed)
     return paths
 

@@ -8,25 +8,17 @@ import textwrap
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import brentq
 
-from crackfront.analysis.law import (
-    COEFFICIENTS,
-    WEAKEST,
-    Law,
-    LawCell,
-    law_value,
-    pinning_factor,
-)
-from crackfront.analysis.report import PAPER_FACTOR
+from crackfront.analysis.finding import PAPER_FACTOR, STRONG, crossing
+from crackfront.analysis.law import COEFFICIENTS, WEAKEST, Law, LawCell, pinning_factor
 
-DISORDERS = (WEAKEST, 0.2, 0.4, 0.84)
+DISORDERS = (WEAKEST, 0.2, 0.4, STRONG)
 """Disorders s of the table of the infinite contact."""
 
 _MARK = re.compile(r"(<!-- (\S+) of the law -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
-def renewed_page(text: str, law: Law, cells: Sequence[LawCell], spheres: str) -> str:
+def renewed_page(text: str, law: Law, cells: Sequence[LawCell], spheres: str, finding: str) -> str:
     """Page whose marked parts are those of a law.
 
     Parameters
@@ -37,6 +29,8 @@ def renewed_page(text: str, law: Law, cells: Sequence[LawCell], spheres: str) ->
         The law and what it was fitted to.
     spheres : str
         Table of spheres, in Markdown.
+    finding : str
+        The sentences that pages open with.
 
     Raises
     ------
@@ -45,10 +39,10 @@ def renewed_page(text: str, law: Law, cells: Sequence[LawCell], spheres: str) ->
     """
     parts = {
         "coefficients": coefficients_part(law),
-        "limit": limit_part(law),
+        "limit": limit_part(),
         "fronts": fronts_part(cells),
         "spheres": spheres,
-        "finding": finding_part(law),
+        "finding": _wrapped(finding),
     }
 
     def part(found: re.Match[str]) -> str:
@@ -89,7 +83,7 @@ def _named(values: Sequence[float], errors: Sequence[float]) -> list[tuple[str, 
     return list(zip(COEFFICIENTS, values, errors, strict=True))
 
 
-def limit_part(law: Law) -> str:
+def limit_part() -> str:
     """Table of k in the infinite contact, and where it is 3."""
     rows = []
     for s in DISORDERS:
@@ -98,7 +92,11 @@ def limit_part(law: Law) -> str:
         rows.append(
             f"| {name} | {k.value:.2f} ({k.low:.2f} to {k.high:.2f}) | {found.negative_share:.1%} |"
         )
-    text = f"In the infinite contact k is {PAPER_FACTOR:g} at s = {crossing(law):.2f} alone."
+    s, low, high = crossing()
+    text = (
+        f"In the infinite contact k is {PAPER_FACTOR:g} at s = {s:.2f} ({low:.2f} to {high:.2f}) "
+        "alone."
+    )
     return "\n".join(
         [
             "| s | k, infinite contact (95% interval) | share of negative w_loc |",
@@ -110,15 +108,6 @@ def limit_part(law: Law) -> str:
     )
 
 
-def crossing(law: Law) -> float:
-    """Disorder s at which k of the infinite contact is that of the paper's fit."""
-
-    def excess(s: float) -> float:
-        return float(law_value(law.coefficients, s, math.inf)) - PAPER_FACTOR
-
-    return float(brentq(excess, 0.0, 2.0))
-
-
 def fronts_part(cells: Sequence[LawCell]) -> str:
     """How far fronts reach: their rms, a power law of g by least squares for g above 1."""
     large = [cell for cell in cells if cell.size > 1 and cell.front_rms > 0]
@@ -128,20 +117,6 @@ def fronts_part(cells: Sequence[LawCell]) -> str:
     return _wrapped(
         f"Observed over {len(large)} spectra, amplitudes and springs with g above 1: "
         f"u_rms = {math.exp(start):.2f} xi_u g^{exponent:.2f}, within {scatter:.0%} rms."
-    )
-
-
-def finding_part(law: Law) -> str:
-    """What was found, in a sentence."""
-    weak, strong = (
-        float(law_value(law.coefficients, s, math.inf)) for s in (DISORDERS[0], DISORDERS[-1])
-    )
-    return _wrapped(
-        "What was found: k is no constant but a function of disorder, s = w_rms/w_int, and size; "
-        f"in the infinite contact it falls from {weak:.1f} at weak disorder to {strong:.1f} at s = "
-        f"{DISORDERS[-1]:g} and is {PAPER_FACTOR:g}, as the paper's fit has it, at s = "
-        f"{crossing(law):.2f}; in a finite contact it is less, and a straight front on springs "
-        "says by how much."
     )
 
 

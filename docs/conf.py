@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from docutils import nodes
+from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
+from sphinx.util.math import get_node_equation_number
+from sphinx.writers.html5 import HTML5Translator
 
 import crackfront
 
@@ -16,7 +20,6 @@ version = release = crackfront.__version__
 extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
-    "sphinx.ext.mathjax",
     "numpydoc",
     "myst_parser",
     "sphinx_gallery.gen_gallery",
@@ -76,6 +79,11 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
 }
 
+# MathML, which browsers draw themselves: no script, and nothing from a network.
+html_math_renderer = "mathml"
+html_css_files = ["equations.css"]
+html_static_path = ["_static"]
+
 html_theme = "pydata_sphinx_theme"
 html_title = "crackfront"
 html_show_sourcelink = False
@@ -86,19 +94,23 @@ html_sidebars = {
         "index",
         "tutorial",
         "equations",
+        "law",
         "model",
         "accuracy",
         "validation",
         "command-line",
         "architecture",
         "surfaces",
+        "sweeps",
         "cluster",
         "gallery",
     )
 }
 html_theme_options = {
     "navigation_with_keys": False,
-    "header_links_before_dropdown": 6,
+    # More would not stand in one row on a screen of 1280 pixels.
+    "header_links_before_dropdown": 5,
+    "navbar_persistent": ["search-button"],
     "show_toc_level": 2,
     "secondary_sidebar_items": ["page-toc"],
     "footer_start": ["copyright"],
@@ -122,7 +134,26 @@ def _escape_magnitudes(
         lines[0] = lines[0].replace("|", r"\|")
 
 
+def _visit_math(self: HTML5Translator, node: nodes.math) -> None:
+    """Write a formula in a line."""
+    self.body.append(tex2mathml(node.astext()))
+    raise nodes.SkipNode
+
+
+def _visit_displaymath(self: HTML5Translator, node: nodes.math_block) -> None:
+    """Write an equation of its own, with its number if it has one."""
+    self.body.append(self.starttag(node, "div", CLASS="equation"))
+    self.body.append(tex2mathml(node.astext(), as_block=True))
+    if node["number"]:
+        self.body.append(f'<span class="eqno">({get_node_equation_number(self, node)})')
+        self.add_permalink_ref(node, "Link to this equation")
+        self.body.append("</span>")
+    self.body.append("</div>\n")
+    raise nodes.SkipNode
+
+
 def setup(app: Sphinx) -> None:
-    """Leave out what is not ours, before numpydoc reads what is."""
+    """Draw formulas, and leave out what is not ours before numpydoc reads what is."""
+    app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_displaymath, None))
     app.connect("autodoc-skip-member", _is_foreign)
     app.connect("autodoc-process-docstring", _escape_magnitudes, priority=400)

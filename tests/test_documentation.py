@@ -38,12 +38,35 @@ def test_the_tutorial_gives_what_it_shows():
 
 
 @pytest.mark.usefixtures("_elsewhere")
-@pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
-def test_the_python_of_a_page_runs(page):
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+def test_the_python_of_the_first_page_runs():
+    blocks = re.findall(r"```python\n(.*?)```", (DOCS / "index.md").read_text(), re.DOTALL)
     assert len(blocks) == 1
-    exec(compile(blocks[0], page, "exec"), {})
+    exec(compile(blocks[0], "index.md", "exec"), {})
     assert len(pyplot.get_fignums()) == 1
+
+
+def test_the_readme_is_a_screen_with_two_commands_to_set_up_and_one_to_predict():
+    text = (ROOT / "README.md").read_text()
+    setup, predict = re.findall(r"```sh\n(.*?)```", text, re.DOTALL)
+    assert [line.split("#")[0].split() for line in setup.splitlines()] == [
+        ["make"],
+        ["make", "test"],
+    ]
+    assert predict.startswith(".venv/bin/crackfront predict")
+    assert len(text.splitlines()) < 60
+    # The picture, the finding and the commands stand before the links.
+    places = [text.index(word) for word in ("law.png", "finding of the law", "make test", "- **")]
+    assert places == sorted(places)
+
+
+@pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", *map(str, DOCS.glob("*.md"))])
+def test_every_link_of_a_page_to_a_file_leads_to_one(page):
+    path = ROOT / page
+    links = re.findall(r"\]\(([^)#\s]+)", path.read_text())
+    here = [link for link in links if not re.match(r"\w+:", link)]
+    # The pages of the examples are made with the pages.
+    missing = [link for link in here if not (path.parent / link).exists()]
+    assert [link for link in missing if not link.startswith("examples/")] == []
 
 
 def test_the_page_of_the_command_line_names_every_command_and_exit_code():

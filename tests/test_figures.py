@@ -150,7 +150,15 @@ def test_a_wrong_smooth_loop_fails_its_checks(smooth):
 
 def test_a_check_that_fails_says_so():
     assert "**FAIL**" in "\n".join(checks_table([close_to("a", 1.0, 2.0, 0.5)]))
-    assert "pass" in "\n".join(checks_table([Check("a", "1", "1", passed=True)]))
+    assert "| agrees |" in "\n".join(checks_table([Check("a", "1", "1", passed=True)]))
+
+
+def test_a_difference_that_the_law_foretells_is_told_with_its_number():
+    foretold = close_to("k", 2.1, 3.0, 0.5, law=(2.2, 0.2))
+    assert foretold.result == "differs as the law of k says"
+    assert "differs as the law of k says: 2.20 ± 0.20 |" in "\n".join(checks_table([foretold]))
+    assert close_to("k", 2.9, 3.0, 0.5, law=(2.2, 0.2)).result == "agrees"
+    assert close_to("k", 1.9, 3.0, 0.5, law=(2.2, 0.2)).result == "FAIL"
 
 
 def test_commands_compute_draw_and_check_a_figure(tmp_path):
@@ -164,7 +172,7 @@ def test_commands_compute_draw_and_check_a_figure(tmp_path):
     assert run("draw-figure", data).exit_code == 0
     assert data.with_suffix(".pdf").stat().st_size > 1000
     assert run("check-figures", "--output", output).exit_code == 0
-    assert "4 of 4 checks pass" in (output / "checks.md").read_text()
+    assert "4 of 4 agree, 0 differ" in (output / "checks.md").read_text()
     told = json.loads(run("check-figures", "--output", output, "--json").stdout)
     assert [(one["figure"], one["scale"], one["passed"]) for one in told] == [
         ("main-1d", "quick", True)

@@ -10,7 +10,8 @@ import pytest
 from scipy.integrate import quad
 
 from benchmarks.law import PAGES, draw_law, law_of, read_spheres, renew_pages, sphere_table
-from benchmarks.law_page import crossing, limit_part, renewed_page
+from benchmarks.law_page import limit_part, renewed_page
+from crackfront.analysis.finding import crossing, departure_of_spheres, finding, least_size
 from crackfront.analysis.law import (
     LEAST_SIZE,
     TYPICAL_BREADTH,
@@ -220,14 +221,26 @@ def test_the_pages_tell_the_numbers_of_the_shipped_law(tmp_path):
 def test_a_part_that_there_is_not_is_refused(law):
     page = "<!-- weather of the law -->\n<!-- end -->"
     with pytest.raises(ValueError, match="no part of the law is weather; choose one of coeff"):
-        renewed_page(page, law, measured_cells(), "")
+        renewed_page(page, law, measured_cells(), "", "")
 
 
 def test_the_table_of_the_limit_holds_its_values_and_where_k_is_that_of_the_paper(law):
-    text = limit_part(law)
+    text = limit_part()
     k = pinning_factor(0.4, np.inf).factor
     assert f"| 0.4 | {k.value:.2f} ({k.low:.2f} to {k.high:.2f}) |" in text
-    assert float(law_value(law.coefficients, crossing(law), np.inf)) == pytest.approx(3)
+    s, low, high = crossing()
+    assert float(law_value(law.coefficients, s, np.inf)) == pytest.approx(3)
+    assert pinning_factor(low, np.inf).factor.low == pytest.approx(3)
+    assert pinning_factor(high, np.inf).factor.high == pytest.approx(3)
+
+
+def test_the_finding_is_three_sentences_with_the_numbers_of_the_law(law):
+    text = finding(departure_of_spheres(0.0251, 65, 87))
+    assert len(re.findall(r"\.(?= [A-Z]|$)", text)) == 3
+    k_0 = pinning_factor(WEAKEST, np.inf).factor
+    assert f"k is {k_0.value:.2f} ({k_0.low:.2f} to {k_0.high:.2f}) at vanishing" in text
+    assert float(law_value(law.coefficients, 0.0, least_size())) == pytest.approx(3)
+    assert "within 2.5% rms where g is above 1 (65 of 87" in text
 
 
 def test_the_table_of_spheres_states_how_far_the_law_is():

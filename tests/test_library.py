@@ -393,7 +393,7 @@ def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     assert float(found.x[144]) == 0
     told = found.attrs
     assert told["source"].startswith(f"{SCAN}, al3d, checksum ")
-    assert told["levelling"].startswith("the paraboloid that fits best was taken off")
+    assert told["levelling"].startswith("the paraboloid was taken off")
     assert told["tile"].startswith("mirrored at its edges, where a scan does not go on")
     assert told["waves"].startswith("those shorter than 400 nm were taken away")
     assert "larger than the scan of 7.2 um" in told["contact"]
@@ -406,7 +406,8 @@ def test_a_prediction_shows_itself_with_intervals_limits_and_notes():
     assert found.w_retr == expected.w_retr
     assert found.surface.checksum == surface.checksum
     shown = repr(found)
-    assert prediction_text(surface, expected) in shown
+    assert prediction_text(expected) in shown
+    assert "\nThe theory applies" in shown
     assert surface_text(surface) in shown
     for note in prediction_notes(surface, expected):
         assert note in shown

@@ -1,5 +1,6 @@
 """The package: its version from git or without, its wheel, and what cites it."""
 
+import re
 import subprocess
 import sys
 import tarfile
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from packaging.version import Version
 
 from crackfront import __version__
 
@@ -18,6 +20,11 @@ ROOT = Path(__file__).parents[1]
 pytestmark = pytest.mark.skipif(
     not (ROOT / ".git").exists(), reason="these sources are no clone of the repository"
 )
+
+
+COMING = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools_scm"][
+    "fallback_version"
+]
 
 
 def told(*command, **options):
@@ -58,10 +65,12 @@ def wheel(archive, tmp_path_factory):
     return path
 
 
-def test_a_shallow_clone_without_tags_has_a_version_that_names_its_commit(tmp_path):
+def test_a_clone_without_tags_has_the_coming_version_and_names_its_commit(tmp_path):
     told("git", "clone", "-q", "--depth", "1", "--no-tags", f"file://{ROOT}", tmp_path / "clone")
     commit = told("git", "-C", ROOT, "rev-parse", "--short=7", "HEAD")
-    assert f"+g{commit}" in scm_version(tmp_path / "clone")
+    found = scm_version(tmp_path / "clone")
+    assert found.startswith(COMING.replace("dev0", "dev"))
+    assert f"+g{commit}" in found
 
 
 def test_a_tagged_commit_has_the_version_of_its_tag(tmp_path):
@@ -70,12 +79,19 @@ def test_a_tagged_commit_has_the_version_of_its_tag(tmp_path):
     assert scm_version(tmp_path / "clone") == "7.1.0"
 
 
-def test_a_tarball_names_its_commit_and_bare_sources_the_last_release(archive, tmp_path):
+def test_sources_without_git_have_the_coming_version_and_a_tarball_names_its_commit(
+    archive, tmp_path
+):
     commit = told("git", "-C", ROOT, "rev-parse", "HEAD")
-    assert f"node: {commit}" in (archive / ".git_archival.txt").read_text()
+    assert f"commit: {commit}" in (archive / ".git_archival.txt").read_text()
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         (tmp_path / name).write_bytes((archive / name).read_bytes())
-    assert scm_version(tmp_path) == "0.1.0"
+    assert scm_version(tmp_path) == scm_version(archive) == COMING
+
+
+def test_the_coming_version_is_above_the_last_one_of_the_changelog():
+    released = re.findall(r"^## (\d[\d.]*)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    assert Version(COMING) > Version(released[0])
 
 
 def test_the_wheel_holds_the_laws_and_the_types_and_no_tests(wheel):
@@ -117,3 +133,28 @@ def test_the_citation_names_the_paper_and_the_licence():
     assert (ROOT / "LICENSE").read_text().startswith("MIT License")
     [paper] = citation["references"]
     assert "stickier" in paper["title"]
+
+
+def test_the_catalogue_of_workflows_finds_what_it_asks_for():
+    usage = yaml.safe_load((ROOT / ".snakemake-workflow-catalog.yml").read_text())["usage"]
+    assert set(usage) == {"mandatory-flags", "software-stack-deployment"}
+    flags = usage["mandatory-flags"]["flags"].split()
+    assert (ROOT / flags[flags.index("--profile") + 1] / "config.yaml").is_file()
+    assert (ROOT / flags[-1].removeprefix("sweep=")).is_file()
+    readme = (ROOT / "README.md").read_text().lower()
+    assert "snakemake" in readme
+    assert "workflow" in readme
+    assert (ROOT / "config/README.md").is_file()
+
+
+def test_the_paper_cites_what_its_bibliography_has():
+    text, references = ((ROOT / name).read_text() for name in ("paper.md", "paper.bib"))
+    known = re.findall(r"^@\w+\{(\w+),", references, re.MULTILINE)
+    assert set(re.findall(r"@(\w+)", text)) == set(known)
+    assert len(set(known)) == len(known)
+    # Two pages.
+    assert 600 < len(text.split("---", 2)[2].split()) < 1200
+
+
+def test_the_job_script_is_one_that_bash_can_read():
+    told("bash", "-n", ROOT / "workflow/sbatch.sh")

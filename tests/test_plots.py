@@ -20,7 +20,7 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.plots.loop import loop_figure, pinning_figure
+from crackfront.plots.loop import loop_figure, pinning_figure, steady_loop_figure
 from crackfront.plots.style import COLOURS, MARKERS, save_figure
 from crackfront.plots.sweep import factor_figure, hysteresis_figure
 
@@ -85,7 +85,7 @@ def test_the_theory_lines_lie_where_theory_says(table, fit):
     for factor, words in ((3, "paper"), (4, "perturbation")):
         variance, hysteresis = line_labelled(axes, words).get_data()
         np.testing.assert_allclose(hysteresis, factor * variance / 2)
-    pooled = line_labelled(factor_figure(table, fit).axes[0], "fit")
+    pooled = line_labelled(factor_figure(table, fit).axes[0], "pooled")
     np.testing.assert_allclose(pooled.get_data(), ([0.01, 0.15], [fit.pooled.factor.value] * 2))
 
 
@@ -272,6 +272,23 @@ def test_the_loop_lies_between_its_curves(record):
         np.testing.assert_allclose(force, jkr.equilibrium_force(radius, adhesion))
     drawn = line_labelled(axes, "approach").get_xdata()
     np.testing.assert_array_equal(drawn, record.states.mean_radius[record.states.direction > 0])
+
+
+def test_steady_parts_are_drawn_on_the_loop_that_they_stand_for(record):
+    steady = steady_adhesion(record, 0.1)
+    works, window = measured(steady)
+    left, right = steady_loop_figure(
+        record.states, works, window, elastic_energy=0.01, title="steady"
+    ).axes[:2]
+    # From no contact to the turn and back, through the pull-off force of w_retr.
+    curves = [line.get_xydata() for line in left.get_lines()]
+    assert min(points[:, 0].min() for points in curves) == 0
+    smooth = [points[:, 1].min() for points in curves if len(points) == 300]
+    assert min(smooth) == pytest.approx(jkr.pull_off_force(works[1]), abs=1e-3)
+    assert left.get_ylim()[0] < jkr.pull_off_force(works[1])
+    assert "steady" in left.get_title()
+    assert right.get_legend() is None
+    assert left.figure.legends[0].get_texts()
 
 
 def test_a_loop_without_steady_states_is_drawn_without_curves(record):

@@ -15,12 +15,12 @@ from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.studies.paper.si_6 import profile_periodogram
 from crackfront.topography.bands import scan as scan_of
 from crackfront.topography.densities import periodogram, profile_density, topography
+from crackfront.topography.instruments import surface_library
 from crackfront.topography.measures import measured_mean_square, measured_surface
 from crackfront.topography.reading import (
     Measurement,
     Treatment,
     read_measurements,
-    surface_library,
 )
 from crackfront.topography.tile import measured_adhesion, zero_load_radius
 

@@ -51,6 +51,22 @@ class Estimate(Generic[Number]):
         return Estimate(*map(function, (self.value, self.standard_error, self.low, self.high)))
 
 
+def with_error(value: float, error: float) -> str:
+    """Number and error in equal digits, two of which are the error's; of a tiny one six in all.
+
+    Examples
+    --------
+    >>> with_error(0.795242, 0.0256), with_error(2.0314, 0.0042), with_error(60.3, 10.05)
+    ('0.795 ± 0.026', '2.0314 ± 0.0042', '60 ± 10')
+    >>> with_error(2.0, 1e-9)
+    '2 ± 1e-09'
+    """
+    if not 1e-6 * abs(value) < error < np.inf:
+        return f"{value:.6g} ± {error:.2g}"
+    digits = max(0, 1 - int(np.floor(np.log10(error))))
+    return f"{value:.{digits}f} ± {error:.{digits}f}"
+
+
 def normal_estimate(value: float, standard_error: float) -> Estimate[float]:
     """Estimate with the interval of the normal distribution."""
     reach = REACH * standard_error

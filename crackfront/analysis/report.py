@@ -6,15 +6,18 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import Estimate, with_error
+from crackfront.analysis.finding import (
+    PAPER_FACTOR,
+    PERTURBATION_FACTOR,
+    departure_of_spheres,
+    finding,
+)
 from crackfront.analysis.law import LEAST_SIZE
 from crackfront.analysis.result import LawEstimates, SweepFit
 
 MISSING = "-"
 """What stands where the data give no number."""
-
-PAPER_FACTOR, PERTURBATION_FACTOR = 3.0, 4.0
-"""k of the paper's fit, and of second-order perturbation theory in the limit of weak disorder."""
 
 ONSET = 0.5
 """A k below this part of the spectrum's largest counts as below the onset of hysteresis."""
@@ -28,12 +31,19 @@ def fit_table(fit: SweepFit) -> str:
         [
             f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el",
             "",
+            finding(_departure(fit)),
+            "",
+            f"This sweep, {n_simulation} simulations: k = {pooled_text(fit)}.",
+            "",
+            "## The fit",
+            "",
             f"Range: e_el/w_int from {fit.lowest_elastic_energy:g} to "
             f"{fit.highest_elastic_energy:g} ({in_range} of {fit.in_range.size} amplitudes); "
             f"{n_simulation} simulations, {int(np.sum(fit.n_failed))} without a value. "
             "Values with 95% intervals (Student's t with the bootstrap's standard error, "
             f"{fit.n_bootstrap} samples of realisations). k is the mean over the amplitudes with "
-            "equal weights.",
+            "equal weights. Behind a pooled k stand how far the spectra lie apart, and the largest "
+            "bias that the numerics may leave; its interval holds neither.",
             "",
             *_law_rows(fit),
             "",
@@ -93,7 +103,16 @@ def _law_rows(fit: SweepFit) -> list[str]:
     ]
     law = "2", "1" if fit.kind == "roughness" else "0", "0"
     rows += [
-        ("**pooled**", "", str(np.sum(fit.n_realisation)), *_law_entries(fit.pooled, ())),
+        (
+            "**pooled**",
+            "",
+            str(np.sum(fit.n_realisation)),
+            *(
+                _pooled_entry(fit, getattr(fit.pooled, name), getattr(fit.spectra, name))
+                for name in ("factor", "factor_by_sums")
+            ),
+            *_law_entries(fit.pooled, ())[2:],
+        ),
         ("paper", "", "", *[f"{PAPER_FACTOR:g}"] * 2, *law),
         ("2nd-order perturbation theory", "", "", *[f"{PERTURBATION_FACTOR:g}"] * 2, *law),
     ]
@@ -110,6 +129,24 @@ def _law_entries(law: LawEstimates, index: tuple[int, ...]) -> tuple[str, ...]:
         law.disorder_slope,
     )
     return tuple(_with_interval(column, index) for column in columns)
+
+
+def pooled_text(fit: SweepFit) -> str:
+    """The pooled k with its interval, how far spectra lie apart, and what the numerics may do."""
+    return _pooled_entry(fit, fit.pooled.factor, fit.spectra.factor)
+
+
+def _pooled_entry(fit: SweepFit, pooled: Estimate, spectra: Estimate) -> str:
+    """A pooled k, which without the scatter of its spectra and its bias would say too much."""
+    return "; ".join([_with_interval(pooled, ()), *pooled_limits(fit, spectra)])
+
+
+def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
+    """What no interval of a pooled k holds, as far as it is known."""
+    known = spectra.value[np.isfinite(spectra.value)]
+    bias = _largest_numerical_error(fit)
+    apart = (f"spectra {known.min():.2f} to {known.max():.2f}",) if known.size > 1 else ()
+    return (*apart, f"numerical bias to {bias[0]:.2f}") if bias else apart
 
 
 def _cell_rows(fit: SweepFit) -> list[str]:
@@ -158,7 +195,7 @@ def _cell(fit: SweepFit, spectrum: int, amplitude: int) -> str:
         return MISSING
     value = fit.cells.factor.value[spectrum, amplitude]
     error = fit.cells.factor.standard_error[spectrum, amplitude]
-    return f"{value:.2f} ± {error:.2f} ({count})" if count > 1 else f"{value:.2f} (1)"
+    return f"{with_error(value, error)} ({count})" if count > 1 else f"{value:.2f} (1)"
 
 
 def _midpoint_sentence(fit: SweepFit) -> str:
@@ -205,7 +242,7 @@ def _force_rows(fit: SweepFit) -> list[str]:
         )
         for index, name in enumerate(fit.table.spectrum)
     ]
-    pooled = _with_interval(fit.pooled.factor_from_force, ())
+    pooled = _pooled_entry(fit, fit.pooled.factor_from_force, fit.spectra.factor_from_force)
     return _markdown(header, [*rows, ("**pooled**", "", "", "", "", pooled)])
 
 
@@ -232,7 +269,7 @@ def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]
 
 
 def fit_notes(fit: SweepFit) -> tuple[str, ...]:
-    """How k depends on disorder and size and how far spectra differ, then gaps and failures."""
+    """How k depends on disorder and size, how far spectra differ, then gaps and failures."""
     return (
         trend_sentence(fit),
         *_spread_sentences(fit),
@@ -244,15 +281,14 @@ def fit_notes(fit: SweepFit) -> tuple[str, ...]:
 
 
 def trend_sentence(fit: SweepFit) -> str:
-    """Say that k is no constant, how near its law is, and which trends the sweep resolves."""
+    """Say that k is no constant, and which trends the sweep resolves."""
     disorder = _change(fit.pooled.disorder_slope, "per doubling of w_rms within a spectrum")
     size = _change(
         fit.pooled_size_slope, "per doubling of the correlation length among spectra of one shape"
     )
     return (
-        "k is a function of disorder and of size, not a constant"
-        + _departure(fit)
-        + ", so that each k of a spectrum is an average over the stated range: "
+        "k is a function of disorder and of size, not a constant, so that each k of a spectrum "
+        "is an average over the stated range: "
         + (disorder or "its trend with w_rms needs two amplitudes")
         + "; "
         + (size or "its trend with size needs two spectra of one shape and different lengths")
@@ -261,12 +297,15 @@ def trend_sentence(fit: SweepFit) -> str:
 
 
 def _departure(fit: SweepFit) -> str:
-    """How near the law is, in words; empty if no cell is large enough to tell."""
+    """How near the law is, in words."""
     if not fit.n_large:
-        return ""
+        return "; in this sweep no contact is large enough to tell, as g is nowhere above 1"
+    counts = int(fit.n_large), fit.cells.size.size
+    if not fit.table.straight:
+        return departure_of_spheres(float(fit.law_departure), *counts)
     return (
-        f", and departs from its law (docs/law.md) by {100 * fit.law_departure:.2g}% rms where g "
-        f"is above 1 ({fit.n_large} of {fit.cells.size.size} spectra and amplitudes)"
+        f", and those of this sweep have its k within {fit.law_departure:.1%} rms where g is above "
+        f"1 ({counts[0]} of {counts[1]} spectra and amplitudes)"
     )
 
 
@@ -351,13 +390,21 @@ def _exponent_sentences(fit: SweepFit) -> Iterator[str]:
 
 def _numerical_sentences(fit: SweepFit) -> Iterator[str]:
     """What the discretisation may do to k."""
-    error = np.where(fit.table.finite, fit.table.numerical_error, np.nan)[:, fit.in_range]
-    if np.any(np.isfinite(error)):
-        spectrum, amplitude, _ = np.unravel_index(np.nanargmax(error), error.shape)
-        energy = fit.table.e_el_requested[fit.in_range][amplitude]
+    if found := _largest_numerical_error(fit):
+        error, spectrum, energy = found
         yield (
-            f"Numerical errors: up to {np.nanmax(error):.2g} of k "
-            f"({fit.table.spectrum[spectrum]} at e_el = {energy:.4g} w_int), by the measured laws; "
+            f"Numerical errors: up to {error:.2g} of k "
+            f"({spectrum} at e_el = {energy:.4g} w_int), by the measured laws; "
             "they are mostly a bias, which realisations do not average out, and no interval here "
             "holds them."
         )
+
+
+def _largest_numerical_error(fit: SweepFit) -> tuple[float, str, float] | None:
+    """Largest expected error of k in the range, with its spectrum and amplitude."""
+    error = np.where(fit.table.finite, fit.table.numerical_error, np.nan)[:, fit.in_range]
+    if not np.any(np.isfinite(error)):
+        return None
+    spectrum, amplitude, _ = np.unravel_index(np.nanargmax(error), error.shape)
+    energy = fit.table.e_el_requested[fit.in_range][amplitude]
+    return float(np.nanmax(error)), str(fit.table.spectrum[spectrum]), float(energy)

@@ -100,6 +100,8 @@ Exit codes:
       a cycle that ended early, ranks that failed, results that are damaged or do not
       agree
   2   the input cannot be used; one sentence says why, and nothing was computed
+  3   predict: the theory applies with reservations, each of which is named
+  4   predict: the theory does not apply, and what modulus, radius or roughness would do
   75  told to end (Ctrl-C or SIGTERM) before it was done; the same command goes on,
       or begins anew where it says so
 

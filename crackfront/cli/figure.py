@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import shutil
 import time
+from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
@@ -35,7 +36,9 @@ _GALLERY = (
     "# Gallery",
     "",
     "Every computed figure of the paper, beside what the paper states or what must be true. `make",
-    "figures` computes all of them, `crackfront gallery` writes this page.",
+    "figures` computes all of them, `crackfront gallery` writes this page. A check agrees; or it",
+    "differs from the paper as [the law of k](law.md) says, with the law's number beside it; or it",
+    "fails, and then the difference has no explanation.",
 )
 
 
@@ -102,26 +105,36 @@ def draw_figure(data: Path) -> None:
 def check_figures(output: Path, as_json: bool) -> None:
     """Compare the data of all figures with what the paper states, in checks.md."""
     from crackfront.data.files import write_text
-    from crackfront.studies.paper.figure import FIGURES, SCALES, checks_table
+    from crackfront.studies.paper.figure import FIGURES, SCALES, Result, checks_table
 
-    lines, found = ["# Checks of the figures"], []
+    lines: list[str] = []
+    found: list[dict[str, Any]] = []
+    counts: Counter[str] = Counter()
     paths = [(scale, output / scale / f"{name}.nc") for scale in SCALES for name in FIGURES]
     for scale, path in paths:
         if not path.exists():
             continue
         shown, record = _figure_and_record(path)
         checks = shown.checks(record)
-        found += [{"figure": path.stem, "scale": scale, **asdict(check)} for check in checks]
+        counts.update(check.result for check in checks)
+        found += [
+            {"figure": path.stem, "scale": scale, **asdict(check), "result": check.result}
+            for check in checks
+        ]
         lines += ["", f"## {shown.title} ({scale})", "", *checks_table(checks)]
     if not found:
         raise ValueError(f"{output} holds no data of figures; run crackfront figure first")
-    count, failed = len(found), sum(not check["passed"] for check in found)
-    lines += ["", f"{count - failed} of {count} checks pass.", ""]
+    agree, foretold, fail = (counts[result] for result in get_args(Result))
+    said = (
+        f"{agree} of {len(found)} agree, {foretold} differ from the paper as the law of k says "
+        f"(docs/law.md), {fail} fail"
+    )
+    lines = ["# Checks of the figures", "", f"{said}.", *lines, ""]
     write_text(output / "checks.md", "\n".join(lines), sealed=True)
     if as_json:
         echo_json(found)
         return
-    click.echo(f"checks: {output / 'checks.md'}, {failed} of {count} fail")
+    click.echo(f"checks: {output / 'checks.md'}, {said}")
 
 
 @click.command(epilog=examples("crackfront gallery --page docs/gallery.md"))

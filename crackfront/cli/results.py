@@ -99,11 +99,19 @@ def figures(configuration: Path, output: Path | None) -> None:
             click.echo(f"figure: {path}")
 
 
+_CAPTIONS = {
+    "factor": "The factor k against disorder (a) and against the size of the roughness (b).",
+    "hysteresis": "Hysteresis against disorder, and the spectra.",
+    "loop": "One simulation of the sweep: the loop of force against radius, or of a straight front "
+    "the pinning force against its load.",
+}
+
+
 @click.command(epilog=examples("crackfront summary config/default.yaml"))
 @configuration_argument
 @output_option
 def summary(configuration: Path, output: Path | None) -> None:
-    """Write summary.html: the fit, how the simulations ended, the configuration, the origin."""
+    """Write summary.html: result, figures, fit, how simulations ended, configuration, origin."""
     from crackfront.analysis.report import fit_table
     from crackfront.data.files import write_text
     from crackfront.sweep.summary import summary_page
@@ -114,6 +122,7 @@ def summary(configuration: Path, output: Path | None) -> None:
     page = summary_page(
         f"Adhesion hysteresis: {configuration.stem}",
         fit_table(_fitted(sweep, store)),
+        {text: store.folder / "figures" / f"{name}.png" for name, text in _CAPTIONS.items()},
         read_statuses(store.hysteresis),
         configuration.read_text(encoding="utf-8"),
         about | {"seed of the sweep": str(sweep.seed)},
@@ -174,9 +183,12 @@ def _fitted(sweep: Sweep, store: Store) -> SweepFit:
 
 def _loop(result: SimulationResult) -> Figure:
     """Loop of one simulation: force of a sphere, pinning force of a straight front."""
+    import numpy as np
+
     from crackfront.analysis.steady import steady_adhesion
     from crackfront.core.cycle.period import LineSchedule
-    from crackfront.plots.loop import loop_figure, pinning_figure
+    from crackfront.core.cycle.steady import SteadySchedule
+    from crackfront.plots.loop import loop_figure, pinning_figure, steady_loop_figure
 
     simulation, states = result.simulation, result.record.states
     schedule, energy = simulation.schedule, result.measures.e_el
@@ -185,9 +197,12 @@ def _loop(result: SimulationResult) -> Figure:
             states, schedule.n_period, elastic_energy=energy, title=simulation.label
         )
     steady = steady_adhesion(result.record, simulation.correlation_length)
-    return loop_figure(
+    works = steady.w_appr, steady.w_retr
+    # A sweep of steady parts has no loop to draw but the one that they stand for.
+    whole = not isinstance(schedule, SteadySchedule) or not np.all(np.isfinite(works))
+    return (loop_figure if whole else steady_loop_figure)(
         states,
-        (steady.w_appr, steady.w_retr),
+        works,
         (steady.lowest_radius, steady.highest_radius),
         elastic_energy=energy,
         kind=simulation.kind,

@@ -25,7 +25,9 @@ from crackfront.data.bounds import SEED, Range, in_time
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
     from crackfront.topography.measures import MeasuredSurface
-    from crackfront.topography.reading import Detrend
+    from crackfront.topography.prediction import Prediction
+    from crackfront.topography.reading import Treatment
+    from crackfront.topography.regions import Region
     from crackfront.topography.simulated import Simulated
     from crackfront.topography.tile import Placement
 
@@ -33,13 +35,18 @@ Command = Callable[..., None]
 
 _RESULTS = Path("results/predict")
 
+_EXIT_CODES = {"applies": 0, "applies with reservations": 3, "does not apply": 4}
+
 
 @dataclass(frozen=True, slots=True)
 class _Reading:
     """Files of a surface and how to read them, as options say it."""
 
     scans: tuple[Path, ...]
-    detrend: Detrend
+    channel: tuple[str, ...]
+    crop: tuple[str, ...]
+    detrend: str
+    mask: tuple[str, ...]
     unit: str | None
     size: str | None
     shortest: str | None
@@ -78,11 +85,28 @@ def _reading_options(command: Command) -> Command:
     options = (
         click.argument("scans", type=FILE, nargs=-1, required=True),
         click.option(
+            "--channel",
+            multiple=True,
+            help="Channel by name or number, for files with several; once, or once for each scan.",
+        ),
+        click.option(
+            "--crop",
+            multiple=True,
+            help="Part of the scan to use, as in 2um:8um,0um:5um; once, or once for each scan.",
+        ),
+        click.option(
             "--detrend",
-            type=click.Choice(["center", "height", "slope", "curvature"]),
             default="curvature",
             show_default=True,
-            help="What is taken off: mean, plane of least height or of least slope, paraboloid.",
+            metavar="NAME|ORDER",
+            help="What is taken off: center (mean), height (plane of least height), slope (that of "
+            "least slope), curvature (paraboloid), or the polynomial of an order up to 9.",
+        ),
+        click.option(
+            "--mask",
+            multiple=True,
+            help="What the levelling leaves out and the map keeps: a part of the scan as above, or "
+            "a file with a number for each point, not zero there. May be repeated.",
         ),
         click.option("--unit", help="Unit of length of files that state none, as in um."),
         click.option(
@@ -126,6 +150,11 @@ def _sphere_options(*, required: bool) -> Callable[[Command], Command]:
 )
 @_reading_options
 @_sphere_options(required=True)
+@click.option(
+    "--range",
+    "attraction_range",
+    help="Range of the attraction, as in 0.3nm.  [default: 0.5nm, of van der Waals forces]",
+)
 @as_json
 @click.option(
     "--simulate", is_flag=True, help="Run the simulations that the prediction stands for."
@@ -143,50 +172,86 @@ def _sphere_options(*, required: bool) -> Callable[[Command], Command]:
     type=FILE,
     help="Figure, without suffix; PDF and PNG.  [default: results/predict/<first scan>]",
 )
+@click.option("--no-figure", is_flag=True, help="Draw none: most of the time goes into it.")
+@click.pass_context
 def predict(
+    context: click.Context,
     reading: _Reading,
     sphere: _Sphere,
+    attraction_range: str | None,
     as_json: bool,
     simulate: bool,
     realisations: int,
     seed: int,
     figure: Path | None,
+    no_figure: bool,
 ) -> None:
     """Predict how strongly a soft sphere sticks to a measured surface, from the fitted law.
 
     SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
     the surface or several. w = w_int - e_el -+ k e_el with k by the law of straight fronts
     (crackfront law).
+
+    Exit code 0: the theory applies. 3: it applies with reservations, which are named. 4: it does
+    not apply; nothing is predicted, and it is said what modulus, radius or roughness would do.
     """
-    from crackfront.plots.style import save_figure
-    from crackfront.topography.drawing import prediction_figure
-    from crackfront.topography.prediction import predicted, prediction_notes
+    from crackfront.topography.prediction import predicted, prediction_notes, surface_notes
     from crackfront.topography.report import (
+        conformity_text,
         machine_readable,
         prediction_text,
         simulation_text,
         surface_text,
+        verdict_text,
     )
+    from crackfront.topography.verdict import verdict
 
     scales = _scales_of(sphere)
+    reach = _range_of(attraction_range)
     stem = _RESULTS / reading.scans[0].stem if figure is None else figure
-    refuse_unwritable(stem.parent)
+    if not no_figure:
+        refuse_unwritable(stem.parent)
     found = _surface_of(reading)
-    if not as_json:
-        click.echo(surface_text(found) + "\n")
+    ruling = verdict(found, scales, reach)
+    if ruling.outcome == "does not apply":
+        if as_json:
+            echo_json(machine_readable(found, scales, ruling=ruling))
+        else:
+            energy = conformity_text(found, scales)
+            click.echo(f"{surface_text(found)}\n\n{verdict_text(ruling)}\n\n{energy}")
+            _echo_notes(surface_notes(found))
+        context.exit(_EXIT_CODES[ruling.outcome])
     prediction = predicted(found, scales)
+    ruling = verdict(found, scales, reach, prediction)
     if not as_json:
-        click.echo(prediction_text(found, prediction))
+        texts = surface_text(found), verdict_text(ruling), prediction_text(prediction)
+        click.echo("\n\n".join(texts))
         _echo_notes(prediction_notes(found, prediction))
-    paths = save_figure(prediction_figure(found, prediction), stem)
+    paths = () if no_figure else _drawn(found, prediction, stem)
     outcome = _simulated(found, scales, realisations, seed, as_json) if simulate else None
     if as_json:
-        echo_json(machine_readable(found, scales, prediction, outcome))
-        return
-    for path in paths:
-        click.echo(f"figure: {path}")
-    if outcome is not None:
-        click.echo(simulation_text(outcome))
+        echo_json(machine_readable(found, scales, prediction, outcome, ruling))
+    else:
+        for path in paths:
+            click.echo(f"figure: {path}")
+        if outcome is not None:
+            click.echo(simulation_text(outcome))
+    context.exit(_EXIT_CODES[ruling.outcome])
+
+
+def _drawn(surface: MeasuredSurface, prediction: Prediction, stem: Path) -> tuple[Path, ...]:
+    """Files of the figure of a prediction."""
+    from crackfront.plots.style import save_figure
+    from crackfront.topography.drawing import prediction_figure
+
+    return tuple(save_figure(prediction_figure(surface, prediction), stem))
+
+
+def _range_of(text: str | None) -> float | None:
+    """Range of attraction that an option names, in metres."""
+    from crackfront.data.written_units import si_value
+
+    return None if text is None else si_value(text, "m", what="--range")
 
 
 def _simulated(
@@ -236,7 +301,7 @@ def surface(
     SCANS are files of instruments in any format that SurfaceTopography reads. With the sphere,
     e_el and w_rms too.
     """
-    from crackfront.topography.prediction import surface_notes
+    from crackfront.topography.prediction import surface_doubts, surface_notes
     from crackfront.topography.report import conformity_text, machine_readable, surface_text
 
     named = sphere != _Sphere(None, None, None, None)
@@ -252,7 +317,7 @@ def surface(
         click.echo(surface_text(found))
         if scales is not None:
             click.echo("\n" + conformity_text(found, scales))
-        _echo_notes(surface_notes(found))
+        _echo_notes([*surface_notes(found), *surface_doubts(found)])
     if field is not None and scales is not None:
         _write_field(found, scales, place, field, quiet=as_json)
 
@@ -284,22 +349,56 @@ def _surface_of(reading: _Reading) -> MeasuredSurface:
     """Surface of the files that a command names."""
     from crackfront.data.written_units import si_value
     from crackfront.topography.measures import measured_surface
-    from crackfront.topography.reading import Treatment, read_measurements
+    from crackfront.topography.reading import read_measurements
 
-    size = reading.size
-    treatment = Treatment(
-        reading.detrend,
-        reading.unit,
-        None if size is None else _sides(size),
-    )
     ends = [
         None if text is None else si_value(text, "m", what=f"--{name}")
         for name, text in (("shortest", reading.shortest), ("longest", reading.longest))
     ]
-    return measured_surface(read_measurements(reading.scans, treatment), *ends)
+    return measured_surface(read_measurements(reading.scans, _treatments(reading)), *ends)
 
 
-def _sides(text: str) -> tuple[float, ...]:
+def _treatments(reading: _Reading) -> list[Treatment]:
+    """How each of the files is read."""
+    from crackfront.topography.levelling import detrend_named
+    from crackfront.topography.reading import Treatment
+    from crackfront.topography.regions import region_named
+
+    count = len(reading.scans)
+    if reading.mask and count > 1:
+        raise ValueError(f"--mask is for one scan, and {count} are named; level them one by one")
+    mask: tuple[Region | Path, ...] = tuple(
+        region_named(text, "--mask") if ":" in text else Path(text) for text in reading.mask
+    )
+    size = reading.size
+    return [
+        Treatment(
+            detrend=detrend_named(reading.detrend),
+            unit=reading.unit,
+            size=None if size is None else _numbers(size),
+            channel=channel,
+            crop=None if crop is None else region_named(crop, "--crop"),
+            mask=mask,
+        )
+        for channel, crop in zip(
+            _each("--channel", reading.channel, count),
+            _each("--crop", reading.crop, count),
+            strict=True,
+        )
+    ]
+
+
+def _each(option: str, values: tuple[str, ...], count: int) -> tuple[str | None, ...]:
+    """What an option says of each of the scans."""
+    if len(values) not in (0, 1, count):
+        raise ValueError(
+            f"{option} is given {len(values)} times for {count} scan(s); give it once, or once for "
+            "each in their order"
+        )
+    return values if len(values) == count else (values or (None,)) * count
+
+
+def _numbers(text: str) -> tuple[float, ...]:
     """Sides that an option like 50,50 names."""
     try:
         return tuple(float(side) for side in text.split(","))

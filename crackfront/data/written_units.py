@@ -40,28 +40,49 @@ def si_value(text: str, unit: str, *, what: str) -> float:
     >>> round(si_value("63mJ/m2", "J/m^2", what="work of adhesion"), 12)
     0.063
     """
-    import pint
-
-    example = f"write a number and a unit of {_NAMES[unit]}, as in {_EXAMPLES[unit]}"
+    example = _EXAMPLE.format(_NAMES[unit], _EXAMPLES[unit])
     found = _QUANTITY.fullmatch(text)
     if found is None:
         raise ValueError(f"{what} is {text!r}, which is no number with a unit; {example}")
     if found[2] is None:
         raise ValueError(f"{what} is {text!r}, without a unit; {example}")
+    value = float(found[1]) * _plain_factor(found[2], unit)
+    if math.isnan(value):
+        value = _converted(text, float(found[1]), found[2], unit, what=what)
+    if not (math.isfinite(value) and value > 0):
+        raise ValueError(f"{what} is {text!r}; it must be positive and finite")
+    refuse_outside(what, value, SI[unit], unit)
+    return value
+
+
+def _plain_factor(written: str, unit: str) -> float:
+    """Value of a unit that is the SI unit with a prefix or none; NaN of any other.
+
+    That needs no registry, which takes half a second to make.
+    """
+    plain = unit.replace("^", "")
+    if not written.replace("^", "").endswith(plain):
+        return math.nan
+    prefix = written.replace("^", "").removesuffix(plain)
+    powers = {name: power for power, name in _PREFIXES.items()} | {"µ": -6}
+    return 10.0 ** powers[prefix] if prefix in powers else math.nan
+
+
+def _converted(text: str, number: float, written: str, unit: str, *, what: str) -> float:
+    """Value of a number with any unit in an SI unit."""
+    import pint
+
+    example = _EXAMPLE.format(_NAMES[unit], _EXAMPLES[unit])
     try:
-        given = _registry().parse_units(_POWER.sub(r"\1^\2", found[2]))
-        value = float(_registry().Quantity(float(found[1]), given).to(unit).magnitude)
+        given = _registry().parse_units(_POWER.sub(r"\1^\2", written))
+        return float(_registry().Quantity(number, given).to(unit).magnitude)
     except pint.DimensionalityError as error:
         raise ValueError(f"{what} is {text!r}, which is no {_NAMES[unit]}; {example}") from error
     # A unit that is no expression fails in the tokenizer of Python, which pint does not catch.
     except (pint.PintError, TokenError, SyntaxError, ValueError, TypeError) as error:
         raise ValueError(
-            f"{what} is {text!r}, whose unit {found[2]} is unknown; {example}"
+            f"{what} is {text!r}, whose unit {written} is unknown; {example}"
         ) from error
-    if not (math.isfinite(value) and value > 0):
-        raise ValueError(f"{what} is {text!r}; it must be positive and finite")
-    refuse_outside(what, value, SI[unit], unit)
-    return value
 
 
 def unit_value(given: str, unit: str) -> float:
@@ -81,6 +102,7 @@ def unit_value(given: str, unit: str) -> float:
 
 
 _EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2"}
+_EXAMPLE = "write a number and a unit of {}, as in {}"
 _NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area"}
 
 

@@ -54,7 +54,7 @@ def draw_field(
         extent=_extent(x, y, units),
         interpolation="nearest",
     )
-    bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, format="%.1f", extend="both")
+    bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, format="{x:.1f}", extend="both")
     units.name(bar.ax.yaxis, "local work of adhesion", "adhesion")
     label_plane(axes, units)
 

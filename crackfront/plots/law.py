@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import REACH
+from crackfront.analysis.finding import PERTURBATION_FACTOR
 from crackfront.analysis.law import (
     LEAST_SIZE,
     TYPICAL_BREADTH,
@@ -24,9 +25,8 @@ from crackfront.analysis.law import (
     pinning_factor,
     shipped_law,
 )
-from crackfront.analysis.report import PERTURBATION_FACTOR
 from crackfront.plots.parts import draw_theory, label_decimals
-from crackfront.plots.style import BLACK, COLOURS, MARKERS, PAGE, blank_figure, house_style
+from crackfront.plots.style import BLACK, COLOURS, MARKERS, PAGE, blank_figure, explain, house_style
 
 Array = NDArray[np.float64]
 
@@ -87,7 +87,7 @@ def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
         Spheres, to which nothing is adjusted.
     """
     with house_style():
-        figure = blank_figure(PAGE, 0.45 * PAGE)
+        figure = blank_figure(PAGE, 0.49 * PAGE)
         left, right = figure.subplots(1, 2, width_ratios=(1.2, 1))
         draw_collapse(left, fronts, spheres)
         draw_infinite_law(right)
@@ -98,6 +98,12 @@ def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
         right.legend(loc="lower left")
         for axes, letter in ((left, "a"), (right, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
+        explain(
+            figure,
+            "bars: 95% intervals over surfaces; spheres, to which nothing was adjusted, are open "
+            "circles; a: freed of what depends on s, with the law at s = 0; b: points of g above "
+            f"{_LARGE:g}, which the law extrapolates, in the colours of a",
+        )
         return figure
 
 
@@ -125,7 +131,7 @@ def draw_collapse(axes: Axes, fronts: Sequence[LawPoints], spheres: LawPoints) -
     k_0 = law.coefficients[0]
     axes.axhline(k_0, color="0.5", linewidth=0.5, zorder=1)
     axes.annotate(
-        rf"$k_0={k_0:.2f}$",
+        rf"$k_0={k_0:.2f}$, weak disorder in the infinite contact",
         (abscissa[0] * 1.1, k_0),
         xytext=(0, 2),
         textcoords="offset points",

@@ -9,10 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crackfront.analysis.report import PAPER_FACTOR
+from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
-from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
+from crackfront.plots.parts import draw_arrow
+from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
 from crackfront.plots.units import REDUCED, AxisUnits
 
 Array = NDArray[np.float64]
@@ -77,6 +78,95 @@ def loop_figure(
         return figure
 
 
+def steady_loop_figure(
+    states: LoopStates,
+    works: tuple[float, float],
+    window: tuple[float, float],
+    *,
+    elastic_energy: float,
+    kind: FieldKind = "roughness",
+    title: str = "",
+) -> Figure:
+    """The loop that steady parts of two branches stand for, beside these parts.
+
+    Parameters are those of :func:`draw_loop`; both works of adhesion have values. The figure is a
+    page wide.
+    """
+    with house_style():
+        figure = blank_figure(PAGE, 0.44 * PAGE)
+        left, right = figure.subplots(1, 2)
+        _draw_whole(left, states, works, window)
+        draw_loop(
+            right, states, works, window, elastic_energy=elastic_energy, kind=kind, arrows=False
+        )
+        handles, labels = (
+            one + other
+            for one, other in zip(
+                right.get_legend_handles_labels(), left.get_legend_handles_labels(), strict=True
+            )
+        )
+        right.get_legend().remove()
+        figure.legend(handles, labels, loc="outside upper center", ncols=4)
+        for axes, letter in ((left, "a"), (right, "b")):
+            axes.set_title(letter, loc="left", fontweight="bold")
+        left.set_title(f"{title}: the loop of its works of adhesion", fontsize=7)
+        right.set_title("the steady parts, which were simulated", fontsize=7)
+        return figure
+
+
+def _draw_whole(
+    axes: Axes, states: LoopStates, works: tuple[float, float], window: tuple[float, float]
+) -> None:
+    """Loop of a smooth sphere with the work of adhesion of either branch, and the states on it."""
+    turn = float(np.max(states.mean_radius))
+    starts = jkr.equilibrium_radius(0.0, works[0]), jkr.pull_off_radius(works[1])
+    for (direction, colour, marker), adhesion, start in zip(
+        ((1, BLUE, "o"), (-1, VERMILION, "s")), works, starts, strict=True
+    ):
+        branch = states.direction == direction
+        radius = np.linspace(start, turn, 300)
+        force = jkr.equilibrium_force(radius, adhesion)
+        axes.plot(radius, force, color=colour, linewidth=1.0, zorder=2)
+        axes.plot(
+            [0.0, start], [0.0, force[0]], color=colour, linewidth=0.7, dashes=(4, 2), zorder=2
+        )
+        axes.plot(
+            states.mean_radius[branch],
+            states.force[branch],
+            linestyle="none",
+            marker=marker,
+            markersize=2,
+            markerfacecolor="white",
+            markeredgewidth=0.5,
+            color=colour,
+            zorder=3,
+        )
+        middle = slice(150, 152)
+        draw_arrow(axes, radius[middle][::direction], force[middle][::direction], colour)
+    ends = jkr.equilibrium_force(turn, np.array(works))
+    axes.plot(
+        [turn, turn],
+        ends,
+        color="0.35",
+        linewidth=0.7,
+        dashes=(1, 1.5),
+        label="edge pinned at the turn",
+        zorder=1,
+    )
+    axes.axvspan(*window, color="0.93", linewidth=0, zorder=0)
+    axes.annotate(
+        "jumps into and out of contact",
+        (starts[0] / 2, float(jkr.equilibrium_force(starts[0], works[0])) / 2),
+        xytext=(-8, 8),
+        textcoords="offset points",
+        color="0.35",
+    )
+    low, high = jkr.pull_off_force(works[1]), float(max(ends[0], np.max(states.force)))
+    axes.set_xlim(0.0, 1.06 * turn)
+    axes.set_ylim(low - 0.08 * (high - low), max(high, 0.0) + 0.1 * (high - low))
+    _name_axes(axes)
+
+
 def draw_loop(
     axes: Axes,
     states: LoopStates,
@@ -85,6 +175,7 @@ def draw_loop(
     *,
     elastic_energy: float | None = None,
     kind: FieldKind = "roughness",
+    arrows: bool = True,
     units: AxisUnits = REDUCED,
 ) -> None:
     """Draw the two branches, their JKR curves and the window of the averages.
@@ -103,6 +194,8 @@ def draw_loop(
         Measured e_el, for the curves that the paper predicts. (Units: w_int)
     kind : {"roughness", "chemical"}, optional
         Whether they lie around w_int - e_el or w_int.
+    arrows : bool, optional
+        Whether an arrow beside each branch has its direction.
     units : AxisUnits, optional
         In which all of it is drawn.
 
@@ -149,15 +242,19 @@ def draw_loop(
             zorder=0,
             label="window of the averages",
         )
-    axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
     _set_limits(axes, states, units)
-    for direction, _, _, colour, _, _ in branches:
+    for direction, _, _, colour, _, _ in branches if arrows else ():
         branch = states.direction == direction
         places = length * states.mean_radius[branch], units.force * states.force[branch]
         _draw_motion(axes, *places, colour)
+    _name_axes(axes, units)
+    axes.legend(loc="upper left")
+
+
+def _name_axes(axes: Axes, units: AxisUnits = REDUCED) -> None:
+    """Names of the axes of a loop."""
     units.name(axes.xaxis, "mean contact radius", "lateral")
     units.name(axes.yaxis, "normal force", "force")
-    axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
 
 
 def pinning_figure(

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
+from crackfront.analysis.estimate import Estimate, with_error
+from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
+from crackfront.analysis.report import pooled_limits
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import SweepTable
@@ -160,10 +161,9 @@ def draw_fit(
     value, reach = float(fit.pooled.factor.value), float(fit.pooled.factor.high)
     text = f"{value:.2f}"
     if np.isfinite(reach):
-        text += rf" \pm {reach - value:.2f}"
-    axes.plot(
-        ends, curve(value, ends), color=BLACK, linewidth=1.2, label=f"pooled fit, $k = {text}$"
-    )
+        text = with_error(value, reach - value).replace("±", r"\pm")
+    label = ", ".join([f"pooled $k = {text}$", *pooled_limits(fit, fit.spectra.factor)])
+    axes.plot(ends, curve(value, ends), color=BLACK, linewidth=1.2, label=label)
 
 
 def draw_law(
@@ -178,7 +178,7 @@ def draw_law(
             drawn = True
             axes.plot(abscissa, ordinate, color=series.colour, linewidth=0.6, zorder=1.5)
     if drawn:
-        axes.plot([], [], color="0.5", linewidth=0.6, label="law of $k$ by disorder and size")
+        axes.plot([], [], color="0.5", linewidth=0.6, label="law of $k$ (coloured)")
 
 
 def draw_theory(axes: Axes, ends: Array, curve: Callable[[float, Array], Array]) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 import logging
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -35,6 +36,9 @@ BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = (
 COLOURS = (GREEN, BLUE, PURPLE, VERMILION, ORANGE, SKY, BLACK)
 MARKERS = ("s", "o", "^", "D", "v", "P", "X")
 """One colour and marker a spectrum; after seven both repeat, out of step."""
+
+_SMALL = 6.5
+"""Size of the font of explanations."""
 
 _SHOWN = 4.0
 """Width of a figure on a screen (Units: inch)."""
@@ -91,6 +95,13 @@ def blank_figure(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     return figure
+
+
+def explain(figure: Figure, text: str) -> None:
+    """Lines below a figure that say what its legend does not: bars, open symbols, grey lines."""
+    per_inch = 72 / (0.56 * _SMALL)
+    lines = textwrap.fill(text, int(per_inch * figure.get_figwidth()))
+    figure.supxlabel(lines, fontsize=_SMALL, color="0.25")
 
 
 @contextmanager

@@ -19,8 +19,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.law import law_value, shipped_law, slope_breadth
-from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import LARGE
 from crackfront.analysis.table import SweepTable
@@ -43,17 +43,25 @@ from crackfront.plots.parts import (
     spring_label,
     sweep_series,
 )
-from crackfront.plots.style import COLUMN, MARKERS, PAGE, blank_figure, house_style
+from crackfront.plots.style import COLUMN, MARKERS, PAGE, blank_figure, explain, house_style
+
+POINTS_EXPLAINED = (
+    "bars: 95% intervals over realisations; open symbols: amplitudes outside the range of the fit"
+)
+SHIFTS_EXPLAINED = "points of one amplitude are set off sideways by up to 6%"
+SHAPES_EXPLAINED = "grey line: spectra of one shape"
+"""What figures say of their points below themselves."""
 
 
 def hysteresis_figure(table: SweepTable, fit: SweepFit) -> Figure:
     """Hysteresis against the variance of w_loc, with the spectra in an inset (SI Fig. S-5)."""
     with house_style():
-        figure = blank_figure(COLUMN, 0.98 * COLUMN)
+        figure = blank_figure(COLUMN, 1.04 * COLUMN)
         axes = figure.add_subplot()
         draw_hysteresis(axes, table, fit)
-        inset = axes.inset_axes((0.685, 0.135, 0.29, 0.27))
+        inset = axes.inset_axes((0.685, 0.135, 0.29, 0.25))
         draw_spectra(inset, table, fit.kind)
+        explain(figure, f"{POINTS_EXPLAINED}; arrows: means below the edge; inset: spectra")
         return figure
 
 
@@ -66,15 +74,16 @@ def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
     with house_style():
         if table.straight:
             return _line_factor_figure(table, fit)
-        figure = blank_figure(PAGE, 0.42 * PAGE)
+        figure = blank_figure(PAGE, 0.45 * PAGE)
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
         draw_factor_by_disorder(left, table, fit)
         draw_factor_by_length(right, table, fit)
         set_factor_limits(left, fit)
         handles, labels = legend_entries(left)
-        figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 4))
+        figure.legend(handles, labels, loc="outside upper center", ncols=3)
         for axes, letter in ((left, "a"), (right, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
+        explain(figure, f"{POINTS_EXPLAINED}; {SHIFTS_EXPLAINED} (a); {SHAPES_EXPLAINED} (b)")
         return figure
 
 
@@ -98,6 +107,7 @@ def _line_factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
     left.set_ylim(0.0, 1.1 * PERTURBATION_FACTOR)
     for axes, letter in ((left, "a"), (right, "b")):
         axes.set_title(letter, loc="left", fontweight="bold")
+    explain(figure, POINTS_EXPLAINED)
     return figure
 
 
@@ -155,8 +165,9 @@ def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     ends = np.array([np.nanmin(variance) / 1.8, np.nanmax(variance) * 1.8])
     # Below its onset hysteresis falls to nothing; such points must not stretch the axes.
     floor = 0.05 * PAPER_FACTOR / 2 * ends[0]
-    above = hysteresis.value[np.nan_to_num(hysteresis.value) > floor]
-    lowest = min(float(np.min(above, initial=np.inf)), PAPER_FACTOR / 2 * ends[0]) / 1.6
+    above = np.nan_to_num(hysteresis.value) > floor
+    reach = np.fmax(hysteresis.low[above], floor)
+    lowest = min(float(np.min(reach, initial=np.inf)), PAPER_FACTOR / 2 * ends[0]) / 1.6
     for index, series in enumerate(sweep_series(table)):
         row = spectrum_row(hysteresis, index)
         below = np.nan_to_num(row.value, nan=np.inf) <= floor

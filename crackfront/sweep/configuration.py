@@ -46,8 +46,9 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineLoad, SpringUnit
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
+from crackfront.topography.levelling import DetrendName
 from crackfront.topography.measures import measured_surface
-from crackfront.topography.reading import Detrend, Treatment, read_measurements
+from crackfront.topography.reading import Treatment, read_measurements
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 
@@ -69,7 +70,7 @@ class SurfaceSection(Section):
     """Measurements of a surface, read as :class:`crackfront.topography.reading.Treatment` says."""
 
     file: Annotated[tuple[InputFile, ...], BeforeValidator(_several), Field(min_length=1)]
-    detrend: Detrend = "curvature"
+    detrend: DetrendName = "curvature"
     unit: str | None = None
     size: tuple[Positive, ...] | None = None
     shortest: Positive | None = None

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from crackfront.analysis.report import PAPER_FACTOR, PERTURBATION_FACTOR, fit_notes, fit_table
+from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
+from crackfront.analysis.report import fit_notes, fit_table
 from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import FIT_DEFINITION

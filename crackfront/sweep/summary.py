@@ -1,9 +1,11 @@
-"""The page that shows a sweep to a reader: fit, statuses, configuration, origin."""
+"""The page that shows a sweep to a reader: result, figures, fit, configuration, origin."""
 
 from __future__ import annotations
 
+from base64 import encodebytes
 from collections.abc import Mapping
 from html import escape
+from pathlib import Path
 
 from markdown_it import MarkdownIt
 
@@ -12,31 +14,44 @@ _STYLE = (
     "table{border-collapse:collapse;margin:1em 0;font-size:90%}"
     "th,td{border:1px solid #bbb;padding:.25em .6em;text-align:left;vertical-align:top}"
     "th{background:#eee}pre{background:#f5f5f5;padding:1em;overflow-x:auto}"
+    "section p{max-width:50em}figure{margin:1.5em 0}img{max-width:100%;max-height:34em}"
 )
 
 
 def summary_page(
-    title: str, fit: str, statuses: Mapping[str, int], configuration: str, origin: Mapping[str, str]
+    title: str,
+    fit: str,
+    figures: Mapping[str, Path],
+    statuses: Mapping[str, int],
+    configuration: str,
+    origin: Mapping[str, str],
 ) -> str:
-    """A page of HTML that needs no other file.
+    """A page of HTML that needs no other file and opens on the result, in an element `section`.
 
     Parameters
     ----------
     title : str
         Title of the page.
     fit : str
-        Table of the fit, in Markdown.
+        Tables of the fit, in Markdown; what stands before its second heading is the result.
+    figures : mapping of str to Path
+        Captions, and PNG files.
     statuses : mapping of str to int
         Number of simulations of every status.
     configuration, origin
         Text of the configuration, and what the results say of their origin.
     """
+    # Raw HTML in the text stays text.
+    markdown = MarkdownIt("commonmark", {"html": False}).enable("table")
+    result, heading, rest = fit.partition("\n## ")
     return "\n".join(
         [
             f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}'
             f"</title><style>{_STYLE}</style></head><body>",
-            # Raw HTML in the text stays text.
-            MarkdownIt("commonmark", {"html": False}).enable("table").render(fit),
+            f"<section>{markdown.render(result)}",
+            *(_picture(caption, path) for caption, path in figures.items()),
+            "</section>",
+            markdown.render(heading + rest),
             "<h2>Simulations</h2>",
             _table(("status", "simulations"), {k: str(n) for k, n in sorted(statuses.items())}),
             "<h2>Origin</h2>",
@@ -45,6 +60,16 @@ def summary_page(
             f"<pre>{escape(configuration)}</pre>",
             "</body></html>\n",
         ]
+    )
+
+
+def _picture(caption: str, path: Path) -> str:
+    """A picture that the page itself holds, with its caption."""
+    # In short lines, as reStructuredText asks of the report that shows this part of the page.
+    data = encodebytes(path.read_bytes()).decode()
+    return (
+        f'<figure><img src="data:image/png;base64,{data}" alt="{escape(path.stem)}">'
+        f"<figcaption>{escape(caption)}</figcaption></figure>"
     )
 
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy.fft import fftfreq, rfft, rfft2, rfftfreq
 from scipy.signal import get_window
 
-from crackfront.topography.reading import Measurement, surface_library
+from crackfront.topography.instruments import surface_library
+from crackfront.topography.reading import Measurement
 
 Array = NDArray[np.float64]
 

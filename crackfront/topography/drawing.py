@@ -32,20 +32,25 @@ from crackfront.plots.style import (
     house_style,
 )
 from crackfront.topography.densities import Density
+from crackfront.topography.maps import draw_scan
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import Prediction
 
 Array = NDArray[np.float64]
+
+_MOST_MAPS, _FEWEST_PLACES = 4, 2
+"""Scans that are shown as maps, and places for them."""
 
 _ROOM = 3.0
 """How far beyond the longest trusted wavelength the spectrum is shown."""
 
 
 def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figure:
-    """Densities with the fitted spectrum, and predicted forces of both branches."""
+    """Densities with the spectrum, predicted forces of both branches, and the scans as used."""
     with house_style():
-        figure = blank_figure(PAGE, 0.56 * PAGE)
-        panels = figure.subplot_mosaic([["a", "c"], ["b", "c"]], height_ratios=(1.35, 1))
+        figure = blank_figure(PAGE, 0.86 * PAGE)
+        above, below = figure.subfigures(2, 1, height_ratios=(0.56, 0.3), squeeze=False)[:, 0]
+        panels = above.subplot_mosaic([["a", "c"], ["b", "c"]], height_ratios=(1.35, 1))
         upper, lower, forces = panels["a"], panels["b"], panels["c"]
         upper.sharex(lower)
         upper.tick_params(labelbottom=False)
@@ -56,6 +61,13 @@ def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figur
         _draw_forces(forces, prediction)
         for name, axes in panels.items():
             label_panel(axes, name)
+        shown = surface.measurements[:_MOST_MAPS]
+        maps = below.subplots(1, max(len(shown), _FEWEST_PLACES), squeeze=False)[0]
+        for axes, measurement in zip(maps, shown, strict=False):
+            draw_scan(axes, measurement)
+        for axes in maps[len(shown) :]:
+            axes.set_axis_off()
+        below.text(0.005, 0.97, "d", fontsize=9, fontweight="bold", va="top")
         return figure
 
 

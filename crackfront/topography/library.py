@@ -14,19 +14,13 @@ from crackfront.data.arguments import refuse_other_type
 from crackfront.data.written_units import prefixed, si_value
 from crackfront.simulate.si_units import refuse_no_scales
 from crackfront.simulate.surfaces import surface_array
+from crackfront.topography.levelling import Detrend
 from crackfront.topography.measures import MeasuredSurface, measured_surface
 from crackfront.topography.prediction import Prediction, predicted, prediction_notes
-from crackfront.topography.reading import Detrend, Measurement, Treatment, read_measurements
-from crackfront.topography.report import prediction_text, surface_text
+from crackfront.topography.reading import Measurement, Treatment, read_measurements
+from crackfront.topography.report import prediction_text, surface_text, verdict_text
 from crackfront.topography.tile import tile_heights, zero_load_radius
-
-_TAKEN_OFF = {
-    "center": "the mean was taken off",
-    "height": "the plane of least height was taken off",
-    "slope": "the plane of least slope was taken off",
-    "curvature": "the paraboloid that fits best was taken off: form and tilt are no roughness",
-}
-"""What each levelling did, and why."""
+from crackfront.topography.verdict import verdict
 
 
 def read_scan(
@@ -79,7 +73,7 @@ def read_scan(
         heights / sphere.vertical,
         pixel / sphere.lateral,
         source=f"{measurement.path}, {measurement.format}, checksum {measurement.checksum}",
-        levelling=_TAKEN_OFF[detrend],
+        levelling=f"{measurement.levelling} was taken off: form and tilt are no roughness",
         **dict(_treatments(measurement, 2 * zero_load_radius(sphere))),
     )
 
@@ -113,8 +107,10 @@ class SurfacePrediction(Prediction):
 
     def __repr__(self) -> str:
         notes = ["Notes", *(f"  {note}" for note in prediction_notes(self.surface, self))]
-        parts = surface_text(self.surface), prediction_text(self.surface, self), "\n".join(notes)
-        return "\n\n".join(parts)
+        scales = Scales(self.radius, self.work_of_adhesion, self.contact_modulus)
+        ruling = verdict(self.surface, scales, None, self)
+        texts = surface_text(self.surface), verdict_text(ruling), prediction_text(self)
+        return "\n\n".join([*texts, "\n".join(notes)])
 
 
 def predict(

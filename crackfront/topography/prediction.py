@@ -7,21 +7,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law import SphereFactors, shipped_law, sphere_factors
-from crackfront.analysis.report import PAPER_FACTOR
 from crackfront.core import jkr
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
-from crackfront.topography.bands import Scan
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.tile import zero_load_radius
 
 _MOST_ANISOTROPY = 1.25
 _MOST_UNMEASURED = 0.1
-_MOST_NEGATIVE = 0.05
-"""Ratio of slopes, part of e_el and part of the surface with a
-negative w_loc from which on it is said."""
+_MOST_CONTINUED = 0.5
+"""Ratio of slopes and parts of e_el from which on they are doubts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,26 +52,6 @@ class Prediction:
     paper_factor: float = variable("factor k of the paper", "1")
     paper_w_appr: float = variable("work of adhesion of the approach by that factor", "J m-2")
     paper_w_retr: float = variable("work of adhesion of the retraction by that factor", "J m-2")
-
-
-@dataclass(frozen=True, slots=True)
-class Limit:
-    """A condition of the theory: a value that must stay below a largest one, in SI units."""
-
-    condition: str
-    value: float
-    largest: float
-    units: str
-
-    @property
-    def margin(self) -> float:
-        """Largest allowed value over the value; above 1 inside."""
-        return self.largest / self.value
-
-    @property
-    def holds(self) -> bool:
-        """Whether the condition holds."""
-        return self.value < self.largest
 
 
 def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSpectrum:
@@ -164,27 +142,6 @@ def _forces(retraction: Estimate[float], reduced: float, scales: Scales) -> Esti
     return retraction.each(lambda adhesion: slope * adhesion)
 
 
-def theory_limits(surface: MeasuredSurface, prediction: Prediction) -> tuple[Limit, ...]:
-    """Conditions of the theory for a surface under a sphere."""
-    _, half, slope = surface.measures
-    return (
-        Limit(
-            "full conformity: e_el below w_int",
-            prediction.e_el.value,
-            prediction.work_of_adhesion,
-            "J/m2",
-        ),
-        Limit("small slopes: rms slope below 1", slope.rms.value, 1.0, "1"),
-        Limit(
-            "features small against the contact: the longest wave that matters to e_el below the "
-            "radius at zero load",
-            half.longest,
-            prediction.contact_radius,
-            "m",
-        ),
-    )
-
-
 def prediction_notes(surface: MeasuredSurface, prediction: Prediction) -> Iterator[str]:
     """What a reader of a prediction must know, one sentence each."""
     yield from surface_notes(surface, prediction.contact_radius)
@@ -196,17 +153,52 @@ def prediction_notes(surface: MeasuredSurface, prediction: Prediction) -> Iterat
 
 
 def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None) -> Iterator[str]:
-    """Treatments and doubts of the measurements, against the radius of a contact (Units: m)."""
+    """Treatments of the measurements, against the radius of a contact (Units: m)."""
+    for one in surface.scans:
+        item = one.measurement
+        if item.missing > 0:
+            yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
+        if item.is_line:
+            yield (
+                f"{item.path} is a line scan: its density is that of an isotropic surface with "
+                "this projection."
+            )
+        elif max(item.pixels) > 1.001 * min(item.pixels):
+            yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
+        for axis in one.band.stripes:
+            yield (
+                f"{item.path}: waves along {'xy'[axis]} alone have another density than all "
+                "others, as of rows that are shifted or levelled one by one; they are left out."
+            )
+        if contact_radius is not None and min(item.size) < 2 * contact_radius:
+            yield (
+                f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
+                f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
+                "spectrum."
+            )
+
+
+def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
+    """What makes a spectrum doubtful, one sentence each."""
     joint = surface.joint
     for index, one in enumerate(surface.scans):
-        yield from _scan_notes(one, contact_radius)
-        if joint.density.disagrees(index):
-            level = joint.density.levels[index]
+        path, ratio, level = one.measurement.path, one.band.anisotropy, joint.density.levels[index]
+        if max(ratio, 1 / ratio) > _MOST_ANISOTROPY:
             yield (
-                f"{one.measurement.path} disagrees with the other scans: its density is "
-                f"{level.value:.2g} ({level.low:.2g} to {level.high:.2g}) times theirs where they "
-                "overlap; the intervals hold that."
+                f"{path}: the rms slope along x is {ratio:.2g} times that along y; the theory is "
+                "for isotropic surfaces."
             )
+        if joint.density.disagrees(index):
+            yield (
+                f"{path} disagrees with the other scans: its density is {level.value:.2g} "
+                f"({level.low:.2g} to {level.high:.2g}) times theirs where they overlap; the "
+                "intervals hold that."
+            )
+    if joint.shares.continued > _MOST_CONTINUED:
+        yield (
+            f"{joint.shares.continued:.0%} of e_el is not measured but continued by a model; look "
+            "at the figure, and add a scan of the waves that are missing."
+        )
     if not joint.fit.has_roll_off:
         yield (
             "The density shows no plateau within the trusted wavelengths: it is taken as flat "
@@ -220,53 +212,16 @@ def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None)
         )
 
 
-def _scan_notes(one: Scan, contact_radius: float | None) -> Iterator[str]:
-    """Treatments and doubts of one scan."""
-    item, band = one.measurement, one.band
-    if item.missing > 0:
-        yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
-    if item.is_line:
-        yield (
-            f"{item.path} is a line scan: its density is that of an isotropic surface with this "
-            "projection."
-        )
-    elif max(item.pixels) > 1.001 * min(item.pixels):
-        yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
-    for axis in band.stripes:
-        yield (
-            f"{item.path}: waves along {'xy'[axis]} alone have another density than all others, as "
-            "of rows that are shifted or levelled one by one; they are left out."
-        )
-    if max(band.anisotropy, 1 / band.anisotropy) > _MOST_ANISOTROPY:
-        yield (
-            f"{item.path}: the rms slope along x is {band.anisotropy:.2g} times that along y; the "
-            "theory is for isotropic surfaces."
-        )
-    if contact_radius is not None and min(item.size) < 2 * contact_radius:
-        yield (
-            f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
-            f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
-            "spectrum."
-        )
-
-
 def _factor_notes(prediction: Prediction) -> Iterator[str]:
     """Where the factors come from, and where they are weak."""
-    factors, share = prediction.factors, prediction.negative_share
+    factors = prediction.factors
     yield (
         "k is that of a straight front on springs of the length L_kappa, by the law that was "
         "fitted to simulations of such fronts; its interval holds the errors of both."
     )
-    if factors.warning:
-        yield f"Beyond what was measured: {factors.warning}."
     _, largest = shipped_law().size
     if factors.size > largest:
         yield (
             f"Size g {factors.size:.3g} is above the largest that was measured ({largest:.3g}): k "
             "follows the finite-size exponent of the elastic line from there."
-        )
-    if share > _MOST_NEGATIVE:
-        yield (
-            f"w_loc is negative on {share:.1%} of the surface: the linearisation of the roughness "
-            "is not to be trusted there."
         )

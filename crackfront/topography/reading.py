@@ -1,21 +1,35 @@
-"""Measurements of surfaces: read by a library, completed by what files do not state, detrended."""
+"""Measurements of surfaces: read by a library, completed by what files do not state, levelled."""
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
-from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.core.optional_libraries import MissingExtraError
+from crackfront.data.written_units import prefixed
+from crackfront.topography.files import checksum
+from crackfront.topography.instruments import (
+    Unstated,
+    array_of,
+    library_scan,
+    raw_scan,
+    shown_sides,
+)
+from crackfront.topography.levelling import (
+    Detrend,
+    levelled,
+    order_of,
+    refuse_unknown,
+    taken_off,
+)
+from crackfront.topography.regions import Region, region_slices
 
 Array = NDArray[np.float64]
+Points = NDArray[np.bool_]
 
 _PIXELS_PER_WAVE = 4
 """Points in the shortest wavelength that is trusted where a file knows no resolution of its own:
@@ -31,8 +45,12 @@ _MOST_MISSING = 0.1
 _FEWEST_OCTAVES = 2
 """Octaves between the shortest and the longest trusted wavelength that a spectrum needs."""
 
-Detrend = Literal["center", "height", "slope", "curvature"]
-"""What is taken off: the mean, the plane of least height, that of least slope, the paraboloid."""
+_FEWEST_POINTS = 8
+"""Points along a side that a crop must leave."""
+
+_LEAST_HEIGHT, _MOST_HEIGHT = 1e-12, 10.0
+"""Rms of heights (Units: m), and their span in sides of the scan, beyond which no instrument
+measures, so that a unit of the file must be wrong."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +59,8 @@ class Treatment:
 
     Attributes
     ----------
-    detrend : {"center", "height", "slope", "curvature"}
-        What is taken off, as the library's modes of the same names.
+    detrend : {"center", "height", "slope", "curvature"} or int
+        What is taken off, or the order of the polynomial that is.
     unit : str or None
         Unit of lengths, for files that state none.
     size : tuple of float or None
@@ -50,18 +68,26 @@ class Treatment:
         (Units: those of `unit`, or of the file)
     shortest : float or None
         Shortest wavelength to trust. (Units: m)
+    channel : str or None
+        Name or number of the channel, for files with several; by default that which the library
+        takes for the heights.
+    crop : Region or None
+        Part of the scan that is used.
+    mask : tuple of Region or Path
+        What the levelling leaves out and the map keeps: parts of the whole scan, or files of maps
+        with as many points that are not zero there.
     """
 
     detrend: Detrend = "curvature"
     unit: str | None = None
     size: tuple[float, ...] | None = None
     shortest: float | None = None
+    channel: str | None = None
+    crop: Region | None = None
+    mask: tuple[Region | Path, ...] = ()
 
     def __post_init__(self) -> None:
-        if self.detrend not in get_args(Detrend):
-            raise ValueError(
-                f"detrend is {self.detrend!r}; choose one of {', '.join(get_args(Detrend))}"
-            )
+        refuse_unknown(self.detrend)
         for name, values in (("size", self.size or ()), ("shortest", (self.shortest or 1.0,))):
             if not all(math.isfinite(value) and value > 0 for value in values):
                 raise ValueError(f"{name} is {getattr(self, name)}; it must be positive and finite")
@@ -91,6 +117,10 @@ class Measurement:
         Part of the points that were interpolated.
     shortest, longest : float
         Wavelengths that are trusted. (Units: m)
+    channel : str
+        Name of the channel in the file, and which of how many of heights it is.
+    levelling : str
+        What was taken off, in words.
     """
 
     path: Path
@@ -103,6 +133,8 @@ class Measurement:
     missing: float
     shortest: float
     longest: float
+    channel: str = ""
+    levelling: str = ""
 
     @property
     def pixels(self) -> tuple[float, ...]:
@@ -118,9 +150,16 @@ class Measurement:
 
 
 def read_measurements(
-    paths: Sequence[Path], treatment: Treatment | None = None
+    paths: Sequence[Path], treatment: Treatment | Sequence[Treatment] | None = None
 ) -> tuple[Measurement, ...]:
     """Measurements of one surface, from files in any format that SurfaceTopography reads.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        The files.
+    treatment : Treatment or sequence of Treatment, optional
+        How they are read; one for all, or one for each.
 
     Raises
     ------
@@ -134,138 +173,125 @@ def read_measurements(
     repeated = sorted({str(path) for path in paths if list(paths).count(path) > 1})
     if repeated:
         raise ValueError(f"{repeated[0]} is named twice; a measurement counts once")
-    return tuple(_measurement(path, treatment or Treatment()) for path in paths)
+    if treatment is None or isinstance(treatment, Treatment):
+        treatment = [treatment or Treatment()] * len(paths)
+    return tuple(_measurement(*both) for both in zip(paths, treatment, strict=True))
 
 
 def _measurement(path: Path, treatment: Treatment) -> Measurement:
     """One measurement."""
-    content = path.read_bytes()
-    if not content:
-        raise ValueError(f"{path} is empty; export it from the instrument again")
-    raw, name, comment = _raw(path, treatment)
-    heights = np.ma.asarray(raw.heights())
+    scan = raw_scan(path, Unstated(treatment.unit, treatment.size, treatment.channel))
+    raw = scan.level
+    heights = np.ma.masked_invalid(raw.heights())
+    size = tuple(map(float, raw.physical_sizes))
+    fitted = ~np.ma.getmaskarray(heights) & ~_masked(path, treatment, heights.shape, size)
+    part = _part(path, treatment, heights.shape, size)
+    size = tuple(
+        side * len(range(*cut.indices(count))) / count
+        for side, cut, count in zip(size, part, heights.shape, strict=True)
+    )
+    heights, fitted = heights[part], fitted[part]
     missing = float(np.mean(np.ma.getmaskarray(heights)))
     if missing > _MOST_MISSING:
         raise ValueError(
             f"{path}: {missing:.0%} of the points are missing; more than {_MOST_MISSING:.0%} are "
-            "too many to interpolate, so crop the scan or measure again"
+            "too many to interpolate, so use a part with --crop, or measure again"
         )
-    if not np.ptp(np.ma.compressed(heights)) > 0:
-        raise ValueError(f"{path}: all heights are equal; a smooth surface has no spectrum")
-    level = raw.detrend(treatment.detrend)
+    _refuse_impossible_heights(path, np.ma.compressed(heights), size)
+    try:
+        values = levelled(np.ma.getdata(heights), fitted, treatment.detrend)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+    level = library_scan(
+        np.ma.array(values, mask=np.ma.getmask(heights)),
+        size,
+        periodic=bool(
+            raw.is_periodic and treatment.crop is None and not order_of(treatment.detrend)
+        ),
+        info=raw.info,
+    )
     if missing > 0:
         level = level.interpolate_undefined_data()
-    level = level.to_unit("m")
-    size = tuple(map(float, level.physical_sizes))
     pixel = max(side / count for side, count in zip(size, heights.shape, strict=True))
     stated = level.short_reliability_cutoff() or 0.0
     shortest = max(_PIXELS_PER_WAVE * pixel, stated, treatment.shortest or 0.0)
     longest = min(size) / _WAVES_PER_SIDE
     if longest < 2**_FEWEST_OCTAVES * shortest:
         raise ValueError(
-            f"{path}: wavelengths from {shortest:.3g} m to {longest:.3g} m can be trusted; a "
-            f"spectrum needs {_FEWEST_OCTAVES} octaves of them, so use a larger or finer scan"
+            f"{path}: waves longer than {prefixed('m', shortest)} and shorter than "
+            f"{prefixed('m', longest)} can be trusted; a spectrum needs {_FEWEST_OCTAVES} octaves "
+            "of them, so use a larger or finer scan"
         )
     return Measurement(
         path=path,
-        format=name,
-        comment=comment,
-        checksum=hashlib.sha256(content).hexdigest()[:8],
+        format=scan.format,
+        comment=str(raw.info.get("comment") or "").strip(),
+        checksum=checksum(path),
         size=size,
         heights=np.array(np.ma.getdata(level.heights()), dtype=float),
         periodic=bool(level.is_periodic),
         missing=missing,
         shortest=shortest,
         longest=longest,
+        channel=scan.channel,
+        levelling=_levelling(treatment, fitted, heights),
     )
 
 
-def surface_library() -> ModuleType:
-    """The library SurfaceTopography; seconds to import, hence imported where it is needed.
-
-    Raises
-    ------
-    ValueError
-        If it is not installed, with the command that installs it.
-    """
-    try:
-        import SurfaceTopography
-    except ModuleNotFoundError as error:
-        raise MissingExtraError("measured surfaces", error, "surfaces") from error
-    return SurfaceTopography
+def _levelling(treatment: Treatment, fitted: Points, heights: Array) -> str:
+    """What was taken off, and where it was fitted."""
+    text = taken_off(treatment.detrend)
+    left_out = 1 - np.count_nonzero(fitted) / np.count_nonzero(~np.ma.getmaskarray(heights))
+    return f"{text} of all but {left_out:.2%} of the points" if treatment.mask else text
 
 
-def _raw(path: Path, treatment: Treatment) -> tuple[Any, str, str]:
-    """The library's map or line of a file, the name of its format, and its comment."""
-    library = surface_library()
-    try:
-        reader = library.open_topography(str(path))
-        channel = reader.default_channel
-    except library.Exceptions.CannotDetectFileFormat as error:
-        raise ValueError(
-            f"{path} is in no format that SurfaceTopography reads, or damaged; export it from the "
-            "instrument again, as X3P if there is a choice"
-        ) from error
-    # A damaged file may fail anywhere in a parser that is not ours.
-    except Exception as error:
-        raise _unreadable(path, "what its head says", error) from error
-    if channel.data_kind.value != "height":
-        raise ValueError(
-            f"{path}: channel {channel.name!r} holds {channel.data_kind.value}, no heights; export "
-            "the channel of the heights alone"
-        )
-    given = _completed(path, reader.format(), channel, treatment)
-    try:
-        raw = reader.topography(channel_index=channel.index, **given)
-        raw.heights()
-    except Exception as error:
-        raise _unreadable(path, reader.format(), error) from error
-    if not raw.is_uniform:
-        raise ValueError(
-            f"{path}: the points are not equally spaced; resample the line on a uniform grid"
-        )
-    comment = raw.info.get("comment") or ""
-    return raw, reader.format(), str(comment).strip()
-
-
-def _completed(path: Path, name: str, channel: Any, treatment: Treatment) -> dict[str, Any]:
-    """What a file does not state, from the treatment."""
-    given: dict[str, Any] = {}
-    if channel.unit is None:
-        if treatment.unit is None:
+def _part(
+    path: Path, treatment: Treatment, counts: tuple[int, ...], size: tuple[float, ...]
+) -> tuple[slice, ...]:
+    """Points of the part of a scan that is used."""
+    if treatment.crop is None:
+        return tuple(slice(count) for count in counts)
+    part = region_slices(path, "crop", treatment.crop, counts, size)
+    for cut, count in zip(part, counts, strict=True):
+        if len(range(*cut.indices(count))) < _FEWEST_POINTS:
             raise ValueError(
-                f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
+                f"{path}: the crop leaves fewer than {_FEWEST_POINTS} points along a side; widen it"
             )
-        if not surface_library().Support.UnitConversion.is_length_unit(treatment.unit):
-            raise ValueError(f"--unit {treatment.unit} is no unit of length; name one, as in um")
-        given["unit"] = treatment.unit
-    elif treatment.unit not in (None, channel.unit):
-        raise ValueError(
-            f"{path} states its own unit, {channel.unit}; leave --unit {treatment.unit} out"
-        )
-    if channel.physical_sizes is None or None in channel.physical_sizes:
-        if treatment.size is None:
-            raise ValueError(f"{path} states no size of the scan; name it, as in --size 50,50")
-        if len(treatment.size) != channel.dim:
+    return part
+
+
+def _masked(
+    path: Path, treatment: Treatment, counts: tuple[int, ...], size: tuple[float, ...]
+) -> Points:
+    """Points that the levelling leaves out."""
+    found = np.zeros(counts, dtype=bool)
+    for mask in treatment.mask:
+        if not isinstance(mask, Path):
+            found[region_slices(path, "mask", mask, counts, size)] = True
+            continue
+        numbers = array_of(mask)
+        if numbers.shape != counts:
             raise ValueError(
-                f"{path} has {channel.dim} dimension(s) and the size that is named "
-                f"{len(treatment.size)}; name one length for each, as in --size 50,50"
+                f"mask {mask} has {_times(numbers.shape)} points and {path} {_times(counts)}; a "
+                "mask has a number for each point, not zero where the levelling leaves it out"
             )
-        given["physical_sizes"] = treatment.size
-    elif treatment.size is not None:
-        stated = " x ".join(f"{side:g}" for side in channel.physical_sizes)
-        raise ValueError(f"{path} states its own size, {stated} {channel.unit}; leave --size out")
-    return given
+        found |= numbers != 0
+    return found
 
 
-def _unreadable(path: Path, name: str, error: Exception) -> ValueError:
-    """What is said of a file at which a reader fails."""
-    return ValueError(
-        f"{path} cannot be read as {name}: {_first_line(error)}; export it from the instrument "
-        "again"
-    )
+def _refuse_impossible_heights(path: Path, heights: Array, size: tuple[float, ...]) -> None:
+    """Raise where heights are what no instrument measures."""
+    if not np.ptp(heights) > 0:
+        raise ValueError(f"{path}: all heights are equal; a smooth surface has no spectrum")
+    rms, span = float(np.std(heights)), float(np.ptp(heights))
+    if rms < _LEAST_HEIGHT or span > _MOST_HEIGHT * max(size):
+        raise ValueError(
+            f"{path}: the heights vary by {prefixed('m', rms)} rms and span {prefixed('m', span)} "
+            f"on {shown_sides(size)}, which cannot be; their unit is wrong, so export them with "
+            "the right one"
+        )
 
 
-def _first_line(error: Exception) -> str:
-    """First line of a message, or what kind it is."""
-    return next(iter(str(error).splitlines()), "") or type(error).__name__
+def _times(counts: tuple[int, ...]) -> str:
+    """Numbers of points as a text."""
+    return " x ".join(map(str, counts))

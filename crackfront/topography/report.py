@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import asdict, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import PinningFactor, SphereFactors
@@ -21,16 +21,21 @@ from crackfront.topography.prediction import (
     Prediction,
     prediction_notes,
     surface_notes,
-    theory_limits,
 )
 from crackfront.topography.reading import Measurement
-from crackfront.topography.simulated import Simulated
+from crackfront.topography.verdict import Condition, Verdict
+
+if TYPE_CHECKING:
+    from crackfront.topography.simulated import Simulated
 
 Number = Estimate[float]
 
 _ENERGY = "J/m2"
 _ORDER_NAMES = {0.0: "heights", 0.5: "half-derivative", 1.0: "slopes"}
 _UNITS = {0.0: "m", 0.5: "m^1/2", 1.0: ""}
+_FAR = 1000.0
+"""Factor to a limit from which on it is not worth a number."""
+
 _ADHESIONS = ("w_appr", "w_retr", "hysteresis")
 
 
@@ -45,10 +50,14 @@ def conformity_text(surface: MeasuredSurface, scales: Scales) -> str:
     return "\n".join(_conformity_lines(energy, scales.work_of_adhesion))
 
 
-def prediction_text(surface: MeasuredSurface, prediction: Prediction) -> str:
-    """A prediction, and where the theory applies."""
-    lines = _prediction_lines(prediction)
-    return "\n".join([*lines, "", *_limit_lines(surface, prediction)])
+def prediction_text(prediction: Prediction) -> str:
+    """A prediction."""
+    return "\n".join(_prediction_lines(prediction))
+
+
+def verdict_text(found: Verdict) -> str:
+    """Whether the theory applies, every condition, and what is in doubt or would make it apply."""
+    return "\n".join(_verdict_lines(found))
 
 
 def simulation_text(found: Simulated) -> str:
@@ -67,10 +76,11 @@ def machine_readable(
     scales: Scales | None = None,
     prediction: Prediction | None = None,
     found: Simulated | None = None,
+    ruling: Verdict | None = None,
 ) -> dict[str, Any]:
     """What the texts and notes say, for JSON; SI units, null where there is nothing."""
     energy = None if scales is None else surface.conformity_energy(scales.contact_modulus)
-    limits = () if prediction is None else theory_limits(surface, prediction)
+
     notes = surface_notes(surface) if prediction is None else prediction_notes(surface, prediction)
     return {
         "measurements": [
@@ -98,7 +108,7 @@ def machine_readable(
             item.name: {"value": value, **item.attributes} for item, value in _columns(prediction)
         },
         "factors": None if prediction is None else _factors_entry(prediction.factors),
-        "limits": [asdict(item) | {"margin": item.margin, "holds": item.holds} for item in limits],
+        "verdict": None if ruling is None else _verdict_entry(ruling),
         "notes": list(notes),
         "simulation": None if found is None else _with_intervals(found, *_ADHESIONS, "k"),
     }
@@ -124,6 +134,9 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
         others = [limit for limit in one.band.limits if limit not in one.band.ends]
         if others:
             yield f"  other limits          {', '.join(map(_limit_text, others))}"
+        if item.channel:
+            yield f"  channel               {item.channel}"
+        yield f"  taken off             {item.levelling}"
         if item.comment:
             yield f"  comment               {item.comment}"
     yield ""
@@ -205,17 +218,56 @@ def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
         yield f"  {name:25}{text} = {part / work_of_adhesion:.3g} w_int"
 
 
-def _limit_lines(surface: MeasuredSurface, prediction: Prediction) -> Iterator[str]:
-    """Lines of the conditions."""
-    limits = theory_limits(surface, prediction)
-    yield "The theory applies" if all(item.holds for item in limits) else "THE THEORY FAILS"
-    for item in limits:
-        word = f"inside by a factor of {item.margin:.2g}" if item.holds else "OUTSIDE"
-        found, largest = (
-            f"{number:.3g}" if item.units == "1" else prefixed(item.units, number)
-            for number in (item.value, item.largest)
+def _verdict_lines(found: Verdict) -> Iterator[str]:
+    """Lines of a verdict."""
+    count = len(found.reservations)
+    yield {
+        "applies": "The theory applies",
+        "applies with reservations": "The theory applies with "
+        + ("1 reservation" if count == 1 else f"{count} reservations"),
+        "does not apply": "THE THEORY DOES NOT APPLY",
+    }[found.outcome]
+    for item in found.conditions:
+        yield f"  {item.name}: {item.found}, {_standing(item)}"
+    if found.remedies:
+        yield "What would make it apply, each change alone"
+        yield from (f"  {remedy}" for remedy in found.remedies)
+    if found.reservations:
+        yield "Reservations"
+        yield from (f"  {number}. {text}" for number, text in enumerate(found.reservations, 1))
+    if found.assumption:
+        yield f"Assumed\n  {found.assumption}"
+
+
+def _standing(item: Condition) -> str:
+    """How a condition stands."""
+    if item.standing == "holds":
+        return (
+            f"inside by a factor of {float(f'{item.margin:.2g}'):g}"
+            if item.margin < _FAR
+            else "far inside"
         )
-        yield f"  {item.condition}: {found} against {largest}, {word}"
+    word, end = ("FAILS", item.limit) if item.standing == "fails" else ("IN DOUBT", item.doubtful)
+    shown = f"{end:.3g}" if item.units == "1" else prefixed(item.units, end)
+    return f"{word} {'below' if item.rising else 'above'} {shown}"
+
+
+def _verdict_entry(found: Verdict) -> dict[str, Any]:
+    """A verdict with the standing of every condition."""
+    return {
+        "outcome": found.outcome,
+        "conditions": [
+            asdict(item)
+            | {
+                "standing": item.standing,
+                "margin": item.margin if math.isfinite(item.margin) else None,
+            }
+            for item in found.conditions
+        ],
+        "reservations": list(found.reservations),
+        "remedies": list(found.remedies),
+        "assumption": found.assumption,
+    }
 
 
 def _shown(unit: str, found: Number) -> str:
@@ -250,6 +302,8 @@ def _measurement_entry(item: Measurement) -> dict[str, Any]:
         "path": str(item.path),
         "format": item.format,
         "comment": item.comment,
+        "channel": item.channel,
+        "taken_off": item.levelling,
         "checksum": item.checksum,
         "points": list(item.heights.shape),
         "size": {"value": list(item.size), "units": "m"},

@@ -15,7 +15,8 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.units import Scales
 from crackfront.topography.densities import topography
-from crackfront.topography.reading import Measurement, surface_library
+from crackfront.topography.instruments import surface_library
+from crackfront.topography.reading import Measurement
 
 Array = NDArray[np.float64]
 

@@ -235,3 +235,16 @@ def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_pa
     main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
     assert reference.wait() == 0
     assert dataset(results).equals(undisturbed(sweep, alone))
+
+
+def test_the_plain_job_script_runs_a_sweep_to_its_page(tmp_path):
+    sweep = configuration(tmp_path)
+    script = ROOT / "workflow/sbatch.sh"
+    resources = ("--partition=main", "--ntasks=3", "--mem-per-cpu=500M", "--time=4")
+    done = run(["sbatch", "--wait", *resources, str(script), str(sweep)], cwd=tmp_path)
+    told = "".join(path.read_text() for path in tmp_path.glob("slurm-*.out"))
+    assert done.returncode == 0, told
+    results = tmp_path / "results/sweep"
+    for name in ("fit.md", "summary.html", "figures/loop.png"):
+        assert (results / name).stat().st_size > 1000
+    assert dataset(results).equals(undisturbed(sweep, tmp_path / "alone"))

@@ -3,6 +3,7 @@
 import base64
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -97,6 +98,13 @@ def test_the_report_is_one_page_that_a_browser_shows_without_a_network(tmp_path,
     for words in ("a crack front pinned by the roughness", "Figures", "Fit, configuration and"):
         assert words in " ".join(seen.split())
     summary = seen_in_browser(serial / "results/test/summary.html", tmp_path / "profile")
+    # Both open on the sentences of the fit, and on its figures.
+    fit = (serial / "results/test/fit.md").read_text(encoding="utf-8")
+    first = re.search(r"The factor k of .*? is no constant", fit)
+    assert first
+    for page in (seen, summary):
+        assert first[0] in page
+        assert 'alt="loop"' in page
     assert "<td>lost_contact</td><td>8</td>" in summary
     assert "<th>midpoint slope m</th>" in summary
     for item in ("git_commit", "command", "platform", "seed of the sweep"):

@@ -13,6 +13,7 @@ rule fit:
 rule summary:
     input:
         f"{RESULTS}/hysteresis.nc",
+        expand("{results}/figures/{figure}.png", results=RESULTS, figure=SWEEP_FIGURES),
     output:
         report(
             f"{RESULTS}/summary.html",

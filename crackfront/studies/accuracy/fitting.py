@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.plots.style import BLACK, COLOURS, COLUMN, MARKERS, PAGE, blank_figure, house_style
+from crackfront.plots.style import (
+    BLACK,
+    COLOURS,
+    COLUMN,
+    MARKERS,
+    PAGE,
+    blank_figure,
+    explain,
+    house_style,
+)
 from crackfront.simulate.laws import KNOBS, LAW_SIZE, Knob, Law, abscissa
 from crackfront.studies.accuracy.study import Errors, SceneErrors, rms
 
@@ -114,6 +123,7 @@ def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
         panels[-1].legend(
             handles, labels, loc="center left", title=r"$e_\mathrm{el}/w_\mathrm{int}$"
         )
+        explain(figure, "lines: the fitted laws; broken line: an error of 0.01 of k")
         return figure
 
 

@@ -17,6 +17,7 @@ from crackfront.plots.style import (
     MARKERS,
     PAGE,
     blank_figure,
+    explain,
     house_style,
     save_figure,
 )
@@ -48,6 +49,7 @@ _NAMES = {
     "pixels": "pixels of the tile",
     "tolerance": "tolerance of the force",
     "asked": "chosen for an error",
+    "finer": "finer than the reference",
 }
 
 
@@ -304,6 +306,7 @@ def _work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
             axes.set_ylabel("rms error of the hysteresis / %")
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside right upper", title="varied")
+        explain(figure, "grey: the Pareto front, from setting to setting that none beats in both")
         return figure
 
 

@@ -165,7 +165,7 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
             direction: right.plot([], [], color=colour, label=label)[0]
             for direction, colour, label in ((1, BLUE, "approach"), (-1, VERMILION, "retraction"))
         }
-        (point,) = right.plot([], [], "o", color=BLACK, zorder=4)
+        (point,) = right.plot([], [], "o", color=BLACK, zorder=4, label="state of the front beside")
         right.legend(loc="upper left")
     last = shown.direction.size
 
@@ -186,7 +186,6 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
 
 def _draw_axes(axes: Axes, shown: AnimatedCycle) -> None:
     """Axes that hold the whole loop."""
-    axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
     for values, setter, above in (
         (shown.mean_radius, axes.set_xlim, 0.06),
         (shown.force, axes.set_ylim, 0.2),

@@ -12,8 +12,9 @@ import importlib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
+from crackfront.analysis.estimate import with_error
 from crackfront.core.fingerprint import fingerprint
 from crackfront.data.section import ConfigurationError, Section, content_of, validated
 
@@ -42,6 +43,8 @@ class Check:
         Whether they agree.
     remark : str
         Where the difference comes from, or what the number rests on.
+    law : str
+        What the law of k says in place of the paper, where what was found agrees with it.
     """
 
     claim: str
@@ -49,6 +52,18 @@ class Check:
     found: str
     passed: bool
     remark: str = ""
+    law: str = ""
+
+    @property
+    def result(self) -> Result:
+        """One of three: a difference that the law of k foretells is none that wants a cause."""
+        if self.passed:
+            return "agrees"
+        return "differs as the law of k says" if self.law else "FAIL"
+
+
+Result = Literal["agrees", "differs as the law of k says", "FAIL"]
+"""How a check ends."""
 
 
 def close_to(
@@ -59,6 +74,7 @@ def close_to(
     *,
     units: str = "",
     remark: str = "",
+    law: tuple[float, float] | None = None,
 ) -> Check:
     """Check that a number lies within an absolute tolerance of another.
 
@@ -74,6 +90,8 @@ def close_to(
         Their units.
     remark : str, optional
         What the number rests on.
+    law : tuple of float, optional
+        The number that the law of k gives, and the half of its interval.
 
     Examples
     --------
@@ -81,12 +99,16 @@ def close_to(
     True
     """
     after = f" {units}" if units else ""
+    said = ""
+    if law is not None and abs(found - law[0]) <= law[1]:
+        said = f"{with_error(*law)}{after}"
     return Check(
         claim,
-        f"{expected:.6g} ± {tolerance:.2g}{after}",
+        f"{with_error(expected, tolerance)}{after}",
         f"{found:.6g}{after}",
         abs(found - expected) <= tolerance,
         remark,
+        said,
     )
 
 
@@ -98,11 +120,15 @@ def checks_table(checks: Iterable[Check]) -> Iterator[str]:
     checks : iterable of Check
         Its rows.
     """
-    yield "| claim | expected | found | | remark |"
+    yield "| claim | expected | found | result | remark |"
     yield "| --- | --- | --- | --- | --- |"
     for check in checks:
-        verdict = "pass" if check.passed else "**FAIL**"
-        yield (f"| {check.claim} | {check.expected} | {check.found} | {verdict} | {check.remark} |")
+        result: str = check.result
+        if result == "FAIL":
+            result = f"**{result}**"
+        elif check.law and not check.passed:
+            result = f"{result}: {check.law}"
+        yield (f"| {check.claim} | {check.expected} | {check.found} | {result} | {check.remark} |")
 
 
 @dataclass(frozen=True, slots=True)

@@ -175,7 +175,6 @@ def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
             )
             end = 0 if direction > 0 else -1
             _draw_jump(axes, direction, float(radius[end]), float(force[end]), colour)
-        axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
         _draw_pull_off(axes, loop)
         axes.set_xlim(left=_LEFT)
         axes.set_ylim(bottom=1.12 * float(np.min(loop.force)))

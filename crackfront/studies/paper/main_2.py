@@ -36,6 +36,7 @@ from crackfront.plots.style import (
     SKY,
     VERMILION,
     blank_figure,
+    explain,
     house_style,
 )
 from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
@@ -357,6 +358,12 @@ def rings_figure(loops: RingLoops) -> Drawing:
         _draw_forces(force, loops)
         for name, axes in zip("abcd", (profile, long, short, force), strict=True):
             label_panel(axes, name)
+        explain(
+            figure,
+            "thick: the edge is pinned; thin: it jumps (b, d with arrows); grey: $w_\\mathrm{loc}$ "
+            "of the rings; A, B: contact at b = 0 in approach and retraction; broken lines: the "
+            "extremes of the rings",
+        )
         return figure
 
 

@@ -24,7 +24,7 @@ from crackfront.core.outcome import Direction
 from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
-from crackfront.plots.style import BLUE, PAGE, PURPLE, VERMILION, blank_figure, house_style
+from crackfront.plots.style import BLUE, PAGE, PURPLE, VERMILION, blank_figure, explain, house_style
 from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
 from crackfront.studies.paper.rough import (
     STRONG,
@@ -318,7 +318,7 @@ def instability_figure(record: InstabilityRecord) -> Drawing:
     from crackfront.plots.instabilities import ENERGY_LABEL, energy_shades
 
     with house_style():
-        figure = blank_figure(PAGE, 0.41 * PAGE)
+        figure = blank_figure(PAGE, 0.45 * PAGE)
         left, right = figure.subplots(1, 2, width_ratios=(1.6, 1))
         shades = energy_shades(record.energy)
         for index in (STRONG, WEAK):
@@ -331,10 +331,16 @@ def instability_figure(record: InstabilityRecord) -> Drawing:
             orientation="horizontal",
             extend="min",
         )
-        bar.set_label(ENERGY_LABEL, fontsize=7, labelpad=1)
+        bar.set_label(ENERGY_LABEL, labelpad=1)
         _draw_cycle(right, record)
         left.set_title("a", loc="left", fontweight="bold")
         right.set_title("b", loc="left", fontweight="bold")
+        explain(
+            figure,
+            "a: areas swept by single instabilities, outlined by the fronts before and after; "
+            "white: swept smoothly; orange bars: the Larkin length; b: strong disorder; "
+            "A, B: contact at b = 0 in approach and retraction",
+        )
         return figure
 
 
@@ -402,9 +408,7 @@ def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
     axes.plot(
         [-reach, 0.5 - reach], [-0.12, -0.12], color="black", linewidth=1.2, solid_capstyle="butt"
     )
-    axes.annotate(
-        r"$0.5\,(3\pi w_\mathrm{int}R^2/4E')^{1/3}$", (-reach, -0.17), va="top", fontsize=6
-    )
+    axes.annotate(r"$0.5\,(3\pi w_\mathrm{int}R^2/4E')^{1/3}$", (-reach, -0.17), va="top")
 
 
 def _draw_cycle(axes: Axes, record: InstabilityRecord) -> None:
@@ -427,12 +431,11 @@ def _draw_cycle(axes: Axes, record: InstabilityRecord) -> None:
         axes.annotate(
             letter, (place, force), xytext=aside, textcoords="offset points", fontweight="bold"
         )
-    axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=0)
     axes.set_xlim(0.0, 1.08 * record.state_radius.max())
     axes.set_ylim(1.25 * record.state_force.min(), 0.1)
     axes.legend(loc="lower left")
-    axes.set_xlabel(RADIUS_LABEL, fontsize=7)
-    axes.set_ylabel(FORCE_LABEL, fontsize=7)
+    axes.set_xlabel(RADIUS_LABEL)
+    axes.set_ylabel(FORCE_LABEL)
 
 
 FIGURE = Figure(

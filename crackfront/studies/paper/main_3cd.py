@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from crackfront.analysis.report import PAPER_FACTOR
+from crackfront.analysis.estimate import REACH, with_error
+from crackfront.analysis.finding import PAPER_FACTOR
+from crackfront.analysis.law import sphere_factors
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.record import Recorder
@@ -21,7 +23,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Positive
 from crackfront.plots.parts import ADHESION_LABEL, field_colours
-from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import stated_error
 from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
@@ -172,9 +174,12 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
     factor_error = math.hypot(loop.approach_error, loop.retraction_error) / (2 * energy)
     spread = 3 * math.hypot(loop.approach_error, loop.retraction_error) / 2
     spectrum = SelfAffineSpectrum(loop.short_cutoff, loop.roll_off, loop.hurst)
+    law = sphere_factors(
+        "roughness", spectrum, energy, (loop.lowest_radius + loop.highest_radius) / 2
+    )
     numbers = (
-        f"k of this loop is {factor:.2f} ± {factor_error:.2f}; k grows with the size, here "
-        f"{loop.highest_radius / spectrum.correlation_length:.0f} correlation lengths; tolerance: "
+        f"k of this loop is {with_error(factor, factor_error)}, by the law at its size "
+        f"{law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f}); tolerance: "
         f"what one digit of k leaves, {ONE_DIGIT:g} e_el, with {energy:.4f} w_int on the tile"
     )
     return (
@@ -183,14 +188,18 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
             close_to(
                 f"{name} = w_int - e_el {sign} 3 e_el (main text)",
                 found,
-                1 - (1 + further) * energy,
+                1 - energy + side * PAPER_FACTOR * energy,
                 ONE_DIGIT * energy,
                 units=ADHESION,
                 remark=numbers,
+                law=(
+                    1 - energy + side * branch.factor.value * energy,
+                    REACH * math.hypot(branch.factor.standard_error * energy, error),
+                ),
             )
-            for name, sign, found, further in (
-                ("w_appr", "-", loop.approach, PAPER_FACTOR),
-                ("w_retr", "+", loop.retraction, -PAPER_FACTOR),
+            for name, sign, side, found, error, branch in (
+                ("w_appr", "-", -1, loop.approach, loop.approach_error, law.approach),
+                ("w_retr", "+", 1, loop.retraction, loop.retraction_error, law.retraction),
             )
         ),
         close_to(
@@ -218,7 +227,7 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
         expected, passed = {
             "below": (f"below {mean - reach:.4f}", found < mean - reach),
             "above": (f"above {mean + reach:.4f}", found > mean + reach),
-            "at": (f"{mean:.4f} ± {reach:.2g}", abs(found - mean) <= reach),
+            "at": (with_error(mean, reach), abs(found - mean) <= reach),
         }[word]
         checks.append(
             Check(
@@ -254,6 +263,7 @@ def pinned_loop_figure(loop: PinnedLoop) -> Drawing:
         _draw_fronts(right, loop)
         for axes, letter in ((left, "c"), (right, "d")):
             axes.set_title(letter, loc="left", fontweight="bold")
+        explain(figure, "arrows: the direction of motion; d: the fronts at b = 0")
         return figure
 
 
@@ -294,7 +304,7 @@ def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
     axes.set_xlim(loop.x[0], loop.x[-1])
     axes.set_ylim(loop.y[0], loop.y[-1])
     label_plane(axes)
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.2)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.55, 1.0), ncols=3, columnspacing=1.0)
 
 
 FIGURE = Figure(

@@ -20,7 +20,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.plots.parts import HEIGHT_LABEL, LENGTH_LABEL, label_panel
-from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
 
 if TYPE_CHECKING:
@@ -248,20 +248,25 @@ _PLACES = (("peak", "^", VERMILION), ("valley", "v", BLUE))
 def mapping_figure(record: Mapping) -> Drawing:
     """Heights and work of adhesion on a patch, and profiles across a peak and a valley."""
     with house_style():
-        figure = blank_figure(PAGE, 0.79 * PAGE)
-        grid = figure.add_gridspec(2, 2, height_ratios=(1.45, 1))
+        figure = blank_figure(PAGE, 0.86 * PAGE)
+        grid = figure.add_gridspec(2, 2, height_ratios=(1.3, 1))
         maps = [figure.add_subplot(grid[0, column]) for column in (0, 1)]
         _draw_map(maps[0], record, record.heights, "cividis", HEIGHT_LABEL.format("height $h$"))
         _draw_map(maps[1], record, record.adhesion, "viridis", _ADHESION_LABEL)
         for axes, name in zip(maps, "ab", strict=True):
             label_panel(axes, name)
-            axes.set_title("front along $y$, contact at smaller $x$", fontsize=7)
+            axes.set_title("front along $y$, contact at smaller $x$")
         for column, (place, _, colour) in enumerate(_PLACES):
             parts = grid[1, column].subgridspec(2, 1, hspace=0.0)
             upper = figure.add_subplot(parts[0])
             lower = figure.add_subplot(parts[1], sharex=upper)
             _draw_profile(upper, lower, record, place, colour)
             label_panel(upper, "cd"[column])
+        explain(
+            figure,
+            "c, d: height and work of adhesion along the white lines of a and b; dotted: the place "
+            "of peak and valley; broken: the mean of $w_\\mathrm{loc}$",
+        )
         return figure
 
 
@@ -308,7 +313,6 @@ def _draw_profile(upper: Axes, lower: Axes, record: Mapping, place: str, colour:
     upper.fill_between(distance, heights, heights.min() - 1, color="0.88", linewidth=0)
     upper.plot(distance, heights, color="0.2")
     lower.plot(distance, adhesion, color=colour)
-    lower.axhline(1.0, color="0.6", linewidth=0.4, zorder=1)
     lower.axhline(record.mean, color="0.2", linewidth=0.6, dashes=(4, 2), zorder=1)
     for axes in (upper, lower):
         axes.axvline(0.0, color=colour, linewidth=0.6, dashes=(1.5, 1.5), zorder=1)
@@ -327,7 +331,7 @@ def _draw_profile(upper: Axes, lower: Axes, record: Mapping, place: str, colour:
     )
     lower.xaxis.set_major_locator(MaxNLocator(5))
     upper.tick_params(labelbottom=False)
-    upper.set_ylabel(HEIGHT_LABEL.format("$h$").replace(" / ", " /\n"), fontsize=6.5)
+    upper.set_ylabel(HEIGHT_LABEL.format("$h$").replace(" / ", " /\n"))
     lower.set_ylabel(_ADHESION_LABEL)
     lower.set_xlabel(LENGTH_LABEL.format(f"distance from the {place} along $x$"))
 

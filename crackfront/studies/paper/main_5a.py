@@ -21,7 +21,15 @@ from crackfront.plots.densities import (
     draw_dominant_scales,
     set_density_scales,
 )
-from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
+from crackfront.plots.style import (
+    BLACK,
+    BLUE,
+    COLUMN,
+    VERMILION,
+    blank_figure,
+    explain,
+    house_style,
+)
 from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
 from crackfront.studies.paper.film import FilmParameters, conformity_energy, shown_wavevectors
 
@@ -185,18 +193,22 @@ def film_scales_figure(record: FilmScales) -> Drawing:
             upper.plot(points, np.pi / points * density, ".", color=VERMILION, markersize=2)
             lower.plot(points, density, ".", color=VERMILION, markersize=2, label="measured")
         lower.axvline(2 * np.pi / record.roll_off, color="0.6", linewidth=0.6, zorder=1)
-        lower.legend(loc="lower left")
+        lower.legend(loc="upper right")
         upper.set_ylabel(ISOTROPIC_LABEL)
         lower.set_ylabel(PROFILE_LABEL)
         add_wavelengths(upper)
         lower.set_xlabel(WAVEVECTOR_LABEL)
+        explain(figure, "bars: scales of 80% of a mean square; grey: the roll-off")
         return figure
 
 
 def _draw_roll_off(axes: Axes, record: FilmScales) -> None:
     """Line at the roll-off with its wavelength."""
     place = 2 * np.pi / record.roll_off
-    axes.axvline(place, color="0.6", linewidth=0.6, zorder=1)
+    # Up to the density, so that it crosses no bar and no name.
+    axes.vlines(
+        place, axes.get_ylim()[0], record.isotropic[0], color="0.6", linewidth=0.6, zorder=1
+    )
     axes.annotate(
         f"roll-off {1e6 * record.roll_off:.3g} µm",
         (place, 0.03),

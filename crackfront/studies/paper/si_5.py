@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
-from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.report import PAPER_FACTOR
+from crackfront.analysis.estimate import REACH, Estimate, slope, with_error
+from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
 from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.data.section import Section
-from crackfront.plots.style import PAGE, blank_figure, house_style
+from crackfront.plots.style import PAGE, blank_figure, explain, house_style
 from crackfront.studies.paper.figure import Check, Figure, Progress
 from crackfront.studies.paper.rough import ONE_DIGIT
 
@@ -128,6 +129,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             study.spectrum, study.correlation_length, onset, strict=True
         )
     )
+    law = _by_law(fit)
     return (
         Check(
             f"k of all spectra, e_el from {study.lowest_elastic_energy:g} to "
@@ -135,8 +137,9 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"{PAPER_FACTOR:g} ± {ONE_DIGIT:g}",
             _interval(factor),
             bool(abs(factor.value - PAPER_FACTOR) <= ONE_DIGIT),
-            "95% interval; k grows with the number of correlation lengths around the contact, and "
-            "falls with disorder beyond the onset: panels b and c",
+            "95% interval; k grows with the size of the contact, and falls with disorder beyond "
+            "the onset: panels b and c",
+            law=_said(float(factor.value), *law.factor),
         ),
         Check(
             "hysteresis in proportion to w_rms^2: exponent 2",
@@ -144,6 +147,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             _interval(exponent),
             bool(exponent.low <= 2 <= exponent.high),
             "over the range of the fit, where k falls with disorder",
+            law=_said(float(exponent.value), *law.exponent),
         ),
         Check(
             "independent of the shape of the spectrum: spread of k among the spectra",
@@ -153,6 +157,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             ", ".join(
                 f"{name} {value:.2f}" for name, value in zip(study.spectrum, factors, strict=True)
             ),
+            law=_said(100 * spread, *law.spread, units="%"),
         ),
         Check(
             "onset of hysteresis at larger e_el for a longer correlation length",
@@ -162,6 +167,42 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"correlation length: e_el / w_int at which k is half that of the fit ({text})",
         ),
     )
+
+
+class _ByLaw(NamedTuple):
+    """What the law gives for what the paper reads off, with half of its interval; spread in %."""
+
+    factor: tuple[float, float]
+    exponent: tuple[float, float]
+    spread: tuple[float, float]
+
+
+def _by_law(fit: SweepFit) -> _ByLaw:
+    """Pooled k, exponent of the hysteresis and spread among spectra of the law's k in the range.
+
+    Its errors are those of one amplitude of one spectrum, which count as independent where
+    amplitudes or spectra are compared. Nothing where the law does not know every k.
+    """
+    k, error = (
+        values[:, fit.in_range]
+        for values in (fit.cells.law_factor.value, fit.cells.law_factor.standard_error)
+    )
+    if not np.all(np.isfinite(k)):
+        return _ByLaw(*[(math.nan, math.nan)] * 3)
+    strength = np.log(fit.cells.w_rms[:, fit.in_range])
+    along, weight = slope(strength, np.log(k))
+    relative = float(np.mean(error / k))
+    mean = np.mean(k, axis=1)
+    return _ByLaw(
+        (float(np.mean(k)), REACH * float(np.mean(error))),
+        (2 + float(np.mean(along)), REACH * relative / math.sqrt(float(np.mean(weight)))),
+        (float(100 * np.ptp(mean) / np.mean(mean)), 100 * REACH * relative * math.sqrt(2)),
+    )
+
+
+def _said(found: float, value: float, reach: float, units: str = "") -> str:
+    """The law's number where what was found agrees with it, else nothing."""
+    return f"{with_error(value, reach)}{units}" if abs(found - value) <= reach else ""
 
 
 def _interval(estimate: Estimate) -> str:
@@ -186,7 +227,11 @@ def _onsets(fit: SweepFit) -> Array:
 
 def parametric_study_figure(study: ParametricStudy) -> Drawing:
     """Hysteresis against disorder with the spectra, k against disorder, k against size."""
+    from crackfront.plots.parts import legend_entries
     from crackfront.plots.sweep import (
+        POINTS_EXPLAINED,
+        SHAPES_EXPLAINED,
+        SHIFTS_EXPLAINED,
         draw_factor_by_disorder,
         draw_factor_by_length,
         draw_hysteresis,
@@ -196,7 +241,7 @@ def parametric_study_figure(study: ParametricStudy) -> Drawing:
 
     fit = study_fit(study)
     with house_style():
-        figure = blank_figure(PAGE, 0.62 * PAGE)
+        figure = blank_figure(PAGE, 0.68 * PAGE)
         panels = figure.subplot_mosaic([["a", "b"], ["a", "c"]], width_ratios=(1.2, 1))
         draw_hysteresis(panels["a"], fit.table, fit)
         draw_spectra(panels["a"].inset_axes((0.7, 0.12, 0.28, 0.26)), fit.table, fit.kind)
@@ -205,6 +250,11 @@ def parametric_study_figure(study: ParametricStudy) -> Drawing:
         for name in ("b", "c"):
             set_factor_limits(panels[name], fit)
         panels["c"].set_ylabel("mean $k$")
+        # One legend for all panels: that of b has the pooled k besides.
+        if legend := panels["a"].get_legend():
+            legend.remove()
+        figure.legend(*legend_entries(panels["b"]), loc="outside upper center", ncols=3)
+        explain(figure, f"{POINTS_EXPLAINED}; {SHIFTS_EXPLAINED} (b); {SHAPES_EXPLAINED} (c)")
         for name, axes in panels.items():
             axes.set_title(name, loc="left", fontweight="bold")
         return figure

@@ -251,9 +251,7 @@ def synthetic_film_figure(record: SyntheticFilm) -> Drawing:
         axes.set_xlabel(WAVEVECTOR_LABEL)
         axes.set_ylim(top=20 * float(record.profile.max()))
         add_wavelengths(axes)
-        axes.legend(
-            loc="lower left", frameon=True, facecolor="white", framealpha=1, edgecolor="none"
-        )
+        axes.legend(loc="lower left", bbox_to_anchor=(0.07, 0.0))
         return figure
 
 

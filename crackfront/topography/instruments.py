@@ -1,0 +1,277 @@
+"""Files of instruments: opened by a library, and completed by what they do not state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from crackfront.core.optional_libraries import MissingExtraError
+from crackfront.data.lazy_modules import loaded_on_use
+from crackfront.data.written_units import prefixed
+from crackfront.topography.files import readable, refuse_special, refuse_too_many_points
+
+_RARELY_USED = ("pandas", "openpyxl", "requests", "h5py")
+"""What the library imports for single formats, which takes a part of a second."""
+
+_SIDES = (1e-9, 1.0)
+"""Sides of a scan within which instruments measure (Units: m): beyond, the unit is wrong."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unstated:
+    """What a user says of files that do not say it, or of several channels.
+
+    Attributes
+    ----------
+    unit : str or None
+        Unit of lengths.
+    size : tuple of float or None
+        Sides of the scan, or the length of a line. (Units: those of `unit`, or of the file)
+    channel : str or None
+        Name or number of the channel.
+    """
+
+    unit: str | None = None
+    size: tuple[float, ...] | None = None
+    channel: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RawScan:
+    """A channel of a file as it stands there.
+
+    Attributes
+    ----------
+    level : object of the library
+        Heights, sides and what the file says of the instrument. (Units: m)
+    format : str
+        Name of the format, as the library calls it.
+    channel : str
+        Name of the channel, and which of how many of heights it is.
+    """
+
+    level: Any
+    format: str
+    channel: str
+
+
+def surface_library() -> ModuleType:
+    """The library SurfaceTopography; seconds to import, hence imported where it is needed.
+
+    Raises
+    ------
+    ValueError
+        If it is not installed, with the command that installs it.
+    """
+    try:
+        with loaded_on_use(_RARELY_USED):
+            import SurfaceTopography
+    except ModuleNotFoundError as error:
+        raise MissingExtraError("measured surfaces", error, "surfaces") from error
+    return SurfaceTopography
+
+
+def raw_scan(path: Path, unstated: Unstated) -> RawScan:
+    """The heights of a file in metres.
+
+    Raises
+    ------
+    ValueError
+        If the library is missing or the file cannot be used; one sentence.
+    OSError
+        If the file cannot be opened.
+    """
+    refuse_special(path)
+    source = readable(path)
+    reader = _reader(path, source)
+    channel, name = _channel(path, reader, unstated.channel)
+    if channel.nb_grid_pts is not None:
+        refuse_too_many_points(path, channel.nb_grid_pts)
+    given, sides = _completed(path, reader.format(), channel, unstated)
+    try:
+        raw = reader.topography(channel_index=channel.index, **given)
+        level = raw.to_unit("m")
+        level.heights()
+    except Exception as error:
+        raise _unreadable(path, reader.format(), error) from error
+    if not raw.is_uniform:
+        raise ValueError(
+            f"{path}: the points are not equally spaced; resample the line on a uniform grid"
+        )
+    if sides is not None:
+        level = library_scan(level.heights(), sides, periodic=False, info=raw.info)
+    return RawScan(level, reader.format(), name)
+
+
+def array_of(path: Path) -> np.ndarray[Any, Any]:
+    """Numbers of a file without units, as of a mask.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read.
+    """
+    refuse_special(path)
+    reader = _reader(path, readable(path))
+    channel = reader.default_channel
+    sized = {} if channel.physical_sizes else {"physical_sizes": (1.0,) * channel.dim}
+    try:
+        return np.ma.filled(reader.topography(channel_index=channel.index, **sized).heights(), 0.0)
+    except Exception as error:
+        raise _unreadable(path, reader.format(), error) from error
+
+
+def library_scan(
+    heights: np.ndarray[Any, Any], size: tuple[float, ...], *, periodic: bool, info: dict[str, Any]
+) -> Any:
+    """Heights in metres as an object of the library."""
+    library = surface_library()
+    kind = library.Topography if heights.ndim > 1 else library.UniformLineScan
+    return kind(heights, size, periodic=periodic, unit="m", info=info)
+
+
+def _reader(path: Path, source: Path | BytesIO) -> Any:
+    """The library's reader of a file."""
+    library = surface_library()
+    try:
+        return library.open_topography(str(source) if isinstance(source, Path) else source)
+    except library.Exceptions.CannotDetectFileFormat as error:
+        raise ValueError(
+            f"{path} is in no format that SurfaceTopography reads, or damaged; export it from the "
+            "instrument again, as X3P if there is a choice"
+        ) from error
+    # A damaged file may fail anywhere in a parser that is not ours.
+    except Exception as error:
+        raise _unreadable(path, "what its head says", error) from error
+
+
+def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
+    """A channel of heights, the library's own choice if none is named, and what it is called."""
+    try:
+        channels = list(reader.channels)
+        found: Any = reader.default_channel
+    except Exception as error:
+        raise _unreadable(path, "what its head says", error) from error
+    of_heights = [item for item in channels if item.data_kind.value == "height"]
+    if wanted is not None:
+        named = [item for item in channels if item.name == wanted]
+        named = named or [item for item in channels if str(item.index) == wanted]
+        if len(named) != 1:
+            raise ValueError(
+                f"{path} has {'several channels' if named else 'no channel'} {wanted!r}; "
+                f"{_choice(channels)}"
+            )
+        [found] = named
+    if found.data_kind.value != "height":
+        raise ValueError(
+            f"{path}: channel {found.name!r} holds {found.data_kind.value}, no heights; "
+            + (_choice(of_heights) if of_heights else "export the channel of the heights")
+        )
+    several = f", {found.index} of {len(channels)}" if len(channels) > 1 else ""
+    return found, f"{found.name!r}{several}"
+
+
+def _choice(channels: list[Any]) -> str:
+    """What channels there are to choose from."""
+    known = (f"{item.index} {item.name!r} ({item.data_kind.value})" for item in channels)
+    return f"choose by number or name with --channel: {', '.join(known)}"
+
+
+def _completed(
+    path: Path, name: str, channel: Any, unstated: Unstated
+) -> tuple[dict[str, Any], tuple[float, ...] | None]:
+    """What a file does not state, and sides in metres where it states impossible ones."""
+    given: dict[str, Any] = {}
+    stated = _stated_size(channel)
+    if stated is not None and not _are_possible(stated):
+        return given, _corrected(path, stated, unstated)
+    if channel.unit is None:
+        if unstated.unit is None:
+            raise ValueError(
+                f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
+            )
+        if not surface_library().Support.UnitConversion.is_length_unit(unstated.unit):
+            raise ValueError(f"--unit {unstated.unit} is no unit of length; name one, as in um")
+        given["unit"] = unstated.unit
+    elif unstated.unit not in (None, channel.unit):
+        raise ValueError(
+            f"{path} states its own unit, {channel.unit}; leave --unit {unstated.unit} out"
+        )
+    if channel.physical_sizes is None or None in channel.physical_sizes:
+        if unstated.size is None:
+            raise ValueError(f"{path} states no size of the scan; name it, as in --size 50,50")
+        if len(unstated.size) != channel.dim:
+            raise ValueError(
+                f"{path} has {channel.dim} dimension(s) and the size that is named "
+                f"{len(unstated.size)}; name one length for each, as in --size 50,50"
+            )
+        given["physical_sizes"] = unstated.size
+    elif unstated.size is not None:
+        known = " x ".join(f"{side:g}" for side in channel.physical_sizes)
+        raise ValueError(f"{path} states its own size, {known} {channel.unit}; leave --size out")
+    sides = given.get("physical_sizes", channel.physical_sizes)
+    _refuse_impossible(path, sides, given.get("unit", channel.unit))
+    return given, None
+
+
+def _stated_size(channel: Any) -> tuple[float, ...] | None:
+    """Sides that a file states, in metres; None if it does not."""
+    if channel.unit is None or channel.physical_sizes is None or None in channel.physical_sizes:
+        return None
+    return _in_metres(channel.physical_sizes, channel.unit)
+
+
+def _in_metres(sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
+    """Sides of a scan in metres."""
+    factor = surface_library().Support.UnitConversion.get_unit_conversion_factor(unit, "m")
+    return tuple(float(factor * side) for side in sides)
+
+
+def _are_possible(sides: tuple[float, ...]) -> bool:
+    """Whether an instrument measures sides of so many metres."""
+    return all(_SIDES[0] <= side <= _SIDES[1] for side in sides)
+
+
+def _corrected(path: Path, stated: tuple[float, ...], unstated: Unstated) -> tuple[float, ...]:
+    """Sides that are named in place of impossible ones (Units: m)."""
+    if unstated.size is None or unstated.unit is None:
+        raise ValueError(
+            f"{path} states sides of {shown_sides(stated)}, which no instrument measures; its unit "
+            "is wrong, so name the sides, as in --size "
+            f"{','.join(f'{side:g}' for side in stated)} --unit um"
+        )
+    _refuse_impossible(path, unstated.size, unstated.unit)
+    return _in_metres(unstated.size, unstated.unit)
+
+
+def _refuse_impossible(path: Path, sides: tuple[float, ...], unit: str) -> None:
+    """Raise where named sides are beyond every instrument."""
+    named = _in_metres(sides, unit)
+    if not _are_possible(named):
+        raise ValueError(
+            f"{path} cannot have sides of {shown_sides(named)}: instruments measure from "
+            f"{shown_sides(_SIDES[:1])} to {shown_sides(_SIDES[1:])}; check --size and --unit"
+        )
+
+
+def shown_sides(sides: tuple[float, ...]) -> str:
+    """Sides of a scan as a text (Units: m)."""
+    return " x ".join(prefixed("m", side) for side in sides)
+
+
+def _unreadable(path: Path, name: str, error: Exception) -> ValueError:
+    """What is said of a file at which a reader fails."""
+    return ValueError(
+        f"{path} cannot be read as {name}: {_first_line(error)}; export it from the instrument "
+        "again"
+    )
+
+
+def _first_line(error: Exception) -> str:
+    """First line of a message, or what kind it is."""
+    return next(iter(str(error).splitlines()), "") or type(error).__name__

@@ -1,0 +1,329 @@
+"""Whether the theory applies to a sphere on a surface: every condition, with what would meet it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from scipy.special import ndtr
+
+from crackfront.core.units import Scales
+from crackfront.data.written_units import prefixed
+from crackfront.topography.measures import MeasuredSurface
+from crackfront.topography.prediction import Prediction, surface_doubts
+from crackfront.topography.tile import zero_load_radius
+
+Standing = Literal["holds", "in doubt", "fails"]
+Outcome = Literal["applies", "applies with reservations", "does not apply"]
+
+ASSUMED_RANGE = 0.5e-9
+"""Range of van der Waals attraction, where no other is named (Units: m)."""
+
+_CONTACT = (0.3, 0.7)
+"""Contact radius over that of the sphere, whose depth a paraboloid misses by 3% and by 24%."""
+
+_TABOR = (5.0, 1.0)
+"""Tabor parameter down to which adhesion is that of cracks, and to which there are cracks."""
+
+_SLOPES = (0.3, 1.0)
+"""Rms slope, whose square linear elasticity leaves out."""
+
+_NEGATIVE = (0.05, 0.25)
+"""Part of the surface where w_loc is negative; at the second w_rms is that of the strongest
+disorder that the law was measured at."""
+
+_MOST_UNSURE = 2.0
+"""Ends of the interval of e_el over each other from which on it is said."""
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A condition of the theory, in SI units.
+
+    Attributes
+    ----------
+    name : str
+        What must be.
+    found : str
+        What is compared with what, in words with numbers.
+    reason : str
+        What is wrong near the limit and beyond.
+    value : float
+        What is compared.
+    doubtful, limit : float
+        Values up to which the condition holds, and up to which it is in doubt; where `rising`,
+        down to which.
+    units : str
+        Of all three.
+    rising : bool
+        Whether the value must be above the limit, not below.
+    remedies : tuple of str
+        What would bring the value to the limit, one change alone; empty where it holds.
+    """
+
+    name: str
+    found: str
+    reason: str
+    value: float
+    doubtful: float
+    limit: float
+    units: str
+    rising: bool = False
+    remedies: tuple[str, ...] = ()
+
+    @property
+    def standing(self) -> Standing:
+        """Whether it holds."""
+        if self._margin(self.limit) <= 1:
+            return "fails"
+        return "holds" if self._margin(self.doubtful) > 1 else "in doubt"
+
+    @property
+    def margin(self) -> float:
+        """Factor to the limit; above 1 inside."""
+        return self._margin(self.limit)
+
+    def _margin(self, end: float) -> float:
+        """Factor to one of the ends."""
+        if self.rising:
+            return self.value / end
+        return end / self.value if self.value > 0 else math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether the theory applies.
+
+    Attributes
+    ----------
+    conditions : tuple of Condition
+        All that were looked at.
+    reservations : tuple of str
+        What is in doubt, one sentence each.
+    assumption : str
+        What was assumed of the range of attraction; empty where it was named.
+    """
+
+    conditions: tuple[Condition, ...]
+    reservations: tuple[str, ...]
+    assumption: str
+
+    @property
+    def outcome(self) -> Outcome:
+        """What follows from all of them."""
+        if any(item.standing == "fails" for item in self.conditions):
+            return "does not apply"
+        return "applies with reservations" if self.reservations else "applies"
+
+    @property
+    def remedies(self) -> tuple[str, ...]:
+        """What would make the theory apply, for every condition that fails."""
+        return tuple(
+            f"{item.name}: {', or '.join(item.remedies)}"
+            for item in self.conditions
+            if item.standing == "fails"
+        )
+
+
+def verdict(
+    surface: MeasuredSurface,
+    scales: Scales,
+    attraction_range: float | None = None,
+    prediction: Prediction | None = None,
+) -> Verdict:
+    """Whether the theory applies to a surface under a sphere.
+
+    Parameters
+    ----------
+    surface : MeasuredSurface
+        What was measured.
+    scales : Scales
+        The scene, in SI units.
+    attraction_range : float, optional
+        Distance over which surfaces attract each other; by default that of van der Waals forces.
+        (Units: m)
+    prediction : Prediction, optional
+        What was predicted, whose law may have been left.
+    """
+    reach = ASSUMED_RANGE if attraction_range is None else attraction_range
+    if not (math.isfinite(reach) and reach > 0):
+        raise ValueError(f"the range of attraction is {reach}; it must be positive and finite")
+    conditions = tuple(_conditions(surface, scales, reach))
+    doubts = [
+        f"{item.name}: {item.found}; {item.reason}."
+        for item in conditions
+        if item.standing == "in doubt"
+    ]
+    doubts += [*_energy_doubts(surface, scales), *surface_doubts(surface)]
+    if prediction is not None and prediction.factors.warning:
+        doubts.append(f"The law of k was not measured there: {prediction.factors.warning}.")
+    assumption = ""
+    if attraction_range is None:
+        assumption = (
+            f"The range of attraction is unknown and taken for {1e9 * reach:g} nm, that of van "
+            "der Waals forces; --range names another."
+        )
+    return Verdict(conditions, tuple(doubts), assumption)
+
+
+def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Iterator[Condition]:
+    """All conditions."""
+    yield from _energy_conditions(surface, scales)
+    yield from _sphere_conditions(surface, scales)
+    yield from _attraction_conditions(surface, scales, reach)
+    slope = surface.measures[2].rms.value
+    yield Condition(
+        "small slopes",
+        f"rms slope of {slope:.3g}",
+        "linear elasticity leaves the square of slopes out",
+        slope,
+        *_SLOPES,
+        "1",
+        remedies=(f"slopes lower by a factor of {_factor(slope / _SLOPES[1])}",),
+    )
+
+
+def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Condition]:
+    """Conditions on e_el: full conformity, and a local work of adhesion that is positive."""
+    adhesion = scales.work_of_adhesion
+    e_el = surface.conformity_energy(scales.contact_modulus).value
+    ratio = e_el / adhesion
+    yield Condition(
+        "full conformity",
+        f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', adhesion)}",
+        "no contact conforms to the roughness",
+        e_el,
+        adhesion,
+        adhesion,
+        "J/m2",
+        remedies=_softer(scales, ratio),
+    )
+    share = float(ndtr((ratio - 1) / (2 * math.sqrt(ratio))))
+    yield Condition(
+        "attraction nearly everywhere",
+        f"w_loc negative on {share:.2%} of the surface",
+        "the linearisation of the roughness is not to be trusted where w_loc is negative",
+        share,
+        *_NEGATIVE,
+        "1",
+        remedies=_softer(scales, ratio / _energy_of_share(_NEGATIVE[1])),
+    )
+
+
+def _sphere_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Condition]:
+    """Conditions on the contact: small against the sphere, large against the roughness."""
+    contact, radius = zero_load_radius(scales), scales.radius
+    part = contact / radius / _CONTACT[1]
+    yield Condition(
+        "contact small against the sphere",
+        f"contact of {prefixed('m', contact)} on a sphere of {prefixed('m', radius)}",
+        "the paraboloid that stands for the sphere departs from it",
+        contact,
+        _CONTACT[0] * radius,
+        _CONTACT[1] * radius,
+        "m",
+        # a / R goes as the cube root of w_int / (E' R).
+        remedies=(
+            _modulus("above", scales, part**3),
+            f"a radius above {prefixed('m', radius * part**3)}",
+        ),
+    )
+    half = surface.measures[1]
+    part = half.shortest / contact
+    yield Condition(
+        "roughness fine against the contact",
+        f"waves that matter to e_el of {prefixed('m', half.shortest)} to "
+        f"{prefixed('m', half.longest)} under a contact of {prefixed('m', contact)}",
+        "the contact holds too few of them for an average",
+        half.longest,
+        contact,
+        contact * half.longest / half.shortest,
+        "m",
+        remedies=(
+            f"a radius above {prefixed('m', radius * part**1.5)}",
+            _modulus("below", scales, part**-3.0),
+            "a finer roughness",
+        ),
+    )
+
+
+def _attraction_conditions(
+    surface: MeasuredSurface, scales: Scales, reach: float
+) -> Iterator[Condition]:
+    """Conditions on the range of attraction: cracks at the sphere, and at the roughness."""
+    adhesion, modulus, radius = scales.work_of_adhesion, scales.contact_modulus, scales.radius
+    tabor = (radius * adhesion**2 / (modulus**2 * reach**3)) ** (1 / 3)
+    part = _TABOR[1] / tabor
+    yield Condition(
+        "attraction short against the sphere",
+        f"Tabor parameter of {tabor:.3g}",
+        "adhesion is not that of a crack at the edge of the contact",
+        tabor,
+        *_TABOR,
+        "1",
+        rising=True,
+        remedies=(
+            _modulus("below", scales, part**-1.5),
+            f"a radius above {prefixed('m', radius * part**3)}",
+        ),
+    )
+    # Dugdale's zone of a stress w/z over a range z: (pi/8) (K z/w)^2 with K^2 = 2 E' w.
+    zone = math.pi / 4 * modulus * reach**2 / adhesion
+    half = surface.measures[1]
+    yield Condition(
+        "attraction short against the roughness",
+        f"cohesive zone of {prefixed('m', zone)} under waves of {prefixed('m', half.shortest)} to "
+        f"{prefixed('m', half.longest)}",
+        "the edge does not see waves that are shorter than its cohesive zone",
+        zone,
+        half.shortest,
+        half.longest,
+        "m",
+        remedies=(_modulus("below", scales, half.longest / zone), "a coarser roughness"),
+    )
+
+
+def _softer(scales: Scales, excess: float) -> tuple[str, ...]:
+    """What lowers e_el over w_int by a factor."""
+    lower = math.sqrt(excess)
+    return (
+        _modulus("below", scales, 1 / excess),
+        f"a roughness lower by a factor of {_factor(lower)}",
+        f"w_int above {prefixed('J/m2', scales.work_of_adhesion * excess)}",
+    )
+
+
+def _modulus(side: str, scales: Scales, factor: float) -> str:
+    """A change of the modulus."""
+    known = scales.contact_modulus
+    return (
+        f"a contact modulus E / (1 - nu^2) {side} {prefixed('Pa', known * factor)}, not "
+        f"{prefixed('Pa', known)}"
+    )
+
+
+def _energy_of_share(share: float) -> float:
+    """e_el over w_int at which a Gaussian w_loc is negative on a share of the surface."""
+    low, high = 1e-6, 1.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        below = float(ndtr((middle - 1) / (2 * math.sqrt(middle)))) < share
+        low, high = (middle, high) if below else (low, middle)
+    return low
+
+
+def _energy_doubts(surface: MeasuredSurface, scales: Scales) -> Iterator[str]:
+    """Doubts of e_el by its interval."""
+    energy = surface.conformity_energy(scales.contact_modulus)
+    shown = prefixed("J/m2", energy.value, energy.low, energy.high)
+    if energy.value < scales.work_of_adhesion <= energy.high:
+        yield f"The interval of e_el reaches w_int, where no contact conforms: {shown}."
+    elif energy.high > _MOST_UNSURE * energy.low:
+        yield f"e_el is not known to a factor of {_MOST_UNSURE:g}: {shown}."
+
+
+def _factor(value: float) -> str:
+    """A factor as a text."""
+    return f"{value:.3g}"
