@@ -85,8 +85,8 @@ def refused(*arguments):
 
 @pytest.fixture(scope="module")
 def smooth_scan(tmp_path_factory):
-    """Scan of a surface with half the heights of nanodiamond, which shows all that matters."""
-    spectrum = SelfAffineSpectrum(0.1e-6, 2.1e-6, 0.95, 2e-27)
+    """Scan of a surface with a third of the heights of nanodiamond, showing all that matters."""
+    spectrum = SelfAffineSpectrum(0.1e-6, 2.1e-6, 0.95, 1e-27)
     heights = gaussian_field(spectrum, 512, 25.6e-6, np.random.default_rng(3))
     path = tmp_path_factory.mktemp("scans") / "smooth.al3d"
     path.write_bytes(scans.al3d(heights, 25.6e-6 / 512, "smooth"))
