@@ -95,7 +95,9 @@ def largest_energy(rows: Sequence[ValidityRow], tolerance: float) -> float:
     """
     outside = [row.elastic_energy for row in rows if not abs(row.ratio - 1) <= tolerance]
     least = min(outside, default=math.inf)
-    return max((row.elastic_energy for row in rows if row.elastic_energy < 0.98 * least), default=0)
+    return max(
+        (row.elastic_energy for row in rows if row.elastic_energy < 0.98 * least), default=0.0
+    )
 
 
 def validity_sentence(rows: Sequence[ValidityRow] | None = None) -> str:
