@@ -62,27 +62,28 @@ def scan_heights(scan: Scan, seed: np.random.SeedSequence) -> NDArray[np.float64
     return heights[: scan.n_point, : scan.n_point]
 
 
-def al3d(heights: NDArray[np.float64], pixel: float, comment: str) -> bytes:
+def al3d(heights: NDArray[np.float64], pixel: float | tuple[float, float], comment: str) -> bytes:
     """Content of an AL3D file.
 
     Parameters
     ----------
     heights : (n_x, n_y) array
         Heights; n_x is even. (Units: m)
-    pixel : float
-        Distance of points. (Units: m)
+    pixel : float or tuple of float
+        Distance of points, along x and y where these differ. (Units: m)
     comment : str
         What the file says of itself, in fewer than 255 characters of Latin-1.
     """
     columns, rows = heights.shape
+    along_x, along_y = pixel if isinstance(pixel, tuple) else (pixel, pixel)
     tags = {
         "Type": "SurfaceData",
         "DirSpacer": "\\",
         "Rows": str(rows),
         "Cols": str(columns),
         "NumberOfPlanes": "0",
-        "PixelSizeXMeter": f"{pixel:.10g}",
-        "PixelSizeYMeter": f"{pixel:.10g}",
+        "PixelSizeXMeter": f"{along_x:.10g}",
+        "PixelSizeYMeter": f"{along_y:.10g}",
         "InvalidPixelValue": "NaN",
         "DepthImageOffset": "",
         "TextureImageOffset": "0",

@@ -2,16 +2,21 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
+from crackfront.analysis.law import slope_breadth
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.units import Scales
+from crackfront.data.provenance import provenance
 from crackfront.data.section import ConfigurationError
 from crackfront.simulate.laws import Knobs
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.table import failed_row, read_table, write_hysteresis
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.reading import read_measurements
 
@@ -445,12 +450,30 @@ def test_a_spectrum_may_be_that_of_measurements(tmp_path):
     sweep = load_configuration(written(tmp_path, with_surface()))
     [item] = sweep.spectra
     surface = measured_surface(read_measurements(sorted(SCANS.glob("*.al3d"))))
-    found = surface.fitted.spectrum
+    found = surface.joint.spectrum
     assert item.name == f"film-{surface.checksum}"
-    for name in ("short_cutoff", "roll_off"):
-        length = getattr(item.spectrum, name) * sweep.scales.lateral
-        assert length == pytest.approx(getattr(found, name), rel=1e-4)
-    assert item.spectrum.hurst == pytest.approx(found.hurst, rel=1e-4)
+    lengths = np.array(item.spectrum.wavelengths) * sweep.scales.lateral
+    assert lengths == pytest.approx(np.array(found.wavelengths), rel=1e-4)
+    ratios = np.array(item.spectrum.densities) / np.array(found.densities)
+    assert ratios == pytest.approx(np.full(ratios.size, ratios[0]), rel=1e-4)
+    first, *_ = sweep.shard(item)
+    assert first.seed != replace(first, spectrum=item.spectrum.in_units(2.0)).seed
+    assert first.key == replace(first, spectrum=item.spectrum.amplified(2.0)).key
+
+
+def test_the_table_of_a_sweep_keeps_measured_spectra(tmp_path):
+    spectra = MEASURED + "  - {name: flat, short_cutoff: 2e-6, hurst: 0.8}\n"
+    sweep = load_configuration(written(tmp_path, with_surface(spectra)))
+    rows = [failed_row(one, "failed", "a test") for one in sweep.simulations()]
+    write_hysteresis(tmp_path / "hysteresis.nc", sweep, rows, provenance("text"))
+    table = read_table(tmp_path / "hysteresis.nc")
+    measured, flat = (item.spectrum for item in sweep.spectra)
+    assert table.shape_of(0).wavelengths == measured.wavelengths
+    assert table.shape_of(0).densities == pytest.approx(measured.identity[1], rel=1e-12)
+    assert table.shape_of(1) == flat
+    breadth = slope_breadth("roughness", measured)
+    assert slope_breadth("roughness", table.shape_of(0)) == pytest.approx(breadth)
+    assert np.isnan(table.hurst[0])
 
 
 def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):

@@ -147,7 +147,7 @@ def test_a_file_of_something_else_is_refused(tmp_path):
     xr.Dataset({"a": ("x", [1.0])}).to_netcdf(tmp_path / "a.nc")
     with pytest.raises(UnreadableFileError, match=r"a.nc holds no cycle: it lacks penetration"):
         read_cycle(tmp_path / "a.nc")
-    with pytest.raises(UnreadableFileError, match=r"a.nc lacks spectrum"):
+    with pytest.raises(UnreadableFileError, match=r"a.nc lacks .*spectrum"):
         read_table(tmp_path / "a.nc")
     with pytest.raises(UnreadableFileError, match=r"none.nc does not exist"):
         read_table(tmp_path / "none.nc")
@@ -266,9 +266,12 @@ def test_rings_are_read_as_one_ray(tmp_path, angles):
 
 UNUSABLE = {
     "other name": (tile().rename("w"), "has no variable work_of_adhesion (it has: w); name"),
-    "other dims": (tile().rename(y="z"), "float64 of (x, z); it must be numbers of (x, y) or of"),
+    "other dims": (
+        tile().rename(y="z"),
+        "of (x, z); it must be real numbers of (x, y) or of",
+    ),
     "one dim": (tile()[0], "float64 of (y); it must be"),
-    "text": (tile().astype(str), "it must be numbers of (x, y)"),
+    "text": (tile().astype(str), "it must be real numbers of (x, y)"),
     "no positions": (tile().drop_vars("x"), "4 point(s) along x and no coordinate x"),
     "one row": (tile(n_x=1), "1 point(s) along x and a coordinate x"),
     "oblong pixels": (
@@ -355,7 +358,7 @@ def test_the_file_of_a_sweep_has_everything_under_its_labels(hysteresis, results
     assert np.array_equal(dataset["hurst"], [1.0, 0.8])
     assert dataset["w_rms_requested"].values == pytest.approx(2 * np.sqrt(SWEEP.elastic_energies))
     expected = {item.name for kind in (SweepAxes, SweepRow) for item in variables(kind)}
-    assert set(dataset.variables) == expected
+    assert set(dataset.variables) == expected - {"table_wavelength", "table_density"}
     assert all(values.attrs["units"] for values in dataset.variables.values())
 
 

@@ -20,7 +20,7 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.steady import SteadySchedule
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import Scales
 from crackfront.core.variables import variables
@@ -85,8 +85,8 @@ def refused(*arguments):
 
 @pytest.fixture(scope="module")
 def smooth_scan(tmp_path_factory):
-    """Scan of a surface with half the heights of nanodiamond, which shows all that matters."""
-    spectrum = SelfAffineSpectrum(0.1e-6, 2.1e-6, 0.95, 2e-27)
+    """Scan of a surface with a third of the heights of nanodiamond, showing all that matters."""
+    spectrum = SelfAffineSpectrum(0.1e-6, 2.1e-6, 0.95, 1e-27)
     heights = gaussian_field(spectrum, 512, 25.6e-6, np.random.default_rng(3))
     path = tmp_path_factory.mktemp("scans") / "smooth.al3d"
     path.write_bytes(scans.al3d(heights, 25.6e-6 / 512, "smooth"))
@@ -139,7 +139,7 @@ def test_intervals_hold_those_of_k_and_of_e_el(prediction):
         assert found.low < found.value < found.high
     e_el, k = prediction.e_el, prediction.k_appr
     by_factor = e_el.value * (k.high - k.value)
-    by_energy = 1.96 * (1 + k.value) * e_el.standard_error
+    by_energy = (1 + k.value) * (e_el.high - e_el.value)
     below = prediction.w_appr.value - prediction.w_appr.low
     assert below == pytest.approx(np.hypot(by_factor, by_energy))
 
@@ -152,7 +152,8 @@ def test_nanodiamond_is_predicted_as_it_was_simulated(prediction):
     assert prediction.w_appr.value == pytest.approx(32.1e-3, abs=0.05 * 63e-3)
     assert prediction.w_retr.value == pytest.approx(71.6e-3, abs=0.05 * 63e-3)
     assert prediction.e_el.value == pytest.approx(11e-3, rel=0.15)
-    whole = SelfAffineSpectrum(0.065625e-6, 2.1e-6, 1.0, plateau=8.4e-27)
+    q = 2 * np.pi / np.array([2.1e-6, 0.065625e-6])
+    whole = TabulatedSpectrum(tuple(2 * np.pi / q), tuple(8.4e-27 * (q[0] / q) ** 4))
     shape = reduced_spectrum(whole, SCENE)
     e_el = shape.elastic_energy
     found = sphere_factors("roughness", shape, e_el, jkr.radius_at_force(0.0))
@@ -163,7 +164,7 @@ def test_nanodiamond_is_predicted_as_it_was_simulated(prediction):
 
 
 def test_the_factors_are_those_of_the_law_for_the_reduced_spectrum(surface, prediction):
-    shape = reduced_spectrum(surface.fitted.spectrum, SCENE)
+    shape = reduced_spectrum(surface.joint.spectrum, SCENE)
     energy = surface.conformity_energy(SCENE.contact_modulus).value / SCENE.work_of_adhesion
     assert shape.elastic_energy == pytest.approx(energy, rel=1e-12)
     radius = zero_load_radius(SCENE) / SCENE.lateral
@@ -189,7 +190,7 @@ def test_the_lengths_of_a_prediction_are_those_of_the_smooth_contact_and_of_the_
     stiffness = np.sqrt(8 * SCENE.contact_modulus * a * w / np.pi) / SCENE.radius - w / a
     assert prediction.l_kappa == pytest.approx(SCENE.work_of_adhesion / stiffness, rel=1e-9)
     w_rms = prediction.w_rms / SCENE.work_of_adhesion
-    larkin = larkin_length("roughness", surface.fitted.spectrum, w_rms)
+    larkin = larkin_length("roughness", surface.joint.spectrum, w_rms)
     assert prediction.larkin_length == pytest.approx(larkin, rel=1e-9)
     assert prediction.size == pytest.approx(prediction.l_kappa / larkin, rel=1e-9)
 
@@ -388,7 +389,7 @@ def test_json_has_units_for_everything_that_is_predicted(predict, surface, predi
         if isinstance(found, Estimate):
             numbers = {"": found.value, "_low": found.low, "_high": found.high}
         if item.name == "e_el":
-            numbers = {"": found.value, "_error": found.standard_error}
+            numbers["_error"] = found.standard_error
         expected |= {item.name + end: (number, item.units) for end, number in numbers.items()}
     assert set(content["prediction"]) == set(expected)
     for name, (number, units) in expected.items():
@@ -397,9 +398,13 @@ def test_json_has_units_for_everything_that_is_predicted(predict, surface, predi
     assert [item["checksum"] for item in content["measurements"]] == [
         item.checksum for item in surface.measurements
     ]
-    density = content["measurements"][1]["isotropic_density"]
+    density = content["measurements"][1]["density"]
     assert density["density"]["units"] == "m^4"
     assert len(density["wavevector"]["value"]) == len(density["density"]["value"]) > 10
+    assert content["measurements"][1]["limits"][0]["cause"] == "pixels"
+    shares = content["spectrum"]["share_of_e_el"]
+    assert shares["measured"] + shares["continued"] == pytest.approx(1)
+    assert shares["measured"] > 0.9
     assert content["simulation"] is None
 
 
@@ -518,8 +523,10 @@ def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
     upper, force, lower = prediction_figure(surface, prediction).axes[:3]
     if upper.get_ylabel() == "" or "force" in lower.get_ylabel():
         force, lower = lower, force
-    for axes, densities in ((upper, surface.isotropic), (lower, surface.profiles)):
-        for line, density in zip(axes.lines, densities, strict=False):
+    trusted = [one.trusted for one in surface.scans]
+    # Behind the points of every scan stands the whole of its density.
+    for lines, densities in ((upper.lines[::2], trusted), (lower.lines, surface.profiles)):
+        for line, density in zip(lines, densities, strict=False):
             np.testing.assert_array_equal(line.get_ydata(), density.value)
     radius, values = force.lines[1].get_data()
     assert values.min() == pytest.approx(-1e3 * prediction.pull_off_force.value, rel=1e-3)
@@ -580,7 +587,7 @@ def test_every_kind_of_bad_scan_is_refused_with_a_sentence(tmp_path, monkeypatch
         (plain, ("--unit", "um", "--size", "5x5"), "--size is '5x5'"),
         (tmp_path / "absent.al3d", (), "cannot be used"),
         (OVERVIEW, ("--shortest", "5"), "--shortest is '5', without a unit"),
-        (OVERVIEW, ("--shortest", "15um"), "a spectrum needs 2 octaves"),
+        (OVERVIEW, ("--shortest", "15um"), "less than an octave; use a better scan"),
     ):
         assert sentence in refused("predict", scan, *sphere(), *figure, *more)
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)

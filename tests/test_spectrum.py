@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
 
 # SI Fig. S-5, reduced units: shortest wavelength, roll-off, Hurst exponent.
@@ -217,3 +217,49 @@ def test_the_part_of_long_wavelengths_is_flat_when_it_ends_above_the_roll_off():
     spectrum = SelfAffineSpectrum(0.01, 0.1, 0.8, plateau=2.0)
     assert spectrum.longer_than(0.2) == SelfAffineSpectrum(0.2, 0.2, 0.8, plateau=2.0)
     assert spectrum.longer_than(0.05) == SelfAffineSpectrum(0.05, 0.1, 0.8, plateau=2.0)
+
+
+def tabulated(spectrum, n_point=9):
+    """A table of a self-affine spectrum."""
+    lengths = np.geomspace(spectrum.roll_off, spectrum.short_cutoff, n_point)
+    return TabulatedSpectrum(tuple(lengths), tuple(spectrum.density(2 * np.pi / lengths)))
+
+
+@pytest.mark.parametrize("hurst", [0.3, 0.5, 0.8, 1.0])
+def test_a_table_of_a_self_affine_spectrum_is_that_spectrum(hurst):
+    exact = SelfAffineSpectrum(0.02, 0.5, hurst, plateau=3.0)
+    table = tabulated(exact)
+    q = 2 * np.pi / np.geomspace(5.0, 0.02, 40)
+    assert table.density(q) == pytest.approx(exact.density(q), rel=1e-12)
+    assert table.density(1.01 * q[-1]) == 0
+    assert table.profile_density(q[:-1]) == pytest.approx(exact.profile_density(q[:-1]), rel=2e-3)
+    for order in (-0.5, 0.0, 0.5, 1.0, 2.0):
+        assert table.mean_square(order) == pytest.approx(exact.mean_square(order), rel=1e-12)
+        ends = order, 0.03, 0.2
+        assert table.mean_square_between(*ends) == pytest.approx(exact.mean_square_between(*ends))
+    for wavelength in (0.05, 0.7):
+        longer, known = (one.longer_than(wavelength) for one in (table, exact))
+        assert longer.elastic_energy == pytest.approx(known.elastic_energy, rel=1e-12)
+    assert table.dominant_wavelengths(0.5) == pytest.approx(exact.dominant_wavelengths(0.5))
+
+
+def test_a_table_keeps_its_identity_whatever_its_amplitude():
+    table = tabulated(SelfAffineSpectrum(0.02, 0.5, 0.8))
+    assert table.amplified(2.0).identity == table.identity
+    assert table.in_units(2.0).identity != table.identity
+    assert table.with_elastic_energy(0.05).elastic_energy == pytest.approx(0.05)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "densities", "sentence"),
+    [
+        ((1.0,), (1.0,), "make no table; give two or more"),
+        ((1.0, 0.5), (1.0,), "make no table"),
+        ((0.5, 1.0), (1.0, 1.0), "must fall; order them"),
+        ((1.0, -0.5), (1.0, 1.0), "wavelengths hold -0.5"),
+        ((1.0, 0.5), (1.0, float("nan")), "densities hold nan"),
+    ],
+)
+def test_tables_that_are_none_are_refused(lengths, densities, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        TabulatedSpectrum(lengths, densities)

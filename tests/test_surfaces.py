@@ -13,7 +13,8 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.studies.paper.si_6 import profile_periodogram
-from crackfront.topography.densities import isotropic_density, profile_density, topography
+from crackfront.topography.bands import scan as scan_of
+from crackfront.topography.densities import periodogram, profile_density, topography
 from crackfront.topography.instruments import surface_library
 from crackfront.topography.measures import measured_mean_square, measured_surface
 from crackfront.topography.reading import (
@@ -71,7 +72,7 @@ def scan(tmp_path, heights):
 
 def half(surface):
     """Mean square half-derivative of a surface's spectrum, with its standard error."""
-    return surface.fitted.estimate(lambda spectrum: spectrum.mean_square(0.5))
+    return surface.joint.estimate(lambda spectrum: spectrum.mean_square(0.5))
 
 
 def refusal(paths, **treatment):
@@ -102,14 +103,16 @@ def test_the_shipped_scans_are_those_of_their_script(tmp_path, monkeypatch):
 
 
 def test_the_spectrum_of_the_shipped_scans_is_that_of_nanodiamond():
-    fitted = measured_surface(read_measurements(SHIPPED)).fitted
-    truth = {"roll_off": 2.1e-6, "hurst": 1.0, "plateau": 8.4e-27}
-    for name, value in truth.items():
-        found = fitted.estimate(lambda spectrum, name=name: getattr(spectrum, name))
-        assert abs(found.value - value) < 2.5 * found.standard_error
-        assert found.standard_error < 0.1 * value
-    assert fitted.has_roll_off
-    assert 0.2 < fitted.misfit < 1.5
+    surface = measured_surface(read_measurements(SHIPPED))
+    fit, truth = surface.joint.fit, SelfAffineSpectrum(0.1e-6, 2.1e-6, 1.0, 8.4e-27)
+    for found, value in ((fit.roll_off, 2.1e-6), (fit.hurst, 1.0), (fit.plateau, 8.4e-27)):
+        assert 0.99 * found[1] < value < 1.01 * found[2]
+    assert fit.has_roll_off
+    assert 0.2 < fit.misfit < 1.5
+    found = half(surface)
+    assert found.value == pytest.approx(truth.mean_square(0.5), rel=0.1)
+    assert found.low < truth.mean_square(0.5) < found.high < 1.5 * found.low
+    assert surface.joint.shares.measured > 0.9
 
 
 def test_the_measures_of_a_periodic_map_are_ours_and_the_librarys(rng):
@@ -117,7 +120,7 @@ def test_the_measures_of_a_periodic_map_are_ours_and_the_librarys(rng):
     measurement = periodic_measurement(heights)
     pixel = SIDE / 128
     library = topography(measurement)
-    found = [measured_mean_square(measurement, order) for order in (0.0, 0.5, 1.0)]
+    found = [measured_mean_square(scan_of(measurement), order) for order in (0.0, 0.5, 1.0)]
     assert found[0] == pytest.approx(np.mean(heights**2), rel=1e-9)
     assert found[0] == pytest.approx(library.moment_power_spectrum(order=0), rel=1e-9)
     assert found[1] == pytest.approx(half_derivative_mean_square(heights, pixel), rel=1e-9)
@@ -143,26 +146,26 @@ def test_densities_scatter_about_the_spectrum_as_their_modes_say(rng, is_line):
             periodic_measurement(heights, shortest=0.625e-6), periodic=False, longest=10e-6
         )
         if is_line:
-            density = profile_density(replace(measurement, heights=heights[:, 0], size=(SIDE,)))
+            line = replace(measurement, heights=heights[:, 0], size=(SIDE,))
+            density = profile_density(line).within(0.625e-6, 10e-6)
             expected = SPECTRUM.profile_density(density.wavevector)
         else:
-            density = isotropic_density(measurement)
+            density = periodogram(measurement).density().within(0.625e-6, 10e-6)
             expected = SPECTRUM.density(density.wavevector)
         # The level of the whole density, relative to that of the spectrum.
-        weights = density.logarithm_error**-2.0
-        level = np.sum(weights * (density.logarithm - np.log(expected))) / np.sum(weights)
-        levels.append(level * np.sqrt(np.sum(weights)))
+        level = np.average(density.value / expected, weights=density.modes) - 1
+        levels.append(level * np.sqrt(np.sum(density.modes)))
     assert abs(np.mean(levels)) < 0.6
     assert 0.6 < np.std(levels) < 1.4
 
 
 def test_the_uncertainty_of_a_fit_covers_the_truth(rng, tmp_path):
-    truth, scores = SPECTRUM.longer_than(0.625e-6).mean_square(0.5), []
-    for number in range(16):
+    truth, scores = SPECTRUM.mean_square(0.5), []
+    for number in range(12):
         path = write_al3d(tmp_path / f"{number}.al3d", map_heights(rng))
         found = half(measured_surface(read_measurements([path])))
+        assert found.low < truth < found.high < 2.25 * found.low
         scores.append((found.value - truth) / found.standard_error)
-    assert np.mean(np.abs(scores) < 2) > 0.8
     assert np.std(scores) > 0.3
 
 
@@ -170,19 +173,24 @@ def test_a_second_measurement_widens_the_wavelengths(rng, tmp_path, scan):
     fine = SelfAffineSpectrum(0.08e-6, 3e-6, 0.8, 1e-26)
     heights = map_heights(rng, spectrum=fine, side=5e-6)
     detail = write_al3d(tmp_path / "detail.al3d", heights, 5e-6)
-    alone = measured_surface(read_measurements([scan])).fitted
-    both = measured_surface(read_measurements([scan, detail])).fitted
-    assert both.spectrum.short_cutoff == pytest.approx(4 * 5e-6 / 128)
-    assert both.longest == alone.longest == pytest.approx(10e-6)
-    hurst = both.estimate(lambda spectrum: spectrum.hurst)
-    assert abs(hurst.value - 0.8) < 3 * hurst.standard_error
-    assert hurst.standard_error < alone.estimate(lambda spectrum: spectrum.hurst).standard_error
+    alone = measured_surface(read_measurements([scan])).joint
+    both = measured_surface(read_measurements([scan, detail])).joint
+    assert both.shortest == pytest.approx(4 * 5e-6 / 128, rel=0.1)
+    assert both.longest == pytest.approx(alone.longest) == pytest.approx(10e-6, rel=0.15)
+    assert both.fit.hurst[1] < 0.8 < both.fit.hurst[2]
+    widths = [high - low for _, low, high in (both.fit.hurst, alone.fit.hurst)]
+    assert widths[0] < widths[1]
+    assert not any(both.density.disagrees(index) for index in range(2))
 
 
 def test_the_shortest_wavelength_may_be_named(scan):
-    [measurement] = read_measurements([scan], Treatment(shortest=1e-6))
-    assert measurement.shortest == 1e-6
-    assert isotropic_density(measurement).wavevector.max() < 2 * np.pi / 1e-6
+    [one] = measured_surface(read_measurements([scan]), shortest=1e-6, longest=8e-6).scans
+    assert [(limit.cause, limit.wavelength) for limit in one.band.ends] == [
+        ("named", 1e-6),
+        ("named", 8e-6),
+    ]
+    assert one.trusted.wavevector.max() < 2 * np.pi / 1e-6
+    assert one.trusted.wavevector.min() > 2 * np.pi / 8e-6
 
 
 @pytest.mark.parametrize(
@@ -223,17 +231,17 @@ def test_the_surface_does_not_depend_on_a_tilt_or_a_curvature(tmp_path, heights,
 
 
 def test_line_scans_stand_for_an_isotropic_surface(rng, tmp_path):
-    truth = SPECTRUM.longer_than(0.625e-6).mean_square(0.5)
+    truth = SPECTRUM.mean_square(0.5)
     heights = 1e6 * map_heights(rng)
     paths = [
         write_line(tmp_path / f"{number}.xyz", heights[:, 25 * number], 20 / 128)
         for number in range(5)
     ]
     surface = measured_surface(read_measurements(paths, Treatment(unit="um")))
-    assert surface.isotropic == (None,) * 5
+    assert all(one.density.is_profile for one in surface.scans)
     assert all(item.is_line for item in surface.measurements)
-    assert abs(half(surface).value - truth) < 2.5 * half(surface).standard_error
-    assert half(surface).standard_error < 0.5 * truth
+    found = half(surface)
+    assert found.low < truth < found.high < 4 * found.low
 
 
 def test_a_line_scan_is_no_field(rng, tmp_path):
@@ -257,7 +265,7 @@ def test_a_few_missing_points_are_interpolated(rng, tmp_path, heights, scan):
     assert filled.missing == pytest.approx(np.mean(np.isnan(holes)))
     assert np.all(np.isfinite(filled.heights))
     assert np.std(filled.heights - whole.heights) < 0.05 * np.std(whole.heights)
-    ratio = measured_mean_square(filled, 0.5) / measured_mean_square(whole, 0.5)
+    ratio = measured_mean_square(scan_of(filled), 0.5) / measured_mean_square(scan_of(whole), 0.5)
     assert ratio == pytest.approx(1, abs=0.02)
 
 
@@ -334,16 +342,17 @@ def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatc
 def test_a_surface_without_plateau_says_so(rng, tmp_path):
     steep = SelfAffineSpectrum(0.4e-6, 40e-6, 0.8, 1e-22)
     path = write_al3d(tmp_path / "steep.al3d", map_heights(rng, spectrum=steep))
-    fitted = measured_surface(read_measurements([path])).fitted
-    assert not fitted.has_roll_off
-    assert fitted.spectrum.roll_off > 5e-6
+    fit = measured_surface(read_measurements([path])).joint.fit
+    assert not fit.has_roll_off
+    assert fit.roll_off[0] > 5e-6
 
 
 def test_anisotropy_is_the_ratio_of_the_slopes(rng, tmp_path, scan):
     stretched = map_heights(rng, n_point=256)[::1, ::2][:128, :128]
     path = write_al3d(tmp_path / "aniso.al3d", stretched)
-    [isotropic] = measured_surface(read_measurements([scan])).anisotropy
-    [anisotropic] = measured_surface(read_measurements([path])).anisotropy
+    isotropic, anisotropic = (
+        scan_of(read_measurements([one])[0]).band.anisotropy for one in (scan, path)
+    )
     assert 0.8 < isotropic < 1.25
     assert anisotropic < 0.7
 
@@ -355,7 +364,7 @@ def test_the_tile_of_a_map_is_its_mirror_images_around_it(scan):
     assert adhesion.pixel * SOFT.lateral == pytest.approx(SIDE / 128)
     mean = np.mean(adhesion.work_of_adhesion) / WORK_OF_ADHESION
     assert mean == pytest.approx(1 - adhesion.e_el)
-    measured = SOFT.contact_modulus / 4 * measured_mean_square(measurement, 0.5)
+    measured = SOFT.contact_modulus / 4 * measured_mean_square(scan_of(measurement), 0.5)
     found = adhesion.e_el * SOFT.work_of_adhesion
     assert found == pytest.approx(measured, rel=0.25)
     # The sum over x leaves a function of y alone, even about the edges of the scan.
@@ -391,7 +400,7 @@ def test_a_map_of_odd_and_unequal_sides_has_a_tile(tmp_path, rng):
     adhesion = measured_adhesion(measurement, SOFT)
     assert adhesion.work_of_adhesion.shape == (200, 142)
     found = adhesion.e_el * SOFT.work_of_adhesion
-    measured = SOFT.contact_modulus / 4 * measured_mean_square(measurement, 0.5)
+    measured = SOFT.contact_modulus / 4 * measured_mean_square(scan_of(measurement), 0.5)
     assert found == pytest.approx(measured, rel=0.4)
 
 

@@ -58,10 +58,10 @@ def with_error(value: float, error: float) -> str:
     --------
     >>> with_error(0.795242, 0.0256), with_error(2.0314, 0.0042), with_error(60.3, 10.05)
     ('0.795 ± 0.026', '2.0314 ± 0.0042', '60 ± 10')
-    >>> with_error(2.0, 1e-9)
-    '2 ± 1e-09'
+    >>> with_error(2.0, 1e-9), with_error(0.0, 1e-9)
+    ('2 ± 1e-09', '0 ± 1e-09')
     """
-    if not 1e-6 * abs(value) < error < np.inf:
+    if not 1e-6 * max(1.0, abs(value)) < error < np.inf:
         return f"{value:.6g} ± {error:.2g}"
     digits = max(0, 1 - int(np.floor(np.log10(error))))
     return f"{value:.{digits}f} ± {error:.{digits}f}"

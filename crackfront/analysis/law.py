@@ -31,7 +31,7 @@ from scipy.special import ndtr
 from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, larkin_length
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import Spectrum
 from crackfront.core.variables import variable
 from crackfront.data.bounds import LENGTH, refuse_outside
 
@@ -160,7 +160,7 @@ def law_value(
     return np.asarray(k_0 / fall / (1 + x * np.polyval(series[::-1], x)))
 
 
-def slope_breadth(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
+def slope_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
     r"""Breadth of the spectrum of the slope of w_loc, integrated along the front.
 
     .. math:: \beta = \frac{M_2 M_4}{M_3^2}, \quad M_n = \int_0^\infty dq\, q^n C_w(q, 0) ,
@@ -171,11 +171,12 @@ def slope_breadth(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
     ----------
     kind : {"roughness", "chemical"}
         What the spectrum describes.
-    spectrum : SelfAffineSpectrum
+    spectrum : Spectrum
         Its shape.
 
     Examples
     --------
+    >>> from crackfront.core.spectrum import SelfAffineSpectrum
     >>> round(slope_breadth("roughness", SelfAffineSpectrum(1.0, 1.0, hurst=1.0)), 4)
     1.0417
     """
@@ -490,7 +491,7 @@ class SphereFactors:
 
 
 def sphere_factors(
-    kind: FieldKind, spectrum: SelfAffineSpectrum, elastic_energy: float, contact_radius: float
+    kind: FieldKind, spectrum: Spectrum, elastic_energy: float, contact_radius: float
 ) -> SphereFactors:
     """Factors k of a sphere on a random surface, from the straight front alone.
 
@@ -501,7 +502,7 @@ def sphere_factors(
     ----------
     kind : {"roughness", "chemical"}
         What the spectrum describes.
-    spectrum : SelfAffineSpectrum
+    spectrum : Spectrum
         Shape of the spectrum. (Units: reduced lateral length)
     elastic_energy : float
         e_el / w_int, in (0, 1).
@@ -515,6 +516,7 @@ def sphere_factors(
 
     Examples
     --------
+    >>> from crackfront.core.spectrum import SelfAffineSpectrum
     >>> flat = SelfAffineSpectrum(short_cutoff=0.01, roll_off=0.01, hurst=1.0)
     >>> found = sphere_factors("roughness", flat, elastic_energy=0.05, contact_radius=1.9)
     >>> 2.0 < found.both.value < 2.3

@@ -134,7 +134,7 @@ def fit_columns(fit: SweepFit) -> Iterator[tuple[Variable, NDArray[Any]]]:
         Its values.
     """
     for item, values in _columns(fit.table):
-        if REALISATION not in item.dims:
+        if REALISATION not in item.dims and values is not None:
             yield item, values
     yield from _columns(fit)
     yield from _columns(fit.cells, "cell_", SPECTRUM, AMPLITUDE)

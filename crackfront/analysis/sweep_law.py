@@ -19,7 +19,6 @@ from crackfront.analysis.law import (
 )
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind, larkin_length
-from crackfront.core.spectrum import SelfAffineSpectrum
 
 Array = NDArray[np.float64]
 
@@ -65,7 +64,7 @@ class SweepLaw:
         """Factor k of a spectrum at an e_el and a spring or contact radius, and g; else NaN."""
         if not (0 < energy < 1 and 0 < hold < math.inf):
             return _UNKNOWN, math.nan
-        spectrum = self.spectrum(index)
+        spectrum = self.table.shape_of(index)
         if self.table.straight:
             w_rms = 2 * math.sqrt(energy)
             size = hold / larkin_length(self.kind, spectrum, w_rms)
@@ -78,12 +77,6 @@ class SweepLaw:
             # So close to pull-off that nothing holds the edge.
             return _UNKNOWN, math.nan
         return found.both, found.size
-
-    def spectrum(self, index: int) -> SelfAffineSpectrum:
-        """Spectrum of a place in the table."""
-        table = self.table
-        columns = table.short_cutoff, table.roll_off, table.hurst
-        return SelfAffineSpectrum(*(float(values[index]) for values in columns))
 
     def cells(self) -> tuple[Estimate, Array]:
         """Factors k and sizes g at every spectrum and amplitude, (n_spectrum, n_amplitude)."""
@@ -132,7 +125,7 @@ class SweepLaw:
         energies, values = self.energy, np.full((4, *size.shape), np.nan)
         for cell in np.ndindex(size.shape):
             w_rms = WEAKEST if self.uncorrelated else 2 * math.sqrt(energies[cell])
-            breadth = slope_breadth(self.kind, self.spectrum(cell[0]))
+            breadth = slope_breadth(self.kind, self.table.shape_of(cell[0]))
             gain = infinite_ratio(w_rms, float(size[cell]), breadth)
             measured, own_error = float(factor.value[cell]), float(factor.standard_error[cell])
             value, relative = measured * gain.value, measured * gain.standard_error

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.steady import SteadyMeasures
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
 
 Array = NDArray[np.float64]
@@ -16,6 +17,9 @@ SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
 """Dimensions of a sweep."""
 
 _SHAPE = SPECTRUM, AMPLITUDE
+_TABLE = SPECTRUM, "node"
+_TABLE_WAVELENGTH = "wavelengths of spectra that are tables; else NaN"
+_TABLE_DENSITY = "their densities, relative to the first"
 _CELL = SPECTRUM, AMPLITUDE, REALISATION
 
 _LENGTH = "reduced lateral length"
@@ -57,8 +61,8 @@ class SweepAxes:
 
     spectrum: NDArray[np.str_] = variable("name of the spectrum", "1", SPECTRUM)
     short_cutoff: Array = variable("shortest wavelength lambda_s", LATERAL, SPECTRUM)
-    roll_off: Array = variable("roll-off wavelength lambda_r", LATERAL, SPECTRUM)
-    hurst: Array = variable("Hurst exponent, without effect on a flat spectrum", "1", SPECTRUM)
+    roll_off: Array = variable("roll-off lambda_r, or longest wave of effect", LATERAL, SPECTRUM)
+    hurst: Array = variable("Hurst exponent; NaN of spectra that are tables", "1", SPECTRUM)
     correlation_length: Array = variable(
         "wavelength of the mean wavevector of w", LATERAL, SPECTRUM
     )
@@ -73,6 +77,8 @@ class SweepAxes:
     amplitude: Array = variable("requested e_el (chemical field: w_rms^2/4)", ADHESION, AMPLITUDE)
     w_rms_requested: Array = variable("requested rms, 2 sqrt(e_el w_int)", ADHESION, AMPLITUDE)
     realisation: NDArray[np.int64] = variable("number of the realisation", "1", REALISATION)
+    table_wavelength: Array | None = variable(_TABLE_WAVELENGTH, LATERAL, *_TABLE, default=None)
+    table_density: Array | None = variable(_TABLE_DENSITY, "1", *_TABLE, default=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,12 +107,14 @@ class SweepTable:
     w_retr_numerical_error: Array = variable("expected error of w_retr", ADHESION, *_CELL)
     contact_radius: Array = variable("middle of the steady window; else NaN", _LENGTH, *_CELL)
     spring: Array = variable("springs of a straight front, L_kappa; else NaN", _LENGTH, *_SHAPE)
+    table_wavelength: Array | None = variable(_TABLE_WAVELENGTH, _LENGTH, *_TABLE, default=None)
+    table_density: Array | None = variable(_TABLE_DENSITY, "1", *_TABLE, default=None)
 
     def __post_init__(self) -> None:
         n_spectrum, n_amplitude = self.spectrum.size, self.e_el_requested.size
         whole = (n_spectrum, n_amplitude, self.e_el.shape[-1])
         for item in variables(SweepTable):
-            shape = getattr(self, item.name).shape
+            shape = np.shape(getattr(self, item.name))
             if item.dims == (SPECTRUM,) and shape != (n_spectrum,):
                 raise ValueError(f"{item.name} has shape {shape}; there are {n_spectrum} spectra")
             if item.dims == _SHAPE and shape != whole[:2]:
@@ -140,6 +148,16 @@ class SweepTable:
         """Simulations with a value, (n_spectrum, n_amplitude, n_realisation)."""
         columns = (self.e_el, self.w_rms, self.w_appr, self.w_retr)
         return np.asarray(np.all(np.isfinite(columns), axis=0))
+
+    def shape_of(self, index: int) -> Spectrum:
+        """Spectrum of a place in the table, of any amplitude."""
+        if self.table_wavelength is not None and self.table_density is not None:
+            table = self.table_wavelength[index], self.table_density[index]
+            known = np.isfinite(table[0])
+            if np.any(known):
+                return TabulatedSpectrum(*(tuple(values[known].tolist()) for values in table))
+        columns = self.short_cutoff, self.roll_off, self.hurst
+        return SelfAffineSpectrum(*(float(values[index]) for values in columns))
 
     @property
     def shape(self) -> Array:

@@ -213,7 +213,7 @@ def _loop(result: SimulationResult) -> Figure:
 def _loop_example(sweep: Sweep) -> Simulation:
     """The simulation that comes nearest to the paper's Fig. 3c, a front on its longest springs."""
     self_affine = [
-        item for item in sweep.spectra if item.spectrum.roll_off > item.spectrum.short_cutoff
+        item for item in sweep.spectra if item.spectrum.longest_feature > item.spectrum.short_cutoff
     ]
     energy = min(sweep.elastic_energies, key=lambda value: abs(value - 0.05))
     # The springs of spheres are NaN and count as none: the first spectrum stays.

@@ -50,6 +50,7 @@ class _Reading:
     unit: str | None
     size: str | None
     shortest: str | None
+    longest: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,8 +114,13 @@ def _reading_options(command: Command) -> Command:
         ),
         click.option(
             "--shortest",
-            help="Shortest wavelength to trust, as in 0.4um.  [default: what the file says of tip "
-            "or resolution, and at least four pixels]",
+            help="Shortest wavelength to trust, as in 0.4um.  [default: found by resolution, "
+            "noise, what the file says of its tip, and four pixels]",
+        ),
+        click.option(
+            "--longest",
+            help="Longest wavelength to trust.  [default: found by what is left of the form, and "
+            "half a side]",
         ),
     )
     return _bundled(command, "reading", _Reading, options)
@@ -324,7 +330,8 @@ def _write_field(
     from crackfront.simulate.fields import write_field
     from crackfront.topography.tile import measured_adhesion
 
-    [measurement] = surface.measurements
+    [one] = surface.scans
+    measurement = one.trusted_measurement
     adhesion = measured_adhesion(measurement, scales, place)
     write_field(
         path,
@@ -340,15 +347,19 @@ def _write_field(
 
 def _surface_of(reading: _Reading) -> MeasuredSurface:
     """Surface of the files that a command names."""
+    from crackfront.data.written_units import si_value
     from crackfront.topography.measures import measured_surface
     from crackfront.topography.reading import read_measurements
 
-    return measured_surface(read_measurements(reading.scans, _treatments(reading)))
+    ends = [
+        None if text is None else si_value(text, "m", what=f"--{name}")
+        for name, text in (("shortest", reading.shortest), ("longest", reading.longest))
+    ]
+    return measured_surface(read_measurements(reading.scans, _treatments(reading)), *ends)
 
 
 def _treatments(reading: _Reading) -> list[Treatment]:
     """How each of the files is read."""
-    from crackfront.data.written_units import si_value
     from crackfront.topography.levelling import detrend_named
     from crackfront.topography.reading import Treatment
     from crackfront.topography.regions import region_named
@@ -359,13 +370,12 @@ def _treatments(reading: _Reading) -> list[Treatment]:
     mask: tuple[Region | Path, ...] = tuple(
         region_named(text, "--mask") if ":" in text else Path(text) for text in reading.mask
     )
-    limit, size = reading.shortest, reading.size
+    size = reading.size
     return [
         Treatment(
             detrend=detrend_named(reading.detrend),
             unit=reading.unit,
             size=None if size is None else _numbers(size),
-            shortest=None if limit is None else si_value(limit, "m", what="--shortest"),
             channel=channel,
             crop=None if crop is None else region_named(crop, "--crop"),
             mask=mask,

@@ -19,29 +19,43 @@ from crackfront.cli.report import (
     epilog=examples(
         "crackfront validate config/validation.yaml",
         "crackfront validate config/validation-512.yaml --output results/validation-512",
+        "crackfront validate config/validation-strong.yaml --finished",
     )
 )
 @click.argument("configuration", type=FILE)
 @click.option("--output", type=FILE, help="Folder of the results.  [default: results/<name>]")
-def validate(configuration: Path, output: Path | None) -> None:
-    """Run one rough sphere by boundary elements and by the crack front, and compare them.
+@click.option("--finished", is_flag=True, help="Compare the finished cases, compute no other.")
+def validate(configuration: Path, output: Path | None, finished: bool) -> None:
+    """Run rough spheres by boundary elements and by the crack front, and compare them.
 
     Every load step of the boundary elements is on disk at once: a run that is killed goes on with
-    the next one.
+    the next one. With `elastic_energies` in the configuration the hysteresis of both models is
+    compared by amplitude, and the tables grow with every finished case.
     """
     from crackfront.data.provenance import provenance
-    from crackfront.studies.boundary_elements.parameters import load_validation
+    from crackfront.studies.boundary_elements.amplitude_report import write_amplitudes
+    from crackfront.studies.boundary_elements.parameters import (
+        AmplitudeParameters,
+        load_validation,
+    )
     from crackfront.studies.boundary_elements.report import write_validation
     from crackfront.studies.boundary_elements.study import refuse_missing_libraries
     from crackfront.sweep.configuration import results_folder
 
     parameters = load_validation(configuration)
+    if finished and not isinstance(parameters, AmplitudeParameters):
+        raise click.UsageError(
+            f"--finished is for configurations with elastic_energies; {configuration} has cases"
+        )
     folder = output or results_folder(configuration)
     refuse_missing_libraries()
     refuse_unwritable(folder)
     origin = provenance(configuration.read_text(encoding="utf-8"))
     announce_compilation()
     try:
-        write_validation(folder, parameters, origin, click.echo)
+        if isinstance(parameters, AmplitudeParameters):
+            write_amplitudes(folder, parameters, origin, click.echo, compute=not finished)
+        else:
+            write_validation(folder, parameters, origin, click.echo)
     except KeyboardInterrupt as error:
         raise StoppedError("the same command goes on with the next load step") from error

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fft2, fftfreq, irfft2, rfft2, rfftfreq
 
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -180,14 +180,14 @@ def chemical_adhesion(fluctuation: Array, pixel: float) -> AdhesionMap:
     )
 
 
-def correlation_length(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
+def correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
     """Wavelength of the mean wavevector of w_loc, weighted by its variance.
 
     Parameters
     ----------
     kind : {"roughness", "chemical"}
         What the spectrum describes.
-    spectrum : SelfAffineSpectrum
+    spectrum : Spectrum
         Its shape. (Units: length)
 
     Returns
@@ -200,7 +200,7 @@ def correlation_length(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
     return 2 * np.pi * spectrum.mean_square(0.0) / spectrum.mean_square(0.5)
 
 
-def larkin_length(kind: FieldKind, spectrum: SelfAffineSpectrum, w_rms: float) -> float:
+def larkin_length(kind: FieldKind, spectrum: Spectrum, w_rms: float) -> float:
     r"""Length over which weak disorder bends the front by as much as its force is correlated over.
 
     .. math:: \ell = 2 \pi \, \frac{w_{int}\, \xi_u}{f_2}, \quad
@@ -215,7 +215,7 @@ def larkin_length(kind: FieldKind, spectrum: SelfAffineSpectrum, w_rms: float) -
     ----------
     kind : {"roughness", "chemical"}
         What the spectrum describes.
-    spectrum : SelfAffineSpectrum
+    spectrum : Spectrum
         Its shape. (Units: length)
     w_rms : float
         Rms of the local work of adhesion. (Units: w_int)
@@ -228,7 +228,7 @@ def larkin_length(kind: FieldKind, spectrum: SelfAffineSpectrum, w_rms: float) -
     return 2 * np.pi * force_correlation_length(kind, spectrum) / w_rms**2
 
 
-def force_correlation_length(kind: FieldKind, spectrum: SelfAffineSpectrum) -> float:
+def force_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
     """Distance over which the force on a front is correlated, xi_u of :func:`larkin_length`."""
     order = 0.0 if kind == "roughness" else -0.5
     return float(np.sqrt(spectrum.mean_square(order) / spectrum.mean_square(order + 1)))

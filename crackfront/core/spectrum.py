@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,9 +16,152 @@ from crackfront.core.units import CONTACT_MODULUS
 
 Array = NDArray[np.float64]
 
+_DIRECTIONS = 200
+"""Points of the quadrature that projects a spectrum on a line."""
+
+
+class Spectrum(ABC):
+    """Isotropic 2D spectrum of a rough surface: what any shape has in common.
+
+    A shape is a frozen dataclass with a `short_cutoff`, beyond which it is zero, and the methods
+    that are abstract here.
+    """
+
+    __slots__ = ()
+
+    short_cutoff: float
+
+    @property
+    @abstractmethod
+    def identity(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Lengths and pure numbers that tell this shape from others, whatever its amplitude."""
+
+    @abstractmethod
+    def density(self, wavevector: ArrayLike) -> Array:
+        """Spectral density C(q).
+
+        Parameters
+        ----------
+        wavevector : array_like
+            Magnitude q >= 0. (Units: 1 / length)
+
+        Returns
+        -------
+        array
+            C(q), zero beyond q_s. (Units: length**4 for heights)
+        """
+
+    @abstractmethod
+    def mean_square(self, order: float) -> float:
+        r"""Mean square of the derivative of a given order.
+
+        .. math:: (h^{(\alpha)}_{rms})^2 = \frac{1}{4\pi^2} \int d^2q\, q^{2\alpha} C(q)
+
+        Parameters
+        ----------
+        order : float
+            Order alpha: 0 for heights, 1/2 for the half-derivative, 1 for slopes.
+
+        Returns
+        -------
+        float
+            Mean square. (Units: those of the density / length**(2 + 2 * order))
+        """
+
+    @abstractmethod
+    def longer_than(self, wavelength: float) -> Self:
+        """Part of the spectrum with wavelengths above one that is not below the short cutoff."""
+
+    @abstractmethod
+    def in_units(self, length: float) -> Self:
+        """The spectrum with its lengths divided by a unit, and the density as it is."""
+
+    @abstractmethod
+    def amplified(self, factor: float) -> Self:
+        """The spectrum with its density multiplied by a factor."""
+
+    @property
+    def longest_feature(self) -> float:
+        """Wavelength above which the spectrum adds little to w_loc, for the side of tiles."""
+        return self.dominant_wavelengths(0.5)[1]
+
+    def profile_density(self, wavevector: ArrayLike) -> Array:
+        r"""Spectral density of a profile along a line (1D PSD), the projection of C.
+
+        .. math:: C_{1D}(q) = \frac{1}{2\pi} \int dk\, C(\sqrt{q^2 + k^2})
+
+        Parameters
+        ----------
+        wavevector : array_like
+            Magnitude q > 0. (Units: 1 / length)
+
+        Returns
+        -------
+        array
+            C_1D(q); the mean square height is its integral over q > 0, divided by pi.
+            (Units: those of the density / length)
+        """
+        q = np.asarray(wavevector, dtype=float)[..., None]
+        # k = q sinh(t), so that pieces of power laws are smooth.
+        last = np.arccosh(np.maximum(2 * math.pi / self.short_cutoff / q, 1.0))
+        place, weight = np.polynomial.legendre.leggauss(_DIRECTIONS)
+        way = q * np.cosh(last * (1 + place) / 2)
+        return np.asarray(np.sum(weight * self.density(way) * way * last / 2, axis=-1) / np.pi)
+
+    def dominant_wavelengths(self, order: float, share: float = 0.8) -> tuple[float, float]:
+        """Range of wavelengths that carries a share of the mean square of a derivative.
+
+        Half of the rest lies at shorter wavelengths, the other half at longer ones.
+
+        Parameters
+        ----------
+        order : float
+            Order alpha, as in :meth:`mean_square`.
+        share : float, optional
+            Part of the mean square within the range.
+
+        Returns
+        -------
+        tuple of float
+            Shortest and longest wavelength. (Units: length)
+        """
+        total, rest = self.mean_square(order), (1 - share) / 2
+
+        def wavelength_above_which(part: float) -> float:
+            def excess(logarithm: float) -> float:
+                return self.longer_than(math.exp(logarithm)).mean_square(order) / total - part
+
+            low = math.log(self.short_cutoff) + 1e-14
+            high = low + 1.0
+            while excess(high) > 0:
+                high += 1.0
+            return math.exp(brentq(excess, low, high, xtol=1e-13))
+
+        return wavelength_above_which(1 - rest), wavelength_above_which(rest)
+
+    def mean_square_between(self, order: float, shortest: float, longest: float) -> float:
+        """Part of :meth:`mean_square` of the waves between two wavelengths (Units: length)."""
+        ends = (max(end, self.short_cutoff) for end in (shortest, longest))
+        inner, outer = (self.longer_than(end).mean_square(order) for end in ends)
+        return inner - outer
+
+    @property
+    def elastic_energy(self) -> float:
+        """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2, in units of w_int."""
+        return math.pi * CONTACT_MODULUS / 4 * self.mean_square(0.5)
+
+    @property
+    def correlation_length(self) -> float:
+        """Wavelength of the mean wavevector of w_loc, weighted by its variance (Units: length)."""
+        return 2 * math.pi * self.mean_square(0.5) / self.mean_square(1.0)
+
+    def with_elastic_energy(self, elastic_energy: float) -> Self:
+        """Same shape, scaled to an energy of full conformity (in units of w_int)."""
+        return self.amplified(elastic_energy / self.elastic_energy)
+
 
 @dataclass(frozen=True, slots=True)
-class SelfAffineSpectrum:
+class SelfAffineSpectrum(Spectrum):
     r"""Isotropic 2D spectrum: flat to q_r, falling as q^(-2-2H) to q_s, zero beyond.
 
     Parameters
@@ -66,39 +211,25 @@ class SelfAffineSpectrum:
         if not 0 < self.hurst <= 1:
             raise ValueError(f"hurst is {self.hurst}; it must lie in (0, 1]")
 
+    @property
+    def identity(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Lengths and pure numbers of the shape."""
+        return (self.short_cutoff, self.roll_off), (self.hurst,)
+
+    @property
+    def longest_feature(self) -> float:
+        """The roll-off."""
+        return self.roll_off
+
     def density(self, wavevector: ArrayLike) -> Array:
-        """Spectral density C(q).
-
-        Parameters
-        ----------
-        wavevector : array_like
-            Magnitude q >= 0. (Units: 1 / length)
-
-        Returns
-        -------
-        array
-            C(q), zero beyond q_s. (Units: those of `plateau`)
-        """
+        """Spectral density C(q)."""
         # A mode on the cutoff itself belongs to the spectrum whatever the round-off of its q.
         q = np.asarray(wavevector, dtype=float) * self.roll_off / (2 * np.pi)
         falling = self.plateau * np.maximum(q, 1.0) ** (-2 - 2 * self.hurst)
         return np.where(q <= self.roll_off / self.short_cutoff * (1 + 1e-12), falling, 0.0)
 
     def mean_square(self, order: float) -> float:
-        r"""Mean square of the derivative of a given order.
-
-        .. math:: (h^{(\alpha)}_{rms})^2 = \frac{1}{4\pi^2} \int d^2q\, q^{2\alpha} C(q)
-
-        Parameters
-        ----------
-        order : float
-            Order alpha: 0 for heights, 1/2 for the half-derivative, 1 for slopes.
-
-        Returns
-        -------
-        float
-            Mean square. (Units: those of `plateau` / length**(2 + 2 * order))
-        """
+        """Mean square of the derivative of a given order, in closed form."""
         knee, cutoff = 2 * math.pi / self.roll_off, 2 * math.pi / self.short_cutoff
         exponent = 2 * (order - self.hurst)
         growth = math.log(cutoff / knee)
@@ -108,20 +239,7 @@ class SelfAffineSpectrum:
         return self.plateau * moment / (2 * math.pi)
 
     def profile_density(self, wavevector: ArrayLike) -> Array:
-        r"""Spectral density of a profile along a line (1D PSD), the projection of C.
-
-        .. math:: C_{1D}(q) = \frac{1}{2\pi} \int dk\, C(\sqrt{q^2 + k^2})
-
-        Parameters
-        ----------
-        wavevector : array_like
-            Magnitude q > 0. (Units: 1 / length)
-
-        Returns
-        -------
-        array
-            C_1D(q); the mean square height is its integral over q > 0, divided by pi.
-            (Units: those of `plateau` / length)
+        """Spectral density of a profile along a line, in closed form.
 
         Examples
         --------
@@ -145,48 +263,110 @@ class SelfAffineSpectrum:
         """Part of the spectrum with wavelengths above one that is not below the short cutoff."""
         return replace(self, short_cutoff=wavelength, roll_off=max(self.roll_off, wavelength))
 
-    def dominant_wavelengths(self, order: float, share: float = 0.8) -> tuple[float, float]:
-        """Range of wavelengths that carries a share of the mean square of a derivative.
+    def in_units(self, length: float) -> SelfAffineSpectrum:
+        """The spectrum with its lengths divided by a unit, and the density as it is."""
+        return replace(
+            self, short_cutoff=self.short_cutoff / length, roll_off=self.roll_off / length
+        )
 
-        Half of the rest lies at shorter wavelengths, the other half at longer ones.
+    def amplified(self, factor: float) -> SelfAffineSpectrum:
+        """The spectrum with its density multiplied by a factor."""
+        return replace(self, plateau=self.plateau * factor)
 
-        Parameters
-        ----------
-        order : float
-            Order alpha, as in :meth:`mean_square`.
-        share : float, optional
-            Part of the mean square within the range.
 
-        Returns
-        -------
-        tuple of float
-            Shortest and longest wavelength. (Units: length)
-        """
-        total, rest = self.mean_square(order), (1 - share) / 2
+@dataclass(frozen=True, slots=True)
+class TabulatedSpectrum(Spectrum):
+    r"""Isotropic 2D spectrum of values at wavelengths, as of a measurement.
 
-        def wavelength_above_which(part: float) -> float:
-            # On the plateau the share of longer waves falls at least as fast as this.
-            longest = self.roll_off * part ** (-1 / (2 + 2 * order))
-            root = brentq(
-                lambda log: self.longer_than(math.exp(log)).mean_square(order) / total - part,
-                math.log(self.short_cutoff) + 1e-14,
-                math.log(longest) + 1e-9,
-                xtol=1e-13,
+    Flat above the longest wavelength, a power law between neighbours, zero below the shortest.
+
+    Parameters
+    ----------
+    wavelengths : tuple of float
+        From long to short, two or more. (Units: length)
+    densities : tuple of float
+        C there. (Units: length**4 for heights)
+
+    Raises
+    ------
+    ValueError
+        If numbers are not positive and finite, the wavelengths do not fall, or there are not as
+        many densities.
+
+    Examples
+    --------
+    >>> table = TabulatedSpectrum((0.5, 0.02), (1.0, (0.5 / 0.02) ** -3.6))
+    >>> fractal = SelfAffineSpectrum(short_cutoff=0.02, roll_off=0.5, hurst=0.8)
+    >>> round(table.elastic_energy / fractal.elastic_energy, 12)
+    1.0
+    """
+
+    wavelengths: tuple[float, ...]
+    densities: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        for name in ("wavelengths", "densities"):
+            for value in getattr(self, name):
+                if not (math.isfinite(value) and value > 0):
+                    raise ValueError(f"{name} hold {value}; they must be positive and finite")
+        if len(self.wavelengths) < 2 or len(self.wavelengths) != len(self.densities):
+            raise ValueError(
+                f"{len(self.wavelengths)} wavelengths and {len(self.densities)} densities make no "
+                "table; give two or more of each"
             )
-            return math.exp(root)
-
-        return wavelength_above_which(1 - rest), wavelength_above_which(rest)
-
-    @property
-    def elastic_energy(self) -> float:
-        """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2, in units of w_int."""
-        return math.pi * CONTACT_MODULUS / 4 * self.mean_square(0.5)
+        if not np.all(np.diff(self.wavelengths) < 0):
+            raise ValueError("the wavelengths of a table must fall; order them from long to short")
 
     @property
-    def correlation_length(self) -> float:
-        """Wavelength of the mean wavevector of w_loc, weighted by its variance (Units: length)."""
-        return 2 * math.pi * self.mean_square(0.5) / self.mean_square(1.0)
+    def short_cutoff(self) -> float:  # type: ignore[override]
+        """Shortest wavelength (Units: length)."""
+        return self.wavelengths[-1]
 
-    def with_elastic_energy(self, elastic_energy: float) -> SelfAffineSpectrum:
-        """Same shape, scaled to an energy of full conformity (in units of w_int)."""
-        return replace(self, plateau=self.plateau * elastic_energy / self.elastic_energy)
+    @property
+    def identity(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Wavelengths, and densities relative to the first."""
+        return self.wavelengths, tuple(value / self.densities[0] for value in self.densities)
+
+    def density(self, wavevector: ArrayLike) -> Array:
+        """Spectral density C(q)."""
+        q = np.asarray(wavevector, dtype=float) * self.short_cutoff / (2 * np.pi)
+        places = -np.log(np.array(self.wavelengths) / self.short_cutoff)
+        # Far below the first wavelength all is flat; the logarithm needs a number.
+        found = np.interp(np.log(np.maximum(q, math.exp(places[0]))), places, self._logarithms)
+        return np.where(q <= 1 + 1e-12, np.exp(found), 0.0)
+
+    def mean_square(self, order: float) -> float:
+        """Mean square of the derivative of a given order, exact for the pieces."""
+        wavevector, densities = 2 * np.pi / np.array(self.wavelengths), np.array(self.densities)
+        power = 2 + 2 * order
+        growth = np.diff(np.log(wavevector))
+        exponent = power * growth + np.diff(self._logarithms)
+        # expm1(x) / x tends to 1 where the integrand is flat.
+        near = np.abs(exponent) < 1e-9
+        mean = np.where(near, 1.0, np.expm1(exponent) / np.where(near, 1.0, exponent))
+        pieces = densities[:-1] * wavevector[:-1] ** power * growth * mean
+        below = densities[0] * wavevector[0] ** power / power
+        return float(below + np.sum(pieces)) / (2 * math.pi)
+
+    def longer_than(self, wavelength: float) -> TabulatedSpectrum:
+        """Part of the spectrum with wavelengths above one that is not below the short cutoff."""
+        longer = [one for one in self.wavelengths if one > wavelength * (1 + 1e-12)]
+        if not longer:
+            longer = [2 * wavelength]
+        end = float(self.density(2 * np.pi / wavelength))
+        # Where all of it is flat, the first density stands at any longer wavelength as well.
+        values = (self.densities[0], *self.densities[1 : len(longer)], end)
+        return TabulatedSpectrum((*longer, wavelength), values)
+
+    def in_units(self, length: float) -> TabulatedSpectrum:
+        """The spectrum with its lengths divided by a unit, and the density as it is."""
+        return replace(self, wavelengths=tuple(value / length for value in self.wavelengths))
+
+    def amplified(self, factor: float) -> TabulatedSpectrum:
+        """The spectrum with its density multiplied by a factor."""
+        return replace(self, densities=tuple(factor * value for value in self.densities))
+
+    @property
+    def _logarithms(self) -> Array:
+        """Logarithms of the densities."""
+        return np.log(self.densities)

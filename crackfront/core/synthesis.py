@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, irfft2
 
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import Spectrum
 
 Array = NDArray[np.float64]
 
 
 def gaussian_field(
-    spectrum: SelfAffineSpectrum,
+    spectrum: Spectrum,
     n_point: int | tuple[int, int],
     length: float | tuple[float, float],
     rng: np.random.Generator,
@@ -27,7 +27,7 @@ def gaussian_field(
 
     Parameters
     ----------
-    spectrum : SelfAffineSpectrum
+    spectrum : Spectrum
         Spectrum of the field. (Lengths in the unit of `length`)
     n_point : int or (n_x, n_y)
         Points along the sides of the tile.
@@ -94,7 +94,7 @@ def _modes(short_cutoff: float, n_point: int, length: float) -> tuple[int, int]:
 
 
 def uncorrelated_rows(
-    spectrum: SelfAffineSpectrum,
+    spectrum: Spectrum,
     order: float,
     n_point: tuple[int, int],
     pixel: float,
@@ -106,7 +106,7 @@ def uncorrelated_rows(
 
     Parameters
     ----------
-    spectrum : SelfAffineSpectrum
+    spectrum : Spectrum
         C, of shortest wavelengths of two pixels or more. (Lengths in the unit of `pixel`)
     order : float
         Order alpha.
@@ -132,19 +132,17 @@ def uncorrelated_rows(
     return np.asarray(irfft(modes, n=n_x, axis=0, norm="forward"))
 
 
-def tile_mean_square(
-    spectrum: SelfAffineSpectrum, side: float, order: float
-) -> tuple[float, float]:
+def tile_mean_square(spectrum: Spectrum, side: float, order: float) -> tuple[float, float]:
     """What the mean square of a derivative is on a synthesised tile, on average.
 
     Parameters
     ----------
-    spectrum : SelfAffineSpectrum
+    spectrum : Spectrum
         Spectrum of the field. (Lengths in the unit of `side`)
     side : float
         Side of the tile. (Units: length)
     order : float
-        Order of the derivative, as in :meth:`SelfAffineSpectrum.mean_square`.
+        Order of the derivative, as in :meth:`Spectrum.mean_square`.
 
     Returns
     -------

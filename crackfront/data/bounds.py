@@ -24,6 +24,9 @@ NUMBER = Range(1e-15, 1e15)
 COUNT = Range(1, 10**15)
 """Any count."""
 
+PLATEAU = Range(1e-60, 1e15)
+"""Densities of heights at long waves, in m^4 or reduced: 1e-27 m^4 is that of a polished film."""
+
 LENGTH = Range(1e-9, 1e9)
 """Lengths in reduced units: from far below an atom on the smallest spheres to far above them."""
 

@@ -13,7 +13,7 @@ import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from crackfront.data.bounds import COUNT, DENSITY, NUMBER, SEED, Range, regular_file
+from crackfront.data.bounds import COUNT, DENSITY, NUMBER, PLATEAU, SEED, Range, regular_file
 
 
 def refusal(message: str) -> PydanticCustomError:
@@ -34,6 +34,7 @@ def within(bounds: Range) -> AfterValidator:
 
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), within(NUMBER)]
+Plateau = Annotated[float, Field(gt=0, allow_inf_nan=False), within(PLATEAU)]
 Density = Annotated[float, Field(gt=0, allow_inf_nan=False), within(DENSITY)]
 Count = Annotated[int, Field(ge=1), within(COUNT)]
 Seed = Annotated[int, Field(ge=0), within(SEED)]

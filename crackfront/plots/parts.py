@@ -88,8 +88,7 @@ def sweep_series(table: SweepTable) -> tuple[Series, ...]:
 
 def spectrum_families(table: SweepTable) -> list[int]:
     """Number of the spectrum of every entry of a table; fronts on several springs share one."""
-    columns = table.short_cutoff, table.roll_off, table.hurst
-    shapes = [tuple(float(values[index]) for values in columns) for index in range(columns[0].size)]
+    shapes = [table.shape_of(index).identity for index in range(table.spectrum.size)]
     known = list(dict.fromkeys(shapes))
     return [known.index(shape) for shape in shapes]
 
@@ -220,6 +219,8 @@ def label_decimals(axes: Axes) -> None:
 def spectrum_label(table: SweepTable, index: int) -> str:
     """Parameters of a spectrum."""
     cutoff = rf"$\lambda_\mathrm{{s}}={table.short_cutoff[index]:g}$"
+    if np.isnan(table.hurst[index]):
+        return f"{table.spectrum[index]}, {cutoff}"
     if table.roll_off[index] == table.short_cutoff[index]:
         return f"flat, {cutoff}"
     roll_off = rf"$\lambda_\mathrm{{r}}={table.roll_off[index]:g}$"

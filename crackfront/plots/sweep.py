@@ -22,10 +22,9 @@ from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.law import law_value, shipped_law, slope_breadth
 from crackfront.analysis.result import SweepFit
-from crackfront.analysis.sweep_law import LARGE, SweepLaw
+from crackfront.analysis.sweep_law import LARGE
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.plots.law import draw_infinite_law
 from crackfront.plots.parts import (
     Series,
@@ -115,8 +114,7 @@ def _line_factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
 def draw_factor_by_size(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     """Draw mean k of straight fronts against g, a colour an amplitude, a marker a spectrum."""
     families, size, law = spectrum_families(table), fit.cells.size, shipped_law()
-    sweep = SweepLaw(table, fit.kind)
-    spectra = [sweep.spectrum(index) for index in range(table.spectrum.size)]
+    spectra = [table.shape_of(index) for index in range(table.spectrum.size)]
     breadth = float(np.mean([slope_breadth(fit.kind, spectrum) for spectrum in spectra]))
     known = size[np.isfinite(size)]
     ends = np.nanmin(known) / 1.5, np.nanmax(known) * 1.5
@@ -207,11 +205,7 @@ def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -
     densities = []
     families = spectrum_families(table)
     for index in (families.index(family) for family in dict.fromkeys(families)):
-        spectrum = SelfAffineSpectrum(
-            float(table.short_cutoff[index]),
-            float(table.roll_off[index]),
-            float(table.hurst[index]),
-        )
+        spectrum = table.shape_of(index)
         scale = spectrum.elastic_energy if kind == "roughness" else spectrum.mean_square(0)
         cutoff = 2 * np.pi / spectrum.short_cutoff
         wavevector = np.geomspace(lowest, cutoff, 200)

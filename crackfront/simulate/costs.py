@@ -28,7 +28,7 @@ from crackfront.core import jkr
 from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.data.bounds import (
     LENGTH,
     PENETRATION,
@@ -180,14 +180,12 @@ def refuse_unaffordable(cost: Cost, what: str, remedy: str, processes: int = 1) 
     refuse_beyond_time(what, cost.seconds, remedy)
 
 
-def refuse_oversized(
-    spectrum: SelfAffineSpectrum, numerics: Numerics, knobs: Knobs, deepest: float
-) -> None:
+def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepest: float) -> None:
     """Raise if the tile or the front of a sphere is larger than any machine holds.
 
     Parameters
     ----------
-    spectrum : SelfAffineSpectrum
+    spectrum : Spectrum
         Its shape. (Units: reduced lateral length)
     numerics : Numerics
         How simulations are resolved, with their knobs for this spectrum.
@@ -196,8 +194,9 @@ def refuse_oversized(
     deepest : float
         Largest penetration. (Units: reduced vertical length)
     """
-    for name in ("short_cutoff", "roll_off"):
-        refuse_outside(name, getattr(spectrum, name), LENGTH, "reduced lateral lengths")
+    lengths = {"short_cutoff": spectrum.short_cutoff, "roll_off": spectrum.longest_feature}
+    for name, value in lengths.items():
+        refuse_outside(name, value, LENGTH, "reduced lateral lengths")
     refuse_outside("max_penetration", deepest, PENETRATION, "reduced vertical lengths")
     cutoff = spectrum.short_cutoff
     points = numerics.tile_side(spectrum) / cutoff * knobs.pixels_per_cutoff
@@ -237,7 +236,7 @@ def features(simulation: Simulation) -> Features:
         n_point=math.sqrt(math.prod(simulation.tile[0])),
         elastic_energy=simulation.elastic_energy,
         tolerance=simulation.solver.tolerance,
-        breadth=spectrum.roll_off / spectrum.short_cutoff,
+        breadth=spectrum.longest_feature / spectrum.short_cutoff,
         travel=travel,
         full_cycle=isinstance(schedule, LoadSchedule),
         n_state=n_state,

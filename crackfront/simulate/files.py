@@ -27,6 +27,7 @@ from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.run import PartialRun, SimulationResult
 from crackfront.simulate.si_units import SURFACES
 from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.tiles import shape_attributes
 
 Array = NDArray[np.float64]
 
@@ -47,9 +48,7 @@ def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -
         "solver": simulation.solver.name,
         "tolerance": simulation.solver.tolerance,
         "elastic_energy_requested": simulation.elastic_energy,
-        "short_cutoff": simulation.spectrum.short_cutoff,
-        "roll_off": simulation.spectrum.roll_off,
-        "hurst": simulation.spectrum.hurst,
+        **shape_attributes(simulation.spectrum),
         **asdict(simulation.resolution),
     }
     return write_dataset(path, dataset, origin)

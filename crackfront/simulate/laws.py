@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.field.fields import Interpolation
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 
 Array = NDArray[np.float64]
 
@@ -41,6 +41,9 @@ cutoff, for eight states, cutoff 0.02 and mean radius 1.6."""
 
 _SHARES: dict[Knob, float] = {"sites": 0.8, "cubic": 0.4, "pixels": 0.35, "tolerance": 0.25}
 """Parts of an asked error, the largest for the costliest knob; their squares sum up to 0.98."""
+
+_BETWEEN = 0.55
+"""Hurst exponent between those of the two broad shapes that were measured, 0.8 and 0.3."""
 
 _RANGES: dict[Knob, tuple[float, float]] = {
     "sites": (1.4, 12.0),
@@ -113,16 +116,17 @@ def abscissa(knob: Knob, value: float) -> float:
     return value if knob == "sites" else math.log(value)
 
 
-def spectral_shape(kind: FieldKind, spectrum: SelfAffineSpectrum) -> str:
+def spectral_shape(kind: FieldKind, spectrum: Spectrum) -> str:
     """The measured shape that comes nearest to a spectrum: chemical, flat, h08 or h03."""
-    if spectrum.roll_off <= 1.5 * spectrum.short_cutoff:
+    short, long = spectrum.short_cutoff, spectrum.longest_feature
+    if long <= 1.5 * short:
         return "flat" if kind == "roughness" else "chemical"
-    return "h08" if spectrum.hurst > 0.55 else "h03"
+    # The Hurst exponent, or that of the self-affine spectrum with as long a correlation.
+    between = SelfAffineSpectrum(short, long, _BETWEEN)
+    return "h08" if spectrum.correlation_length > between.correlation_length else "h03"
 
 
-def chosen_knobs(
-    error: float, kind: FieldKind, spectrum: SelfAffineSpectrum, elastic_energy: float
-) -> Knobs:
+def chosen_knobs(error: float, kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> Knobs:
     """Knobs that leave an asked error in w_appr and w_retr: the coarsest that the laws allow.
 
     Parameters
@@ -132,7 +136,7 @@ def chosen_knobs(
         :data:`LAW_SIZE`.
     kind : {"roughness", "chemical"}
         What the spectrum describes.
-    spectrum : SelfAffineSpectrum
+    spectrum : Spectrum
         Its shape.
     elastic_energy : float
         e_el / w_int.
@@ -154,7 +158,7 @@ def chosen_knobs(
 
 def combined_error(
     kind: FieldKind,
-    spectrum: SelfAffineSpectrum,
+    spectrum: Spectrum,
     elastic_energy: float,
     values: Mapping[Knob, float],
     size: float,

@@ -15,7 +15,7 @@ from crackfront.core.adhesion import (
     larkin_length,
 )
 from crackfront.core.cycle.period import LineSchedule
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import Spectrum
 from crackfront.data.bounds import refuse_beyond_memory
 from crackfront.simulate.simulation import Numerics
 
@@ -59,7 +59,7 @@ class LineLoad:
     def schedule(
         self,
         kind: FieldKind,
-        spectrum: SelfAffineSpectrum,
+        spectrum: Spectrum,
         elastic_energy: float,
         spring: float,
         numerics: Numerics,
@@ -85,7 +85,7 @@ class LineLoad:
         )
 
 
-def expected_rms(kind: FieldKind, spectrum: SelfAffineSpectrum, size: float) -> float:
+def expected_rms(kind: FieldKind, spectrum: Spectrum, size: float) -> float:
     """Expected rms of a front for L_kappa over the Larkin length (Units: length)."""
     return _DEPTH * force_correlation_length(kind, spectrum) * max(size, 0.1) ** _ROUGHNESS
 

@@ -116,6 +116,7 @@ _REDUCED = {
 _ATTRIBUTES = {
     "short_cutoff": LATERAL,
     "roll_off": LATERAL,
+    "wavelengths": LATERAL,
     "end_penetration": VERTICAL,
     "pull_off_energy": ENERGY,
     "travel": LATERAL,

@@ -22,7 +22,7 @@ from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.fingerprint import NO_PART, SOLVER, fingerprint
 from crackfront.core.solver.relax import Solver, named_solver
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.laws import LAW_SIZE, Knob, Knobs, chosen_knobs, combined_error
 
 Schedule = LoadSchedule | SteadySchedule | LineSchedule
@@ -42,7 +42,8 @@ class Numerics:
         Resolution and tolerance, or the standard error of the factor k of either branch that they
         may leave: measured laws then choose them for every spectrum and amplitude.
     tile_roll_offs, tile_cutoffs : float
-        Side of the tile in roll-off wavelengths, and at least so many short cutoffs.
+        Side of the tile in roll-off wavelengths, of other spectra in the longest wavelengths that
+        matter, and at least so many short cutoffs.
     max_sweeps : int
         Limit on the sweeps of one load step.
     solver : str
@@ -55,18 +56,17 @@ class Numerics:
     max_sweeps: int = 100_000_000
     solver: str = "newton"
 
-    def knobs_of(
-        self, kind: FieldKind, spectrum: SelfAffineSpectrum, elastic_energy: float
-    ) -> Knobs:
+    def knobs_of(self, kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> Knobs:
         """Knobs for one spectrum and amplitude."""
         if isinstance(self.knobs, Knobs):
             return self.knobs
         return chosen_knobs(self.knobs, kind, spectrum, elastic_energy)
 
-    def tile_side(self, spectrum: SelfAffineSpectrum) -> float:
+    def tile_side(self, spectrum: Spectrum) -> float:
         """Least side of a tile (Units: that of the spectrum)."""
         return max(
-            self.tile_roll_offs * spectrum.roll_off, self.tile_cutoffs * spectrum.short_cutoff
+            self.tile_roll_offs * spectrum.longest_feature,
+            self.tile_cutoffs * spectrum.short_cutoff,
         )
 
 
@@ -85,12 +85,13 @@ class Resolution:
 
 
 def resolution(
-    spectrum: SelfAffineSpectrum, numerics: Numerics, knobs: Knobs, schedule: Schedule
+    spectrum: Spectrum, numerics: Numerics, knobs: Knobs, schedule: Schedule
 ) -> Resolution:
     """Sizes of the front and of the tile for one spectrum; those of a line are of its schedule.
 
     Examples
     --------
+    >>> from crackfront.core.spectrum import SelfAffineSpectrum
     >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
     >>> knobs = Knobs(None, 2, 4, "cubic", 4, 1e-6)
     >>> numerics = Numerics(knobs, tile_roll_offs=10, tile_cutoffs=20)
@@ -133,7 +134,7 @@ class Simulation:
         Name of the spectrum in the configuration; the only item without effect on the result.
     kind : {"roughness", "chemical"}
         What the spectrum describes: heights, or the work of adhesion itself.
-    spectrum : SelfAffineSpectrum
+    spectrum : Spectrum
         Shape of the spectrum; its plateau has no effect. (Units: reduced lateral length)
     elastic_energy : float
         Requested e_el / w_int; for a chemical field the equivalent (w_rms / w_int)^2 / 4.
@@ -154,7 +155,7 @@ class Simulation:
 
     spectrum_name: str
     kind: FieldKind
-    spectrum: SelfAffineSpectrum
+    spectrum: Spectrum
     elastic_energy: float
     realisation: int
     sweep_seed: int
@@ -176,10 +177,10 @@ class Simulation:
 
     def _content(self) -> dict[str, Any]:
         """What determines the result, part by part."""
-        spectrum = self.spectrum
+        lengths, numbers = self.spectrum.identity
         return {
             "kind": self.kind,
-            "spectrum": (spectrum.short_cutoff, spectrum.roll_off, spectrum.hurst),
+            "spectrum": (*lengths, *numbers),
             "elastic_energy": self.elastic_energy,
             "realisation": self.realisation,
             "seed": self.sweep_seed,
@@ -226,10 +227,10 @@ class Simulation:
         It follows from the seed of the sweep, the spectrum, the tile's side and the number of
         the realisation, never from a position in a list. All amplitudes and all grids share it.
         """
-        spectrum = self.spectrum
-        lengths = (spectrum.short_cutoff, spectrum.roll_off, self.resolution.tile_side)
+        lengths, numbers = self.spectrum.identity
+        sizes = (*lengths, self.resolution.tile_side, *numbers)
         # Ten digits: the same surface whether lengths were given in metres or reduced.
-        text = " ".join(f"{value:.10g}" for value in (*lengths, spectrum.hurst))
+        text = " ".join(f"{value:.10g}" for value in sizes)
         words = np.frombuffer(hashlib.sha256(text.encode()).digest(), dtype="<u4")
         sequence = np.random.SeedSequence(
             self.sweep_seed, spawn_key=(*(int(word) for word in words), self.realisation)
@@ -239,7 +240,7 @@ class Simulation:
 
 def simulation_of(
     kind: FieldKind,
-    spectrum: SelfAffineSpectrum,
+    spectrum: Spectrum,
     elastic_energy: float,
     schedule: Schedule,
     numerics: Numerics,

@@ -13,7 +13,7 @@ from xarray import DataArray
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind, chemical_adhesion, rough_adhesion
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, Variable
@@ -25,28 +25,30 @@ from crackfront.simulate.contact import simulation_adhesion
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.si_units import SURFACES, refuse_other_units
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
+from crackfront.simulate.tiles import shape_attributes
 
 Array = NDArray[np.float64]
 
 
 def random_surface(
-    short_cutoff: float,
+    short_cutoff: float | Spectrum,
     elastic_energy: float,
     *,
     kind: FieldKind = "roughness",
     roll_off: float | None = None,
-    hurst: float = 1.0,
+    hurst: float | None = None,
     side: float | None = None,
     error: float = 0.03,
     seed: int = 0,
     realisation: int = 0,
 ) -> DataArray:
-    """A self-affine Gaussian surface on a periodic tile.
+    """A Gaussian surface on a periodic tile, self-affine or of another spectrum.
 
     Parameters
     ----------
-    short_cutoff : float
-        Shortest wavelength. (Units: reduced lateral length)
+    short_cutoff : float or Spectrum
+        Shortest wavelength (Units: reduced lateral length), or the whole spectrum, whose amplitude
+        has no effect, in place of it, of `roll_off` and of `hurst`.
     elastic_energy : float
         Energy of full conformity e_el, between 0 and 1; for a chemical surface the equivalent
         (w_rms / w_int)^2 / 4. (Units: w_int)
@@ -56,7 +58,7 @@ def random_surface(
         Wavelength above which the spectrum is flat, by default the short cutoff.
         (Units: reduced lateral length)
     hurst : float, optional
-        Hurst exponent between the two.
+        Hurst exponent between the two, by default 1.
     side : float, optional
         Side of the tile, by default 4 roll-offs and at least 200 short cutoffs.
         (Units: reduced lateral length)
@@ -82,12 +84,7 @@ def random_surface(
     >>> surface.name, surface.dims, float(surface.x[0])
     ('height', ('x', 'y'), -2.0)
     """
-    refuse_no_numbers(short_cutoff=short_cutoff, hurst=hurst)
-    if roll_off is not None:
-        refuse_no_numbers(roll_off=roll_off)
-    spectrum = SelfAffineSpectrum(
-        short_cutoff, short_cutoff if roll_off is None else roll_off, hurst
-    )
+    spectrum = _shape(short_cutoff, roll_off, hurst)
     simulation = chosen_simulation(
         kind,
         spectrum,
@@ -103,18 +100,30 @@ def random_surface(
         kind,
         _values(simulation),
         tile.tile_side / tile.n_point,
-        short_cutoff=spectrum.short_cutoff,
-        roll_off=spectrum.roll_off,
-        hurst=hurst,
+        **shape_attributes(spectrum),
         elastic_energy_requested=elastic_energy,
         seed=seed,
         realisation=realisation,
     )
 
 
+def _shape(short_cutoff: float | Spectrum, roll_off: float | None, hurst: float | None) -> Spectrum:
+    """Spectrum that the arguments of :func:`random_surface` name."""
+    if not isinstance(short_cutoff, Spectrum):
+        optional = {"roll_off": roll_off, "hurst": hurst}
+        named = {name: one for name, one in optional.items() if one is not None}
+        refuse_no_numbers(short_cutoff=short_cutoff, **named)
+        long = short_cutoff if roll_off is None else roll_off
+        return SelfAffineSpectrum(short_cutoff, long, 1.0 if hurst is None else hurst)
+    for name, value in (("roll_off", roll_off), ("hurst", hurst)):
+        if value is not None:
+            raise ValueError(f"{name} is {value}, but a whole spectrum is given; leave it out")
+    return short_cutoff
+
+
 def chosen_simulation(
     kind: FieldKind,
-    spectrum: SelfAffineSpectrum,
+    spectrum: Spectrum,
     elastic_energy: float,
     schedule: LoadSchedule,
     *,
@@ -180,7 +189,7 @@ _AXES = tuple(
 
 
 def surface_array(
-    kind: FieldKind, values: Array, pixel: float, **attributes: str | float
+    kind: FieldKind, values: Array, pixel: float, **attributes: str | float | Array
 ) -> xr.DataArray:
     """Surface of a periodic tile, the apex of the sphere at its centre.
 
@@ -192,7 +201,7 @@ def surface_array(
         Heights (Units: reduced vertical length) or works of adhesion. (Units: w_int)
     pixel : float
         Grid spacing. (Units: reduced lateral length)
-    **attributes : str or float
+    **attributes : str, float or array
         What else the array says of itself.
     """
     item = SURFACES[kind]

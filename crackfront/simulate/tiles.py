@@ -11,7 +11,7 @@ from scipy.fft import fftfreq, rfft2, rfftfreq
 from xarray import DataArray
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -20,7 +20,20 @@ _ROUND_OFF = 1e-28
 """Power of a mode that is none, relative to that of all; round-off leaves (2e-16)^2."""
 
 
-def stated_spectrum(surface: DataArray) -> SelfAffineSpectrum | None:
+_SHAPES: dict[type[Spectrum], tuple[str, ...]] = {
+    SelfAffineSpectrum: ("short_cutoff", "roll_off", "hurst"),
+    TabulatedSpectrum: ("wavelengths", "densities"),
+}
+"""What the attributes of surfaces and simulations say of a spectrum of each shape."""
+
+
+def shape_attributes(spectrum: Spectrum) -> dict[str, float | Array]:
+    """Attributes that state the shape of a spectrum."""
+    values = {name: getattr(spectrum, name) for name in _SHAPES[type(spectrum)]}
+    return {name: np.array(one) if isinstance(one, tuple) else one for name, one in values.items()}
+
+
+def stated_spectrum(surface: DataArray) -> Spectrum | None:
     """Shape of the spectrum that the attributes of a surface state, if they do.
 
     Parameters
@@ -33,17 +46,20 @@ def stated_spectrum(surface: DataArray) -> SelfAffineSpectrum | None:
     ValueError
         If the surface holds waves below its stated short cutoff.
     """
-    names = ("short_cutoff", "roll_off", "hurst")
-    if not all(name in surface.attrs for name in names):
+    for shape, names in _SHAPES.items():
+        if all(name in surface.attrs for name in names):
+            values = (np.asarray(surface.attrs[name], dtype=float).tolist() for name in names)
+            spectrum = shape(*(tuple(one) if isinstance(one, list) else one for one in values))
+            break
+    else:
         return None
-    spectrum = SelfAffineSpectrum(*(float(surface.attrs[name]) for name in names))
     pixel = float(surface.x[1] - surface.x[0])
     modes = tile_modes(surface.values, pixel)
     beyond = modes.wavevector > 2 * np.pi / spectrum.short_cutoff * (1 + 1e-9)
     if np.sum(modes.power[beyond]) > 1e-9 * np.sum(modes.power):
         raise ValueError(
-            f"the surface holds waves shorter than its attribute short_cutoff, "
-            f"{spectrum.short_cutoff:g}; remove the attribute, so that the pixels decide"
+            f"the surface holds waves shorter than its attributes say, "
+            f"{spectrum.short_cutoff:g}; remove {' and '.join(names)}, so that the pixels decide"
         )
     return spectrum
 

@@ -19,7 +19,7 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.solver.relax import SOLVERS
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.data.bounds import (
     SI,
@@ -75,22 +75,27 @@ class SurfaceSection(Section):
     size: tuple[Positive, ...] | None = None
     shortest: Positive | None = None
 
-    def fitted(self) -> tuple[SelfAffineSpectrum, str]:
+    longest: Positive | None = None
+
+    def measured(self) -> tuple[TabulatedSpectrum, str]:
         """Spectrum in metres, and eight digits that change with any of the files.
 
-        Five digits of each parameter, so that simulations keep their names whatever the round-off.
+        Five digits of each number, so that simulations keep their names whatever the round-off.
         """
-        treatment = Treatment(self.detrend, self.unit, self.size, self.shortest)
-        surface = measured_surface(read_measurements(self.file, treatment))
-        found = surface.fitted.spectrum
-        short, long, hurst = (
-            float(f"{value:.5g}") for value in (found.short_cutoff, found.roll_off, found.hurst)
+        treatment = Treatment(self.detrend, self.unit, self.size)
+        surface = measured_surface(
+            read_measurements(self.file, treatment), self.shortest, self.longest
         )
-        return SelfAffineSpectrum(short, max(short, long), hurst), surface.checksum
+        table = surface.joint.spectrum
+        lengths, densities = (
+            tuple(float(f"{value:.5g}") for value in values)
+            for values in (table.wavelengths, table.identity[1])
+        )
+        return TabulatedSpectrum(lengths, densities), surface.checksum
 
 
 class SpectrumSection(Section):
-    """Shape of one spectrum: its parameters, or the surface that it is fitted to."""
+    """Shape of one spectrum: its parameters, or the surface that it was measured on."""
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
     short_cutoff: Positive | None = None
@@ -118,10 +123,10 @@ class SpectrumSection(Section):
             assert self.short_cutoff is not None, "the schema asks for it"
             assert self.hurst is not None, "the schema asks for it"
             long = self.roll_off or self.short_cutoff
-            spectrum = SelfAffineSpectrum(self.short_cutoff, long, self.hurst)
+            spectrum: Spectrum = SelfAffineSpectrum(self.short_cutoff, long, self.hurst)
         else:
             try:
-                spectrum, checksum = self.surface.fitted()
+                spectrum, checksum = self.surface.measured()
             except OSError as error:
                 raise ConfigurationError(
                     f"spectra[{position}].surface: {error.filename} cannot be read: "
@@ -130,8 +135,7 @@ class SpectrumSection(Section):
             except ValueError as error:
                 raise ConfigurationError(f"spectra[{position}].surface: {error}") from error
             name += f"-{checksum}"
-        short, long = spectrum.short_cutoff / lateral, spectrum.roll_off / lateral
-        return NamedSpectrum(name, SelfAffineSpectrum(short, long, spectrum.hurst))
+        return NamedSpectrum(name, spectrum.in_units(lateral))
 
 
 class AmplitudesSection(Section):

@@ -12,7 +12,7 @@ from typing import Literal
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.lines import LineLoad
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
@@ -26,7 +26,7 @@ class NamedSpectrum:
     """
 
     name: str
-    spectrum: SelfAffineSpectrum
+    spectrum: Spectrum
     spring: float = math.nan
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import asdict, fields
 from itertools import islice
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from crackfront.analysis.steady import (
     STEADY_DEFINITION,
@@ -30,6 +31,7 @@ from crackfront.analysis.table import (
 )
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.fingerprint import fingerprint
+from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.variables import ADHESION, variables
 from crackfront.data.files import UnreadableFileError, labelled_fields, read_dataset
 from crackfront.data.provenance import Provenance
@@ -52,6 +54,10 @@ _WINDOW = ("lowest_radius", "highest_radius")
 
 NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
+
+
+_OPTIONAL = ("table_wavelength", "table_density")
+"""Columns of sweeps that have spectra which are tables."""
 
 
 def write_hysteresis(
@@ -98,10 +104,12 @@ def read_table(path: Path) -> SweepTable:
     UnreadableFileError
         If the file is missing, truncated or that of something else.
     """
-    sources = {name: name for name in SweepTable.__dataclass_fields__ if name != "contact_radius"}
+    names = set(SweepTable.__dataclass_fields__) - {"contact_radius", *_OPTIONAL}
+    sources = {name: name for name in sorted(names)}
     sources["e_el_requested"] = AMPLITUDE
     dataset = _read(path, (*sources.values(), *_WINDOW))
     columns = {name: np.asarray(dataset[source]) for name, source in sources.items()}
+    columns |= {name: np.asarray(dataset[name]) for name in _OPTIONAL if name in dataset}
     columns["contact_radius"] = np.mean([dataset[name] for name in _WINDOW], axis=0)
     columns["spectrum"] = columns["spectrum"].astype(np.str_)
     return SweepTable(**columns)
@@ -182,11 +190,12 @@ def _axes(sweep: Sweep) -> SweepAxes:
         for item in sweep.spectra
     ]
     tiles = [[one.resolution for one in row] for row in firsts]
+    tables = [one if isinstance(one, TabulatedSpectrum) else None for one in spectra]
     return SweepAxes(
         spectrum=np.array([item.name for item in sweep.spectra]),
         short_cutoff=np.array([spectrum.short_cutoff for spectrum in spectra]),
-        roll_off=np.array([spectrum.roll_off for spectrum in spectra]),
-        hurst=np.array([spectrum.hurst for spectrum in spectra]),
+        roll_off=np.array([spectrum.longest_feature for spectrum in spectra]),
+        hurst=np.array([getattr(spectrum, "hurst", math.nan) for spectrum in spectra]),
         correlation_length=np.array([row[0].correlation_length for row in firsts]),
         spring=np.array([[one.spring for one in row] for row in firsts]),
         n_angle=np.array([[tile.n_angle for tile in row] for row in tiles]),
@@ -197,7 +206,17 @@ def _axes(sweep: Sweep) -> SweepAxes:
         amplitude=energies,
         w_rms_requested=2 * np.sqrt(energies),
         realisation=np.arange(sweep.n_realisation),
+        table_wavelength=_tables([one.wavelengths if one else () for one in tables]),
+        table_density=_tables([one.identity[1] if one else () for one in tables]),
     )
+
+
+def _tables(rows: Sequence[tuple[float, ...]]) -> NDArray[np.float64] | None:
+    """Rows of unequal lengths, filled up with NaN; None where all are empty."""
+    longest = max(map(len, rows))
+    if not longest:
+        return None
+    return np.array([(*row, *[math.nan] * (longest - len(row))) for row in rows])
 
 
 def _attributes(sweep: Sweep) -> dict[str, str | float]:

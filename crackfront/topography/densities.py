@@ -1,33 +1,37 @@
-"""Spectral densities of measurements, by the library, and the modes behind each value."""
+"""Spectral densities of measurements, and the modes behind each value."""
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import fftfreq, fftn
+from scipy.fft import fftfreq, rfft, rfft2, rfftfreq
 from scipy.signal import get_window
-from scipy.special import digamma, polygamma
 
 from crackfront.topography.instruments import surface_library
 from crackfront.topography.reading import Measurement
 
 Array = NDArray[np.float64]
 
-_BINS_PER_DECADE = 20
+BINS_PER_DECADE = 20
+"""Bins of wavevectors; their edges are the same for all scans."""
 
-_NEIGHBOURS = 2
-"""Distance in modes up to which the window makes their noise dependent."""
+_AXIS = 1
+"""Modes beside an axis that hold what does not change along one direction: rows, steps, seams."""
+
+_FIRST_ON_AXIS = 6
+"""Modes from which on the axes are compared with all other directions."""
+
+_STRIPES, _STRIPE_SIGMA = 1.5, 5.0
+"""Ratio of the density on an axis to that beside it, and its significance, that are stripes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Density:
-    """Density in bins of trusted wavevectors.
+    """Density in bins of wavevectors.
 
     Attributes
     ----------
@@ -36,9 +40,7 @@ class Density:
     value : (n,) array
         Isotropic density C of a map, C_1D of lines. (Units: m^4 or m^3)
     modes : (n,) array
-        Independent modes that the value is the mean of, one or more.
-    own_modes : (n,) array
-        Those that no other bin shares; the window makes neighbours in wavevector dependent.
+        Independent modes that the value is the mean of; the window makes neighbours dependent.
     is_profile : bool
         Whether it is C_1D.
     """
@@ -46,46 +48,170 @@ class Density:
     wavevector: Array
     value: Array
     modes: Array
-    own_modes: Array
     is_profile: bool
 
-    @property
-    def logarithm(self) -> Array:
-        """Logarithm of the value without the bias that a mean of few exponential numbers has."""
-        return np.asarray(np.log(self.value) - digamma(self.modes) + np.log(self.modes))
-
-    @property
-    def logarithm_error(self) -> Array:
-        """Standard error of :attr:`logarithm` as if bins were independent of each other."""
-        return np.asarray(np.sqrt(polygamma(1, self.modes) * self.modes / self.own_modes))
+    def within(self, shortest: float, longest: float) -> Density:
+        """Part of the density between two wavelengths (Units: m)."""
+        low, high = 2 * np.pi / longest, 2 * np.pi / shortest
+        chosen = (self.wavevector >= low) & (self.wavevector <= high * (1 + 1e-9))
+        return Density(
+            self.wavevector[chosen], self.value[chosen], self.modes[chosen], self.is_profile
+        )
 
 
-def isotropic_density(measurement: Measurement) -> Density:
-    """Isotropic density of a map over its trusted wavevectors.
+@dataclass(frozen=True, slots=True)
+class Periodogram:
+    """Power of every wave of a measurement under its window.
 
-    Raises
-    ------
-    ValueError
-        If it is a line scan.
+    Attributes
+    ----------
+    along : tuple of array
+        Wavevectors along the axes, shaped to broadcast. (Units: 1 / m)
+    power : array
+        Density of each wave. (Units: m^4 of a map, m^3 of a line)
+    count : array
+        Waves that an entry stands for, 2 where its conjugate is not among them.
+    dependence : float
+        Modes of which the window makes one.
     """
-    if measurement.is_line:
-        raise ValueError(f"{measurement.path} is a line scan, which has no density of a map")
-    level = topography(measurement)
-    library = surface_library()
-    n_x, n_y = measurement.heights.shape
-    window = library.FFTTricks.get_window_2D("hann", n_x, n_y, measurement.size)
-    wavevectors = level.wavevectors_norm2()
-    return _density(measurement, level.power_spectrum_from_area, wavevectors, window)
+
+    along: tuple[Array, ...]
+    power: Array
+    count: Array
+    dependence: float
+
+    @property
+    def wavevector(self) -> Array:
+        """Magnitudes, of the shape of `power` (Units: 1 / m)."""
+        return np.abs(self.along[0]) if len(self.along) == 1 else np.hypot(*self.along)
+
+    def near_axis(self, axis: int) -> NDArray[np.bool_]:
+        """Waves that hardly change along the other axis of a map: rows or columns as wholes."""
+        other = self.along[1 - axis]
+        step = np.min(np.abs(other[other != 0]))
+        near = np.abs(other) < (_AXIS + 0.5) * step
+        return np.broadcast_to(near, self.power.shape)
+
+    def density(self, without: NDArray[np.bool_] | None = None) -> Density:
+        """Means in logarithmic bins, but for some waves."""
+        wavevector = self.wavevector
+        used = wavevector > 0
+        if without is not None:
+            used &= ~without
+        values, count = wavevector[used], np.broadcast_to(self.count, self.power.shape)[used]
+        logarithm = np.log(values)
+        place = np.floor(logarithm * (BINS_PER_DECADE / math.log(10))).astype(np.int64)
+        first = int(place.min())
+        place -= first
+        modes = np.bincount(place, count)
+        known = modes > 0
+        number = np.where(known, modes, 1.0)
+        return Density(
+            wavevector=np.exp(np.bincount(place, count * logarithm) / number)[known],
+            value=(np.bincount(place, count * self.power[used]) / number)[known],
+            # Every wave stands twice in a two-sided transform.
+            modes=modes[known] / (2 * self.dependence),
+            is_profile=len(self.along) == 1,
+        )
+
+    def mean_square(self, order: float, shortest: float, longest: float) -> float:
+        """Mean square of a derivative between two wavelengths (Units: m^(2 - 2 order))."""
+        wavevector = self.wavevector
+        inside = (wavevector >= 2 * np.pi / longest) & (wavevector <= 2 * np.pi / shortest)
+        count = np.broadcast_to(self.count, self.power.shape)[inside]
+        step = math.prod(float(np.min(np.abs(one[one != 0]))) for one in self.along)
+        total = float(np.sum(count * self.power[inside] * wavevector[inside] ** (2 * order)))
+        return total * step / (2 * math.pi) ** len(self.along)
+
+
+def periodogram(
+    measurement: Measurement, heights: Array | None = None, window: str = "hann"
+) -> Periodogram:
+    """Power of all waves of a measurement, or of other heights in its place.
+
+    A window is a name that `scipy.signal.get_window` knows; a periodic measurement needs none.
+    """
+    heights = measurement.heights if heights is None else heights
+    shape, pixels = heights.shape, measurement.pixels
+    windows = [
+        np.ones(count) if measurement.periodic else get_window(window, count) for count in shape
+    ]
+    weight = windows[0] if len(shape) == 1 else windows[0][:, None] * windows[1]
+    square = math.prod(float(np.mean(one**2)) for one in windows)
+    dependence = math.prod(float(np.mean(one**4)) for one in windows) / square**2
+    level = float(np.sum(weight * heights) / np.sum(weight))
+    windowed = weight * (heights - level)
+    half = 2 * np.pi * rfftfreq(shape[-1], pixels[-1])
+    count = np.full(half.size, 2.0)
+    count[0] = 1.0
+    if shape[-1] % 2 == 0:
+        count[-1] = 1.0
+    if len(shape) == 1:
+        along: tuple[Array, ...] = (half,)
+        transform = rfft(windowed, norm="forward")
+    else:
+        along = (2 * np.pi * fftfreq(shape[0], pixels[0])[:, None], half[None, :])
+        transform = rfft2(windowed, norm="forward")
+        count = count[None, :]
+    power = (transform.real**2 + transform.imag**2) * (math.prod(measurement.size) / square)
+    return Periodogram(along, power, count, dependence)
 
 
 def profile_density(measurement: Measurement) -> Density:
     """Density of a line scan, or mean of those of the lines along x of a map."""
-    level = topography(measurement)
+    if measurement.is_line:
+        return periodogram(measurement).density()
     count = measurement.heights.shape[0]
-    wavevectors = 2 * np.pi * np.abs(fftfreq(count, measurement.pixels[0]))
-    window = get_window("hann", count)
+    window = np.ones(count) if measurement.periodic else get_window("hann", count)
+    lines = window[:, None] * (measurement.heights - measurement.heights.mean(axis=0))
+    transform = rfft(lines, axis=0, norm="forward")
+    along = 2 * np.pi * rfftfreq(count, measurement.pixels[0])
+    square = float(np.mean(window**2))
+    dependence = float(np.mean(window**4)) / square**2
+    power = np.mean(np.abs(transform) ** 2, axis=1) * measurement.size[0] / square
     # The lines of a map are not independent: the modes of one are counted.
-    return _density(measurement, level.power_spectrum_from_profile, wavevectors, window)
+    one = Periodogram((along,), power, np.full(along.size, 2.0), dependence)
+    return one.density()
+
+
+def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
+    """Axes along which a map has stripes: rows or columns that are shifted or levelled as wholes.
+
+    On such an axis the density departs from that of all other directions.
+    """
+    wavevector = waves.wavevector
+    beside = ~(waves.near_axis(0) | waves.near_axis(1)) & (wavevector > 0)
+    inside = wavevector <= 2 * np.pi / shortest
+    scale = BINS_PER_DECADE / math.log(10)
+    place = np.floor(np.log(np.where(wavevector > 0, wavevector, 1.0)) * scale).astype(np.int64)
+    first = int(place[wavevector > 0].min())
+    place -= first
+    count = np.broadcast_to(waves.count, waves.power.shape)
+    size = int(place.max()) + 1
+    found = []
+    base = np.bincount(place[beside], (count * waves.power)[beside], size)
+    number = np.bincount(place[beside], count[beside], size)
+    for axis in (0, 1):
+        step = float(np.min(np.abs(waves.along[axis][waves.along[axis] != 0])))
+        chosen = waves.near_axis(axis) & inside & (wavevector > (_FIRST_ON_AXIS - 0.5) * step)
+        chosen &= number[np.clip(place, 0, size - 1)] > 0
+        here = place[chosen]
+        ratio = waves.power[chosen] * number[here] / base[here]
+        modes = np.sum(count[chosen]) / (2 * waves.dependence)
+        if modes < 4:
+            continue
+        level = float(np.average(ratio, weights=count[chosen]))
+        apart = abs(math.log(max(level, 1e-300))) * math.sqrt(modes)
+        if max(level, 1 / level) > _STRIPES and apart > _STRIPE_SIGMA:
+            found.append(axis)
+    return tuple(found)
+
+
+def anisotropy(waves: Periodogram, shortest: float) -> float:
+    """Rms slope along x over that along y, from the trusted wavelengths of a map."""
+    weight = waves.count * waves.power * (waves.wavevector <= 2 * np.pi / shortest)
+    along_x, along_y = (float(np.sum(weight * one**2)) for one in waves.along)
+    return math.sqrt(along_x / along_y)
 
 
 def topography(measurement: Measurement) -> Any:
@@ -93,53 +219,3 @@ def topography(measurement: Measurement) -> Any:
     library = surface_library()
     kind = library.UniformLineScan if measurement.is_line else library.Topography
     return kind(measurement.heights, measurement.size, periodic=measurement.periodic, unit="m")
-
-
-def _density(
-    measurement: Measurement,
-    spectrum: Callable[..., tuple[Array, Array]],
-    wavevectors: Array,
-    window: Array,
-) -> Density:
-    """Density in logarithmic bins that hold a mode or more."""
-    ends = 2 * np.pi / measurement.longest, 2 * np.pi / measurement.shortest
-    count = max(2, math.ceil(math.log10(ends[1] / ends[0]) * _BINS_PER_DECADE))
-    edges = np.geomspace(*ends, count + 1)
-    _, values = spectrum(reliable=False, collocation=edges)
-    place = np.digitize(wavevectors, edges) - 1
-    inside = (place >= 0) & (place < count)
-    modes = np.bincount(place[inside], minlength=count)
-    logarithms = np.bincount(place[inside], np.log(wavevectors[inside]), minlength=count)
-    known = (modes > 0) & ~np.ma.getmaskarray(values)
-    shared = whole = np.ones(count)
-    if not measurement.periodic:
-        shared = _shared(np.where(inside, place, -1), window, modes)
-        whole = np.full(count, np.mean(window**4) / np.mean(window**2) ** 2)
-    # Every wave stands twice in a two-sided transform.
-    independent = np.maximum(modes[known] / shared[known] / 2, 1.0)
-    return Density(
-        wavevector=np.exp(logarithms[known] / modes[known]),
-        value=np.ma.getdata(values)[known],
-        modes=independent,
-        own_modes=np.minimum(modes[known] / whole[known] / 2, independent),
-        is_profile=spectrum.__name__.endswith("profile"),
-    )
-
-
-def _shared(place: NDArray[np.int64], window: Array, modes: NDArray[np.int64]) -> Array:
-    """How many modes of a bin stand for one independent mode of it.
-
-    Under a window the noise of two modes correlates by the transform of its square at their
-    distance; only pairs within a bin make its mean noisier.
-    """
-    correlation = np.abs(fftn(window**2)) ** 2
-    correlation /= correlation.flat[0]
-    pairs = np.zeros(modes.size)
-    reach = range(-_NEIGHBOURS, _NEIGHBOURS + 1)
-    for shift in itertools.product(reach, repeat=window.ndim):
-        if shift < (0,) * window.ndim:
-            continue  # each pair once
-        weight = correlation[shift] * (2.0 if any(shift) else 1.0)
-        together = (place >= 0) & (place == np.roll(place, shift, axis=tuple(range(window.ndim))))
-        pairs += weight * np.bincount(place[together], minlength=modes.size)
-    return pairs / np.maximum(modes, 1)

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crackfront.core import jkr
+from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.plots.densities import (
     ISOTROPIC_LABEL,
@@ -41,7 +42,7 @@ _MOST_MAPS, _FEWEST_PLACES = 4, 2
 """Scans that are shown as maps, and places for them."""
 
 _ROOM = 3.0
-"""How far beyond the trusted wavelengths the fit is shown."""
+"""How far beyond the longest trusted wavelength the spectrum is shown."""
 
 
 def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figure:
@@ -71,20 +72,25 @@ def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figur
 
 
 def _draw_isotropic(axes: Axes, surface: MeasuredSurface) -> None:
-    """Isotropic densities, the spectrum and the scales that dominate."""
-    fitted, wavevector = surface.fitted, _wavevectors(surface)
+    """Densities of maps, trusted and not, the spectrum and the scales that dominate."""
+    joint, wavevector = surface.joint, _wavevectors(surface)
     set_density_scales(axes, wavevector)
-    trusted = wavevector <= 2 * np.pi / fitted.spectrum.short_cutoff
-    for index, density in enumerate(surface.isotropic):
-        if density is not None:
-            _draw_density(axes, index, density, surface.measurements[index].path.name)
+    shown = wavevector <= 2 * np.pi / joint.spectrum.short_cutoff
+    for index, one in enumerate(surface.scans):
+        if not one.measurement.is_line:
+            _draw_density(axes, index, one.trusted, one.measurement.path.name)
+            _draw_untrusted(axes, index, one.density.within(*_ends(wavevector)))
+    logarithms = np.log([item.density(wavevector[shown]) for item in _reaching(surface)])
+    low, high = np.exp(np.quantile(logarithms, (0.025, 0.975), axis=0))
+    axes.fill_between(wavevector[shown], low, high, color="0.8", linewidth=0, zorder=1)
     axes.plot(
-        wavevector[trusted],
-        fitted.spectrum.density(wavevector[trusted]),
+        wavevector[shown],
+        joint.spectrum.density(wavevector[shown]),
         color=BLACK,
-        label="self-affine fit",
+        label="spectrum, with its 95% interval",
         zorder=4,
     )
+    axes.set_ylim(0.2 * np.min(low), 5 * np.max(high))
     measures = surface.measures
     draw_dominant_scales(
         axes,
@@ -92,27 +98,67 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface) -> None:
         np.array([item.shortest for item in measures]),
         np.array([item.longest for item in measures]),
     )
+    _draw_limits(axes, surface, named=False)
     axes.set_ylabel(ISOTROPIC_LABEL)
-    axes.legend(loc="lower left")
+    axes.legend(loc="lower left", frameon=True, framealpha=1, edgecolor="none")
+
+
+def _reaching(surface: MeasuredSurface) -> list[TabulatedSpectrum]:
+    """Draws of the spectrum, continued to the end of what is shown of it."""
+    end = surface.joint.spectrum.short_cutoff
+    return [item for item in surface.joint.draws if item.short_cutoff <= end]
+
+
+def _ends(wavevector: Array) -> tuple[float, float]:
+    """Shortest and longest wavelength of an axis."""
+    return float(2 * np.pi / wavevector[-1]), float(2 * np.pi / wavevector[0])
+
+
+def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
+    """Ends of the trusted bands, with what ends them above the data."""
+    for index, one in enumerate(surface.scans):
+        colour = COLOURS[index % len(COLOURS)]
+        for limit in one.band.ends:
+            place = 2 * np.pi / limit.wavelength
+            axes.axvline(place, color=colour, linewidth=0.5, dashes=(2, 2), zorder=1)
+            if named:
+                axes.annotate(
+                    limit.cause,
+                    (place, 1.0),
+                    xycoords=("data", "axes fraction"),
+                    xytext=(1.5, -2 - 6 * index),
+                    textcoords="offset points",
+                    va="top",
+                    fontsize=5,
+                    color=colour,
+                )
 
 
 def _draw_profiles(axes: Axes, surface: MeasuredSurface) -> None:
-    """Densities of profiles and the projection of the spectrum."""
-    fitted, wavevector = surface.fitted, _wavevectors(surface)
-    for index, density in enumerate(surface.profiles):
-        is_line = surface.measurements[index].is_line
-        name = surface.measurements[index].path.name if is_line else ""
+    """Densities of profiles and the projection of the model that continues the spectrum."""
+    wavevector = _wavevectors(surface)
+    for index, (one, density) in enumerate(zip(surface.scans, surface.profiles, strict=True)):
+        name = one.measurement.path.name if one.measurement.is_line else ""
         _draw_density(axes, index, density, name)
     axes.plot(
         wavevector,
-        fitted.projected_density(wavevector),
+        surface.joint.fit.projected_density(wavevector),
         color=BLACK,
-        label="projection of the fit",
+        label="projection of the model",
         zorder=4,
     )
     axes.set_yscale("log")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high * (high / low) ** (0.12 * len(surface.scans)))
+    _draw_limits(axes, surface, named=True)
     axes.set_ylabel(PROFILE_LABEL)
-    axes.legend(loc="lower left")
+    axes.legend(loc="lower left", frameon=True, framealpha=1, edgecolor="none")
+
+
+def _draw_untrusted(axes: Axes, index: int, density: Density) -> None:
+    """The whole density of a measurement as a thin line."""
+    colour = COLOURS[index % len(COLOURS)]
+    axes.plot(density.wavevector, density.value, color=colour, linewidth=0.5, alpha=0.6, zorder=2)
 
 
 def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
@@ -171,6 +217,5 @@ def _force_unit(force: float) -> tuple[Literal["mN", "µN", "nN"], float]:
 
 def _wavevectors(surface: MeasuredSurface) -> Array:
     """Wavevectors that are shown."""
-    fitted = surface.fitted
-    ends = fitted.longest * _ROOM, fitted.spectrum.short_cutoff / _ROOM
+    ends = surface.joint.longest * _ROOM, surface.joint.spectrum.short_cutoff / 1.5
     return np.geomspace(2 * np.pi / ends[0], 2 * np.pi / ends[1], 400)

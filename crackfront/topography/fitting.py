@@ -1,176 +1,428 @@
-"""The self-affine spectrum that fits the densities of all measurements of a surface."""
+r"""The self-affine model that continues measured densities, and what instruments do to it.
+
+A density is fitted by :math:`P(q) T(q) + N`: a plateau and two power laws P, their attenuation by
+the instrument :math:`T = \exp(-(q/q_c)^m)`, and white noise N. All fits are of the likelihood of
+the modes in each bin.
+"""
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import OptimizeResult, least_squares
+from scipy.optimize import least_squares
 
-from crackfront.analysis.estimate import Estimate, normal_estimate
-from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.topography.densities import Density
 
 Array = NDArray[np.float64]
 
-HURST_RANGE = (0.01, 1.0)
-"""Hurst exponents that are fitted."""
+_SHAPE = 5
+"""Parameters of P: logarithm of the plateau, Hurst exponents at longer and at shorter waves,
+logarithms of the wavevectors of bend and roll-off."""
 
-_STARTS = 6
-"""Roll-offs from which the fit begins; the best end counts."""
+_KNEE = 6.0
+"""Sharpness of the knees of the model."""
 
-_PLATEAU = 2.0
-"""Longest trusted wavelength over the roll-off from which on a plateau counts as seen; nearer to
-it detrending bends a power law to the same shape."""
+_INADEQUACY = 0.05
+"""Relative error of the model itself, which no number of modes takes away."""
 
-_DRAWS = 400
+_BEND = 0.3
+"""Standard deviation that is expected of the difference of the two Hurst exponents."""
+
+_BEYOND = 8.0
+"""How far beyond the longest trusted wavelength a roll-off is looked for: four sides of a scan."""
+
+_SHARPNESS = (1.0, 4.0)
+"""Exponents m: of a circular pupil, whose transfer falls linearly at first, to sharp filters."""
+
+_GAIN = 9.0
+"""What half of the deviance must fall by for an instrument to be seen in a density."""
+
+_DIRECTIONS, _FURTHEST, _POINTS = 400, 8.0, 16
+"""Quadrature of the projection, its end in ln(k / q), and the points a decade of the density."""
+
+_WALKERS, _STEPS, _KEPT = 48, 450, 10
+"""Size of the Markov chain, and how many of the states of its second half are kept."""
+
 _SEED = np.random.SeedSequence(20240229, spawn_key=(0x5F17,))
-"""Noise of the draws of a fit, which thus gives the same uncertainties every time."""
-
-_PROJECTED = 100.0
-"""How far below the trusted wavelengths the power law goes on in the density of a line, which
-holds all shorter waves across it."""
+"""Noise of the chain, which is thus the same every time."""
 
 
 @dataclass(frozen=True, slots=True)
-class FittedSpectrum:
-    """Spectrum of a surface, with the uncertainty of what follows from it.
+class Instrument:
+    """What an instrument does to a density.
 
     Attributes
     ----------
-    spectrum : SelfAffineSpectrum
-        Flat to the roll-off, a power law to the shortest trusted wavelength. (Units: m)
-    draws : tuple of SelfAffineSpectrum
-        Spectra as far from it as the noise of the densities allows.
-    longest : float
-        Longest trusted wavelength. (Units: m)
-    misfit : float
-        Chi-squared per degree of freedom, as if bins were independent of each other: what they
-        share makes it less than 1. The uncertainties hold its excess over 1.
-    has_roll_off : bool
-        Whether the plateau lies within the trusted wavelengths: else `roll_off` is near the
-        longest of them, and means that alone.
+    attenuation : float
+        Wavevector q_c at which the density is down to 1/e; infinite where this is not seen.
+        (Units: 1 / m)
+    sharpness : float
+        Exponent m of its fall.
+    noise : float
+        Density of white noise, 0 where it is not seen. (Units: that of the density)
     """
 
-    spectrum: SelfAffineSpectrum
-    draws: tuple[SelfAffineSpectrum, ...]
-    longest: float
+    attenuation: float = math.inf
+    sharpness: float = 2.0
+    noise: float = 0.0
+
+    def wavelength(self, part: float) -> float:
+        """Wavelength at which a part of the density is lost; 0 where nothing is (Units: m)."""
+        return 2 * math.pi / self.attenuation / (-math.log1p(-part)) ** (1 / self.sharpness)
+
+    def noisy(self, density: Density, part: float) -> float:
+        """Wavelength below which noise adds more than a part to a density; 0 if nowhere."""
+        quiet = np.flatnonzero(density.value > self.noise * (1 + 1 / part))
+        if self.noise == 0 or (quiet.size and quiet[-1] == density.value.size - 1):
+            return 0.0
+        last = quiet[-1] if quiet.size else 0
+        return float(2 * np.pi / density.wavevector[last])
+
+    @property
+    def row(self) -> Array:
+        """Parameters of the model: logarithm of q_c, m, logarithm of the noise."""
+        noise = math.log(self.noise) if self.noise else -math.inf
+        return np.array([math.log(self.attenuation), self.sharpness, noise])
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """Models that agree with densities, states of a Markov chain.
+
+    Attributes
+    ----------
+    surface : (n, 5) array
+        Parameters of P.
+    instruments : (n, n_density, 3) array
+        Logarithm of q_c, m and logarithm of the noise of every density.
+    lowest, highest : float
+        Ends of the wavevectors that are fitted. (Units: 1 / m)
+    misfit : float
+        Least deviance per degree of freedom; 1 where only the number of modes makes noise.
+    """
+
+    surface: Array
+    instruments: Array
+    lowest: float
+    highest: float
     misfit: float
-    has_roll_off: bool
+
+    def logarithms(self, wavevector: Array) -> Array:
+        """Logarithm of C of every state, (n, n_wavevector)."""
+        return _logarithm(self.surface, wavevector)
+
+    def median(self, wavevector: Array) -> Array:
+        """Median of C (Units: m^4)."""
+        return np.asarray(np.exp(np.median(self.logarithms(wavevector), axis=0)))
 
     def projected_density(self, wavevector: Array) -> Array:
-        """Density of lines of the surface, whose power law goes on below the trusted wavelengths.
+        """Median of C_1D of lines (Units: m^3)."""
+        return np.asarray(np.exp(np.median(_projection(self.surface, wavevector), axis=0)))
 
-        At wavevectors along a line (Units: 1 / m) it is C_1D. (Units: m^3)
+    def state(self, number: int) -> Fit:
+        """The fit of one state alone."""
+        chosen = slice(number, number + 1)
+        return replace(self, surface=self.surface[chosen], instruments=self.instruments[chosen])
+
+    def isotropic(self, density: Density, index: int) -> Array:
+        """Logarithm of C of every state where a density was measured, (n, n_wavevector).
+
+        The measured value without the noise, over the transfer of its instrument; of a line by the
+        ratio of the model to its projection.
         """
-        return _projected(self.spectrum, wavevector)
+        instrument = self.instruments[:, index]
+        clean = density.value - np.exp(instrument[:, 2:])
+        # Noise is a small part of what is trusted; named limits may trust more.
+        found = np.log(np.maximum(clean, 0.1 * density.value))
+        found += _loss(instrument, density.wavevector)
+        if density.is_profile:
+            found += self.logarithms(density.wavevector)
+            found -= _projection(self.surface, density.wavevector)
+        return found
 
-    def estimate(self, quantity: Callable[[SelfAffineSpectrum], float]) -> Estimate[float]:
-        """A quantity of the spectrum with its uncertainty."""
-        drawn = [quantity(item) for item in self.draws]
-        return normal_estimate(quantity(self.spectrum), float(np.std(drawn)))
+    @property
+    def roll_off(self) -> tuple[float, float, float]:
+        """Median of the roll-off and its 95% interval (Units: m)."""
+        return _quantiles(2 * np.pi / np.exp(self.surface[:, 4]))
+
+    @property
+    def hurst(self) -> tuple[float, float, float]:
+        """Median of the Hurst exponent of the shortest waves and its 95% interval."""
+        return _quantiles(self.surface[:, 2])
+
+    @property
+    def plateau(self) -> tuple[float, float, float]:
+        """Median of C on the plateau and its 95% interval (Units: m^4)."""
+        return _quantiles(np.exp(self.surface[:, 0]))
+
+    @property
+    def has_roll_off(self) -> bool:
+        """Whether the plateau is seen: the roll-off is certainly among the fitted waves."""
+        return bool(self.roll_off[2] < 2 * np.pi / self.lowest)
 
 
-def fitted_spectrum(
-    densities: Sequence[Density], shortest: float, longest: float
-) -> FittedSpectrum:
-    """Spectrum that fits densities best.
+def seen_instrument(density: Density) -> Instrument:
+    """What an instrument does to a density, where that falls faster or slower than surfaces do.
 
-    Least squares of the logarithms, weighted by the number of modes in every bin. Isotropic
-    densities are those of the spectrum, those of profiles its exact projection on a line.
+    What does not make the density much likelier is not there.
+    """
+    low, high = (math.log(density.wavevector[end]) for end in (0, -1))
+    floor = math.log(float(np.min(density.value)))
+    nothing = Instrument().row
+    limits = np.array([*_limits(low, high), (low, high + 1.0), _SHARPNESS, (floor - 5, floor + 1)])
+    tries: dict[tuple[int, ...], list[Array]] = {
+        (): [nothing],
+        (5, 6): [np.array([low + part * (high - low), 2.0, -np.inf]) for part in (0.5, 0.7, 0.95)],
+        (7,): [np.array([np.inf, 2.0, floor])],
+        (5, 6, 7): [np.array([low + part * (high - low), 2.0, floor]) for part in (0.45, 0.75)],
+    }
+    best, found, shapes = math.inf, nothing, _first_shapes([(density, nothing)], low, high)
+    for extra, begins in tries.items():
+        free = (*range(_SHAPE), *extra)
 
-    Parameters
-    ----------
-    densities : sequence of Density
-        One for each measurement of a surface.
-    shortest, longest : float
-        Wavelengths that are trusted in any of them. (Units: m)
+        def model(trials: Array, free: tuple[int, ...] = free) -> Array:
+            every = np.tile(np.concatenate([np.zeros(_SHAPE), nothing]), (len(trials), 1))
+            every[:, free] = trials
+            return _model(every[:, :_SHAPE], every[:, _SHAPE:], density)
+
+        fits = [
+            _likeliest(
+                [density],
+                lambda trials: [model(trials)],
+                np.concatenate([shape, begin])[list(free)],
+                limits[list(free)],
+            )
+            for begin in begins
+            for shape in shapes
+        ]
+        cost, parameters = min(fits, key=lambda pair: pair[0])
+        if not extra:
+            shapes = [parameters]
+        if cost < best - _GAIN * len(extra) ** 0.5:
+            best, found = cost, nothing.copy()
+            for place, value in zip(extra, parameters[_SHAPE:], strict=True):
+                found[place - _SHAPE] = value
+    return Instrument(math.exp(found[0]), float(found[1]), math.exp(found[2]))
+
+
+def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
+    """Models of one surface and of the instruments that are seen in its densities.
 
     Raises
     ------
     ValueError
         If the densities do not determine a spectrum.
     """
-    count = sum(item.value.size for item in densities)
-    if count < 5 or not all(np.all(item.value > 0) for item in densities):
+    count = sum(item.value.size for item, _ in densities)
+    if count < 5 or not all(np.all(item.value > 0) for item, _ in densities):
         raise ValueError(
             f"{count} values of a density do not determine a spectrum; use a larger or finer scan"
         )
-    best = min(
+    low = math.log(min(float(item.wavevector[0]) for item, _ in densities))
+    high = math.log(max(float(item.wavevector[-1]) for item, _ in densities))
+    given = np.array([seen.row for _, seen in densities])
+    free = [
+        (index, column)
+        for index, row in enumerate(given)
+        for column in range(3)
+        if math.isfinite(row[column]) and not (column == 1 and math.isinf(row[0]))
+    ]
+    spread = [
+        (row[0] - 0.7, row[0] + 0.7)
+        if column == 0
+        else _SHARPNESS
+        if column == 1
+        else (row[2] - 1.0, row[2] + 1.0)
+        for row, column in ((given[index], column) for index, column in free)
+    ]
+    limits = np.array([*_limits(low, high), *spread])
+
+    def models(trials: Array) -> list[Array]:
+        """Logarithms of all densities by some parameters."""
+        instruments = np.tile(given, (len(trials), 1, 1))
+        for place, (index, column) in enumerate(free):
+            instruments[:, index, column] = trials[:, _SHAPE + place]
+        return [
+            _model(trials[:, :_SHAPE], instruments[:, index], item)
+            for index, (item, _) in enumerate(densities)
+        ]
+
+    def deviance(trials: Array) -> Array:
+        """Twice the negative logarithm of the likelihood of some parameters."""
+        inside = np.all((trials >= limits[:, 0]) & (trials <= limits[:, 1]), axis=1)
+        inside &= trials[:, 4] <= trials[:, 3]
+        total = ((trials[:, 2] - trials[:, 1]) / _BEND) ** 2
+        for (item, _), model in zip(densities, models(trials), strict=True):
+            total += np.sum(_deviances(item, model), axis=1)
+        return np.where(inside, total, np.inf)
+
+    only = [item for item, _ in densities]
+    begin = [given[index, column] for index, column in free]
+    _, start = min(
         (
-            _fit(densities, shortest, longest, float(start))
-            for start in np.geomspace(shortest, longest, _STARTS + 2)[1:-1]
+            _likeliest(only, models, np.array([*shape, *begin]), limits)
+            for shape in _first_shapes(list(zip(only, given, strict=True)), low, high)
         ),
-        key=lambda result: float(result.cost),
+        key=lambda pair: pair[0],
     )
-    misfit = 2 * float(best.cost) / (count - 3)
-    return FittedSpectrum(
-        spectrum=_spectrum(best.x, shortest),
-        draws=_draws(best, max(1.0, misfit), shortest, longest),
-        longest=longest,
-        misfit=misfit,
-        has_roll_off=bool(best.x[1] <= math.log(longest / _PLATEAU)),
+    rng = np.random.default_rng(_SEED)
+    scale = np.array([0.05, 0.05, 0.05, 0.2, 0.1, *[0.05] * len(free)])
+    walkers = start + rng.standard_normal((_WALKERS, start.size)) * scale
+    walkers[:, 1:] = np.clip(walkers[:, 1:], limits[1:, 0] + 1e-3, limits[1:, 1] - 1e-3)
+    walkers[:, 4] = np.minimum(walkers[:, 4], walkers[:, 3])
+    states = _chain(deviance, walkers, rng)
+    instruments = np.tile(given, (len(states), 1, 1))
+    for place, (index, column) in enumerate(free):
+        instruments[:, index, column] = states[:, _SHAPE + place]
+    least = float(np.min(deviance(states)))
+    return Fit(
+        states[:, :_SHAPE],
+        instruments,
+        math.exp(low),
+        math.exp(high),
+        least / max(count - start.size, 1),
     )
 
 
-def _fit(
-    densities: Sequence[Density], shortest: float, longest: float, start: float
-) -> OptimizeResult:
-    """Fit of the logarithms of plateau and roll-off, and of the Hurst exponent."""
+def _limits(low: float, high: float) -> tuple[tuple[float, float], ...]:
+    """Limits of the parameters of P for logarithms of wavevectors between two."""
+    return ((-np.inf, np.inf), (0.0, 1.0), (0.0, 1.0), (low, high), (low - math.log(_BEYOND), high))
 
-    def residuals(parameters: Array) -> Array:
-        spectrum = _spectrum(parameters, shortest)
-        return np.concatenate(
+
+def _first_shapes(
+    densities: Sequence[tuple[Density, Array]], low: float, high: float
+) -> list[Array]:
+    """Parameters of P from which fits begin."""
+    found = []
+    for part in (-0.1, 0.15, 0.45):
+        roll_off = low + part * (high - low)
+        shape = np.array([[0.0, 0.7, 0.7, (low + 2 * high) / 3, roll_off]])
+        shape[0, 0] = np.mean(
             [
-                (item.logarithm - np.log(_model(spectrum, item))) / item.logarithm_error
-                for item in densities
+                np.average(
+                    np.log(item.value) - _model(shape, row[None], item)[0], weights=item.modes
+                )
+                for item, row in densities
             ]
         )
+        found.append(shape[0])
+    return found
 
-    shape = SelfAffineSpectrum(shortest, start, 0.8)
-    plateau = np.mean([np.mean(item.logarithm - np.log(_model(shape, item))) for item in densities])
-    bounds = (
-        [-np.inf, math.log(shortest), HURST_RANGE[0]],
-        [np.inf, math.log(longest), HURST_RANGE[1]],
+
+def _likeliest(
+    densities: Sequence[Density],
+    models: Callable[[Array], Sequence[Array]],
+    start: Array,
+    limits: Array,
+) -> tuple[float, Array]:
+    """Half of the least deviance, and its parameters."""
+
+    def residuals(trials: Array) -> Array:
+        roots = [
+            np.sign(np.log(item.value) - model) * np.sqrt(np.maximum(_deviances(item, model), 0))
+            for item, model in zip(densities, models(trials), strict=True)
+        ]
+        return np.concatenate([*roots, (trials[:, 2:3] - trials[:, 1:2]) / _BEND], axis=1)
+
+    def slopes(parameters: Array) -> Array:
+        step = np.where(parameters + 1e-5 < limits[:, 1], 1e-5, -1e-5)
+        every = residuals(np.concatenate([parameters[None], parameters + np.diag(step)]))
+        return np.asarray(((every[1:] - every[0]) / step[:, None]).T)
+
+    inside = np.clip(start, limits[:, 0] + 1e-6, limits[:, 1] - 1e-6)
+    found = least_squares(
+        lambda parameters: residuals(parameters[None])[0],
+        inside,
+        slopes,
+        bounds=(limits[:, 0], limits[:, 1]),
+        x_scale="jac",
+        max_nfev=40,
     )
-    return least_squares(residuals, [plateau, math.log(start), 0.8], bounds=bounds, x_scale="jac")
+    return float(found.cost), np.asarray(found.x)
 
 
-def _model(spectrum: SelfAffineSpectrum, density: Density) -> Array:
-    """What a density should be."""
-    if density.is_profile:
-        return _projected(spectrum, density.wavevector)
-    return spectrum.density(density.wavevector)
+def _logarithm(surface: Array, wavevector: Array) -> Array:
+    """Logarithm of the model P, (n, n_wavevector)."""
+    plateau, long, short, bend, roll_off = surface.T[:, :, None]
+    q = np.log(wavevector)
+    beyond = np.logaddexp(0.0, _KNEE * (q - roll_off)) / _KNEE
+    steeper = np.logaddexp(0.0, _KNEE * (q - bend)) / _KNEE
+    return np.asarray(plateau - (2 + 2 * long) * beyond - 2 * (short - long) * steeper)
 
 
-def _projected(spectrum: SelfAffineSpectrum, wavevector: Array) -> Array:
-    """Density of lines of a spectrum that goes on below its cutoff."""
-    longer = replace(spectrum, short_cutoff=spectrum.short_cutoff / _PROJECTED)
-    return longer.profile_density(wavevector)
+def _projection(surface: Array, wavevector: Array) -> Array:
+    """Logarithm of the projection of the model on a line, (n, n_wavevector)."""
+    waves, weights = _projector(tuple(wavevector.tolist()))
+    scaled = _logarithm(surface, waves) + 2 * np.log(waves)
+    highest = np.max(scaled, axis=1, keepdims=True)
+    return np.asarray(np.log(np.exp(scaled - highest) @ weights.T) + highest)
 
 
-def _spectrum(parameters: Array, shortest: float) -> SelfAffineSpectrum:
-    """Spectrum of the parameters of the fit."""
-    plateau, roll_off, hurst = map(float, parameters)
-    return SelfAffineSpectrum(
-        shortest,
-        max(shortest, math.exp(roll_off)),
-        min(max(hurst, HURST_RANGE[0]), HURST_RANGE[1]),
-        math.exp(plateau),
-    )
+@functools.lru_cache(maxsize=64)
+def _projector(wavevector: tuple[float, ...]) -> tuple[Array, Array]:
+    """Wavevectors, and weights of their q^2 C in C_1D, (n_wavevector, n): linear between them."""
+    last = math.log(wavevector[-1] / wavevector[0]) + _FURTHEST
+    count = math.ceil(last / math.log(10) * _POINTS) + 1
+    places = np.linspace(0.0, last, count)
+    place, weight = np.polynomial.legendre.leggauss(_DIRECTIONS)
+    way = _FURTHEST * (1 + place) / 2
+    weights = np.zeros((len(wavevector), count))
+    for row, wave in zip(weights, wavevector, strict=True):
+        k = wave * np.cosh(way)
+        share = weight * _FURTHEST / 2 / k / np.pi
+        at = np.clip(np.log(k / wavevector[0]) / places[1], 0, count - 1.000001)
+        first = at.astype(int)
+        np.add.at(row, first, share * (first + 1 - at))
+        np.add.at(row, first + 1, share * (at - first))
+    return wavevector[0] * np.exp(places), weights
 
 
-def _draws(
-    best: OptimizeResult, misfit: float, shortest: float, longest: float
-) -> tuple[SelfAffineSpectrum, ...]:
-    """Spectra drawn from the normal distribution of the parameters, within their bounds."""
-    # A parameter without effect, as the roll-off at an end, has no variance of its own.
-    covariance = misfit * np.linalg.pinv(best.jac.T @ best.jac, rcond=1e-12, hermitian=True)
-    noise = np.random.default_rng(_SEED).multivariate_normal(
-        best.x, covariance, size=_DRAWS, method="eigh"
-    )
-    noise[:, 1] = np.clip(noise[:, 1], math.log(shortest), math.log(longest))
-    return tuple(_spectrum(row, shortest) for row in noise)
+def _loss(instrument: Array, wavevector: Array) -> Array:
+    """Negative logarithm of the transfer, (n, n_wavevector)."""
+    return np.asarray(np.exp(instrument[:, 1:2] * (np.log(wavevector) - instrument[:, :1])))
+
+
+def _model(surface: Array, instrument: Array, density: Density) -> Array:
+    """Logarithm of what a density should be, (n, n_wavevector)."""
+    form = _projection if density.is_profile else _logarithm
+    found = form(surface, density.wavevector) - _loss(instrument, density.wavevector)
+    return np.asarray(np.logaddexp(found, instrument[:, 2:]))
+
+
+def _deviances(density: Density, model: Array) -> Array:
+    """Deviance of every bin, whose value is a mean of exponentially distributed powers."""
+    modes = 1 / (1 / density.modes + _INADEQUACY**2)
+    apart = np.clip(np.log(density.value) - model, -30.0, 30.0)
+    return np.asarray(2 * modes * (np.expm1(apart) - apart))
+
+
+def _chain(deviance: Callable[[Array], Array], walkers: Array, rng: np.random.Generator) -> Array:
+    """States of an affine-invariant ensemble of walkers, from the second half of its steps."""
+    n_walker, n_dim = walkers.shape
+    half, kept = n_walker // 2, []
+    halves = slice(0, half), slice(half, None)
+    cost = deviance(walkers)
+    for step in range(_STEPS):
+        for part, other in (halves, halves[::-1]):
+            stretch = (1 + rng.uniform(size=half)) ** 2 / 2
+            anchor = walkers[other][rng.integers(half, size=half)]
+            trial = anchor + stretch[:, None] * (walkers[part] - anchor)
+            new = deviance(trial)
+            gain = (n_dim - 1) * np.log(stretch) - (new - cost[part]) / 2
+            accepted = np.log(rng.uniform(size=half)) < gain
+            walkers[part] = np.where(accepted[:, None], trial, walkers[part])
+            cost[part] = np.where(accepted, new, cost[part])
+        if step % (_STEPS // 2 // _KEPT) == 0 and step >= _STEPS // 2:
+            kept.append(walkers.copy())
+    return np.concatenate(kept[-_KEPT:])
+
+
+def _quantiles(values: Array) -> tuple[float, float, float]:
+    """Median and 95% interval."""
+    low, middle, high = np.quantile(values, (0.025, 0.5, 0.975))
+    return float(middle), float(low), float(high)

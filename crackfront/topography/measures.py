@@ -5,29 +5,22 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
 from scipy.special import beta
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.topography.densities import Density, isotropic_density, profile_density, topography
-from crackfront.topography.fitting import FittedSpectrum, fitted_spectrum
+from crackfront.core.spectrum import TabulatedSpectrum
+from crackfront.topography.bands import Scan, scan
+from crackfront.topography.densities import Density, profile_density
+from crackfront.topography.joining import JointSpectrum, joint_spectrum
 from crackfront.topography.reading import Measurement
-
-Array = NDArray[np.float64]
 
 _ORDERS = (0.0, 0.5, 1.0)
 """Orders of the derivatives: heights, half-derivatives, slopes."""
 
 _SHARE = 0.8
 """Part of a mean square that lies within the scales that dominate it."""
-
-_DECADES = 2
-"""Decades below the trusted wavelengths over which the power law is continued, to see whether
-waves that were not measured matter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,14 +32,14 @@ class RmsMeasure:
     order : float
         Order of the derivative.
     rms : Estimate of a number
-        Of the fitted spectrum. (Units: m^(1 - order))
+        Of the joint spectrum. (Units: m^(1 - order))
     shortest, longest : float
         Wavelengths that dominate it: a tenth lies below, a tenth above. (Units: m)
     measured : tuple of float
         Of every measurement, over its own trusted wavelengths; lines as those of an isotropic
         surface. (Units: m^(1 - order))
     expected : tuple of float
-        What the fitted spectrum has over the same wavelengths.
+        What the joint spectrum has over the same wavelengths.
     """
 
     order: float
@@ -63,26 +56,25 @@ class MeasuredSurface:
 
     Attributes
     ----------
-    measurements : tuple of Measurement
-        What was measured.
-    isotropic : tuple of Density or None
-        Isotropic density of every map; none of a line.
+    scans : tuple of Scan
+        The measurements with their trusted bands.
     profiles : tuple of Density
         Density of the lines along x of every measurement.
-    fitted : FittedSpectrum
-        Its spectrum; maps enter by their isotropic density, lines by that of profiles.
+    joint : JointSpectrum
+        Their spectrum; maps enter by their isotropic density, lines by that of profiles.
     measures : tuple of RmsMeasure
         Of the heights, their half-derivative and their slopes.
-    anisotropy : tuple of float
-        Of every map the rms slope along x over that along y; 1 for lines.
     """
 
-    measurements: tuple[Measurement, ...]
-    isotropic: tuple[Density | None, ...]
+    scans: tuple[Scan, ...]
     profiles: tuple[Density, ...]
-    fitted: FittedSpectrum
+    joint: JointSpectrum
     measures: tuple[RmsMeasure, ...]
-    anisotropy: tuple[float, ...]
+
+    @property
+    def measurements(self) -> tuple[Measurement, ...]:
+        """What was measured."""
+        return tuple(one.measurement for one in self.scans)
 
     @property
     def checksum(self) -> str:
@@ -92,92 +84,69 @@ class MeasuredSurface:
 
     def conformity_energy(self, contact_modulus: float) -> Estimate[float]:
         """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2, of E' in Pa (Units: J / m^2)."""
-        found = self.fitted.estimate(lambda spectrum: spectrum.mean_square(0.5))
+        found = self.joint.estimate(lambda spectrum: spectrum.mean_square(0.5))
         return found.each(lambda number: contact_modulus / 4 * number)
 
-    @property
-    def unmeasured_share(self) -> float:
-        """What two more decades of the power law would add to e_el, relative to it."""
-        spectrum = self.fitted.spectrum
-        longer = replace(spectrum, short_cutoff=spectrum.short_cutoff / 10**_DECADES)
-        return longer.mean_square(0.5) / spectrum.mean_square(0.5) - 1
 
-
-def measured_surface(measurements: Sequence[Measurement]) -> MeasuredSurface:
+def measured_surface(
+    measurements: Sequence[Measurement],
+    shortest: float | None = None,
+    longest: float | None = None,
+) -> MeasuredSurface:
     """Spectrum and measures of a surface of which there is one measurement or several.
+
+    Parameters
+    ----------
+    measurements : sequence of Measurement
+        What was measured.
+    shortest, longest : float, optional
+        Ends of the trusted wavelengths, in place of those that are found in each of them.
+        (Units: m)
 
     Raises
     ------
     ValueError
         If the densities do not determine a spectrum.
     """
-    profiles = tuple(profile_density(item) for item in measurements)
-    isotropic = tuple(None if item.is_line else isotropic_density(item) for item in measurements)
-    fitted = fitted_spectrum(
-        [density or profile for density, profile in zip(isotropic, profiles, strict=True)],
-        min(item.shortest for item in measurements),
-        max(item.longest for item in measurements),
-    )
+    scans = tuple(scan(item, shortest, longest) for item in measurements)
+    joint = joint_spectrum(scans)
     return MeasuredSurface(
-        measurements=tuple(measurements),
-        isotropic=isotropic,
-        profiles=profiles,
-        fitted=fitted,
-        measures=tuple(_measure(order, fitted, measurements) for order in _ORDERS),
-        anisotropy=tuple(_anisotropy(item) for item in measurements),
+        scans=scans,
+        profiles=tuple(
+            profile_density(one.measurement).within(
+                one.band.shortest.wavelength, one.band.longest.wavelength
+            )
+            for one in scans
+        ),
+        joint=joint,
+        measures=tuple(_measure(order, joint, scans) for order in _ORDERS),
     )
 
 
-def measured_mean_square(measurement: Measurement, order: float) -> float:
-    """Mean square of a derivative of a measurement over its trusted wavelengths.
+def measured_mean_square(one: Scan, order: float) -> float:
+    """Mean square of a derivative of a scan over its trusted wavelengths, as it stands.
 
     A line counts as one of an isotropic surface. (Units: m^(2 - 2 order))
     """
-    low, high = 2 * np.pi / measurement.longest, 2 * np.pi / measurement.shortest
-
-    def weight(wavevector: Array) -> Array:
-        inside = (wavevector >= low) & (wavevector <= high)
-        return np.where(inside, wavevector, 0.0) ** (2 * order) * inside
-
-    found = float(topography(measurement).integrate_psd(weight, reliable=False))
+    band = one.band
+    found = one.waves.mean_square(order, band.shortest.wavelength, band.longest.wavelength)
     # A line sees a wave by the cosine of its direction: this is the mean of its power.
-    return found / (float(beta(order + 0.5, 0.5)) / math.pi) if measurement.is_line else found
+    is_line = one.measurement.is_line
+    return found / (float(beta(order + 0.5, 0.5)) / math.pi) if is_line else found
 
 
-def _measure(
-    order: float, fitted: FittedSpectrum, measurements: Sequence[Measurement]
-) -> RmsMeasure:
+def _measure(order: float, joint: JointSpectrum, scans: Sequence[Scan]) -> RmsMeasure:
     """Measure of one order."""
-    ends = fitted.spectrum.dominant_wavelengths(order, _SHARE)
     return RmsMeasure(
         order,
-        fitted.estimate(lambda spectrum: spectrum.mean_square(order) ** 0.5),
-        *ends,
-        measured=tuple(measured_mean_square(item, order) ** 0.5 for item in measurements),
-        expected=tuple(
-            _within(fitted.spectrum, item.shortest, item.longest, order) ** 0.5
-            for item in measurements
-        ),
+        joint.estimate(lambda spectrum: spectrum.mean_square(order) ** 0.5),
+        *joint.spectrum.dominant_wavelengths(order, _SHARE),
+        measured=tuple(measured_mean_square(one, order) ** 0.5 for one in scans),
+        expected=tuple(_expected(joint.spectrum, one, order) ** 0.5 for one in scans),
     )
 
 
-def _within(spectrum: SelfAffineSpectrum, shortest: float, longest: float, order: float) -> float:
-    """Mean square of the waves between two wavelengths."""
-    longer = spectrum.longer_than(longest).mean_square(order)
-    return spectrum.longer_than(max(shortest, spectrum.short_cutoff)).mean_square(order) - longer
-
-
-def _anisotropy(measurement: Measurement) -> float:
-    """Slope along x over that along y, from the trusted wavelengths."""
-    if measurement.is_line:
-        return 1.0
-    level = topography(measurement)
-    high = 2 * np.pi / measurement.shortest
-
-    def along(axis: int) -> float:
-        def weight(q_x: Array, q_y: Array) -> Array:
-            return np.where(np.hypot(q_x, q_y) <= high, (q_x, q_y)[axis], 0.0) ** 2
-
-        return float(level.integrate_psd(weight, reliable=False))
-
-    return float(np.sqrt(along(0) / along(1)))
+def _expected(spectrum: TabulatedSpectrum, one: Scan, order: float) -> float:
+    """Mean square of a spectrum over the band of a scan."""
+    band = one.band
+    return spectrum.mean_square_between(order, band.shortest.wavelength, band.longest.wavelength)

@@ -6,31 +6,28 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from crackfront.analysis.estimate import REACH, Estimate
+from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law import SphereFactors, shipped_law, sphere_factors
+from crackfront.analysis.validity import validity_sentence
 from crackfront.core import jkr
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
-from crackfront.topography.fitting import HURST_RANGE
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.tile import zero_load_radius
 
-_MOST_MISFIT = 3.0
 _MOST_ANISOTROPY = 1.25
 _MOST_UNMEASURED = 0.1
-_EDGE = 1e-3
-"""Chi-squared per degree of freedom, ratio of slopes and part of e_el from which on they are
-doubts, and relative distance from an end of the Hurst exponents that are fitted."""
+_MOST_CONTINUED = 0.5
+"""Ratio of slopes and parts of e_el from which on they are doubts."""
 
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
     """Adhesion that is predicted, in SI units, and the factors k that it rests on.
 
-    The intervals of the works of adhesion hold those of k and of e_el. Only e_el has a standard
-    error.
+    The intervals of the works of adhesion hold those of k and of e_el.
     """
 
     factors: SphereFactors
@@ -58,15 +55,10 @@ class Prediction:
     paper_w_retr: float = variable("work of adhesion of the retraction by that factor", "J m-2")
 
 
-def reduced_spectrum(spectrum: SelfAffineSpectrum, scales: Scales) -> SelfAffineSpectrum:
+def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSpectrum:
     """A spectrum of heights in metres in reduced units: its `elastic_energy` is e_el / w_int."""
-    plateau = spectrum.plateau / (scales.vertical * scales.lateral) ** 2
-    return SelfAffineSpectrum(
-        spectrum.short_cutoff / scales.lateral,
-        spectrum.roll_off / scales.lateral,
-        spectrum.hurst,
-        plateau,
-    )
+    unit = (scales.vertical * scales.lateral) ** 2
+    return spectrum.in_units(scales.lateral).amplified(1 / unit)
 
 
 def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
@@ -84,10 +76,9 @@ def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
     )
     adhesion = scales.work_of_adhesion
     energy = surface.conformity_energy(scales.contact_modulus)
-    e_el, error = energy.value, REACH * energy.standard_error
-    appr = _range(adhesion - e_el, -e_el, k_appr, (1 + k_appr.value) * error)
-    retr = _range(adhesion - e_el, e_el, k_retr, (k_retr.value - 1) * error)
-    hysteresis = _range(0.0, 2 * e_el, k, 2 * k.value * error)
+    appr = _linear(adhesion, energy, k_appr, -1.0, -1.0)
+    retr = _linear(adhesion, energy, k_retr, -1.0, 1.0)
+    hysteresis = _linear(0.0, energy, k, 0.0, 2.0)
     return Prediction(
         factors=factors,
         radius=scales.radius,
@@ -95,8 +86,8 @@ def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
         work_of_adhesion=adhesion,
         contact_radius=zero_load_radius(scales),
         e_el=energy,
-        w_rms=2 * math.sqrt(e_el * adhesion),
-        correlation_length=surface.fitted.spectrum.correlation_length,
+        w_rms=2 * math.sqrt(energy.value * adhesion),
+        correlation_length=surface.joint.spectrum.correlation_length,
         l_kappa=factors.spring * scales.lateral,
         larkin_length=factors.larkin_length * scales.lateral,
         size=factors.size,
@@ -112,14 +103,14 @@ def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
         ),
         pull_off_force_smooth=-jkr.pull_off_force() * scales.force,
         paper_factor=PAPER_FACTOR,
-        paper_w_appr=adhesion - (1 + PAPER_FACTOR) * e_el,
-        paper_w_retr=adhesion - (1 - PAPER_FACTOR) * e_el,
+        paper_w_appr=adhesion - (1 + PAPER_FACTOR) * energy.value,
+        paper_w_retr=adhesion - (1 - PAPER_FACTOR) * energy.value,
     )
 
 
 def _factors(surface: MeasuredSurface, scales: Scales) -> SphereFactors:
     """Factors k that the law gives for a surface."""
-    shape = reduced_spectrum(surface.fitted.spectrum, scales)
+    shape = reduced_spectrum(surface.joint.spectrum, scales)
     energy = shape.elastic_energy
     if not energy < 1:
         raise ValueError(
@@ -130,14 +121,20 @@ def _factors(surface: MeasuredSurface, scales: Scales) -> SphereFactors:
     return sphere_factors("roughness", shape, energy, radius)
 
 
-def _range(centre: float, slope: float, factor: Estimate[float], reach: float) -> Estimate[float]:
-    """`centre + slope k` with the interval of k and, in quadrature, another reach."""
-    value = centre + slope * factor.value
-    ends = sorted((centre + slope * factor.low, centre + slope * factor.high))
-    low, high = value - ends[0], ends[1] - value
-    return Estimate(
-        value, math.nan, value - math.hypot(low, reach), value + math.hypot(high, reach)
-    )
+def _linear(
+    base: float, energy: Estimate[float], factor: Estimate[float], own: float, slope: float
+) -> Estimate[float]:
+    """`base + (own + slope k) e_el`, with the intervals of k and of e_el in quadrature."""
+    value = base + (own + slope * factor.value) * energy.value
+    ends = [
+        sorted(end - value for end in pair)
+        for pair in (
+            [base + (own + slope * end) * energy.value for end in (factor.low, factor.high)],
+            [base + (own + slope * factor.value) * end for end in (energy.low, energy.high)],
+        )
+    ]
+    low, high = (math.hypot(*(one[end] for one in ends)) for end in (0, 1))
+    return Estimate(value, math.nan, value - low, value + high)
 
 
 def _forces(retraction: Estimate[float], reduced: float, scales: Scales) -> Estimate[float]:
@@ -150,6 +147,7 @@ def prediction_notes(surface: MeasuredSurface, prediction: Prediction) -> Iterat
     """What a reader of a prediction must know, one sentence each."""
     yield from surface_notes(surface, prediction.contact_radius)
     yield from _factor_notes(prediction)
+    yield validity_sentence()
     if prediction.w_appr.value <= 0:
         yield (
             "w_appr is not positive: the sphere is not drawn into contact, it has to be pressed on."
@@ -157,17 +155,23 @@ def prediction_notes(surface: MeasuredSurface, prediction: Prediction) -> Iterat
 
 
 def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None) -> Iterator[str]:
-    """Treatments and doubts of the measurements, against the radius of a contact (Units: m)."""
-    for item in surface.measurements:
+    """Treatments of the measurements, against the radius of a contact (Units: m)."""
+    for one in surface.scans:
+        item = one.measurement
         if item.missing > 0:
             yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
         if item.is_line:
             yield (
-                f"{item.path} is a line scan: its density is fitted by the projection of an "
-                "isotropic surface."
+                f"{item.path} is a line scan: its density is that of an isotropic surface with "
+                "this projection."
             )
         elif max(item.pixels) > 1.001 * min(item.pixels):
             yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
+        for axis in one.band.stripes:
+            yield (
+                f"{item.path}: waves along {'xy'[axis]} alone have another density than all "
+                "others, as of rows that are shifted or levelled one by one; they are left out."
+            )
         if contact_radius is not None and min(item.size) < 2 * contact_radius:
             yield (
                 f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
@@ -178,34 +182,35 @@ def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None)
 
 def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
     """What makes a spectrum doubtful, one sentence each."""
-    fitted = surface.fitted
-    for item, ratio in zip(surface.measurements, surface.anisotropy, strict=True):
+    joint = surface.joint
+    for index, one in enumerate(surface.scans):
+        path, ratio, level = one.measurement.path, one.band.anisotropy, joint.density.levels[index]
         if max(ratio, 1 / ratio) > _MOST_ANISOTROPY:
             yield (
-                f"{item.path}: the rms slope along x is {ratio:.2g} times that along y; the theory "
-                "is for isotropic surfaces."
+                f"{path}: the rms slope along x is {ratio:.2g} times that along y; the theory is "
+                "for isotropic surfaces."
             )
-    hurst = fitted.spectrum.hurst
-    if not HURST_RANGE[0] * (1 + _EDGE) < hurst < HURST_RANGE[1] * (1 - _EDGE):
+        if joint.density.disagrees(index):
+            yield (
+                f"{path} disagrees with the other scans: its density is {level.value:.2g} "
+                f"({level.low:.2g} to {level.high:.2g}) times theirs where they overlap; the "
+                "intervals hold that."
+            )
+    if joint.shares.continued > _MOST_CONTINUED:
         yield (
-            f"The fit stands at the edge of its range, a Hurst exponent of {hurst:.2g}: the "
-            "densities are no power law of a surface; look at the figure."
+            f"{joint.shares.continued:.0%} of e_el is not measured but continued by a model; look "
+            "at the figure, and add a scan of the waves that are missing."
         )
-    if not fitted.has_roll_off:
+    if not joint.fit.has_roll_off:
         yield (
-            "The density shows no plateau within the trusted wavelengths: the roll-off stands near "
-            "their longest, and longer waves may add to e_el; add a larger scan."
+            "The density shows no plateau within the trusted wavelengths: it is taken as flat "
+            f"above, longer waves would add about {joint.shares.missing_long:.0%} to e_el, and its "
+            "interval holds roll-offs of up to four sides of the scan; add a larger scan."
         )
-    if fitted.misfit > _MOST_MISFIT:
+    if joint.shares.missing_short > _MOST_UNMEASURED:
         yield (
-            f"The self-affine spectrum misses the densities by {fitted.misfit:.1f} in chi-squared "
-            "per degree of freedom, and the uncertainties are widened accordingly; look at the "
-            "figure."
-        )
-    if surface.unmeasured_share > _MOST_UNMEASURED:
-        yield (
-            "Waves shorter than can be trusted are left out: two more decades of the power law "
-            f"would add {surface.unmeasured_share:.0%} to e_el; add a finer scan."
+            "Waves shorter than the points hold are left out: two more decades of the power law "
+            f"would add {joint.shares.missing_short:.0%} to e_el; add a finer scan."
         )
 
 

@@ -12,7 +12,10 @@ from crackfront.analysis.law import PinningFactor, SphereFactors
 from crackfront.core.units import Scales
 from crackfront.core.variables import Variable, variables
 from crackfront.data.written_units import prefixed
+from crackfront.topography.bands import Band, BandLimit
 from crackfront.topography.densities import Density
+from crackfront.topography.fitting import Fit
+from crackfront.topography.joining import JointSpectrum
 from crackfront.topography.measures import MeasuredSurface, RmsMeasure
 from crackfront.topography.prediction import (
     Prediction,
@@ -81,30 +84,23 @@ def machine_readable(
     notes = surface_notes(surface) if prediction is None else prediction_notes(surface, prediction)
     return {
         "measurements": [
-            _measurement_entry(item)
+            _measurement_entry(one.measurement)
+            | _band_entry(one.band)
             | {
-                "isotropic_density": None if density is None else _density_entry(density, "m^4"),
+                "density": _density_entry(one.trusted, "m^3" if one.trusted.is_profile else "m^4"),
                 "profile_density": _density_entry(profile, "m^3"),
+                "level": _interval_entry(level),
+                "disagrees": surface.joint.density.disagrees(index),
             }
-            for item, density, profile in zip(
-                surface.measurements, surface.isotropic, surface.profiles, strict=True
+            for index, (one, profile, level) in enumerate(
+                zip(surface.scans, surface.profiles, surface.joint.density.levels, strict=True)
             )
         ],
-        "spectrum": {
-            **{
-                name: {**_uncertain_entry(value), "units": units}
-                for name, value, units in _spectrum_parameters(surface)
-            },
-            "shortest": _number(surface.fitted.spectrum.short_cutoff, "m"),
-            "longest": _number(surface.fitted.longest, "m"),
-            "chi_squared_per_freedom": _number(surface.fitted.misfit, "1"),
-            "has_roll_off": surface.fitted.has_roll_off,
-            "unmeasured_share_of_e_el": _number(surface.unmeasured_share, "1"),
-        },
+        "spectrum": _spectrum_entry(surface.joint),
+        "continuation": _continuation_entry(surface.joint.fit),
         "measures": [
             asdict(item) | {"rms": _uncertain_entry(item.rms)} for item in surface.measures
         ],
-        "anisotropy": list(surface.anisotropy),
         "e_el": None if energy is None else {**_uncertain_entry(energy), "units": "J m-2"},
         "prediction": None
         if prediction is None
@@ -118,40 +114,53 @@ def machine_readable(
     }
 
 
-def _spectrum_parameters(surface: MeasuredSurface) -> tuple[tuple[str, Number, str], ...]:
-    """Parameters of the fitted spectrum with their uncertainties and units."""
-    estimate = surface.fitted.estimate
+def _continuation(fit: Fit) -> tuple[tuple[str, tuple[float, float, float], str], ...]:
+    """Parameters of the model that continues a density, with 95% intervals, and units."""
     return (
-        ("roll_off", estimate(lambda spectrum: spectrum.roll_off), "m"),
-        ("hurst", estimate(lambda spectrum: spectrum.hurst), "1"),
-        ("plateau", estimate(lambda spectrum: spectrum.plateau), "m^4"),
+        ("roll_off", fit.roll_off, "m"),
+        ("hurst", fit.hurst, "1"),
+        ("plateau", fit.plateau, "m^4"),
     )
 
 
 def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
     """Lines of a surface."""
-    for item in surface.measurements:
+    for one in surface.scans:
+        item = one.measurement
         points = " x ".join(map(str, item.heights.shape))
         sides = " x ".join(prefixed("m", side) for side in item.size)
         yield f"{item.path}: {item.format}, {points} points, {sides}"
-        yield f"  trusted wavelengths   {_span(item.shortest, item.longest)}"
+        yield f"  trusted wavelengths   {_band_text(one.band)}"
+        others = [limit for limit in one.band.limits if limit not in one.band.ends]
+        if others:
+            yield f"  other limits          {', '.join(map(_limit_text, others))}"
         if item.channel:
             yield f"  channel               {item.channel}"
         yield f"  taken off             {item.levelling}"
         if item.comment:
             yield f"  comment               {item.comment}"
     yield ""
-    yield "Fitted self-affine spectrum (± standard error)"
-    for name, value, units in _spectrum_parameters(surface):
-        shown = f"{value.value:.3g} ± {value.standard_error:.1g} {units}"
-        if name == "roll_off":
-            shown = f"{_pair(value, units)}" + (
-                "" if surface.fitted.has_roll_off else ", not resolved"
-            )
-        yield f"  {name:22}{shown.removesuffix(' 1')}"
+    joint = surface.joint
+    yield "Spectrum"
+    shares = joint.shares
+    yield f"  {'measured':22}{_span(joint.shortest, joint.longest)}, {shares.measured:.0%} of e_el"
+    if len(surface.scans) > 1:
+        yield f"  {'scatter of scans':22}{joint.density.scatter:.0%} of the density"
     yield (
-        f"  {'shortest wavelength':22}{prefixed('m', surface.fitted.spectrum.short_cutoff)}; two "
-        f"more decades of the power law would add {surface.unmeasured_share:.0%} to e_el"
+        f"  {'continued':22}down to {prefixed('m', joint.spectrum.short_cutoff)} and to longer "
+        f"waves, {shares.continued:.0%} of e_el"
+    )
+    for name, (value, low, high), units in _continuation(joint.fit):
+        shown = (
+            prefixed(units, value, low, high)
+            if units == "m"
+            else (f"{value:.3g} ({low:.3g} to {high:.3g}) {units}".removesuffix(" 1"))
+        )
+        unsure = name == "roll_off" and not joint.fit.has_roll_off
+        yield f"    {name:20}{shown}{', not resolved' if unsure else ''}"
+    yield (
+        f"  {'missing':22}two more decades of short waves would add {shares.missing_short:.0%} "
+        f"to e_el, longer ones {shares.missing_long:.0%}"
     )
     yield ""
     yield "Measures: of the spectrum; scales of 80% of the mean square; scans over the spectrum"
@@ -166,10 +175,10 @@ def _measure_line(measure: RmsMeasure) -> str:
         for found, expected in zip(measure.measured, measure.expected, strict=True)
     )
     unit, rms = _UNITS[measure.order], measure.rms
-    plain = f"{rms.value:.3g} ± {rms.standard_error:.1g} {unit}".strip()
-    shown = _pair(rms, unit) if unit == "m" else plain
+    plain = f"{rms.value:.3g} ({rms.low:.3g} to {rms.high:.3g}) {unit}".strip()
+    shown = _shown(unit, rms) if unit == "m" else plain
     scales = _span(measure.shortest, measure.longest)
-    return f"  rms of {_ORDER_NAMES[measure.order]:16}{shown:24}{scales:22}{compared}"
+    return f"  rms of {_ORDER_NAMES[measure.order]:16}{shown:40}{scales:22}{compared}"
 
 
 def _prediction_lines(item: Prediction) -> Iterator[str]:
@@ -272,11 +281,14 @@ def _factor(found: Number) -> str:
     return f"{found.value:.2f}{interval}"
 
 
-def _pair(found: Number, unit: str) -> str:
-    """A number with its standard error, in the prefix of the number."""
-    shown, prefix = prefixed(unit, found.value).split(" ")
-    scale = found.value / float(shown)
-    return f"{shown} ± {found.standard_error / scale:.1g} {prefix}"
+def _band_text(band: Band) -> str:
+    """Trusted wavelengths, and why they end."""
+    return " to ".join(map(_limit_text, band.ends))
+
+
+def _limit_text(limit: BandLimit) -> str:
+    """A limit of trusted wavelengths."""
+    return f"{prefixed('m', limit.wavelength)} ({limit.cause})"
 
 
 def _span(shortest: float, longest: float) -> str:
@@ -296,9 +308,54 @@ def _measurement_entry(item: Measurement) -> dict[str, Any]:
         "points": list(item.heights.shape),
         "size": {"value": list(item.size), "units": "m"},
         "missing": item.missing,
-        "shortest": _number(item.shortest, "m"),
-        "longest": _number(item.longest, "m"),
     }
+
+
+def _band_entry(band: Band) -> dict[str, Any]:
+    """Trusted wavelengths of a measurement, and what its density shows."""
+    instrument = band.instrument
+    return {
+        "shortest": _number(band.shortest.wavelength, "m"),
+        "longest": _number(band.longest.wavelength, "m"),
+        "limits": [
+            {"end": limit.end, "cause": limit.cause, "wavelength": _number(limit.wavelength, "m")}
+            for limit in band.limits
+        ],
+        "stripes_along": ["xy"[axis] for axis in band.stripes],
+        "anisotropy": band.anisotropy,
+        "attenuation": _number(instrument.attenuation, "1/m")
+        if math.isfinite(instrument.attenuation)
+        else None,
+        "noise": _number(instrument.noise, "m^4"),
+    }
+
+
+def _spectrum_entry(joint: JointSpectrum) -> dict[str, Any]:
+    """The spectrum of a surface, and where its e_el comes from."""
+    table, density = joint.spectrum, joint.density
+    return {
+        "wavelength": {"value": list(table.wavelengths), "units": "m"},
+        "density": {"value": list(table.densities), "units": "m^4"},
+        "measured": {
+            "wavevector": {"value": density.wavevector.tolist(), "units": "1/m"},
+            "density": {"value": density.value.tolist(), "units": "m^4"},
+            "relative_error": density.error.tolist(),
+        },
+        "scatter": density.scatter,
+        "share_of_e_el": asdict(joint.shares),
+        "shortest": _number(joint.shortest, "m"),
+        "longest": _number(joint.longest, "m"),
+        "end": _number(table.short_cutoff, "m"),
+    }
+
+
+def _continuation_entry(fit: Fit) -> dict[str, Any]:
+    """The model that continues a density."""
+    parameters = {
+        name: {"value": value, "low": low, "high": high, "units": units}
+        for name, (value, low, high), units in _continuation(fit)
+    }
+    return parameters | {"deviance_per_freedom": fit.misfit, "has_roll_off": fit.has_roll_off}
 
 
 def _density_entry(density: Density, units: str) -> dict[str, Any]:
@@ -311,7 +368,7 @@ def _density_entry(density: Density, units: str) -> dict[str, Any]:
 
 
 def _columns(prediction: Prediction) -> Iterator[tuple[Variable, float]]:
-    """Numbers of a prediction, with standard errors or else the ends of intervals."""
+    """Numbers of a prediction, with what they have of standard errors and intervals."""
     for item in variables(Prediction):
         found = getattr(prediction, item.name)
         if not isinstance(found, Estimate):
@@ -324,7 +381,7 @@ def _columns(prediction: Prediction) -> Iterator[tuple[Variable, float]]:
             ("low", found.low, f"{low} end of its interval"),
             ("high", found.high, f"{high} end of its interval"),
         ):
-            if (ending == "error") == math.isfinite(found.standard_error):
+            if math.isfinite(value):
                 yield replace(item, name=f"{item.name}_{ending}", long_name=text), value
 
 
@@ -355,8 +412,8 @@ def _interval_entry(found: Number) -> dict[str, float | None]:
 
 
 def _uncertain_entry(found: Number) -> dict[str, Any]:
-    """A number with its standard error."""
-    return {"value": found.value, "error": found.standard_error}
+    """A number with its standard error and its interval."""
+    return _interval_entry(found) | {"error": found.standard_error}
 
 
 def _number(value: float, units: str) -> dict[str, Any]:

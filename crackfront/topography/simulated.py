@@ -16,7 +16,7 @@ from crackfront.analysis.steady import mean_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.cycle.steady import SteadySchedule
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.lines import LineLoad
@@ -118,7 +118,7 @@ def prediction_plan(
     ValueError
         If no contact conforms, e_el >= w_int, or whatever is simulated would be too large.
     """
-    spectrum = reduced_spectrum(surface.fitted.spectrum, scales)
+    spectrum = reduced_spectrum(surface.joint.spectrum, scales)
     energy = spectrum.elastic_energy
     if not energy < 1:
         raise ValueError(f"e_el is {energy:.3g} w_int; no simulation conforms fully at 1 or more")
@@ -133,7 +133,7 @@ def prediction_plan(
 
 
 def _affordable(
-    spectrum: SelfAffineSpectrum, energy: float, contact_radius: float, seed: int
+    spectrum: TabulatedSpectrum, energy: float, contact_radius: float, seed: int
 ) -> tuple[Simulation, float, str]:
     """First of sphere, line on its springs and line on short ones that is not too large."""
     numerics = Numerics(_ERROR)

@@ -6,14 +6,16 @@ the extra `bem`; only the products with the elastic operators are those of scipy
 The nearest stable state is found as by NuMPI's `tr_newton_bounded` (a trust region, Steihaug's
 conjugate gradients on the free variables, projection on the bounds), but with the elastic operator
 as the measure of a step and as the preconditioner, which makes the number of products nearly
-independent of the grid.
+independent of the grid. A step halfway along which the energy is found to rise is shortened, so
+that none jumps over a barrier; where nothing is out of balance no curvature may be negative, so
+that none ends on one.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +26,8 @@ from crackfront.core.optional_libraries import MissingExtraError
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
+Values = TypeVar("Values", NDArray[np.float64], NDArray[np.float32])
+"""In the precision of what they are made from."""
 
 _STRONGEST = 1.2
 """Work of adhesion, in units of w_int, of the largest contact that a domain must hold."""
@@ -39,6 +43,12 @@ _FORCING = 0.3
 
 _MOST_PRODUCTS = 200
 """Products of one step."""
+
+_ROUND_OFF = 10 * float(np.finfo(float).eps)
+"""Changes of the energy that have no meaning, relative to it."""
+
+_PROBED = 1e-2
+"""Residual, relative to its start, to which the curvature of a state is probed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,11 +90,11 @@ class HalfSpaceContact:
         """Attraction of closed surfaces, 3 w_int / g_c (Units: reduced pressure)."""
         return 3 * WORK_OF_ADHESION / self.interaction_range
 
-    def elastic_pressure(self, displacement: Array) -> Array:
+    def elastic_pressure(self, displacement: Values) -> Values:
         """Pressures that a displacement needs, on the doubled grid (Units: reduced pressure)."""
         return _filtered(displacement, self.stiffness)
 
-    def elastic_displacement(self, pressure: Array) -> Array:
+    def elastic_displacement(self, pressure: Values) -> Values:
         """Displacement that pressures cause, on the doubled grid (Units: reduced vertical)."""
         return _filtered(pressure, self.compliance)
 
@@ -93,12 +103,16 @@ class HalfSpaceContact:
         side = self.n_point
         return displacement[:side, :side] - (self.surface + penetration)
 
-    def evaluate(self, displacement: Array, penetration: float) -> tuple[float, Array]:
+    def evaluate(
+        self, displacement: Array, penetration: float, elastic: Array | None = None
+    ) -> tuple[float, Array]:
         """Energy per area of a pixel, and its derivative in the displacements.
 
+        The elastic pressures may be given where they are known.
         (Units: reduced pressure * vertical length; reduced pressure)
         """
-        gradient = self.elastic_pressure(displacement)
+        pressure = self.elastic_pressure(displacement) if elastic is None else elastic
+        gradient = pressure.copy()
         energy = 0.5 * float(np.vdot(displacement, gradient))
         attraction, slope, _ = self.system.interaction.evaluate(
             self.gap(displacement, penetration), potential=True, gradient=True
@@ -216,6 +230,13 @@ class Equilibrium:
         Largest pressure that is not in balance, relative to the largest tension.
     radius : float
         Trust radius to begin the next load step with.
+    energy, released : float
+        Energy per area of a pixel, and how far it fell at this penetration; it never rises.
+        (Units: reduced pressure * vertical length)
+    barriers : int
+        Steps that would have passed over a rise of the energy, and were shortened.
+    saddles : int
+        States without forces whose energy falls to both sides, and which were left.
     """
 
     displacement: Array
@@ -223,6 +244,10 @@ class Equilibrium:
     products: int
     residual: float
     radius: float
+    energy: float
+    released: float
+    barriers: int
+    saddles: int
 
 
 def equilibrium(
@@ -259,29 +284,62 @@ def equilibrium(
     """
     lowest = contact.surface + penetration
     state = _above(displacement.copy(), lowest)
-    energy, gradient = contact.evaluate(state, penetration)
-    products, relative = 0, math.inf
+    elastic = contact.elastic_pressure(state)
+    energy, gradient = contact.evaluate(state, penetration, elastic)
+    began, products, barriers, saddles, relative = energy, 0, 0, 0, math.inf
     for iteration in range(max_iterations):
         model = _linearised(contact, state, gradient, lowest, penetration)
         relative = float(np.max(np.abs(model.gradient))) / contact.largest_tension
-        if relative <= tolerance:
-            return Equilibrium(state, iteration, products, relative, radius)
-        step = _truncated_step(model, radius, forcing=min(_FORCING, math.sqrt(relative)))
+        if relative > tolerance:
+            step = _truncated_step(model, radius, forcing=min(_FORCING, math.sqrt(relative)))
+        else:
+            step = _downward_step(model, radius)
+            if model.decrease(step.values) <= _ROUND_OFF * (1 + abs(energy)):
+                return Equilibrium(
+                    displacement=state,
+                    iterations=iteration,
+                    products=products + step.products,
+                    residual=relative,
+                    radius=radius,
+                    energy=energy,
+                    released=began - energy,
+                    barriers=barriers,
+                    saddles=saddles,
+                )
+            saddles += 1
         trial = _above(state + step.values, lowest)
-        trial_energy, trial_gradient = contact.evaluate(trial, penetration)
+        trial_elastic = contact.elastic_pressure(trial)
+        trial_energy, trial_gradient = contact.evaluate(trial, penetration, trial_elastic)
         gain = _gain(energy, trial_energy, model.decrease(trial - state))
         products += step.products + 1
+        if gain >= _ACCEPTED:
+            halfway = contact.evaluate(
+                (state + trial) / 2, penetration, (elastic + trial_elastic) / 2
+            )
+            if _passes_barrier(trial - state, energy, trial_energy, *halfway):
+                barriers += 1
+                gain = -math.inf
         if gain < _POOR:
             radius = _POOR * step.norm
         elif gain > 1 - _POOR and step.at_boundary:
             radius *= 2.0
         if gain >= _ACCEPTED:
-            state, energy, gradient = trial, trial_energy, trial_gradient
+            state, elastic = trial, trial_elastic
+            energy, gradient = trial_energy, trial_gradient
     raise ValueError(
         f"at penetration {penetration:.6g} the boundary elements did not come to rest in "
         f"{max_iterations} steps (pressure out of balance {relative:.2g} of the largest tension, "
         f"{tolerance:g} asked for); take smaller load steps"
     )
+
+
+def _passes_barrier(
+    way: Array, before: float, after: float, halfway: float, gradient: Array
+) -> bool:
+    """Whether the energy rises on the way to a lower one, by itself and its gradient halfway."""
+    climbing = float(np.vdot(gradient, way)) > 0
+    round_off = _ROUND_OFF * (1 + abs(before))
+    return halfway > before + round_off or (climbing and after < halfway - round_off)
 
 
 def _above(displacement: Array, lowest: Array) -> Array:
@@ -300,21 +358,22 @@ class _Linearised:
     gradient: Array
     softening: Array
 
-    def free(self, values: Array) -> Array:
+    def free(self, values: Values) -> Values:
         """Values without, in place, those of closed surfaces."""
         values[: len(self.closed), : len(self.closed)][self.closed] = 0.0
         return values
 
-    def curved(self, step: Array) -> Array:
+    def curved(self, step: Values) -> Values:
         """Product of the second derivatives with a step."""
         side = len(self.closed)
         product = self.contact.elastic_pressure(step)
         product[:side, :side] += self.softening * step[:side, :side]
         return product
 
-    def decrease(self, step: Array) -> float:
-        """Energy that a step releases."""
-        return -float(np.vdot(self.gradient, step) + 0.5 * np.vdot(step, self.curved(step)))
+    def decrease(self, step: NDArray[np.floating[Any]]) -> float:
+        """Energy that a step releases, its second order in single precision."""
+        curved = self.curved(step.astype(np.float32))
+        return -float(np.vdot(self.gradient, step) + 0.5 * np.vdot(step, curved))
 
 
 def _linearised(
@@ -332,7 +391,7 @@ def _gain(before: float, after: float, predicted: float) -> float:
     """Decrease of the energy relative to the predicted one; one where both are round-off."""
     if predicted <= 0:
         return -math.inf
-    round_off = 10 * np.finfo(float).eps * (1 + abs(before))
+    round_off = _ROUND_OFF * (1 + abs(before))
     if predicted <= round_off and before - after >= -round_off:
         return 1.0
     return (before - after) / predicted
@@ -342,16 +401,19 @@ def _gain(before: float, after: float, predicted: float) -> float:
 class _Step:
     """A step within the trust region, its elastic norm, and how it was found."""
 
-    values: Array
+    values: NDArray[np.float32]
     norm: float
     at_boundary: bool
     products: int
 
 
 def _truncated_step(model: _Linearised, radius: float, forcing: float) -> _Step:
-    """Steihaug's conjugate gradients, preconditioned; the norm is that of the preconditioner."""
-    step = np.zeros_like(model.gradient)
-    residual = model.gradient.copy()
+    """Steihaug's conjugate gradients, preconditioned; the norm is that of the preconditioner.
+
+    In single precision: a step need not be more exact than its forcing.
+    """
+    residual = model.gradient.astype(np.float32)
+    step = np.zeros_like(residual)
     relaxed = model.free(model.contact.elastic_displacement(residual))
     direction = -relaxed
     power = first = float(np.vdot(residual, relaxed))
@@ -383,8 +445,40 @@ def _truncated_step(model: _Linearised, radius: float, forcing: float) -> _Step:
     return _Step(step, math.sqrt(step_step), False, count)
 
 
-def _filtered(values: Array, response: Array) -> Array:
+def _downward_step(model: _Linearised, radius: float) -> _Step:
+    """Step along a direction of negative curvature, or none where no curvature is negative.
+
+    Conjugate gradients for forces where surfaces attract each other: what else is in their space
+    has the curvature of the half-space alone. They come upon a negative curvature as soon as it is
+    in the space of their directions.
+    """
+    side = len(model.closed)
+    residual = np.zeros_like(model.gradient, dtype=np.float32)
+    noise = np.random.default_rng(0).standard_normal((side, side))
+    residual[:side, :side] = model.softening * noise
+    model.free(residual)
+    relaxed = model.free(model.contact.elastic_displacement(residual))
+    direction = -relaxed
+    power = first = float(np.vdot(residual, relaxed))
+    for count in range(1, _MOST_PRODUCTS + 1):
+        if power <= _PROBED**2 * first:
+            break
+        product = model.free(model.curved(direction))
+        curvature = float(np.vdot(direction, product))
+        if curvature < 0:
+            down = -1.0 if float(np.vdot(model.gradient, direction)) > 0 else 1.0
+            stretch = float(np.vdot(direction, model.contact.elastic_pressure(direction)))
+            return _Step(down * radius / math.sqrt(stretch) * direction, radius, True, count)
+        residual += power / curvature * product
+        relaxed = model.free(model.contact.elastic_displacement(residual))
+        ratio, power = float(np.vdot(residual, relaxed)) / power, float(np.vdot(residual, relaxed))
+        direction *= ratio
+        direction -= relaxed
+    return _Step(np.zeros_like(direction), 0.0, False, count)
+
+
+def _filtered(values: Values, response: Array) -> Values:
     """Values whose Fourier modes are multiplied by a response."""
     modes = rfft2(values)
-    modes *= response
+    modes *= response.astype(values.dtype, copy=False)
     return np.asarray(irfft2(modes, s=values.shape, overwrite_x=True))

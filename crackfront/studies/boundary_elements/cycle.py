@@ -14,20 +14,20 @@ from scipy.ndimage import map_coordinates
 
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule, loads
-from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.studies.boundary_elements.contact import equilibrium
-from crackfront.studies.boundary_elements.parameters import Case
+from crackfront.studies.boundary_elements.parameters import BranchSchedule, Case
 
 Array = NDArray[np.float64]
 
-_STEP, _ANGLE, _SHOWN, _X, _Y = "step", "angle", "shown", "x", "y"
+_STEP, _ANGLE, _SHOWN, _X, _Y, _BYTE = "step", "angle", "shown", "x", "y", "byte"
 _AREA = f"({LATERAL})^2"
 _PRESSURE = f"{FORCE} / {_AREA}"
 
 _LEAST_RADIUS = 1e-2
 """Trust radius that every load step may begin with."""
 
-RUNNING, LOST_CONTACT = "running", "lost contact"
+RUNNING, LOST_CONTACT, ALL_LOADS = "running", "lost contact", "all loads"
 
 N_ANGLE = 720
 """Rays on which the perimeter of a contact is looked for."""
@@ -59,6 +59,17 @@ class BoundaryCycle:
     products: NDArray[np.int64] = variable("conjugate-gradient products", "1", _STEP)
     residual: Array = variable("pressure out of balance", "largest tension", _STEP)
     seconds: Array = variable("processor time of the load step", "s", _STEP)
+    energy: Array = variable("energy above that of surfaces far apart", ENERGY, _STEP)
+    released: Array = variable("how far the energy fell at the penetration", ENERGY, _STEP)
+    barriers: NDArray[np.int64] = variable(
+        "steps that would have passed over a rise of the energy, and were shortened", "1", _STEP
+    )
+    saddles: NDArray[np.int64] = variable(
+        "states without forces that were no minimum, and were left", "1", _STEP
+    )
+    closed: NDArray[np.uint8] = variable(
+        "points within the edge's gap, eight to a byte, row by row", "1", _STEP, _BYTE
+    )
     shown_pressure: NDArray[np.float32] = variable(
         "pressure at the kept penetration, approach and retraction", _PRESSURE, _SHOWN, _X, _Y
     )
@@ -70,13 +81,18 @@ class BoundaryCycle:
         """Area within the perimeter (Units: reduced lateral length squared)."""
         return np.asarray(np.pi * np.mean(self.radius**2, axis=1))
 
+    def closed_at(self, step: int) -> NDArray[np.bool_]:
+        """Points of the grid within the edge's gap, (n_point, n_point)."""
+        bits = np.unpackbits(self.closed[step], count=self.n_point**2)
+        return bits.reshape(self.n_point, self.n_point).astype(bool)
+
 
 def boundary_cycle(
     case: Case,
     resume: BoundaryCycle | None = None,
     keep: Callable[[BoundaryCycle], None] | None = None,
 ) -> BoundaryCycle:
-    """Quasi-static approach from before first contact to the largest penetration, and to pull-off.
+    """Quasi-static approach and retraction: a whole cycle, or the steady parts of its branches.
 
     Parameters
     ----------
@@ -93,7 +109,7 @@ def boundary_cycle(
     contact, so_far = case.contact(), resume or _no_states(case)
     known, side = so_far.penetration.size, case.n_point
     displacement = contact.elastic_displacement(np.pad(so_far.pressure, (0, side)))
-    for number, load in enumerate(contact_loads(case.schedule, case.interaction_range)):
+    for number, load in enumerate(case_loads(case)):
         penetration, direction = load.value, load.direction
         if so_far.status != RUNNING:
             break
@@ -121,6 +137,7 @@ def boundary_cycle(
             shown = shown.copy()
             shown[0 if direction > 0 else 1] = pressure
         lost = direction < 0 and not np.any(gap < case.interaction_range)
+        area = case.pixel**2
         so_far = replace(
             so_far,
             status=LOST_CONTACT if lost else RUNNING,
@@ -131,18 +148,34 @@ def boundary_cycle(
                 so_far,
                 penetration=penetration,
                 direction=direction,
-                force=float(np.sum(pressure)) * case.pixel**2,
-                closed_area=np.count_nonzero(gap <= 0) * case.pixel**2,
+                force=float(np.sum(pressure)) * area,
+                closed_area=np.count_nonzero(gap <= 0) * area,
                 radius=radius,
                 iterations=found.iterations,
                 products=found.products,
                 residual=found.residual,
                 seconds=time.process_time() - started,
+                energy=found.energy * area,
+                released=found.released * area,
+                barriers=found.barriers,
+                saddles=found.saddles,
+                closed=np.packbits(gap < EDGE * case.interaction_range),
             ),
         )
         if keep is not None:
             keep(so_far)
+    if so_far.status == RUNNING:
+        so_far = replace(so_far, status=ALL_LOADS)
+        if keep is not None:
+            keep(so_far)
     return so_far
+
+
+def case_loads(case: Case) -> Iterator[Load]:
+    """Penetrations of a case, in order, with the direction in which each is reached."""
+    if isinstance(case.schedule, BranchSchedule):
+        return case.schedule.loads()
+    return contact_loads(case.schedule, case.interaction_range)
 
 
 def contact_loads(schedule: LoadSchedule, interaction_range: float) -> Iterator[Load]:
@@ -179,6 +212,11 @@ def _no_states(case: Case) -> BoundaryCycle:
         products=counts,
         residual=numbers,
         seconds=numbers,
+        energy=numbers,
+        released=numbers,
+        barriers=counts,
+        saddles=counts,
+        closed=np.empty((0, -(-(side**2) // 8)), dtype=np.uint8),
         shown_pressure=np.zeros((2, side, side), dtype=np.float32),
         pressure=np.zeros((side, side)),
         trust_radius=1.0,

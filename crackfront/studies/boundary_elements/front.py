@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import fftfreq, irfft2, rfft2, rfftfreq
 
+from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.cycle.energy import contact_energy
 from crackfront.core.cycle.record import Recorder
-from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.run import first_touch, refuse_outgrown, run_cycle
+from crackfront.core.field.fields import RayField, polar_field
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction, Status
-from crackfront.core.rotated import rotated_field
+from crackfront.core.rotated import adhesion_on_rays, rotated_field
 from crackfront.core.solver.relax import Newton
+from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.studies.boundary_elements.cycle import N_ANGLE, BoundaryCycle
-from crackfront.studies.boundary_elements.parameters import Case
+from crackfront.studies.boundary_elements.parameters import BranchSchedule, Case
 
 Array = NDArray[np.float64]
 
@@ -35,6 +41,9 @@ class FrontCycle:
     radius : (n_step, N_ANGLE) array
         Their fronts at the angles of the boundary elements' perimeters, by their Fourier series.
         (Units: reduced lateral length)
+    energy : (n_step,) array
+        Energies of the contacts above that of none. (Units: pi w_int R times a reduced vertical
+        length)
     end : float
         Penetration at which it lost contact. (Units: reduced vertical length)
     rotated : bool
@@ -45,6 +54,7 @@ class FrontCycle:
 
     states: ContactState[Any]
     radius: Array
+    energy: Array
     end: float
     rotated: bool
     mapping_seconds: float
@@ -55,33 +65,82 @@ States = BoundaryCycle | ContactState[Any]
 """What tells penetrations and directions, state by state."""
 
 
-def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = True) -> FrontCycle:
+def front_cycle(
+    case: Case, n_angle: int, spacing: float, *, rotated: bool = True, zone: float = 0.0
+) -> FrontCycle:
     """Cycle of the crack front on the heights of a case.
 
     The field is that of :func:`crackfront.core.rotated.rotated_field`.
 
+    Parameters
+    ----------
+    case : Case
+        Heights and loads.
+    n_angle, spacing, rotated
+        As of :func:`crackfront.core.rotated.rotated_field`.
+    zone : float, optional
+        Length of the cohesive zone, over which the edge feels the mean of the heights: they count
+        by exp(-q zone / 2). The energy of full conformity is that of the heights themselves.
+        (Units: reduced lateral length)
+
     Raises
     ------
     ValueError
-        If the cycle does not end by losing contact.
+        If the front fails, or loses contact within the steady parts of its branches.
     """
     began = time.process_time()
-    field = rotated_field(
-        case.heights(), case.pixel, n_angle, spacing, case.side / 2, rotated=rotated
-    )
+    heights = case.heights()
+    if zone > 0:
+        field = _zone_field(heights, case.pixel, n_angle, spacing, zone)
+    else:
+        field = rotated_field(heights, case.pixel, n_angle, spacing, case.side / 2, rotated=rotated)
     mapped = time.process_time()
-    record = run_cycle(field, case.schedule, Newton(_TOLERANCE), Recorder(fronts=True))
+    recorder, solver = Recorder(fronts=True), Newton(_TOLERANCE)
+    if isinstance(case.schedule, BranchSchedule):
+        refuse_outgrown(field, case.schedule.max_penetration)
+        recorder.run(field, first_touch(field), case.schedule.loads(), solver)
+        record, expected = recorder.record(), Status.CONVERGED
+    else:
+        record = run_cycle(field, case.schedule, solver, recorder)
+        expected = Status.LOST_CONTACT
     ended = time.process_time()
-    if record.status is not Status.LOST_CONTACT:
+    if record.status is not expected:
         raise ValueError(
             f"{case.label}: at penetration {record.end_load:.6g} the front "
             f"{record.status.value}; raise n_angle or lower the spacing"
         )
-    modes = np.fft.rfft(np.asarray(record.fronts), norm="forward")
+    fronts = np.asarray(record.fronts)
+    modes = np.fft.rfft(fronts, norm="forward")
     radius = np.fft.irfft(modes, n=N_ANGLE, norm="forward")
+    energy = [
+        contact_energy(front, load, field)
+        for front, load in zip(fronts, record.states.penetration.tolist(), strict=True)
+    ]
     return FrontCycle(
-        record.states, radius, record.end_load, rotated, mapped - began, ended - mapped
+        states=record.states,
+        radius=radius,
+        energy=np.array(energy),
+        end=record.end_load,
+        rotated=rotated,
+        mapping_seconds=mapped - began,
+        cycle_seconds=ended - mapped,
     )
+
+
+def _zone_field(
+    heights: Array, pixel: float, n_angle: int, spacing: float, zone: float
+) -> RayField:
+    """Field of a front whose cohesive zone has a length."""
+    along = 2 * np.pi * fftfreq(len(heights), pixel)
+    across = 2 * np.pi * rfftfreq(len(heights), pixel)
+    weight = np.exp(-0.5 * zone * np.hypot(along[:, None], across))
+    averaged = irfft2(weight * rfft2(heights), s=heights.shape)
+    n_sample = math.ceil(len(heights) * pixel / 2 / spacing)
+    angles = 2 * np.pi * np.arange(n_angle) / n_angle
+    values = adhesion_on_rays(averaged, pixel, angles, spacing, n_sample)
+    lowering = rough_adhesion(heights, pixel).e_el - rough_adhesion(averaged, pixel).e_el
+    values -= lowering * WORK_OF_ADHESION
+    return polar_field(spacing * np.arange(1.0, n_sample + 1), values, "cubic")
 
 
 def shared_states(one: States, other: States) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

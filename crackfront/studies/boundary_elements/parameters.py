@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Annotated
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.fingerprint import fingerprint
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -106,22 +108,8 @@ class ValidationParameters(Section):
         for number, case in enumerate(self.cases):
             if case in self.cases[:number]:
                 raise refusal(f"cases[{number}] stands twice; remove one")
-            pixel, step = self.side / case.n_point, case.step or self.step
-            if self.short_cutoff < 2 * pixel:
-                needed = math.ceil(2 * self.side / self.short_cutoff)
-                raise refusal(
-                    f"cases[{number}]: short_cutoff {self.short_cutoff:g} is below two pixels "
-                    f"({2 * pixel:.4g}); take n_point {needed} or more"
-                )
-            try:
-                refuse_beyond_memory(
-                    f"a grid of {case.n_point} x {case.n_point} points",
-                    _POINT_BYTES * float(case.n_point) ** 2,
-                    "lower n_point",
-                )
-                refuse_unresolved(pixel, case.n_point, case.interaction_range, self.max_penetration)
-            except ValueError as error:
-                raise refusal(f"cases[{number}]: {error}") from error
+            _refuse_grid(f"cases[{number}]", self, case.n_point, case.interaction_range, self)
+            step = case.step or self.step
             shown = self.shown_penetration / step
             if not (
                 abs(shown - round(shown)) < 1e-9 and self.shown_penetration < self.max_penetration
@@ -134,8 +122,128 @@ class ValidationParameters(Section):
         return self
 
 
-def load_validation(path: Path) -> ValidationParameters:
-    """Parameters of a YAML file like config/validation.yaml.
+def _refuse_grid(
+    place: str,
+    surface: ValidationParameters | AmplitudeParameters,
+    n_point: int,
+    interaction_range: float,
+    load: ValidationParameters | BranchSection,
+) -> None:
+    """Refuse a grid that resolves neither the roughness nor the attraction, or is too small."""
+    pixel = surface.side / n_point
+    if surface.short_cutoff < 2 * pixel:
+        needed = math.ceil(2 * surface.side / surface.short_cutoff)
+        raise refusal(
+            f"{place}: short_cutoff {surface.short_cutoff:g} is below two pixels "
+            f"({2 * pixel:.4g}); take n_point {needed} or more"
+        )
+    try:
+        refuse_beyond_memory(
+            f"a grid of {n_point} x {n_point} points",
+            _POINT_BYTES * float(n_point) ** 2,
+            "lower n_point",
+        )
+        refuse_unresolved(pixel, n_point, interaction_range, load.max_penetration)
+    except ValueError as error:
+        raise refusal(f"{place}: {error}") from error
+
+
+class BranchSection(Section):
+    """Load of the steady parts of both branches, as of :class:`BranchSchedule`."""
+
+    first: Positive
+    last: Positive
+    max_penetration: Positive
+    turned: Positive
+    end: Positive
+
+    @model_validator(mode="after")
+    def _in_order(self) -> BranchSection:
+        if not max(self.first, self.end) < min(self.last, self.turned):
+            raise refusal(
+                f"loads go from first {self.first:g} to last {self.last:g} and from turned "
+                f"{self.turned:g} to end {self.end:g}; first must be below last, end below turned, "
+                "and the branches must share penetrations"
+            )
+        if not max(self.last, self.turned) < self.max_penetration:
+            raise refusal(
+                f"max_penetration {self.max_penetration:g} must be above last {self.last:g} and "
+                f"turned {self.turned:g}; between them the contact turns"
+            )
+        return self
+
+
+class SpectrumSection(Section):
+    """Shape of the surfaces' spectrum; flat where the roll-off is the short cutoff."""
+
+    roll_off: Positive
+    hurst: Annotated[float, Field(gt=0, le=1)]
+
+
+class GridSection(Section):
+    """Grid, range of the attraction and load step, on the first surfaces.
+
+    `scenes` is how many pairs of spectrum and amplitude it runs, those of the first spectrum first;
+    all by default, and then the smooth sphere as well.
+    """
+
+    n_point: Annotated[int, Field(ge=16)]
+    interaction_range: Positive
+    step: Positive
+    surfaces: Count
+    scenes: Count | None = None
+
+
+class AmplitudeParameters(Section):
+    """The whole file of a validation over amplitudes, spectra, surfaces and grids.
+
+    Attributes
+    ----------
+    short_cutoff, side, tolerance
+        As of :class:`ValidationParameters`.
+    elastic_energies : tuple of float
+        Amplitudes of the roughness; a smooth sphere is run once on every grid. (Units: w_int)
+    """
+
+    seed: Annotated[int, Field(ge=0)]
+    short_cutoff: Positive
+    side: Positive
+    tolerance: Annotated[float, Field(gt=0, lt=1)]
+    loads: BranchSection
+    front: FrontSection
+    elastic_energies: Annotated[tuple[Energy, ...], Field(min_length=1)]
+    spectra: Annotated[tuple[SpectrumSection, ...], Field(min_length=1)]
+    grids: Annotated[tuple[GridSection, ...], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _usable(self) -> AmplitudeParameters:
+        for number, spectrum in enumerate(self.spectra):
+            if spectrum.roll_off < self.short_cutoff:
+                raise refusal(
+                    f"spectra[{number}]: roll_off {spectrum.roll_off:g} is shorter than "
+                    f"short_cutoff {self.short_cutoff:g}; raise it"
+                )
+        for number, grid in enumerate(self.grids):
+            place = f"grids[{number}]"
+            if grid in self.grids[:number]:
+                raise refusal(f"{place} stands twice; remove one")
+            if (grid.scenes or 0) > (count := len(self.spectra) * len(self.elastic_energies)):
+                raise refusal(f"{place}: scenes is {grid.scenes}; there are {count}")
+            _refuse_grid(place, self, grid.n_point, grid.interaction_range, self.loads)
+            for name in ("first", "last", "turned", "end"):
+                count = getattr(self.loads, name) / grid.step
+                if abs(count - round(count)) > 1e-9:
+                    raise refusal(
+                        f"{place}: step {grid.step:g} does not lead to {name} "
+                        f"{getattr(self.loads, name):g}; take a whole part of it"
+                    )
+        return self
+
+
+def load_validation(path: Path) -> ValidationParameters | AmplitudeParameters:
+    """Parameters of a YAML file like config/validation.yaml or config/validation-strong.yaml.
+
+    The latter have `elastic_energies` of all their surfaces, where the former have `cases`.
 
     Raises
     ------
@@ -143,14 +251,57 @@ def load_validation(path: Path) -> ValidationParameters:
         If the file cannot be read, or anything in it is unknown, missing or out of range; one
         sentence for each.
     """
-    return validated(path, content_of(path), ValidationParameters)
+    content = content_of(path)
+    if "elastic_energies" in content:
+        return validated(path, content, AmplitudeParameters)
+    return validated(path, content, ValidationParameters)
+
+
+@dataclass(frozen=True, slots=True)
+class BranchSchedule:
+    """Penetrations of the steady parts of both branches, each from a state far behind it.
+
+    The approach makes contact at its first penetration, far from the apex. Between the branches the
+    contact is pressed further, and back in one step, so that its edge has turned everywhere.
+
+    Parameters
+    ----------
+    first, last, max_penetration, turned, end : float
+        First and last of the approach, that at which the contact turns, and first and last of the
+        retraction. (Units: reduced vertical length)
+    step : float
+        Difference of penetrations. (Units: reduced vertical length)
+
+    Examples
+    --------
+    >>> schedule = BranchSchedule(0.5, 1.0, 2.0, 0.5, 0.0, 0.5)
+    >>> [(load.value, load.direction) for load in schedule.loads()]
+    [(0.5, 1), (1.0, 1), (2.0, 1), (0.5, -1), (0.0, -1)]
+    """
+
+    first: float
+    last: float
+    max_penetration: float
+    turned: float
+    end: float
+    step: float
+
+    def loads(self) -> Iterator[Load]:
+        """Penetrations in their order, whole multiples of the step but for the turn."""
+        first, last, turned, end = (
+            round(b / self.step) for b in (self.first, self.last, self.turned, self.end)
+        )
+        yield from (Load(count * self.step, 1) for count in range(first, last + 1))
+        yield Load(self.max_penetration, 1)
+        yield from (Load(count * self.step, -1) for count in range(turned, end - 1, -1))
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
     """Everything that determines one cycle by boundary elements.
 
-    The fields are those of :class:`ValidationParameters` and :class:`CaseSection`.
+    The fields are those of :class:`ValidationParameters` and :class:`CaseSection`, and the shape of
+    the spectrum, which is flat where its roll-off is the short cutoff.
     """
 
     seed: int
@@ -161,7 +312,9 @@ class Case:
     n_point: int
     interaction_range: float
     elastic_energy: float
-    schedule: LoadSchedule
+    schedule: LoadSchedule | BranchSchedule
+    roll_off: float | None = None
+    hurst: float = 1.0
 
     @property
     def pixel(self) -> float:
@@ -171,7 +324,8 @@ class Case:
     @property
     def label(self) -> str:
         """What a person calls this case, and the stem of its file before the key."""
-        return f"n{self.n_point}-g{self.interaction_range:g}-e{self.elastic_energy:g}"
+        shape = "" if self.roll_off is None else f"-r{self.roll_off:g}"
+        return f"n{self.n_point}-g{self.interaction_range:g}-e{self.elastic_energy:g}{shape}"
 
     @property
     def stem(self) -> str:
@@ -187,9 +341,10 @@ class Case:
         The noise belongs to wavevectors, not to the points of a grid. (Units: reduced vertical
         length)
         """
-        flat = SelfAffineSpectrum(self.short_cutoff, self.short_cutoff, hurst=1.0)
+        roll_off = self.roll_off or self.short_cutoff
+        spectrum = SelfAffineSpectrum(self.short_cutoff, roll_off, self.hurst)
         rng = np.random.default_rng(np.random.SeedSequence(self.seed))
-        unit = gaussian_field(flat.with_elastic_energy(1.0), self.n_point, self.side, rng)
+        unit = gaussian_field(spectrum.with_elastic_energy(1.0), self.n_point, self.side, rng)
         return unit * math.sqrt(self.elastic_energy)
 
     def contact(self) -> HalfSpaceContact:
@@ -210,3 +365,43 @@ def validation_cases(parameters: ValidationParameters) -> tuple[Case, ...]:
         )
         for case in parameters.cases
     )
+
+
+def amplitude_cases(parameters: AmplitudeParameters) -> tuple[Case, ...]:
+    """Cases of a validation over amplitudes, those of the first surface before all others.
+
+    The smooth sphere of every grid comes first.
+    """
+    cases = []
+    scenes = [(shape, e) for shape in parameters.spectra for e in parameters.elastic_energies]
+    smooth = [(0, grid, scenes[0][0], 0.0) for grid in parameters.grids if grid.scenes is None]
+    rough = [
+        (surface, grid, spectrum, energy)
+        for surface in range(max(grid.surfaces for grid in parameters.grids))
+        for grid in parameters.grids
+        for spectrum, energy in scenes[: grid.scenes]
+        if surface < grid.surfaces
+    ]
+    for surface, grid, spectrum, energy in [*smooth, *rough]:
+        cases.append(
+            Case(
+                seed=surface_seed(parameters.seed, surface),
+                short_cutoff=parameters.short_cutoff,
+                side=parameters.side,
+                shown_penetration=parameters.loads.last,
+                tolerance=parameters.tolerance,
+                n_point=grid.n_point,
+                interaction_range=grid.interaction_range,
+                elastic_energy=energy,
+                schedule=BranchSchedule(**parameters.loads.model_dump(), step=grid.step),
+                roll_off=spectrum.roll_off,
+                hurst=spectrum.hurst,
+            )
+        )
+    return tuple(cases)
+
+
+def surface_seed(seed: int, surface: int) -> int:
+    """Seed of one of the surfaces of a seed."""
+    sequence = np.random.SeedSequence(seed, spawn_key=(surface,))
+    return int(sequence.generate_state(1)[0])

@@ -8,13 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
+from crackfront.analysis.validity import ValidityRow, validity_text
 from crackfront.data.files import write_text
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import write_record, write_records
 from crackfront.plots.style import save_figure
 from crackfront.studies.boundary_elements.comparison import Comparison
 from crackfront.studies.boundary_elements.parameters import ValidationParameters
-from crackfront.studies.boundary_elements.picture import validation_figure
+from crackfront.studies.boundary_elements.picture import ValidationPicture, validation_figure
 from crackfront.studies.boundary_elements.study import Progress, RotationEffect, Speed, validation
 
 _PULL_OFF = 1.5
@@ -39,9 +40,39 @@ def write_validation(
         write_record(folder / "picture.nc", found.picture, origin)
         for path in save_figure(validation_figure(found.picture), folder / "validation"):
             progress(f"figure: {path}")
+        write_text(folder / "validity.csv", validity_text([loop_validity(found.picture)]))
     report = validation_report(found.differences, found.speeds, found.effects)
     write_text(folder / "validation.md", report, sealed=True)
     progress(f"tables: {folder / 'validation.md'}")
+
+
+def loop_validity(picture: ValidationPicture) -> ValidityRow:
+    """What the front's hysteresis is worth on a flat surface, by the work between the branches.
+
+    That of the force from b = 0 on, where both models have both branches.
+    """
+    work = []
+    for penetration, direction, force in (
+        (picture.boundary_penetration, picture.boundary_direction, picture.boundary_force),
+        (picture.front_penetration, picture.front_direction, picture.front_force),
+    ):
+        approach, retraction = (
+            np.flatnonzero((direction == sign) & (penetration > -1e-9))[::sign] for sign in (1, -1)
+        )
+        back = np.interp(penetration[approach], penetration[retraction], force[retraction])
+        # The deepest state is that of both branches.
+        back[-1] = force[approach[-1]]
+        work.append(float(np.trapezoid(force[approach] - back, penetration[approach])))
+    return ValidityRow(
+        roll_off=1.0,
+        hurst=1.0,
+        elastic_energy=picture.elastic_energy,
+        ratio=work[1] / work[0],
+        error=math.nan,
+        surfaces=1,
+        n_point=picture.n_point,
+        interaction_range=picture.interaction_range,
+    )
 
 
 def validation_report(

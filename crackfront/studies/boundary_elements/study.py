@@ -32,6 +32,7 @@ from crackfront.studies.boundary_elements.front import (
 from crackfront.studies.boundary_elements.parameters import (
     Case,
     ValidationParameters,
+    surface_seed,
     validation_cases,
 )
 from crackfront.studies.boundary_elements.picture import ValidationPicture, validation_picture
@@ -132,7 +133,7 @@ def validation(
         If a front fails.
     """
     cycles = [
-        (case, _stored_cycle(case, folder / f"{case.stem}.nc", origin, progress))
+        (case, stored_cycle(case, folder / f"{case.stem}.nc", origin, progress))
         for case in validation_cases(parameters)
     ]
     compared = []
@@ -163,7 +164,13 @@ def validation(
     )
 
 
-def _stored_cycle(case: Case, path: Path, origin: Provenance, progress: Progress) -> BoundaryCycle:
+def finished_cycle(path: Path) -> BoundaryCycle | None:
+    """Cycle of a file, or none where there is no file or a load is left to do."""
+    known = read_record(path, BoundaryCycle) if path.exists() else None
+    return known if known is not None and known.status != RUNNING else None
+
+
+def stored_cycle(case: Case, path: Path, origin: Provenance, progress: Progress) -> BoundaryCycle:
     """Cycle of a case: read, continued or computed."""
 
     def keep(cycle: BoundaryCycle) -> None:
@@ -271,10 +278,9 @@ def _rotation_effects(parameters: ValidationParameters) -> tuple[RotationEffect,
         return ()
     effects = []
     for number in range(given.surfaces):
-        sequence = np.random.SeedSequence(parameters.seed, spawn_key=(number,))
         case = replace(
             validation_cases(parameters)[0],
-            seed=int(sequence.generate_state(1)[0]),
+            seed=surface_seed(parameters.seed, number),
             n_point=given.n_point,
             interaction_range=0.0,
             elastic_energy=given.elastic_energy,

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from crackfront.analysis.force import adhesion_from_forces
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
-from crackfront.data.section import InputFile, Positive, Section, refusal
+from crackfront.data.section import InputFile, Plateau, Positive, Section, refusal
 from crackfront.studies.paper.measured import ForceRadius, ProfileDensity, read_profile_density
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ class FilmParameters(Section):
     short_cutoff: Positive
     roll_off: Positive
     hurst: Annotated[float, Field(gt=0, le=1)]
-    plateau: Positive
+    plateau: Plateau
     measured: InputFile | None = None
 
     @model_validator(mode="after")

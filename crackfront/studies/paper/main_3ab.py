@@ -338,8 +338,8 @@ def instability_figure(record: InstabilityRecord) -> Drawing:
         explain(
             figure,
             "a: areas swept by single instabilities, outlined by the fronts before and after; "
-            "white: swept smoothly; orange bars: the Larkin length; b: strong disorder; "
-            "A, B: contact at b = 0 in approach and retraction",
+            "white: swept smoothly; orange bars: length on which disorder is as stiff as the line; "
+            "b: strong disorder; A, B: contact at b = 0 in approach and retraction",
         )
         return figure
 

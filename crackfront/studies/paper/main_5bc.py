@@ -25,7 +25,7 @@ from crackfront.core.outcome import Status
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
-from crackfront.data.section import InputFile, Positive, refusal
+from crackfront.data.section import InputFile, Plateau, Positive, refusal
 from crackfront.plots.style import BLACK, BLUE, ORANGE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import Simulation
@@ -87,7 +87,7 @@ class NanodiamondParameters(RoughParameters):
     roll_off: Positive
     short_cutoff: Positive
     hurst: Annotated[float, Field(gt=0.5, le=1)]
-    plateau: Positive
+    plateau: Plateau
     largest_force: Positive
     shown_force: Positive
     step: Positive

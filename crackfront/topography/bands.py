@@ -1,0 +1,297 @@
+"""The wavelengths at which a scan can be trusted, found in its density, and what else it shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.topography.densities import (
+    Density,
+    Periodogram,
+    anisotropy,
+    periodogram,
+    stripes,
+)
+from crackfront.topography.fitting import Instrument, seen_instrument
+from crackfront.topography.reading import Measurement
+
+Array = NDArray[np.float64]
+
+End = Literal["shortest", "longest"]
+
+Cause = Literal["pixels", "resolution", "noise", "levelling", "form", "named"]
+"""What ends a band: points or what the file states of its instrument, waves that fall faster than
+those of any surface, a flat density, the levelling, what this left of the form, or the user."""
+
+_PIXELS = 2.5
+"""Points in the shortest wave of the densities in which instruments are looked for."""
+
+_ATTENUATED, _NOISY = 0.2, 0.2
+"""Part of the density that an instrument may take away, and that its noise may add, in the band;
+what is found of both is corrected."""
+
+_LOST, _DROWNED = 0.85, 1.0
+"""The same of the waves that tell the model, which has transfer and noise as parameters."""
+
+_NYQUIST = 2.0
+"""Points in the shortest wave that pixels hold."""
+
+_CLIFF, _CLIFF_BINS, _CLIFF_MODES = 0.1, 2, 8
+"""Ratio of densities and the bins over which it is reached where a density ends; modes that each
+bin must have."""
+
+_FORM, _FORM_BINS = 2.0, 16
+"""Ratio of densities by another window, or with more form taken off, from which on these decide
+instead of the surface; bins of the longest waves in which this is looked for."""
+
+_FINER = 2.0
+"""How far below the shortest wave that pixels hold a surface may go on, in the draws."""
+
+_FEWEST_OCTAVES = 1
+"""Octaves that must be left of a band."""
+
+_ORDER = 3
+"""Order of the polynomial whose removal tells what the levelling decides."""
+
+
+@dataclass(frozen=True, slots=True)
+class BandLimit:
+    """An end of the trusted wavelengths, and why it is one.
+
+    Attributes
+    ----------
+    end : {"shortest", "longest"}
+        Which end.
+    cause : str
+        Why, one of :data:`Cause`.
+    wavelength : float
+        Where. (Units: m)
+    """
+
+    end: End
+    cause: Cause
+    wavelength: float
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """Trusted wavelengths of a scan, and what its density shows beside them.
+
+    Attributes
+    ----------
+    shortest, longest : BandLimit
+        The ends that count.
+    limits : tuple of BandLimit
+        All that were found, the ends that count among them.
+    stripes : tuple of int
+        Axes along which the map is shifted or levelled row by row; these waves are left out.
+    anisotropy : float
+        Of a map the rms slope along x over that along y; 1 for lines.
+    instrument : Instrument
+        What the instrument does to the density.
+    informative : float
+        Shortest wavelength that tells the model. (Units: m)
+    end : float
+        Shortest wavelength that the surface is continued to: that which its points hold, unless
+        instrument or density end before. (Units: m)
+    finest : float
+        Shortest wavelength that it may go on to, in the draws. (Units: m)
+    """
+
+    shortest: BandLimit
+    longest: BandLimit
+    limits: tuple[BandLimit, ...]
+    stripes: tuple[int, ...]
+    anisotropy: float
+    instrument: Instrument
+    informative: float
+    end: float
+    finest: float
+
+    @property
+    def ends(self) -> tuple[BandLimit, BandLimit]:
+        """Both ends, the shortest first."""
+        return self.shortest, self.longest
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """A measurement in its waves.
+
+    Attributes
+    ----------
+    measurement : Measurement
+        What was measured.
+    waves : Periodogram
+        Power of all its waves.
+    density : Density
+        Isotropic density of a map without its stripes, C_1D of a line; trusted or not.
+    alternatives : tuple of Density
+        The same with another window, and with more of the form taken off.
+    band : Band
+        What of it can be trusted.
+    """
+
+    measurement: Measurement
+    waves: Periodogram
+    density: Density
+    alternatives: tuple[Density, ...]
+    band: Band
+
+    @property
+    def trusted_measurement(self) -> Measurement:
+        """The measurement with the shortest wavelength of its band."""
+        return replace(self.measurement, shortest=self.band.shortest.wavelength)
+
+    @property
+    def trusted(self) -> Density:
+        """The density over its band."""
+        return self.density.within(self.band.shortest.wavelength, self.band.longest.wavelength)
+
+    @property
+    def informative(self) -> Density:
+        """The density where it tells the model."""
+        return self.density.within(self.band.informative, self.band.longest.wavelength)
+
+
+def scan(
+    measurement: Measurement, shortest: float | None = None, longest: float | None = None
+) -> Scan:
+    """A measurement with its trusted band.
+
+    Parameters
+    ----------
+    measurement : Measurement
+        A levelled measurement.
+    shortest, longest : float, optional
+        Ends of the band in place of those that are found. (Units: m)
+
+    Raises
+    ------
+    ValueError
+        If hardly any wavelength can be trusted.
+    """
+    waves, pixel = periodogram(measurement), max(measurement.pixels)
+    striped = () if measurement.is_line else stripes(waves, measurement.shortest)
+    without = _without(waves, striped)
+    density = waves.density(without)
+    seen = density.within(_PIXELS * pixel, measurement.longest)
+    cliff, behind = _cliff(seen)
+    seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
+    instrument = seen_instrument(seen)
+    resolution = max(cliff, instrument.wavelength(_ATTENUATED))
+    noise = instrument.noisy(seen, _NOISY)
+    found = [
+        BandLimit("shortest", "pixels", measurement.shortest),
+        BandLimit("longest", "levelling", measurement.longest),
+    ]
+    if resolution > _NYQUIST * pixel:
+        found.append(BandLimit("shortest", "resolution", resolution))
+    if noise > _NYQUIST * pixel:
+        found.append(BandLimit("shortest", "noise", noise))
+    alternatives = _alternatives(measurement, without)
+    form = _form(density, alternatives, measurement.longest)
+    if form is not None:
+        found.append(form)
+    given: tuple[tuple[End, float | None], ...] = (("shortest", shortest), ("longest", longest))
+    for end, named in given:
+        if named is not None:
+            found = [limit for limit in found if limit.end != end]
+            found.append(BandLimit(end, "named", named))
+    ends = [[limit for limit in found if limit.end == end] for end in ("shortest", "longest")]
+    low = max(ends[0], key=lambda limit: limit.wavelength)
+    high = min(ends[1], key=lambda limit: limit.wavelength)
+    if high.wavelength < 2**_FEWEST_OCTAVES * low.wavelength:
+        raise ValueError(
+            f"{measurement.path}: wavelengths from {low.wavelength:.3g} m ({low.cause}) to "
+            f"{high.wavelength:.3g} m ({high.cause}) can be trusted, less than an octave; use a "
+            "better scan, or name --shortest and --longest"
+        )
+    informative, last = low.wavelength, max(behind, _NYQUIST * pixel)
+    finest = last / _FINER
+    if low.cause in ("resolution", "noise"):
+        informative = max(
+            cliff,
+            instrument.wavelength(_LOST),
+            instrument.noisy(seen, _DROWNED),
+            measurement.shortest,
+        )
+        last = max(last, behind or informative)
+    elif low.cause == "named":
+        instrument = Instrument()
+    band = Band(
+        shortest=low,
+        longest=high,
+        limits=tuple(found),
+        stripes=striped,
+        anisotropy=1.0 if measurement.is_line else anisotropy(waves, low.wavelength),
+        instrument=instrument,
+        informative=informative,
+        end=min(last, low.wavelength),
+        finest=min(finest, low.wavelength),
+    )
+    return Scan(measurement, waves, density, alternatives, band)
+
+
+def _without(waves: Periodogram, striped: tuple[int, ...]) -> NDArray[np.bool_] | None:
+    """Waves that hold stripes."""
+    if not striped:
+        return None
+    return np.asarray(np.any([waves.near_axis(axis) for axis in striped], axis=0))
+
+
+def _cliff(density: Density) -> tuple[float, float]:
+    """Wavelengths before and behind the end of a density, as of a filter; 0 if nowhere."""
+    values, least = density.value, np.minimum(density.modes[:-1], density.modes[1:])
+    if values.size <= _CLIFF_BINS:
+        return 0.0, 0.0
+    low, high = values[:-_CLIFF_BINS], values[_CLIFF_BINS:]
+    falls = np.flatnonzero((high < _CLIFF * low) & (least[1:] > _CLIFF_MODES))
+    if not falls.size:
+        return 0.0, 0.0
+    first = falls[0]
+    return (
+        float(2 * np.pi / density.wavevector[first]),
+        float(2 * np.pi / density.wavevector[first + 1]),
+    )
+
+
+def _form(density: Density, alternatives: Sequence[Density], longest: float) -> BandLimit | None:
+    """Where the waves begin whose density does not depend on window and levelling."""
+    here = np.flatnonzero(density.wavevector >= 2 * math.pi / longest)[:_FORM_BINS]
+    apart = [np.abs(np.log(other.value[here] / density.value[here])) for other in alternatives]
+    if not apart:
+        return None
+    agree = np.max(apart, axis=0) < math.log(_FORM)
+    first = int(np.argmax(agree)) if np.any(agree) else here.size - 1
+    if first == 0:
+        return None
+    return BandLimit("longest", "form", float(2 * math.pi / density.wavevector[here[first]]))
+
+
+def _alternatives(
+    measurement: Measurement, without: NDArray[np.bool_] | None
+) -> tuple[Density, ...]:
+    """Densities by other choices that are as good: the window, and how much form is taken off."""
+    if measurement.periodic:
+        return ()
+    return (
+        periodogram(measurement, window="blackman").density(without),
+        periodogram(measurement, _levelled(measurement.heights)).density(without),
+    )
+
+
+def _levelled(heights: Array) -> Array:
+    """Heights without their polynomials up to an order."""
+    axes = [np.polynomial.legendre.legvander(np.linspace(-1, 1, n), _ORDER) for n in heights.shape]
+    bases = [np.linalg.qr(one)[0] for one in axes]
+    if heights.ndim == 1:
+        return np.asarray(heights - bases[0] @ (bases[0].T @ heights))
+    weights = bases[0].T @ heights @ bases[1]
+    orders = np.add.outer(np.arange(_ORDER + 1), np.arange(_ORDER + 1))
+    return np.asarray(heights - bases[0] @ np.where(orders <= _ORDER, weights, 0.0) @ bases[1].T)

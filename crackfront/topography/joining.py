@@ -1,0 +1,326 @@
+"""One density of all scans of a surface with its scatter, and the spectrum that continues it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.analysis.estimate import Estimate
+from crackfront.core.spectrum import TabulatedSpectrum
+from crackfront.topography.bands import Scan
+from crackfront.topography.densities import BINS_PER_DECADE, Density
+from crackfront.topography.fitting import Fit, fitted_model
+
+Array = NDArray[np.float64]
+
+_DRAWS = 400
+_SEED = np.random.SeedSequence(20240229, spawn_key=(0xD4A3,))
+
+_CONTINUED_BINS = 6
+"""Points a decade of a continuation."""
+
+_FLAT = 32.0
+"""How far beyond the longest waves a continuation goes: all roll-offs that are looked for."""
+
+_BAND_OCTAVES = 0.5
+"""By how much the shortest trusted wavelength varies in the draws."""
+
+_FIRST_BINS = 3
+"""Of how many of the longest bins some are left out in the draws."""
+
+_DECADES = 2
+"""Decades below the pixels over which the model is continued, to see what is missing."""
+
+_LEVEL_SIGMA, _LEVEL = 3.0, math.log(1.25)
+"""Standard errors, and ratio of densities, from which on a scan disagrees with the others."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointDensity:
+    """Isotropic density of all scans of a surface over their trusted bands.
+
+    Attributes
+    ----------
+    wavevector, value : (n,) arrays
+        As of a density. (Units: 1 / m and m^4)
+    error : (n,) array
+        Standard error of the logarithm of the value, which holds the scatter between scans.
+    scatter : float
+        Standard deviation of the levels of the scans beyond what their modes explain, relative.
+    levels : tuple of Estimate
+        Density of every scan over that of the others where they overlap; NaN where none do.
+    """
+
+    wavevector: Array
+    value: Array
+    error: Array
+    scatter: float
+    levels: tuple[Estimate[float], ...]
+
+    def disagrees(self, index: int) -> bool:
+        """Whether a scan departs from the others by more than its modes explain."""
+        level = self.levels[index]
+        if not math.isfinite(level.value):
+            return False
+        apart = abs(math.log(level.value))
+        return apart > max(_LEVEL, _LEVEL_SIGMA * level.standard_error / level.value)
+
+
+@dataclass(frozen=True, slots=True)
+class Shares:
+    """Where e_el comes from.
+
+    Attributes
+    ----------
+    measured, continued : float
+        Parts of e_el in the measured bands, and in the continuation; their sum is 1.
+    missing_short : float
+        What two more decades of shorter waves would add by the model, relative to e_el.
+    missing_long : float
+        What longer waves would add by the model where it has not found the plateau, else 0.
+    """
+
+    measured: float
+    continued: float
+    missing_short: float
+    missing_long: float
+
+
+@dataclass(frozen=True, slots=True)
+class JointSpectrum:
+    """Spectrum of a surface, measured where it can be and continued beyond.
+
+    Attributes
+    ----------
+    spectrum : TabulatedSpectrum
+        Measured over the bands; by the model to the shortest wave that pixels and instrument hold,
+        and to the plateau where this is seen; else flat above the longest measured wave.
+        (Units: m)
+    draws : tuple of TabulatedSpectrum
+        Spectra that agree as well with what was measured: noise of the modes, scatter of scans,
+        window and levelling, ends of the band, and continuation.
+    density : JointDensity
+        What was measured.
+    fit : Fit
+        The model of the continuation.
+    shares : Shares
+        Where e_el comes from.
+    """
+
+    spectrum: TabulatedSpectrum
+    draws: tuple[TabulatedSpectrum, ...]
+    density: JointDensity
+    fit: Fit
+    shares: Shares
+
+    @property
+    def shortest(self) -> float:
+        """Shortest wavelength that is measured (Units: m)."""
+        return float(2 * np.pi / self.density.wavevector[-1])
+
+    @property
+    def longest(self) -> float:
+        """Longest wavelength that is measured (Units: m)."""
+        return float(2 * np.pi / self.density.wavevector[0])
+
+    def estimate(self, quantity: Callable[[TabulatedSpectrum], float]) -> Estimate[float]:
+        """A positive quantity of the spectrum with its 95% interval, on a logarithmic scale."""
+        value, drawn = quantity(self.spectrum), np.array([quantity(item) for item in self.draws])
+        low, high = np.quantile(drawn, (0.025, 0.975))
+        error = value * float(np.std(np.log(drawn)))
+        return Estimate(value, error, min(value, float(low)), max(value, float(high)))
+
+
+def joint_spectrum(scans: Sequence[Scan]) -> JointSpectrum:
+    """Spectrum of all scans of a surface.
+
+    Raises
+    ------
+    ValueError
+        If the densities do not determine a spectrum.
+    """
+    fit = fitted_model([(one.informative, one.band.instrument) for one in scans])
+    trusted = [one.trusted for one in scans]
+    logarithms = [fit.isotropic(item, index) for index, item in enumerate(trusted)]
+    isotropic = [
+        replace(item, value=np.exp(np.median(found, axis=0)), is_profile=False)
+        for item, found in zip(trusted, logarithms, strict=True)
+    ]
+    model = fit.median
+    scatter, levels = _levels(isotropic)
+    joined = _joined(isotropic, [0.0] * len(scans), scatter)
+    end = min(one.band.end for one in scans)
+    seen = fit.has_roll_off
+    spectrum = _continued(joined[0], joined[1], model, fit.lowest if seen else None, end)
+    longer = _continued(joined[0], joined[1], model, fit.lowest, end)
+    shares = _shares(spectrum, longer, joined[0], model)
+    return JointSpectrum(
+        spectrum=spectrum,
+        draws=_draws(scans, trusted, logarithms, scatter, fit),
+        density=JointDensity(*joined, scatter, levels),
+        fit=fit,
+        shares=shares,
+    )
+
+
+def _bins(wavevector: Array) -> NDArray[np.int64]:
+    """Number of the bin of a wavevector, the same for all scans."""
+    return np.floor(np.log10(wavevector) * BINS_PER_DECADE).astype(np.int64)
+
+
+def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float], ...]]:
+    """Scatter of the levels of scans, and level of each against the others."""
+    unknown = Estimate(*(math.nan,) * 4)
+    tables = [
+        dict(zip(_bins(one.wavevector).tolist(), range(one.value.size), strict=True))
+        for one in densities
+    ]
+    found: list[tuple[float, float]] = []
+    for number, (one, table) in enumerate(zip(densities, tables, strict=True)):
+        apart, weights = [], []
+        for place, index in table.items():
+            others = [
+                (item.value[other[place]], item.modes[other[place]])
+                for position, (item, other) in enumerate(zip(densities, tables, strict=True))
+                if position != number and place in other
+            ]
+            if others:
+                values, modes = np.transpose(others)
+                mean, total = np.average(values, weights=modes), float(np.sum(modes))
+                apart.append(math.log(one.value[index] / mean))
+                weights.append(1 / (1 / one.modes[index] + 1 / total))
+        found.append(
+            (float(np.average(apart, weights=weights)), float(np.sum(weights)) ** -0.5)
+            if weights
+            else (math.nan, math.nan)
+        )
+    known = np.array([pair for pair in found if math.isfinite(pair[0])])
+    scatter = 0.0
+    if len(known) > 1:
+        # A level is that against the others, so that two scans tell the same difference twice.
+        excess = float(np.mean(known[:, 0] ** 2 - known[:, 1] ** 2))
+        scatter = math.sqrt(max(0.0, excess) / 2)
+    levels = tuple(
+        unknown
+        if math.isnan(level)
+        else Estimate(
+            math.exp(level),
+            math.exp(level) * error,
+            math.exp(level - 1.96 * error),
+            math.exp(level + 1.96 * error),
+        )
+        for level, error in found
+    )
+    return scatter, levels
+
+
+def _joined(
+    densities: Sequence[Density], levels: Sequence[float], scatter: float
+) -> tuple[Array, Array, Array]:
+    """Wavevectors, densities and errors of their logarithms, of scans moved by levels."""
+    places = np.concatenate([_bins(one.wavevector) for one in densities])
+    values = np.concatenate(
+        [one.value * math.exp(level) for one, level in zip(densities, levels, strict=True)]
+    )
+    wavevector = np.log(np.concatenate([one.wavevector for one in densities]))
+    modes = np.concatenate([one.modes for one in densities])
+    weight = 1 / (1 / modes + scatter**2)
+    _, index = np.unique(places, return_inverse=True)
+    total = np.bincount(index, weight)
+    means = (np.bincount(index, weight * part) / total for part in (wavevector, values))
+    logarithm, value = map(np.asarray, means)
+    return np.exp(logarithm), value, np.asarray(total**-0.5)
+
+
+def _continued(
+    wavevector: Array,
+    value: Array,
+    model: Callable[[Array], Array],
+    lowest: float | None,
+    end: float,
+) -> TabulatedSpectrum:
+    """Table of measured values, continued by a model: over gaps, to an end, and to the plateau.
+
+    It is flat above the longest measured wave where the lowest wavevector of a model is None.
+    """
+    last = max(2 * math.pi / end, wavevector[-1] * (1 + 1e-6))
+    first = [] if lowest is None else [lowest / _FLAT]
+    between = []
+    for one, other in pairwise([*first, *wavevector, last]):
+        number = math.ceil(math.log10(other / one) * _CONTINUED_BINS)
+        between.append(np.geomspace(one, other, max(number, 1) + 1)[1:-1])
+    extra = np.concatenate([first, *between, [last]])
+    every = np.concatenate([wavevector, extra])
+    table = np.concatenate([value, model(extra)])
+    order = np.argsort(every)
+    return TabulatedSpectrum(
+        tuple((2 * np.pi / every[order]).tolist()), tuple(table[order].tolist())
+    )
+
+
+def _shares(
+    spectrum: TabulatedSpectrum,
+    longer: TabulatedSpectrum,
+    wavevector: Array,
+    model: Callable[[Array], Array],
+) -> Shares:
+    """Where e_el comes from; the longer waves are those of another continuation."""
+    total = spectrum.mean_square(0.5)
+    # Neighbours further apart than this have a continuation between them.
+    apart = np.diff(np.log10(wavevector)) > 1 / _CONTINUED_BINS
+    groups = np.split(2 * np.pi / wavevector, np.flatnonzero(apart) + 1)
+    parts = [spectrum.mean_square_between(0.5, group[-1], group[0]) for group in groups]
+    measured = sum(parts) / total
+    finer = np.geomspace(1, 10**_DECADES, 20) * 2 * np.pi / spectrum.short_cutoff
+    tail = TabulatedSpectrum(tuple((2 * np.pi / finer).tolist()), tuple(model(finer).tolist()))
+    beyond = tail.mean_square_between(0.5, tail.short_cutoff, spectrum.short_cutoff)
+    return Shares(measured, 1 - measured, beyond / total, longer.mean_square(0.5) / total - 1)
+
+
+def _draws(
+    scans: Sequence[Scan],
+    densities: Sequence[Density],
+    logarithms: Sequence[Array],
+    scatter: float,
+    fit: Fit,
+) -> tuple[TabulatedSpectrum, ...]:
+    """Spectra that agree with what was measured; `logarithms` are those of every state of a fit."""
+    finest = math.log(min(one.band.finest for one in scans))
+    rng = np.random.default_rng(_SEED)
+    choices = [_choices(one, density) for one, density in zip(scans, densities, strict=True)]
+    drawn = []
+    for state in rng.integers(len(fit.surface), size=_DRAWS):
+        parts = []
+        for one, item, options, every in zip(scans, densities, choices, logarithms, strict=True):
+            logarithm = every[state] + options[rng.integers(len(options))]
+            logarithm = logarithm + rng.standard_normal(item.value.size) / np.sqrt(item.modes)
+            logarithm += one.measurement.missing * rng.uniform(0, 1)
+            first = rng.integers(_FIRST_BINS)
+            highest = 2 * np.pi / one.band.shortest.wavelength * 2 ** -rng.uniform(0, _BAND_OCTAVES)
+            kept = (np.arange(item.value.size) >= first) & (item.wavevector <= highest)
+            if not np.any(kept):
+                kept[:] = True
+            parts.append(
+                Density(item.wavevector[kept], np.exp(logarithm[kept]), item.modes[kept], False)
+            )
+        levels = (scatter * rng.standard_normal(len(parts))).tolist()
+        wavevector, value, _ = _joined(parts, levels, scatter)
+        shortest = math.log(2 * np.pi / wavevector[-1])
+        last = math.exp(rng.uniform(min(finest, shortest), shortest))
+        model = fit.state(int(state)).median
+        drawn.append(_continued(wavevector, value, model, fit.lowest, last))
+    return tuple(drawn)
+
+
+def _choices(one: Scan, density: Density) -> list[Array]:
+    """Logarithms of what other windows and levellings make of a density, relative to it."""
+    places = {place: index for index, place in enumerate(_bins(one.density.wavevector).tolist())}
+    mine = [places[place] for place in _bins(density.wavevector).tolist()]
+    others = [np.log(item.value / one.density.value)[mine] for item in one.alternatives]
+    # What was chosen counts as much as all else together.
+    return [np.zeros(len(mine))] * max(1, len(others)) + others
