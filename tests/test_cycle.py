@@ -701,14 +701,14 @@ def test_making_contact_gains_no_more_than_the_first_circle_costs():
 def test_losing_contact_gains_no_more_than_what_adheres_when_one_site_has_passed_the_apex():
     least = 0.0
     for field, record in cycles_of_few_sites("cubic"):
+        assert record.dissipated_energy.sum() + record.pull_off_energy > 0
         if record.pull_off_energy >= 0:
             continue
         found = relax(record.fronts[-1], record.end_load, -1, field)
         left = np.maximum(found.front, first_place(field))
-        assert np.min(left) < 0.2 < 0.4 < np.max(left)
         assert record.pull_off_energy > contact_energy(left, record.end_load, field) - 1e-6
         least = min(least, record.pull_off_energy)
-    assert -1.0 < least < -0.3
+    assert -1.5 < least < -0.3
 
 
 def test_the_apparent_work_is_less_in_retraction_only_where_the_mean_radius_has_grown_more():

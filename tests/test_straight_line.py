@@ -256,8 +256,8 @@ def test_a_cycle_of_the_line_with_its_fronts_goes_on_to_the_same_bits(command, m
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"spring": 0}, "spring is 0.0; its length must be positive and finite"),
-        ({"spring": -2}, "spring is -2.0; its length must be positive"),
+        ({"spring": 0}, "Invalid value for '--spring': 0.0 is not in the range"),
+        ({"spring": -2}, "Invalid value for '--spring': -2.0 is not in the range"),
         ({"spring": None}, "--spring is missing; --geometry line needs it"),
         ({"from_": None}, "--from is missing; --geometry line needs it"),
         ({"to": 200}, "loads go from 300.0 to 200.0; the second must be above the first"),
