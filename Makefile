@@ -32,6 +32,8 @@ RESULTS  = results/$(basename $(notdir $(SWEEP)))/
 REPORT   = results/tests/junit.xml
 IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1
 PIP      = PIP_USE_PEP517=1 .venv/bin/python -m pip install --quiet --no-deps --no-build-isolation
+# Tests on all cores, of which eight are enough; one that is done takes from another.
+PARALLEL = -n auto --maxprocesses 8 --dist worksteal
 PACKAGES = .venv/.packages-$(MPI)
 READY    = .venv/.ready-$(MPI)
 
@@ -88,7 +90,7 @@ endif
 test: env  ## Run the tests that are not slow
 	@mkdir -p $(dir $(REPORT))
 	@echo "Test report: $(REPORT)"
-	@$(IN_ENV) .venv/bin/python -m pytest -m "not slow" --junitxml=$(REPORT)
+	@$(IN_ENV) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" --junitxml=$(REPORT)
 
 test-cluster: env  ## Run the tests that need a Slurm, on one started for them (5 minutes)
 	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm tests/cluster

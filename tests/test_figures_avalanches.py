@@ -33,9 +33,9 @@ def record():
         springs=(5.0, 10.0),
         n_tile=1,
     )
-    small = small.model_copy(
-        update={"line": small.line.model_copy(update={"smallest_area": 5.0, "length": 5.0})}
-    )
+    # More than a site a Larkin length, so that short springs have events.
+    fine = {"elastic_energy": 0.9, "pixels_per_cutoff": 3.0, "smallest_area": 5.0, "length": 5.0}
+    small = small.model_copy(update={"line": small.line.model_copy(update=fine)})
     return SCENE.compute(small, lambda line: None)
 
 

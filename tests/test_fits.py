@@ -384,8 +384,7 @@ def test_a_sweep_by_the_law_departs_from_it_by_nothing_and_extrapolates_to_its_l
     assert fit.n_large == np.count_nonzero(size > 1) > 3
     law = shipped_law()
     measured = size >= law.size[0]
-    sweep = SweepLaw(table, "roughness")
-    breadth = slope_breadth("roughness", sweep.spectrum(0))
+    breadth = slope_breadth("roughness", table.shape_of(0))
     limit = law_value(law.coefficients, fit.cells.w_rms, np.inf, min(breadth, law.breadth[1]))
     infinite = fit.cells.infinite_factor
     # The branches of a sphere have two sizes, whose mean k is not quite that of their mean size.

@@ -142,7 +142,7 @@ def tile_mean_square(spectrum: Spectrum, side: float, order: float) -> tuple[flo
     side : float
         Side of the tile. (Units: length)
     order : float
-        Order of the derivative, as in :meth:`Spectrum.mean_square`.
+        Order of the derivative, as in :meth:`~crackfront.core.spectrum.Spectrum.mean_square`.
 
     Returns
     -------

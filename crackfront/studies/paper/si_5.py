@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,12 +75,21 @@ class ParametricStudy:
     @property
     def table(self) -> SweepTable:
         """The table of the sweep; without contact radii there is no k by the law."""
-        shared = {item.name for item in fields(SweepTable)} & set(self.__slots__)
-        columns = {name: getattr(self, name) for name in shared}
+        columns = _shared(self)
         columns["spectrum"] = self.spectrum.astype(np.str_)
         if self.contact_radius is None:
             columns["contact_radius"] = np.full(self.e_el.shape, np.nan)
         return SweepTable(**columns, spring=np.full(self.e_el.shape[:2], np.nan))
+
+
+def _shared(record: ParametricStudy | SweepTable) -> dict[str, Any]:
+    """What the data of the figure and the table of a sweep have in common, by name."""
+    names = {item.name for item in fields(SweepTable)}
+    return {
+        item.name: getattr(record, item.name)
+        for item in fields(ParametricStudy)
+        if item.name in names
+    }
 
 
 def parametric_study(
@@ -88,13 +97,8 @@ def parametric_study(
 ) -> ParametricStudy:
     """Data of the figure from the fit of a sweep."""
     progress(f"{parameters.sweep}: {fit.table.finite.sum()} simulations with a value")
-    columns = {
-        item.name: getattr(fit.table, item.name)
-        for item in fields(SweepTable)
-        if item.name != "spring"
-    }
     return ParametricStudy(
-        **columns,
+        **_shared(fit.table),
         kind=fit.kind,
         lowest_elastic_energy=fit.lowest_elastic_energy,
         highest_elastic_energy=fit.highest_elastic_energy,
