@@ -290,8 +290,8 @@ def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jum
         ({"hurst": 0.0}, "hurst is 0.0; it must lie in"),
         ({"side": 0.1}, "side is 0.1; the tile must hold the short cutoff, 0.4"),
         ({"kind": "rough"}, "kind is 'rough'; choose one of roughness, chemical"),
-        ({"seed": -1}, "seed is -1; it must be 0 or more"),
-        ({"realisation": -2}, "realisation is -2; it must be 0 or more"),
+        ({"seed": -1}, "seed is -1; it must lie between 0 and"),
+        ({"realisation": -2}, "realisation is -2; it must lie between 0 and"),
     ],
 )
 def test_a_surface_that_cannot_be_is_refused(given, sentence):

@@ -61,6 +61,10 @@ def test_a_damaged_first_row_is_no_head(tmp_path, heights):
         tmp_path / "scan.txt", heights, lambda i, j, text: "***" if (i, j) == (0, 3) else text
     )
     assert "number 4 of the row is '***'" in refusal(damaged)
+    damaged = write_text(
+        tmp_path / "scan.txt", heights, lambda i, j, text: "x" if (i, j) == (0, 0) else text
+    )
+    assert "number 1 of the row is 'x'" in refusal(damaged)
 
 
 def test_a_row_that_lacks_a_number_is_refused(tmp_path, heights):
@@ -119,17 +123,17 @@ def test_files_larger_than_the_memory_are_refused_unread(tmp_path):
     path = tmp_path / "sparse.nc"
     with path.open("wb") as file:
         file.truncate(300_000_000_000)
-    assert "has 300 GB, more than can be read" in refusal(path)
+    assert "has 300 GB; more than" in refusal(path)
 
 
 def test_maps_that_claim_more_points_than_fit_are_refused_before_they_are_read(
     tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(files, "available_memory", lambda: 20_000_000_000)
+    monkeypatch.setattr("crackfront.data.bounds.memory_at_hand", lambda: 20_000_000_000)
     with h5py.File(tmp_path / "huge.h5", "w") as file:
         file.create_dataset("surface", shape=(200_000, 200_000), dtype="f8", chunks=(1000, 1000))
     message = refusal(tmp_path / "huge.h5", unit="um", size=(10.0, 10.0))
-    assert "claims 200000 x 200000 points, which need 4000 GB, and 20 GB of memory" in message
+    assert "claims 200000 x 200000 points, would need 4 TB of memory; here are 20 GB" in message
     with netcdf_file(tmp_path / "small.nc", "w", version=2) as file:
         for name in "xy":
             file.createDimension(name, 64)

@@ -4,20 +4,13 @@ from __future__ import annotations
 
 import collections
 import hashlib
-import os
+import math
 import re
-import stat
 from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
 
-_KINDS = (
-    (stat.S_ISDIR, "a folder"),
-    (stat.S_ISFIFO, "a pipe"),
-    (stat.S_ISCHR, "a device"),
-    (stat.S_ISBLK, "a device"),
-    (stat.S_ISSOCK, "a socket"),
-)
+from crackfront.data.bounds import memory_at_hand, refuse_beyond_memory, regular_file
 
 _BYTES_PER_POINT = 100
 """Memory that the analysis of a map takes for a point: heights, transforms, wavevectors."""
@@ -46,40 +39,17 @@ def refuse_special(path: Path) -> None:
     OSError
         If there is no such file.
     """
-    found = path.stat()
-    for is_kind, name in _KINDS:
-        if is_kind(found.st_mode):
-            raise ValueError(f"{path} is {name}; name a file of an instrument")
-    if found.st_size == 0:
+    if not regular_file(path, _LARGEST_FILE * memory_at_hand()).stat().st_size:
         raise ValueError(f"{path} is empty; export it from the instrument again")
-    if found.st_size > _LARGEST_FILE * (memory := available_memory()):
-        raise ValueError(
-            f"{path} has {_gigabytes(found.st_size)}, more than can be read with the "
-            f"{_gigabytes(memory)} of memory at hand; export a part of it"
-        )
 
 
 def refuse_too_many_points(path: Path, counts: Sequence[int]) -> None:
     """Raise where a map has more points than the memory holds, before any of them is read."""
-    needed = float(_BYTES_PER_POINT)
-    for count in counts:
-        needed *= count
-    if needed > (memory := available_memory()):
-        raise ValueError(
-            f"{path} claims {' x '.join(map(str, counts))} points, which need "
-            f"{_gigabytes(needed)}, and {_gigabytes(memory)} of memory are at hand; export a part "
-            "of the map, or with fewer points"
-        )
-
-
-def available_memory() -> int:
-    """Memory that a process may still take (Units: bytes)."""
-    try:
-        with Path("/proc/meminfo").open(encoding="ascii") as file:
-            [line] = [line for line in file if line.startswith("MemAvailable:")]
-        return 1024 * int(line.split()[1])
-    except (OSError, ValueError):
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    refuse_beyond_memory(
+        f"{path}, which claims {' x '.join(map(str, counts))} points,",
+        _BYTES_PER_POINT * math.prod(map(float, counts)),
+        "export a part of the map, or with fewer points",
+    )
 
 
 def checksum(path: Path) -> str:
@@ -168,14 +138,15 @@ def _refuse_damaged_rows(path: Path, lines: Sequence[str]) -> None:
 def _wrong_cell(cells: Sequence[str], width: int | None) -> int | None:
     """Place of what is no number in a row of such; None in a line that is a text or comment.
 
-    Above the first row, where `width` is that of rows, words are a head.
+    Above the first row, where `width` is that of rows, words are a head, but for one or two among
+    many numbers.
     """
     wrong = [place for place, cell in enumerate(cells) if not _is_number(cell)]
     if cells[0].startswith("#") or 2 * len(wrong) > len(cells):
         return None
     if width is not None:
         has_words = any(any(map(str.isalpha, cells[place])) for place in wrong)
-        if has_words or len(cells) != width:
+        if len(cells) != width or (has_words and 4 * len(wrong) > len(cells)):
             return None
     return wrong[0]
 
@@ -201,8 +172,3 @@ def _is_number(cell: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _gigabytes(size: float) -> str:
-    """A size of memory."""
-    return f"{size / 1e9:.{0 if size > 1e10 else 1}f} GB"
