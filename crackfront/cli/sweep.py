@@ -6,6 +6,7 @@ import sys
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -280,8 +281,8 @@ def fill_store(
         announce_compilation()
     started = time.monotonic()
     origin = provenance(configuration.read_text(encoding="utf-8"))
-    with heeding_notice():
-        outcomes = fill(store, missing, origin, checkpoint_seconds)
+    outcomes = fill(store, missing, origin, checkpoint_seconds)
+    with heeding_notice(), closing(outcomes):
         for count, (line, finished) in enumerate(_reported(outcomes, len(missing))):
             if finished.status == NOT_STORED:
                 raise click.ClickException(

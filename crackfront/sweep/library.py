@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import warnings
 from collections.abc import Mapping
@@ -69,8 +70,9 @@ def sweep(
             disable=not (progress and missing),
             file=sys.stderr,
         ) as bar,
+        contextlib.closing(fill(store, missing, origin)) as outcomes,
     ):
-        for simulation, finished in fill(store, missing, origin):
+        for simulation, finished in outcomes:
             if finished.status == STOPPED:
                 raise KeyboardInterrupt("what ran is kept; the same call goes on")
             if finished.status == NOT_STORED:

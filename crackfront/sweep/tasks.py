@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -46,11 +46,12 @@ def fill(
     simulations: Sequence[Simulation],
     origin: Provenance,
     checkpoint_seconds: float = 60.0,
-) -> Iterator[tuple[Simulation, Finished]]:
+) -> Generator[tuple[Simulation, Finished], None, None]:
     """Run simulations, the longest first, and store each as soon as it is finished.
 
     Each is told with how it ended, in the order in which they end. The first that is stopped or
-    cannot be stored is the last.
+    cannot be stored is the last. Whoever leaves before the end must close it: the ranks are
+    waited for.
 
     Raises
     ------
