@@ -104,5 +104,5 @@ def test_a_spacing_that_gives_no_samples_is_refused():
 
 def test_a_missing_transform_is_refused_with_the_command_that_installs_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "finufft", None)
-    with pytest.raises(ValueError, match=r"need finufft, .* pip install 'crackfront\[bem\]'"):
+    with pytest.raises(ValueError, match=r"need finufft, .* pip install '.\[bem\]'"):
         adhesion_on_rays(np.ones((8, 8)), PIXEL, np.zeros(1), 0.1, 4)
