@@ -1,7 +1,7 @@
 """Hysteresis of both models by amplitude: what is measured, told and shipped."""
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -24,14 +24,12 @@ from crackfront.data.section import ConfigurationError
 from crackfront.studies.boundary_elements.amplitude_picture import AmplitudePicture
 from crackfront.studies.boundary_elements.amplitude_report import amplitude_report
 from crackfront.studies.boundary_elements.amplitudes import (
-    Setting,
     SurfaceComparison,
     apparent_adhesion,
-    range_limits,
     regions,
-    settings,
     within,
 )
+from crackfront.studies.boundary_elements.averages import Setting, range_limits, settings
 from crackfront.studies.boundary_elements.cycle import ALL_LOADS, BoundaryCycle
 from crackfront.studies.boundary_elements.front import front_cycle
 from crackfront.studies.boundary_elements.parameters import amplitude_cases, load_validation
@@ -188,7 +186,7 @@ def test_regions_tell_pockets_islands_and_overhangs_apart():
 
 
 def comparison(**changes):
-    row = SurfaceComparison(*(0,) * 33)
+    row = SurfaceComparison(*(0,) * len(fields(SurfaceComparison)))
     return replace(row, roll_off=1.0, hurst=1.0, asked_energy=0.1, **changes)
 
 
@@ -203,12 +201,12 @@ def test_the_ratio_of_hystereses_is_that_of_the_means_with_the_error_of_the_jack
     assert math.isnan(Setting(tuple(rows[:1])).hysteresis_ratio().standard_error)
 
 
-def test_a_vanishing_range_is_extrapolated_by_the_length_of_the_zone():
+def test_a_vanishing_range_is_extrapolated_by_its_cube():
     def row(length, **changes):
         return comparison(
             interaction_range=length,
-            boundary_approach=0.6 + 2 * length**2,
-            boundary_hysteresis=0.4 * math.exp(-10 * length**2),
+            boundary_approach=0.6 + 2 * length**3,
+            boundary_hysteresis=0.4 - 3 * length**3,
             front_hysteresis=0.41,
             **changes,
         )
@@ -229,6 +227,19 @@ def test_a_cohesive_zone_weakens_the_pinning_and_leaves_the_smooth_sphere(config
     assert spread[1] < 0.8 * spread[0]
     smooth = front_cycle(cases[0], 64, 0.05, zone=0.1)
     np.testing.assert_allclose(smooth.states.apparent_work_of_adhesion, 1, rtol=1e-5)
+
+
+def test_the_square_of_the_stress_intensity_changes_the_works_and_leaves_the_smooth_sphere(rows):
+    smooth, *rough = rows
+    assert smooth.squared_approach == pytest.approx(smooth.front_approach, abs=1e-12)
+    for row in rough:
+        change = abs(row.squared_hysteresis - row.front_hysteresis)
+        assert 1e-4 < change < row.elastic_energy
+        means = [
+            (getattr(row, f"{name}_approach") + getattr(row, f"{name}_retraction")) / 2
+            for name in ("squared", "front")
+        ]
+        assert means[0] == pytest.approx(means[1], abs=row.elastic_energy)
 
 
 def test_the_range_ends_below_the_first_amplitude_that_is_outside_for_any_spectrum():

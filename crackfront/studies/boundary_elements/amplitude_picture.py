@@ -21,7 +21,8 @@ from crackfront.plots.style import (
     blank_figure,
     house_style,
 )
-from crackfront.studies.boundary_elements.amplitudes import Model, Setting, regions
+from crackfront.studies.boundary_elements.amplitudes import regions
+from crackfront.studies.boundary_elements.averages import Model, Setting
 from crackfront.studies.boundary_elements.cycle import N_ANGLE, BoundaryCycle
 from crackfront.studies.boundary_elements.front import FrontCycle, shared_states
 from crackfront.studies.boundary_elements.parameters import Case

@@ -17,10 +17,9 @@ from crackfront.studies.boundary_elements.amplitude_picture import (
     contact_figure,
     validity_figure,
 )
-from crackfront.studies.boundary_elements.amplitudes import (
+from crackfront.studies.boundary_elements.amplitudes import SurfaceComparison, compared_surfaces
+from crackfront.studies.boundary_elements.averages import (
     Setting,
-    SurfaceComparison,
-    compared_surfaces,
     range_limits,
     settings,
     validity_row,
@@ -105,6 +104,7 @@ def amplitude_report(rows: Sequence[SurfaceComparison], short_cutoff: float) -> 
         ["# Crack front against boundary elements, by amplitude", ""],
         [validity_sentence(told), ""] if told else [],
         _hysteresis_rows((*found, *limits)),
+        _change_rows(_rough(rows)),
         _difference_rows(_rough(rows)),
         _resolution_rows(rows),
         _minimiser_rows(found),
@@ -165,21 +165,12 @@ def _hysteresis_rows(found: Sequence[Setting]) -> list[str]:
                     one,
                     lambda row: row.boundary_approach,
                     lambda row: row.front_approach,
-                    lambda row: row.zone_approach,
                     lambda row: row.boundary_retraction,
                     lambda row: row.front_retraction,
-                    lambda row: row.zone_retraction,
-                ),
-                *_cells(
-                    one,
                     lambda row: (row.boundary_approach + row.boundary_retraction) / 2,
                     lambda row: (row.front_approach + row.front_retraction) / 2,
-                ),
-                *_cells(
-                    one,
                     lambda row: row.boundary_hysteresis,
                     lambda row: row.front_hysteresis,
-                    lambda row: row.zone_hysteresis,
                 ),
                 *(_cells(one, _factor, _front_factor, digits=2) if row.asked_energy else ["", ""]),
                 _shown(one.hysteresis_ratio(), 2) if row.asked_energy else "",
@@ -189,14 +180,13 @@ def _hysteresis_rows(found: Sequence[Setting]) -> list[str]:
         "Works of adhesion of the smooth sphere with the same force at the same penetration, in "
         "w_int; boundary elements first, then the front on the same surfaces; in brackets standard "
         "errors over surfaces. Hysteresis: the energy that either branch loses per area that it "
-        "sweeps, summed; k is half of it over e_el. Ratio: front over boundary elements. With "
-        "zone: a front that feels the mean of the heights over a cohesive zone of the length "
-        "E' w_int / tension^2. Range 0 is extrapolated from the two shortest of a surface.",
+        "sweeps, summed; k is half of it over e_el. Ratio: front over boundary elements. Range 0 "
+        "is extrapolated from the two shortest of a surface.",
         "",
         *_table(
             (
-                *("surfaces", "w_appr", "front", "with zone", "w_retr", "front", "with zone"),
-                *("mean", "front", "hysteresis", "front", "with zone", "k", "front", "ratio"),
+                *("surfaces", "w_appr", "front", "w_retr", "front", "mean", "front"),
+                *("hysteresis", "front", "k", "front", "ratio"),
             ),
             lines,
         ),
@@ -211,6 +201,36 @@ def _factor(row: SurfaceComparison) -> float:
 def _front_factor(row: SurfaceComparison) -> float:
     """Factor k of the front."""
     return row.front_hysteresis / (2 * row.elastic_energy)
+
+
+def _change_rows(found: Sequence[Setting]) -> list[str]:
+    """What changes of the front's model that are as cheap would give."""
+    lines = [
+        [
+            *_setting(one.rows[0], float(one.mean(_energy).value)),
+            *_cells(
+                one,
+                lambda row: row.boundary_hysteresis,
+                lambda row: row.front_hysteresis,
+                lambda row: row.zone_hysteresis,
+                lambda row: row.squared_hysteresis,
+                lambda row: (row.zone_approach + row.zone_retraction) / 2,
+                lambda row: (row.squared_approach + row.squared_retraction) / 2,
+            ),
+        ]
+        for one in found
+    ]
+    return [
+        "Changes of the model that are as cheap, by their hysteresis. With zone: a front that "
+        "feels the mean of the heights over a cohesive zone of the length E' w_int / tension^2. "
+        "With square: a front whose energy release rate has K^2 / 2E' of the roughness where it "
+        "acts, in place of its mean e_el.",
+        "",
+        *_table(
+            ("hysteresis", "front", "with zone", "with square", "mean, zone", "mean, square"),
+            lines,
+        ),
+    ]
 
 
 def _difference_rows(found: Sequence[Setting]) -> list[str]:

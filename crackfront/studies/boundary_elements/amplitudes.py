@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_fill_holes, label
 
-from crackfront.analysis.estimate import Estimate, mean_estimate, student_estimate
-from crackfront.analysis.validity import ValidityRow
 from crackfront.core import jkr
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
@@ -33,7 +30,6 @@ from crackfront.studies.boundary_elements.parameters import (
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Model = Literal["boundary", "front"]
 
 _JUMP = 0.25
 """Least motion of an arc that jumps, in short cutoffs."""
@@ -63,11 +59,20 @@ class SurfaceComparison:
     repelling: float = variable("part of the surface whose work of adhesion is negative", "1")
     boundary_approach: float = variable("w_appr of the boundary elements", ADHESION)
     boundary_retraction: float = variable("w_retr of the boundary elements", ADHESION)
+    boundary_hysteresis: float = variable("energy that they lose per area swept", ADHESION)
+    boundary_dissipated: float = variable("energy that they lose in both branches", ENERGY)
     front_approach: float = variable("w_appr of the front", ADHESION)
     front_retraction: float = variable("w_retr of the front", ADHESION)
+    front_hysteresis: float = variable("energy that it loses per area swept", ADHESION)
+    front_dissipated: float = variable("energy that it loses in both branches", ENERGY)
     zone_approach: float = variable("w_appr of a front with a cohesive zone", ADHESION)
     zone_retraction: float = variable("w_retr of a front with a cohesive zone", ADHESION)
-    zone_hysteresis: float = variable("energy it loses per area swept", ADHESION)
+    zone_hysteresis: float = variable("energy that it loses per area swept", ADHESION)
+    zone_dissipated: float = variable("energy that it loses in both branches", ENERGY)
+    squared_approach: float = variable("w_appr of a front with K^2", ADHESION)
+    squared_retraction: float = variable("w_retr of a front with K^2", ADHESION)
+    squared_hysteresis: float = variable("energy that it loses per area swept", ADHESION)
+    squared_dissipated: float = variable("energy that it loses in both branches", ENERGY)
     open_inside: float = variable("area within the front that boundary elements leave open", "1")
     closed_outside: float = variable("area outside the front that they close", "1")
     pockets: float = variable("open area enclosed by contact, boundary elements", "1")
@@ -79,10 +84,6 @@ class SurfaceComparison:
         "jumps of a quarter of a cutoff or more, boundary elements; NaN in large load steps", "1"
     )
     front_jumps: float = variable("the same of the front", "1")
-    boundary_dissipated: float = variable("energy lost in both branches, boundary", ENERGY)
-    front_dissipated: float = variable("energy lost in both branches, front", ENERGY)
-    boundary_hysteresis: float = variable("energy lost per area swept, boundary", ADHESION)
-    front_hysteresis: float = variable("energy lost per area swept, front", ADHESION)
     barriers: int = variable("steps that would have passed a barrier, and were shortened", "1")
     saddles: int = variable("states without forces that were no minimum, and were left", "1")
     least_released: float = variable("least fall of the energy at a penetration", ENERGY)
@@ -106,79 +107,25 @@ class SurfaceComparison:
         return self.roll_off, self.hurst, self.asked_energy
 
 
-@dataclass(frozen=True, slots=True)
-class Setting:
-    """Surfaces of one spectrum, amplitude, grid and load step."""
-
-    rows: tuple[SurfaceComparison, ...]
-
-    def mean(self, value: Callable[[SurfaceComparison], float]) -> Estimate:
-        """Mean of a quantity over the surfaces."""
-        return mean_estimate(np.array([value(row) for row in self.rows]))[0]
-
-    def hysteresis(self, model: Model) -> Estimate:
-        """Mean hysteresis of a model over the surfaces (Units: w_int)."""
-        return self.mean(lambda row: float(getattr(row, f"{model}_hysteresis")))
-
-    def hysteresis_ratio(self) -> Estimate:
-        """Hysteresis of the front over that of the boundary elements, means over the surfaces.
-
-        The standard error is that of the jackknife.
-        """
-        front, boundary = (
-            np.array([getattr(row, f"{model}_hysteresis") for row in self.rows])
-            for model in ("front", "boundary")
-        )
-        count = len(self.rows)
-        value = np.sum(front) / np.sum(boundary)
-        if count < 2:
-            return student_estimate(value, math.nan, 0)
-        left = (np.sum(front) - front) / (np.sum(boundary) - boundary)
-        error = math.sqrt((count - 1) / count * float(np.sum((left - np.mean(left)) ** 2)))
-        return student_estimate(value, error, count - 1)
-
-
-def settings(rows: Iterable[SurfaceComparison]) -> tuple[Setting, ...]:
-    """Surfaces that are averaged together, by resolution, spectrum and amplitude."""
-    alike: dict[tuple[float, ...], list[SurfaceComparison]] = {}
-    for row in rows:
-        alike.setdefault(row.setting, []).append(row)
-    return tuple(Setting(tuple(alike[key])) for key in sorted(alike))
-
-
 def surface_comparison(
-    case: Case, boundary: BoundaryCycle, front: FrontCycle, zone: FrontCycle
+    case: Case, boundary: BoundaryCycle, front: FrontCycle, **changed: FrontCycle
 ) -> SurfaceComparison:
     """Both models on one surface, in the states that they share but for that of the turn.
 
-    The second front has a cohesive zone as long as that of the boundary elements.
+    Fronts of a changed model come by their names, `zone` and `squared`.
     """
     theirs, ours = _compared(case, boundary, front)
-    states = front.states
-    adhesion = rough_adhesion(case.heights(), case.pixel)
-    works = [
-        [
-            float(np.mean(apparent_adhesion(model.force[kept], model.penetration[kept])))
-            for kept in (numbers[model.direction[numbers] == sign] for sign in (1, -1))
-        ]
-        for model, numbers in ((boundary, theirs), (states, ours), (zone.states, ours))
-    ]
-    areas = _areas(case, boundary, front)
-    lost = [
-        _lost(model, energy, kept)
-        for model, energy, kept in (
-            (boundary, boundary.energy, theirs),
-            (states, front.energy, ours),
-            (zone.states, zone.energy, ours),
-        )
-    ]
+    branches = _branches("boundary", boundary, boundary.energy, theirs)
+    for name, model in {"front": front, **changed}.items():
+        branches |= _branches(name, model.states, model.energy, ours)
     counts = [
         _jump_count(case, model.penetration[kept], model.direction[kept], radius[kept])
         for model, kept, radius in (
             (boundary, theirs, boundary.radius),
-            (states, ours, front.radius),
+            (front.states, ours, front.radius),
         )
     ]
+    adhesion = rough_adhesion(case.heights(), case.pixel)
     return SurfaceComparison(
         seed=case.seed,
         n_point=case.n_point,
@@ -189,24 +136,10 @@ def surface_comparison(
         asked_energy=case.elastic_energy,
         elastic_energy=adhesion.e_el,
         repelling=float(np.mean(adhesion.work_of_adhesion < 0)),
-        boundary_approach=works[0][0],
-        boundary_retraction=works[0][1],
-        front_approach=works[1][0],
-        front_retraction=works[1][1],
-        zone_approach=works[2][0],
-        zone_retraction=works[2][1],
-        zone_hysteresis=lost[2][1],
-        open_inside=areas[0],
-        closed_outside=areas[1],
-        pockets=areas[2],
-        islands=areas[3],
-        overhangs=areas[4],
+        **branches,
+        **_areas(case, boundary, front),
         boundary_jumps=counts[0],
         front_jumps=counts[1],
-        boundary_dissipated=lost[0][0],
-        front_dissipated=lost[1][0],
-        boundary_hysteresis=lost[0][1],
-        front_hysteresis=lost[1][1],
         barriers=int(np.sum(boundary.barriers)),
         saddles=int(np.sum(boundary.saddles)),
         least_released=float(np.min(boundary.released)),
@@ -282,28 +215,17 @@ def regions(closed: Mask, perimeter: Array, front: Array, pixel: float) -> Regio
     )
 
 
-def _areas(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> list[float]:
+def _areas(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> dict[str, float]:
     """Mean areas of the regions, relative to that within the front."""
-    theirs, ours = _compared(case, boundary, front)
+    names = ("open_inside", "closed_outside", "pockets", "islands", "overhangs")
     parts = []
-    for one, other in zip(theirs.tolist(), ours.tolist(), strict=True):
+    for one, other in zip(*_compared(case, boundary, front), strict=True):
         found = regions(
             boundary.closed_at(one), boundary.radius[one], front.radius[other], case.pixel
         )
         whole = np.count_nonzero(found.inside)
-        parts.append(
-            [
-                np.count_nonzero(part) / whole
-                for part in (
-                    found.open_inside,
-                    found.closed_outside,
-                    found.pockets,
-                    found.islands,
-                    found.overhangs,
-                )
-            ]
-        )
-    return [float(value) for value in np.mean(parts, axis=0)]
+        parts.append([np.count_nonzero(getattr(found, name)) / whole for name in names])
+    return dict(zip(names, np.mean(parts, axis=0).tolist(), strict=True))
 
 
 def _compared(
@@ -315,20 +237,28 @@ def _compared(
     return theirs[kept], ours[kept]
 
 
-def _lost(states: States, energy: Array, kept: NDArray[np.int64]) -> tuple[float, float]:
-    """Energy that both branches lose, and the sum of what they lose per area (Units: w_int).
+def _branches(
+    name: str, states: States, energy: Array, kept: NDArray[np.int64]
+) -> dict[str, float]:
+    """Works of adhesion, hysteresis and lost energy of a model.
 
-    In a load step it is the work of the force, by the trapezoidal rule, less the energy's rise.
+    In a load step it loses the work of the force, by the trapezoidal rule, less the energy's rise.
     """
-    lost = density = 0.0
+    works, lost, density = [], 0.0, 0.0
     for sign in (1, -1):
         branch = kept[states.direction[kept] == sign]
         force, area = states.force[branch], states.contact_area[branch]
+        works.append(float(np.mean(apparent_adhesion(force, states.penetration[branch]))))
         work = np.diff(states.penetration[branch]) * (force[1:] + force[:-1]) / 2
         part = float(np.sum(work - np.diff(energy[branch])))
         lost += part
         density += part / abs(float(area[-1] - area[0])) / WORK_OF_ADHESION
-    return lost, density
+    return {
+        f"{name}_approach": works[0],
+        f"{name}_retraction": works[1],
+        f"{name}_hysteresis": density,
+        f"{name}_dissipated": lost,
+    }
 
 
 def _jump_count(
@@ -349,19 +279,25 @@ def compared_surfaces(
     given = parameters.front
     fronts: dict[tuple[object, ...], FrontCycle] = {}
 
-    def front(case: Case, zone: float) -> FrontCycle:
+    def front(case: Case, zone: float = 0.0, squared: bool = False) -> FrontCycle:
         # The surface is that of the spectrum, not of the grid: so is the front.
-        key = case.seed, case.roll_off, case.hurst, case.elastic_energy, case.schedule, zone
+        surface = case.seed, case.roll_off, case.hurst, case.elastic_energy, case.schedule
+        key = *surface, zone, squared
         if key not in fronts:
-            fronts[key] = front_cycle(case, given.n_angle, given.spacing, zone=zone)
+            fronts[key] = front_cycle(
+                case, given.n_angle, given.spacing, zone=zone, squared=squared
+            )
         return fronts[key]
 
     for case in amplitude_cases(parameters):
         boundary = cycle(case)
         if boundary is None:
             continue
-        sharp, blunt = front(case, 0.0), front(case, zone_length(case.interaction_range))
-        yield case, boundary, sharp, surface_comparison(case, boundary, sharp, blunt)
+        sharp, blunt = front(case), front(case, zone=zone_length(case.interaction_range))
+        found = surface_comparison(
+            case, boundary, sharp, zone=blunt, squared=front(case, squared=True)
+        )
+        yield case, boundary, sharp, found
 
 
 def zone_length(interaction_range: float) -> float:
@@ -373,57 +309,3 @@ def zone_length(interaction_range: float) -> float:
     0.0236
     """
     return CONTACT_MODULUS * interaction_range**2 / (9 * WORK_OF_ADHESION)
-
-
-def range_limits(rows: Sequence[SurfaceComparison]) -> list[SurfaceComparison]:
-    """The two shortest ranges of every surface, extrapolated to a vanishing one.
-
-    Works of adhesion are linear in the length of the cohesive zone, hence in the square of the
-    range; so is the logarithm of the hysteresis, where both are positive. Everything else is that
-    of the shorter range.
-    """
-    alike: dict[tuple[float, ...], list[SurfaceComparison]] = {}
-    for row in rows:
-        alike.setdefault((*row.scene, row.seed, row.step), []).append(row)
-    limits = []
-    for found in alike.values():
-        found.sort(key=lambda row: (row.interaction_range, -row.n_point))
-        fine = found[0]
-        longer = [row for row in found if row.interaction_range > fine.interaction_range]
-        if not longer:
-            continue
-        coarse = longer[0]
-        share = 1 / ((coarse.interaction_range / fine.interaction_range) ** 2 - 1)
-        lost, more = fine.boundary_hysteresis, coarse.boundary_hysteresis
-        limits.append(
-            replace(
-                fine,
-                interaction_range=0.0,
-                boundary_approach=fine.boundary_approach
-                + share * (fine.boundary_approach - coarse.boundary_approach),
-                boundary_retraction=fine.boundary_retraction
-                + share * (fine.boundary_retraction - coarse.boundary_retraction),
-                boundary_hysteresis=lost * (lost / more) ** share
-                if min(lost, more) > 0
-                else lost + share * (lost - more),
-                zone_approach=fine.front_approach,
-                zone_retraction=fine.front_retraction,
-                zone_hysteresis=fine.front_hysteresis,
-            )
-        )
-    return limits
-
-
-def validity_row(setting: Setting, short_cutoff: float) -> ValidityRow:
-    """What is told of the front at one spectrum and amplitude."""
-    ratio, row = setting.hysteresis_ratio(), setting.rows[0]
-    return ValidityRow(
-        roll_off=row.roll_off / short_cutoff,
-        hurst=row.hurst,
-        elastic_energy=float(setting.mean(lambda one: one.elastic_energy).value),
-        ratio=float(ratio.value),
-        error=float(ratio.standard_error),
-        surfaces=len(setting.rows),
-        n_point=row.n_point,
-        interaction_range=row.interaction_range,
-    )

@@ -66,7 +66,13 @@ States = BoundaryCycle | ContactState[Any]
 
 
 def front_cycle(
-    case: Case, n_angle: int, spacing: float, *, rotated: bool = True, zone: float = 0.0
+    case: Case,
+    n_angle: int,
+    spacing: float,
+    *,
+    rotated: bool = True,
+    zone: float = 0.0,
+    squared: bool = False,
 ) -> FrontCycle:
     """Cycle of the crack front on the heights of a case.
 
@@ -82,6 +88,9 @@ def front_cycle(
         Length of the cohesive zone, over which the edge feels the mean of the heights: they count
         by exp(-q zone / 2). The energy of full conformity is that of the heights themselves.
         (Units: reduced lateral length)
+    squared : bool, optional
+        Whether the energy release rate has the square of the stress intensity of the roughness
+        where it acts, in place of its mean e_el (SI I C).
 
     Raises
     ------
@@ -90,8 +99,8 @@ def front_cycle(
     """
     began = time.process_time()
     heights = case.heights()
-    if zone > 0:
-        field = _zone_field(heights, case.pixel, n_angle, spacing, zone)
+    if zone > 0 or squared:
+        field = _changed_field(heights, case.pixel, n_angle, spacing, zone, squared)
     else:
         field = rotated_field(heights, case.pixel, n_angle, spacing, case.side / 2, rotated=rotated)
     mapped = time.process_time()
@@ -127,10 +136,10 @@ def front_cycle(
     )
 
 
-def _zone_field(
-    heights: Array, pixel: float, n_angle: int, spacing: float, zone: float
+def _changed_field(
+    heights: Array, pixel: float, n_angle: int, spacing: float, zone: float, squared: bool
 ) -> RayField:
-    """Field of a front whose cohesive zone has a length."""
+    """Field of a front with a cohesive zone, or with the square of the stress intensity."""
     along = 2 * np.pi * fftfreq(len(heights), pixel)
     across = 2 * np.pi * rfftfreq(len(heights), pixel)
     weight = np.exp(-0.5 * zone * np.hypot(along[:, None], across))
@@ -138,8 +147,11 @@ def _zone_field(
     n_sample = math.ceil(len(heights) * pixel / 2 / spacing)
     angles = 2 * np.pi * np.arange(n_angle) / n_angle
     values = adhesion_on_rays(averaged, pixel, angles, spacing, n_sample)
-    lowering = rough_adhesion(heights, pixel).e_el - rough_adhesion(averaged, pixel).e_el
-    values -= lowering * WORK_OF_ADHESION
+    # -sqrt(2 w_int / E') K, whose square is 4 w_int times the K^2 / 2 E' of mean e_el.
+    values -= (1 - rough_adhesion(averaged, pixel).e_el) * WORK_OF_ADHESION
+    e_el = rough_adhesion(heights, pixel).e_el * WORK_OF_ADHESION
+    lowering = values**2 / (4 * WORK_OF_ADHESION) if squared else e_el
+    values += WORK_OF_ADHESION - lowering
     return polar_field(spacing * np.arange(1.0, n_sample + 1), values, "cubic")
 
 
