@@ -27,7 +27,7 @@ from crackfront.simulate.surfaces import chosen_simulation, surface_adhesion
 from crackfront.simulate.tiles import measured_correlation_length
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.prediction import predicted, prediction_notes
-from crackfront.topography.reading import Treatment, read_measurements
+from crackfront.topography.reading import read_measurements
 from crackfront.topography.report import prediction_text, surface_text
 from crackfront.topography.tile import measured_adhesion
 
@@ -384,7 +384,7 @@ def test_a_surface_that_is_periodic_is_never_refused_for_its_edge(seed):
 def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
     found = cf.read_scan(SCAN, small, shortest="0.4um")
-    [measurement] = read_measurements([SCAN], Treatment(shortest=0.4e-6))
+    measurement = replace(read_measurements([SCAN])[0], shortest=0.4e-6)
     adhesion = measured_adhesion(measurement, small)
     np.testing.assert_allclose(
         surface_adhesion(found).work_of_adhesion, adhesion.work_of_adhesion, rtol=1e-9

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.data.written_units import prefixed
 from crackfront.topography.densities import (
     Density,
     Periodogram,
@@ -19,14 +20,16 @@ from crackfront.topography.densities import (
 )
 from crackfront.topography.fitting import Instrument, seen_instrument
 from crackfront.topography.reading import Measurement
+from crackfront.topography.tips import tip_wavelength
 
 Array = NDArray[np.float64]
 
 End = Literal["shortest", "longest"]
 
-Cause = Literal["pixels", "resolution", "noise", "levelling", "form", "named"]
+Cause = Literal["pixels", "resolution", "tip", "noise", "levelling", "form", "named"]
 """What ends a band: points or what the file states of its instrument, waves that fall faster than
-those of any surface, a flat density, the levelling, what this left of the form, or the user."""
+those of any surface, peaks that are rounder than valleys, a flat density, the levelling, what this
+left of the form, or the user."""
 
 _PIXELS = 2.5
 """Points in the shortest wave of the densities in which instruments are looked for."""
@@ -185,13 +188,18 @@ def scan(
     seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
     instrument = seen_instrument(seen)
     resolution = max(cliff, instrument.wavelength(_ATTENUATED))
+    tip = tip_wavelength(measurement)
+    if tip > instrument.wavelength(_ATTENUATED):
+        instrument = instrument.losing(_ATTENUATED, tip)
     noise = instrument.noisy(seen, _NOISY)
     found = [
         BandLimit("shortest", "pixels", measurement.shortest),
         BandLimit("longest", "levelling", measurement.longest),
     ]
-    if resolution > _NYQUIST * pixel:
-        found.append(BandLimit("shortest", "resolution", resolution))
+    if max(resolution, tip) > _NYQUIST * pixel:
+        # What a tip takes away may look like an attenuation as well.
+        cause: Cause = "tip" if tip > cliff else "resolution"
+        found.append(BandLimit("shortest", cause, max(resolution, tip)))
     if noise > _NYQUIST * pixel:
         found.append(BandLimit("shortest", "noise", noise))
     alternatives = _alternatives(measurement, without)
@@ -207,21 +215,23 @@ def scan(
     low = max(ends[0], key=lambda limit: limit.wavelength)
     high = min(ends[1], key=lambda limit: limit.wavelength)
     if high.wavelength < 2**_FEWEST_OCTAVES * low.wavelength:
+        short, long = (prefixed("m", limit.wavelength) for limit in (low, high))
         raise ValueError(
-            f"{measurement.path}: wavelengths from {low.wavelength:.3g} m ({low.cause}) to "
-            f"{high.wavelength:.3g} m ({high.cause}) can be trusted, less than an octave; use a "
-            "better scan, or name --shortest and --longest"
+            f"{measurement.path}: of the waves only those above {short} ({low.cause}) and below "
+            f"{long} ({high.cause}) can be trusted, less than an octave; use a better scan, or "
+            "name --shortest and --longest"
         )
     informative, last = low.wavelength, max(behind, _NYQUIST * pixel)
     finest = last / _FINER
-    if low.cause in ("resolution", "noise"):
+    if low.cause in ("resolution", "tip", "noise"):
         informative = max(
             cliff,
             instrument.wavelength(_LOST),
             instrument.noisy(seen, _DROWNED),
             measurement.shortest,
         )
-        last = max(last, behind or informative)
+        # A tip leaves the waves below its mark there, though weaker: they end with the pixels.
+        last = max(last, behind or (0.0 if low.cause == "tip" else informative))
     elif low.cause == "named":
         instrument = Instrument()
     band = Band(
