@@ -38,8 +38,9 @@ _ATTENUATED, _NOISY = 0.2, 0.2
 """Part of the density that an instrument may take away, and that its noise may add, in the band;
 what is found of both is corrected."""
 
-_LOST, _DROWNED = 0.85, 1.0
-"""The same of the waves that tell the model, which has transfer and noise as parameters."""
+_LOST, _BLURRED, _DROWNED = 0.85, 0.5, 1.0
+"""The same of the waves that tell the model, which has transfer and noise as parameters: lost by an
+optic or a filter, by a tip, whose transfer is known less well, and to noise."""
 
 _NYQUIST = 2.0
 """Points in the shortest wave that pixels hold."""
@@ -99,6 +100,8 @@ class Band:
         What the instrument does to the density.
     informative : float
         Shortest wavelength that tells the model. (Units: m)
+    seen : float
+        Shortest wavelength down to which the surface surely goes. (Units: m)
     end : float
         Shortest wavelength that the surface is continued to: that which its points hold, unless
         instrument or density end before. (Units: m)
@@ -113,6 +116,7 @@ class Band:
     anisotropy: float
     instrument: Instrument
     informative: float
+    seen: float
     end: float
     finest: float
 
@@ -191,6 +195,8 @@ def scan(
     tip = tip_wavelength(measurement)
     if tip > instrument.wavelength(_ATTENUATED):
         instrument = instrument.losing(_ATTENUATED, tip)
+    # It is corrected, so that an octave is left whatever it takes away.
+    tip = min(tip, measurement.longest / 2**_FEWEST_OCTAVES)
     noise = instrument.noisy(seen, _NOISY)
     found = [
         BandLimit("shortest", "pixels", measurement.shortest),
@@ -221,17 +227,18 @@ def scan(
             f"{long} ({high.cause}) can be trusted, less than an octave; use a better scan, or "
             "name --shortest and --longest"
         )
-    informative, last = low.wavelength, max(behind, _NYQUIST * pixel)
+    informative = surely = low.wavelength
+    last = max(behind, _NYQUIST * pixel)
     finest = last / _FINER
     if low.cause in ("resolution", "tip", "noise"):
-        informative = max(
-            cliff,
-            instrument.wavelength(_LOST),
-            instrument.noisy(seen, _DROWNED),
-            measurement.shortest,
-        )
-        # A tip leaves the waves below its mark there, though weaker: they end with the pixels.
-        last = max(last, behind or (0.0 if low.cause == "tip" else informative))
+        least = max(cliff, instrument.noisy(seen, _DROWNED), measurement.shortest)
+        if low.cause == "tip":
+            # It leaves the waves below its mark there, though weaker: they end with the pixels.
+            informative, surely = max(least, instrument.wavelength(_BLURRED)), least
+            last = max(last, behind)
+        else:
+            informative = max(least, instrument.wavelength(_LOST))
+            last = max(last, behind or informative)
     elif low.cause == "named":
         instrument = Instrument()
     band = Band(
@@ -242,6 +249,7 @@ def scan(
         anisotropy=1.0 if measurement.is_line else anisotropy(waves, low.wavelength),
         instrument=instrument,
         informative=informative,
+        seen=min(surely, low.wavelength),
         end=min(last, low.wavelength),
         finest=min(finest, low.wavelength),
     )
