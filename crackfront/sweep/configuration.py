@@ -46,7 +46,6 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineLoad, SpringUnit
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
-from crackfront.topography.levelling import DetrendName
 from crackfront.topography.wording import Wording
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
@@ -61,12 +60,12 @@ class ScalesSection(Section):
 
 
 def _several(value: Any) -> Any:
-    """The list that a single value stands for."""
-    return value if isinstance(value, tuple) else (value,)
+    """The list that a single text or number stands for."""
+    return (value,) if isinstance(value, (str, int)) else value
 
 
 Words = Annotated[tuple[str | int, ...], BeforeValidator(_several)]
-Length = Positive | str
+Length = float | str
 
 
 class SurfaceSection(Section):
@@ -75,7 +74,7 @@ class SurfaceSection(Section):
     file: Annotated[tuple[InputFile, ...], BeforeValidator(_several), Field(min_length=1)]
     channel: Words = ()
     crop: Words = ()
-    detrend: DetrendName | int = "curvature"
+    detrend: str | int = "curvature"
     mask: Words = ()
     unit: str | None = None
     size: tuple[Positive, ...] | None = None

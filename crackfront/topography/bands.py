@@ -100,13 +100,12 @@ class Band:
         What the instrument does to the density.
     informative : float
         Shortest wavelength that tells the model. (Units: m)
-    seen : float
-        Shortest wavelength down to which the surface surely goes. (Units: m)
     end : float
         Shortest wavelength that the surface is continued to: that which its points hold, unless
         instrument or density end before. (Units: m)
-    finest : float
-        Shortest wavelength that it may go on to, in the draws. (Units: m)
+    finest, coarsest : float
+        Shortest wavelength that it may go on to, and longest at which it may end, in the draws.
+        (Units: m)
     """
 
     shortest: BandLimit
@@ -116,9 +115,9 @@ class Band:
     anisotropy: float
     instrument: Instrument
     informative: float
-    seen: float
     end: float
     finest: float
+    coarsest: float
 
     @property
     def ends(self) -> tuple[BandLimit, BandLimit]:
@@ -227,14 +226,14 @@ def scan(
             f"{long} ({high.cause}) can be trusted, less than an octave; use a better scan, or "
             "name --shortest and --longest"
         )
-    informative = surely = low.wavelength
+    informative, coarsest = low.wavelength, high.wavelength
     last = max(behind, _NYQUIST * pixel)
     finest = last / _FINER
     if low.cause in ("resolution", "tip", "noise"):
         least = max(cliff, instrument.noisy(seen, _DROWNED), measurement.shortest)
         if low.cause == "tip":
             # It leaves the waves below its mark there, though weaker: they end with the pixels.
-            informative, surely = max(least, instrument.wavelength(_BLURRED)), least
+            informative, coarsest = max(least, instrument.wavelength(_BLURRED)), least
             last = max(last, behind)
         else:
             informative = max(least, instrument.wavelength(_LOST))
@@ -249,9 +248,9 @@ def scan(
         anisotropy=1.0 if measurement.is_line else anisotropy(waves, low.wavelength),
         instrument=instrument,
         informative=informative,
-        seen=min(surely, low.wavelength),
         end=min(last, low.wavelength),
         finest=min(finest, low.wavelength),
+        coarsest=coarsest,
     )
     return Scan(measurement, waves, density, alternatives, band)
 
