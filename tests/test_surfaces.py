@@ -283,7 +283,7 @@ def test_oblong_pixels_are_read_and_made_square_for_a_field(tmp_path, heights, s
     assert content[at : at + len(narrow)] == narrow
     path = tmp_path / "oblong.al3d"
     path.write_bytes(content[:at] + wide.ljust(30, b"\0") + content[at + 30 :])
-    [oblong] = read_measurements([path], Treatment(shortest=1.25e-6))
+    [oblong] = read_measurements([path])
     assert oblong.pixels == pytest.approx((SIDE / 128, SIDE / 64))
     assert oblong.shortest == pytest.approx(4 * SIDE / 64)
     square = replace(whole, shortest=oblong.shortest)
@@ -331,7 +331,6 @@ def test_surfaces_without_a_spectrum_are_refused(tmp_path, heights, scan):
     assert "named twice" in refusal([scan, scan])
     assert "no file is named" in refusal([])
     assert "detrend is 'spline'" in refusal([scan], detrend="spline")
-    assert "shortest is -1.0" in refusal([scan], shortest=-1.0)
 
 
 def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatch, scan):

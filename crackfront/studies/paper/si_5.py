@@ -12,6 +12,7 @@ from scipy.stats import spearmanr
 
 from crackfront.analysis.estimate import REACH, Estimate, slope, with_error
 from crackfront.analysis.finding import PAPER_FACTOR
+from crackfront.analysis.report import pooled_limits
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
@@ -141,8 +142,8 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"{PAPER_FACTOR:g} ± {ONE_DIGIT:g}",
             _interval(factor),
             bool(abs(factor.value - PAPER_FACTOR) <= ONE_DIGIT),
-            "95% interval; k grows with the size of the contact, and falls with disorder beyond "
-            "the onset: panels b and c",
+            f"{', '.join(['95% interval', *pooled_limits(fit, fit.spectra.factor)])}; k grows with "
+            "the size of the contact, and falls with disorder beyond the onset: panels b and c",
             law=_said(float(factor.value), *law.factor),
         ),
         Check(
