@@ -377,7 +377,7 @@ def changed_field(rng, dataset):
             dataset = dataset.assign({name: (values.dims, data, values.attrs)})
         elif kind == "all":
             with np.errstate(all="ignore"):
-                dataset = dataset.assign({name: values * float(odd_number(rng))})
+                dataset = dataset.assign({name: values.astype(float) * float(odd_number(rng))})
         elif kind == "place" and size > 0:
             data = dataset[coordinate].values.astype(float, copy=True)
             data[int(rng.integers(size))] = odd_number(rng)
