@@ -631,6 +631,18 @@ def test_a_field_of_heights_that_jump_at_the_edge_is_refused(rough_surface, tmp_
     assert "the tile is not periodic. Level the map and mirror or window it" in result.stderr
 
 
+def stopped_cycle(monkeypatch, signal_number, *arguments):
+    """Result of a cycle that is told to end at its seventh state."""
+
+    def interrupted(self, recorder):
+        if len(recorder.states) == 7:
+            signal.raise_signal(signal_number)
+
+    with monkeypatch.context() as patched:
+        patched.setattr("crackfront.cli.watch.Progress.__call__", interrupted)
+        return cycle(*arguments)
+
+
 @pytest.mark.usefixtures("_heeded_signals")
 @pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
@@ -641,13 +653,7 @@ def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
     assert whole.exit_code == 0
     undisturbed = xr.load_dataset(tmp_path / "out.nc")
 
-    def interrupted(self, recorder):
-        if len(recorder.states) == 7:
-            signal.raise_signal(signal_number)
-
-    with monkeypatch.context() as patched:
-        patched.setattr("crackfront.cli.watch.Progress.__call__", interrupted)
-        stopped = cycle(rough_surface, tmp_path, *options)
+    stopped = stopped_cycle(monkeypatch, signal_number, rough_surface, tmp_path, *options)
     assert stopped.exit_code == StoppedError.exit_code
     kept = tmp_path / "out.checkpoint.nc"
     assert stopped.stderr == (
@@ -661,11 +667,40 @@ def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
     xr.testing.assert_equal(xr.load_dataset(tmp_path / "out.nc"), undisturbed)
 
 
-def test_what_another_cycle_kept_is_told_and_left_alone(rough_surface, tmp_path):
-    (tmp_path / "out.checkpoint.nc").write_text("something else")
+@pytest.fixture
+def kept_states(rough_surface, tmp_path, monkeypatch, _heeded_signals):
+    """States that a cycle has kept."""
+    stopped_cycle(monkeypatch, signal.SIGTERM, rough_surface, tmp_path)
+    return tmp_path / "out.checkpoint.nc"
+
+
+def test_what_another_cycle_kept_is_told_and_begins_anew(rough_surface, kept_states, tmp_path):
+    result = cycle(rough_surface, tmp_path, step=0.2)
+    assert result.exit_code == 0
+    assert result.stderr == f"{kept_states} is of another cycle; this one begins anew\n"
+    assert not kept_states.exists()
+
+
+@pytest.mark.parametrize("harm", ["a flipped bit", "cut off", "something else"])
+def test_damaged_states_of_a_cycle_are_told_and_set_aside(
+    rough_surface, kept_states, tmp_path, harm
+):
+    content = kept_states.read_bytes()
+    middle = len(content) // 2
+    harmed = {
+        "a flipped bit": content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :],
+        "cut off": content[:middle],
+        "something else": b"something else",
+    }[harm]
+    kept_states.write_bytes(harmed)
     result = cycle(rough_surface, tmp_path)
     assert result.exit_code == 0
-    assert "out.checkpoint.nc is of another cycle, which begins anew" in result.stderr
+    assert result.stderr == (
+        f"{kept_states} is damaged; it is set aside as out.checkpoint.nc.damaged, and the cycle "
+        "begins anew\n"
+    )
+    assert not kept_states.exists()
+    assert (tmp_path / "out.checkpoint.nc.damaged").read_bytes() == harmed
 
 
 @pytest.mark.usefixtures("_heeded_signals")

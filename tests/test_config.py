@@ -332,6 +332,10 @@ BAD = {
         ("step: 0.1}", "steady: {start: 1.0, travel: 2, error: 0.1}}"),
         "load: steady.start 1 is not below max_penetration 1; lower it or penetrate deeper",
     ),
+    "steady states that are all alike": (
+        ("step: 0.1}", "steady: {start: 0.5, travel: 1e-6, error: 0.1}}"),
+        "load.steady.travel is 1e-06; it must be greater than or equal to 0.01",
+    ),
     "steady without error": (
         ("step: 0.1}", "steady: {start: 0.5, travel: 2}}"),
         "key load.steady.error is missing; add it",

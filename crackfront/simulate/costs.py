@@ -53,6 +53,9 @@ _FILE_BYTES, _STATE_BYTES, _FRONT_PART = 22e3, 104.0, 0.72
 _RECORD_BYTES = 1e3
 """Memory of a state that is recorded."""
 
+_STATE_SECONDS = 1e-4
+"""Least time of a state, however few its sites and however short its way."""
+
 _LEAD_IN, _FEWEST_STEADY, _NOISE = 2.0, 9.0, 1.2
 """States of a branch before it is steady; the fewest of an approach; variance of k from state to
 state, relative to that of as many independent sites as the front has correlation lengths."""
@@ -316,7 +319,8 @@ def _seconds(coefficients: Sequence[float] | Array, items: Sequence[Features]) -
         ]
     )
     tile = np.exp(point) * n_point**2 * np.log2(n_point)
-    return tile + n_state * n_angle * np.exp(constant + np.array(exponents) @ logarithms)
+    state = n_angle * np.exp(constant + np.array(exponents) @ logarithms)
+    return tile + n_state * np.maximum(state, _STATE_SECONDS)
 
 
 def _run(row: dict[str, str]) -> Measured:

@@ -226,10 +226,13 @@ class NumericsSection(Section):
 
 
 class SteadySection(Section):
-    """Steady parts of the branches only, as in `SteadySchedule`."""
+    """Steady parts of the branches only, as in `SteadySchedule`.
+
+    States that are nearer than a hundredth of the correlation length tell nothing new.
+    """
 
     start: Annotated[float, Field(ge=0, allow_inf_nan=False)]
-    travel: Positive
+    travel: Annotated[Positive, Field(ge=0.01)]
     error: Positive
 
 

@@ -34,7 +34,7 @@ def snakemake(*arguments, **options):
         command(*arguments, **options),
         capture_output=True,
         text=True,
-        timeout=240,
+        timeout=900,
         check=False,
         env=os.environ | {"OMP_NUM_THREADS": "1"},
     )
@@ -148,6 +148,7 @@ def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(3600)
 def test_a_changed_fit_is_fitted_and_a_remark_is_not_whatever_the_dates(tmp_path):
     sweep = flat_sweep(tmp_path)
     assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
@@ -171,6 +172,7 @@ def test_a_changed_fit_is_fitted_and_a_remark_is_not_whatever_the_dates(tmp_path
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(3600)
 def test_the_workflow_makes_anew_what_is_damaged_or_missing_and_no_more(tmp_path):
     sweep = flat_sweep(tmp_path)
     assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
@@ -234,7 +236,7 @@ def test_a_clone_may_stand_under_a_name_with_quotes_and_braces(tmp_path):
             ],
             capture_output=True,
             text=True,
-            timeout=240,
+            timeout=900,
             check=False,
             cwd=tmp_path,
         )

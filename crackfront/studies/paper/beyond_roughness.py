@@ -184,6 +184,11 @@ def roughness_record(parameters: RoughnessParameters, progress: Progress) -> Rou
     )
 
 
+def expected_seconds(parameters: RoughnessParameters) -> float:
+    """Processor time as measured with 64 surfaces, for any number of them (Units: s)."""
+    return 10.0 * parameters.n_surface
+
+
 def _lines(parameters: RoughnessParameters) -> tuple[LineParameters, LineParameters]:
     """Straight fronts in the order of their records."""
     return parameters.strong_line, parameters.weak_line
@@ -504,4 +509,5 @@ FIGURE = Figure(
     compute=roughness_record,
     checks=roughness_checks,
     draw=roughness_figure,
+    seconds=expected_seconds,
 )

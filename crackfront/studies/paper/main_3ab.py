@@ -190,6 +190,11 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
     )
 
 
+def expected_seconds(parameters: InstabilityParameters) -> float:
+    """Processor time that was measured with 480 and 1440 sites, for any number (Units: s)."""
+    return 8e-5 * parameters.least_angles**2
+
+
 def _contacts(parameters: InstabilityParameters) -> list[RoughContact]:
     """The two contacts, of one surface."""
     tolerance, least = parameters.precision / 10, parameters.least_angles
@@ -445,4 +450,5 @@ FIGURE = Figure(
     compute=instability_record,
     checks=instability_checks,
     draw=instability_figure,
+    seconds=expected_seconds,
 )
