@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+from collections.abc import Sequence
 from typing import Any
 
 import click
@@ -18,7 +19,22 @@ from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.cli.validate import validate
+from crackfront.data.lazy_modules import loaded_on_use
 from crackfront.sweep.parallel import ending_alike
+
+_NEVER_USED = (
+    "numpy.f2py",
+    "numpy.testing",
+    "scipy.integrate",
+    "scipy.interpolate",
+    "SurfaceTopography.Generic.Fractional",
+    "SurfaceTopography.Generic.RobustStatistics",
+    "SurfaceTopography.IO.DZI",
+    "SurfaceTopography.Uniform.Filtering",
+    "SurfaceTopography.Uniform.ScalarParameters",
+)
+"""What libraries import though no command needs it: compilers, scipy.stats and scipy.signal, and
+matplotlib, most of a second. Within other processes someone else may."""
 
 
 class _RefusalError(click.ClickException):
@@ -37,6 +53,11 @@ class _Commands(click.Group):
                 formatter.write_dl(
                     [(str(command.name), command.get_short_help_str(90)) for command in commands]
                 )
+
+    def main(self, args: Sequence[str] | None = None, *others: Any, **options: Any) -> Any:
+        """Run a command line: that of the process where none is given, which is then alone."""
+        with loaded_on_use(_NEVER_USED if args is None else ()):
+            return super().main(args, *others, **options)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""

@@ -9,7 +9,6 @@ from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import RectBivariateSpline
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
@@ -104,6 +103,8 @@ def _with_square_pixels(measurement: Measurement) -> Measurement:
     pixel = min(measurement.pixels)
     if max(measurement.pixels) <= pixel * (1 + _EQUAL):
         return measurement
+    from scipy.interpolate import RectBivariateSpline
+
     places = [
         (np.arange(count) + 0.5) * width
         for count, width in zip(measurement.heights.shape, measurement.pixels, strict=True)
