@@ -702,7 +702,7 @@ SCAN = TEST.parents[1] / "examples/scans/nanodiamond-detail.al3d"
         (
             "cycle --field {folder}/tile.nc --max-penetration 0.5 --step 0.25 --output "
             "{folder}/cycle.nc",
-            "mpi4py.MPI pint snakemake matplotlib pydantic scipy.stats scipy.signal "
+            "mpi4py.MPI snakemake matplotlib pydantic scipy.stats scipy.signal "
             "scipy.interpolate numpy.f2py",
         ),
     ],
