@@ -725,6 +725,17 @@ def test_a_command_imports_only_what_it_uses(arguments, unused, tmp_path):
     subprocess.run([sys.executable, "-c", code], check=True, timeout=100)
 
 
+def test_a_scan_becomes_a_field_in_a_process_of_its_own(tmp_path):
+    arguments = (
+        f"surface {SCAN} --modulus 0.7MPa --poisson 0.5 --radius 20um --work-of-adhesion 63mJ/m2"
+    ).split()
+    alone, within = tmp_path / "alone.nc", tmp_path / "within.nc"
+    command = [sys.executable, "-m", "crackfront", *arguments, "--field", str(alone)]
+    subprocess.run(command, check=True, timeout=100)
+    assert run(*arguments, "--field", within).exit_code == 0
+    assert xr.load_dataset(alone).equals(xr.load_dataset(within))
+
+
 def test_an_output_that_cannot_be_written_is_refused_with_its_path(tmp_path):
     obstacle = tmp_path / "file"
     obstacle.write_text("no folder")

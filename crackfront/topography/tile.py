@@ -86,7 +86,8 @@ def tile_heights(measurement: Measurement) -> tuple[Array, float]:
     with warnings.catch_warnings():
         # The library calls an inverse transform in a way that numpy will change.
         warnings.simplefilter("ignore", DeprecationWarning)
-        heights = tile.shortcut(cutoff_wavelength=measurement.shortest).heights()
+        cut = surface_library().Uniform.Filtering.ShortCutTopography
+        heights = cut(tile, cutoff_wavelength=measurement.shortest).heights()
     # Mirror images stand behind the scan: half a scan further its centre is that of the tile.
     behind = [0 if measurement.periodic else count // 4 for count in heights.shape]
     centred = np.ascontiguousarray(np.roll(heights, behind, axis=(0, 1)))
