@@ -718,13 +718,57 @@ def test_any_command_that_is_told_to_end_says_so_with_the_same_exit_code(
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
-def test_help_imports_nothing_heavy():
-    code = (
-        "import sys, crackfront.cli\n"
-        "heavy = {'numpy', 'numba', 'xarray', 'matplotlib', 'mpi4py', 'pydantic', 'yaml'}\n"
-        "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
+LIGHT = "mpi4py.MPI pint snakemake tqdm numba xarray pandas netCDF4 matplotlib pydantic yaml"
+SCAN = TEST.parents[1] / "examples/scans/nanodiamond-detail.al3d"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "unused"),
+    [
+        ("--help", f"{LIGHT} numpy scipy"),
+        ("law --w-rms 0.4 --g inf", f"{LIGHT} scipy.optimize numpy.f2py numpy.testing"),
+        ("law --spectrum 0.02,0.1,0.8 --elastic-energy 0.05 --contact-radius 1.9", LIGHT),
+        (
+            f"predict {SCAN} --no-figure --modulus 0.7MPa --poisson 0.5 --radius 1.25mm "
+            "--work-of-adhesion 63mJ/m2",
+            "numba xarray pandas pint matplotlib scipy.stats scipy.signal scipy.ndimage "
+            "scipy.interpolate openpyxl requests",
+        ),
+        (
+            "cycle --field {folder}/tile.nc --max-penetration 0.5 --step 0.25 --output "
+            "{folder}/cycle.nc",
+            "mpi4py.MPI snakemake matplotlib pydantic scipy.stats scipy.signal "
+            "scipy.interpolate numpy.f2py",
+        ),
+    ],
+    ids=["help", "law of a front", "law of a sphere", "predict", "cycle"],
+)
+def test_a_command_imports_only_what_it_uses(arguments, unused, tmp_path):
+    # A module that waits for its use stands among the modules already.
+    cf.random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, seed=1).to_netcdf(
+        tmp_path / "tile.nc"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+    code = (
+        "import importlib.util, sys\n"
+        "from crackfront.cli import main\n"
+        f"sys.argv[1:] = {arguments.format(folder=tmp_path)!r}.split()\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert end.code in (0, 3), end.code\n"
+        "used = {name for name, module in sys.modules.items()\n"
+        "        if type(module) is not importlib.util._LazyModule}\n"
+        f"assert not {set(unused.split())} & used, {set(unused.split())} & used\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=100)
+
+
+def test_a_scan_becomes_a_field_in_a_process_of_its_own(tmp_path):
+    arguments = (
+        f"surface {SCAN} --modulus 0.7MPa --poisson 0.5 --radius 20um --work-of-adhesion 63mJ/m2"
+    ).split()
+    alone, within = tmp_path / "alone.nc", tmp_path / "within.nc"
+    command = [sys.executable, "-m", "crackfront", *arguments, "--field", str(alone)]
+    subprocess.run(command, check=True, timeout=100)
+    assert run(*arguments, "--field", within).exit_code == 0
+    assert xr.load_dataset(alone).equals(xr.load_dataset(within))
 
 
 def test_an_output_that_cannot_be_written_is_refused_with_its_path(tmp_path):

@@ -253,7 +253,8 @@ def _continued(
     between = []
     for one, other in pairwise([*first, *wavevector, last]):
         number = math.ceil(math.log10(other / one) * _CONTINUED_BINS)
-        between.append(np.geomspace(one, other, max(number, 1) + 1)[1:-1])
+        if number > 1:
+            between.append(np.geomspace(one, other, number + 1)[1:-1])
     extra = np.concatenate([first, *between, [last]])
     every = np.concatenate([wavevector, extra])
     table = np.concatenate([value, model(extra)])

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 from scipy.fft import rfft
-from scipy.stats import t as student
 
 from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.data.section import Count, Positive, refusal
@@ -274,6 +273,8 @@ def fitted_roughness(record: RoughnessRecord, index: int) -> _Fit:
 
     Least squares of the logarithm, each surface by itself, all octaves of the same weight.
     """
+    from scipy.stats import t as student
+
     wavelength = 2 * np.pi * record.radius[index] / record.mode
     used = (wavelength >= record.shortest[index]) & (wavelength <= record.longest[index])
     wavevector = stiffness_wavevector(record, index)[used]

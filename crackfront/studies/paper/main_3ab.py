@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
-from scipy.signal import resample
 
 from crackfront.core import jkr
 from crackfront.core.cycle.energy import dissipated_energy
@@ -366,6 +365,8 @@ def _draw_quarter(
 
 def _quarter(fronts: Array, index: int) -> Array:
     """Finely drawn part of fronts that lies in the quarter of a disorder."""
+    from scipy.signal import resample
+
     count = fronts.shape[1] * _FINER
     first = count // 4 if index == STRONG else 0
     return np.asarray(resample(fronts, count, axis=1)[:, first : first + count // 4 + 1])

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import spearmanr
 
 from crackfront.analysis.estimate import REACH, Estimate, slope, with_error
 from crackfront.analysis.finding import PAPER_FACTOR
@@ -122,6 +121,8 @@ def study_fit(study: ParametricStudy) -> SweepFit:
 
 def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
     """What the paper reads off the figure: k, the square law, one line, the onset."""
+    from scipy.stats import spearmanr
+
     fit = study_fit(study)
     factor, exponent = fit.pooled.factor, fit.pooled.exponent
     factors = fit.spectra.factor.value
