@@ -1,6 +1,7 @@
 """The study of numerical errors: orders of convergence, laws, coverage, averages, report."""
 
 import math
+import re
 from dataclasses import asdict, fields, replace
 
 import numpy as np
@@ -25,6 +26,8 @@ from crackfront.studies.accuracy.averages import (
     sampling_errors,
 )
 from crackfront.studies.accuracy.files import (
+    SECONDS,
+    STUDIES,
     errors_dataset,
     read_errors,
     read_study,
@@ -382,6 +385,25 @@ def test_a_page_gets_the_measured_tables_and_keeps_its_words(tmp_path):
     refused = run(main, ["accuracy-report", *output, "--page", str(page)])
     assert refused.exit_code == 2
     assert "the table 'Settings, flat-0.04', which was not measured" in refused.output
+
+
+@pytest.mark.parametrize("study", STUDIES)
+def test_the_cost_of_a_study_is_told_before_it_is_measured(study, tmp_path, monkeypatch):
+    def measured(*_):
+        raise ValueError("measured")
+
+    monkeypatch.setitem(STUDIES, study, measured)
+    arguments = ["accuracy", "large-0.04", "--study", study, "--realisations", "16"]
+    stopped = CliRunner().invoke(main, [*arguments, "--output", str(tmp_path)])
+    told, _ = stopped.stderr.split("Error: measured")
+    assert re.fullmatch(r"about [\d.]+ (min|hours) of processor time\n", told)
+
+
+def test_the_cost_of_a_study_is_that_of_its_runs():
+    scene = SCENES["small-0.04"]
+    found = scene_errors(scene, scene.asked_settings, range(2))
+    seconds = np.sum(found.reference_seconds) + sum(np.sum(one.seconds) for one in found.errors)
+    assert seconds / 4 < 2 * SECONDS["asked"](scene) < 4 * seconds
 
 
 def test_an_unknown_scene_is_refused_with_the_nearest_one():

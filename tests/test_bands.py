@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.ndimage import grey_dilation
 
 from benchmarks import surfaces
 from benchmarks.surfaces import KINDS, MEAN_SQUARE, PIXEL, SIDE, found_scan, kind_row, rows
 from crackfront.topography.bands import scan
 from crackfront.topography.joining import joint_spectrum
 from crackfront.topography.prediction import surface_notes
+from crackfront.topography.tips import tip_wavelength
 
 
 def kind(name):
@@ -44,6 +46,38 @@ def test_the_resolution_of_an_optic_is_found_where_it_takes_a_fifth(found):
     cause, pixels, *_ = ends(found("optic, Gaussian"))
     assert cause == "resolution"
     assert pixels == pytest.approx(2 * np.pi / np.sqrt(np.log(1.25)), rel=0.35)
+
+
+def test_the_mark_of_a_tip_is_found_and_what_it_takes_away_is_told(found):
+    result = found("tip of an AFM")
+    cause, pixels, *_ = ends(result)
+    assert cause == "tip"
+    assert 8 < pixels < 16
+    assert result.covers
+    # Its density falls as that of a surface: without the mark, the band would end with the pixels.
+    assert result.surface.joint.shares.measured < 0.8
+
+
+def test_surfaces_with_sharp_peaks_or_valleys_have_no_mark_of_a_tip(found):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    heights = one.measurement.heights / one.measurement.heights.std()
+    for other in (heights, np.exp(heights), -np.exp(-heights), np.minimum(heights, 0.5)):
+        assert tip_wavelength(replace(one.measurement, heights=1e-7 * other)) == 0
+
+
+def test_the_mark_of_a_tip_grows_with_its_radius_and_hardly_depends_on_noise_of_rows(found, rng):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    marks = []
+    for radius in (1e-6, 4e-6):
+        along = PIXEL * np.arange(-30, 31)
+        shape = -(along[:, None] ** 2 + along**2) / (2 * radius)
+        heights = grey_dilation(one.measurement.heights, structure=shape)
+        rows = 1e-9 * rng.standard_normal((1, heights.shape[1]))
+        both = (replace(one.measurement, heights=heights + shift) for shift in (0.0, rows))
+        clean, shifted = map(tip_wavelength, both)
+        assert shifted == pytest.approx(clean, rel=0.3)
+        marks.append(clean)
+    assert 0 < 1.2 * marks[0] < marks[1]
 
 
 def test_the_noise_of_a_scan_is_found_and_ends_its_band(found, rng):
@@ -138,3 +172,5 @@ def test_intervals_of_two_hundred_scans_hold_the_truth():
     assert np.median([abs(one.ratio.value - 1) for _, one in every]) < 0.2
     assert np.mean([one.covers for _, one in every]) >= 0.9
     assert np.median([one.factor for kind, one in every if kind.resolved]) < 1.5
+    tips = [one.covers for kind, one in every if kind.name == "tip of an AFM"]
+    assert np.mean(tips) >= 0.9

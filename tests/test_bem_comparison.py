@@ -336,6 +336,20 @@ def test_validations_that_cannot_be_run_are_refused_with_a_sentence(tmp_path, ol
     assert "Traceback" not in run.output
 
 
+def test_the_cost_of_a_validation_is_told_before_it_is_computed(tmp_path, monkeypatch):
+    def computed(*_, **__):
+        raise ValueError("computed")
+
+    monkeypatch.setattr("crackfront.studies.boundary_elements.report.write_validation", computed)
+    path = Path(__file__).parents[1] / "config/validation-512.yaml"
+    run = CliRunner().invoke(main, ["validate", str(path), "--output", str(tmp_path)])
+    assert run.stderr == "about 46.8 min of processor time\nError: computed\n"
+    [_, rough] = validation_cases(load_validation(path))
+    (tmp_path / f"{rough.stem}.nc").touch()
+    run = CliRunner().invoke(main, ["validate", str(path), "--output", str(tmp_path)])
+    assert run.stderr == "about 7.81 min of processor time\nError: computed\n"
+
+
 @pytest.mark.parametrize("name", ["ContactMechanics", "finufft"])
 def test_a_validation_without_its_extra_is_refused_before_it_computes(
     monkeypatch, tmp_path, configuration, name

@@ -631,6 +631,18 @@ def test_a_field_of_heights_that_jump_at_the_edge_is_refused(rough_surface, tmp_
     assert "the tile is not periodic. Level the map and mirror or window it" in result.stderr
 
 
+def stopped_cycle(monkeypatch, signal_number, *arguments):
+    """Result of a cycle that is told to end at its seventh state."""
+
+    def interrupted(self, recorder):
+        if len(recorder.states) == 7:
+            signal.raise_signal(signal_number)
+
+    with monkeypatch.context() as patched:
+        patched.setattr("crackfront.cli.watch.Progress.__call__", interrupted)
+        return cycle(*arguments)
+
+
 @pytest.mark.usefixtures("_heeded_signals")
 @pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
@@ -641,13 +653,7 @@ def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
     assert whole.exit_code == 0
     undisturbed = xr.load_dataset(tmp_path / "out.nc")
 
-    def interrupted(self, recorder):
-        if len(recorder.states) == 7:
-            signal.raise_signal(signal_number)
-
-    with monkeypatch.context() as patched:
-        patched.setattr("crackfront.cli.watch.Progress.__call__", interrupted)
-        stopped = cycle(rough_surface, tmp_path, *options)
+    stopped = stopped_cycle(monkeypatch, signal_number, rough_surface, tmp_path, *options)
     assert stopped.exit_code == StoppedError.exit_code
     kept = tmp_path / "out.checkpoint.nc"
     assert stopped.stderr == (
@@ -661,11 +667,40 @@ def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
     xr.testing.assert_equal(xr.load_dataset(tmp_path / "out.nc"), undisturbed)
 
 
-def test_what_another_cycle_kept_is_told_and_left_alone(rough_surface, tmp_path):
-    (tmp_path / "out.checkpoint.nc").write_text("something else")
+@pytest.fixture
+def kept_states(rough_surface, tmp_path, monkeypatch, _heeded_signals):
+    """States that a cycle has kept."""
+    stopped_cycle(monkeypatch, signal.SIGTERM, rough_surface, tmp_path)
+    return tmp_path / "out.checkpoint.nc"
+
+
+def test_what_another_cycle_kept_is_told_and_begins_anew(rough_surface, kept_states, tmp_path):
+    result = cycle(rough_surface, tmp_path, step=0.2)
+    assert result.exit_code == 0
+    assert result.stderr == f"{kept_states} is of another cycle; this one begins anew\n"
+    assert not kept_states.exists()
+
+
+@pytest.mark.parametrize("harm", ["a flipped bit", "cut off", "something else"])
+def test_damaged_states_of_a_cycle_are_told_and_set_aside(
+    rough_surface, kept_states, tmp_path, harm
+):
+    content = kept_states.read_bytes()
+    middle = len(content) // 2
+    harmed = {
+        "a flipped bit": content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :],
+        "cut off": content[:middle],
+        "something else": b"something else",
+    }[harm]
+    kept_states.write_bytes(harmed)
     result = cycle(rough_surface, tmp_path)
     assert result.exit_code == 0
-    assert "out.checkpoint.nc is of another cycle, which begins anew" in result.stderr
+    assert result.stderr == (
+        f"{kept_states} is damaged; it is set aside as out.checkpoint.nc.damaged, and the cycle "
+        "begins anew\n"
+    )
+    assert not kept_states.exists()
+    assert (tmp_path / "out.checkpoint.nc.damaged").read_bytes() == harmed
 
 
 @pytest.mark.usefixtures("_heeded_signals")
@@ -683,13 +718,57 @@ def test_any_command_that_is_told_to_end_says_so_with_the_same_exit_code(
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
-def test_help_imports_nothing_heavy():
-    code = (
-        "import sys, crackfront.cli\n"
-        "heavy = {'numpy', 'numba', 'xarray', 'matplotlib', 'mpi4py', 'pydantic', 'yaml'}\n"
-        "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
+LIGHT = "mpi4py.MPI pint snakemake tqdm numba xarray pandas netCDF4 matplotlib pydantic yaml"
+SCAN = TEST.parents[1] / "examples/scans/nanodiamond-detail.al3d"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "unused"),
+    [
+        ("--help", f"{LIGHT} numpy scipy"),
+        ("law --w-rms 0.4 --g inf", f"{LIGHT} scipy.optimize numpy.f2py numpy.testing"),
+        ("law --spectrum 0.02,0.1,0.8 --elastic-energy 0.05 --contact-radius 1.9", LIGHT),
+        (
+            f"predict {SCAN} --no-figure --modulus 0.7MPa --poisson 0.5 --radius 1.25mm "
+            "--work-of-adhesion 63mJ/m2",
+            "numba xarray pandas pint matplotlib scipy.stats scipy.signal scipy.ndimage "
+            "scipy.interpolate openpyxl requests",
+        ),
+        (
+            "cycle --field {folder}/tile.nc --max-penetration 0.5 --step 0.25 --output "
+            "{folder}/cycle.nc",
+            "mpi4py.MPI snakemake matplotlib pydantic scipy.stats scipy.signal "
+            "scipy.interpolate numpy.f2py",
+        ),
+    ],
+    ids=["help", "law of a front", "law of a sphere", "predict", "cycle"],
+)
+def test_a_command_imports_only_what_it_uses(arguments, unused, tmp_path):
+    # A module that waits for its use stands among the modules already.
+    cf.random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, seed=1).to_netcdf(
+        tmp_path / "tile.nc"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+    code = (
+        "import importlib.util, sys\n"
+        "from crackfront.cli import main\n"
+        f"sys.argv[1:] = {arguments.format(folder=tmp_path)!r}.split()\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert end.code in (0, 3), end.code\n"
+        "used = {name for name, module in sys.modules.items()\n"
+        "        if type(module) is not importlib.util._LazyModule}\n"
+        f"assert not {set(unused.split())} & used, {set(unused.split())} & used\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=100)
+
+
+def test_a_scan_becomes_a_field_in_a_process_of_its_own(tmp_path):
+    arguments = (
+        f"surface {SCAN} --modulus 0.7MPa --poisson 0.5 --radius 20um --work-of-adhesion 63mJ/m2"
+    ).split()
+    alone, within = tmp_path / "alone.nc", tmp_path / "within.nc"
+    command = [sys.executable, "-m", "crackfront", *arguments, "--field", str(alone)]
+    subprocess.run(command, check=True, timeout=100)
+    assert run(*arguments, "--field", within).exit_code == 0
+    assert xr.load_dataset(alone).equals(xr.load_dataset(within))
 
 
 def test_an_output_that_cannot_be_written_is_refused_with_its_path(tmp_path):

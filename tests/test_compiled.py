@@ -44,7 +44,7 @@ def test_no_writable_folder_for_compiled_code_is_an_error_that_says_what_to_set(
     no_home, monkeypatch
 ):
     monkeypatch.setattr(compiled.tempfile, "tempdir", str(no_home / "none"))
-    monkeypatch.setattr(compiled, "_is_private", lambda folder: False)
+    monkeypatch.setattr(compiled, "is_private", lambda folder: False)
     with pytest.raises(OSError, match="set XDG_CACHE_HOME to a folder that is writable"):
         compiled.cache_folder.__wrapped__()
 

@@ -18,7 +18,7 @@ from crackfront.simulate.laws import Knobs
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.table import failed_row, read_table, write_hysteresis
 from crackfront.topography.measures import measured_surface
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.reading import Treatment, read_measurements
 
 ROOT = Path(__file__).parents[1]
 
@@ -332,6 +332,10 @@ BAD = {
         ("step: 0.1}", "steady: {start: 1.0, travel: 2, error: 0.1}}"),
         "load: steady.start 1 is not below max_penetration 1; lower it or penetrate deeper",
     ),
+    "steady states that are all alike": (
+        ("step: 0.1}", "steady: {start: 0.5, travel: 1e-6, error: 0.1}}"),
+        "load.steady.travel is 1e-06; it must be greater than or equal to 0.01",
+    ),
     "steady without error": (
         ("step: 0.1}", "steady: {start: 0.5, travel: 2}}"),
         "key load.steady.error is missing; add it",
@@ -461,6 +465,35 @@ def test_a_spectrum_may_be_that_of_measurements(tmp_path):
     assert first.key == replace(first, spectrum=item.spectrum.amplified(2.0)).key
 
 
+def test_a_surface_is_read_in_the_words_of_the_commands(tmp_path):
+    words = "channel: 0, crop: '1um:6um,1um:6um', detrend: 3, mask: '2um:3um,2um:3um'"
+    file = SCANS / "nanodiamond-detail.al3d"
+    spectra = f"spectra:\n  - {{name: film, surface: {{file: {file}, shortest: 0.3um, {words}}}}}\n"
+    sweep = load_configuration(written(tmp_path, with_surface(spectra)))
+    square = ((2e-6, 3e-6), (2e-6, 3e-6))
+    treatment = Treatment(3, channel="0", crop=((1e-6, 6e-6), (1e-6, 6e-6)), mask=(square,))
+    found = measured_surface(read_measurements([file], treatment), 0.3e-6).joint.spectrum
+    lengths = np.array(sweep.spectra[0].spectrum.wavelengths) * sweep.scales.lateral
+    assert lengths == pytest.approx(np.array(found.wavelengths), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("channel: Phase", "has no channel 'Phase'"),
+        ("crop: 1um", "crop is '1um'; write both ends"),
+        ("shortest: -1", "shortest is -1 m; it must lie"),
+        ("detrend: 12", "detrend is 12; choose one of center"),
+    ],
+)
+def test_words_of_a_surface_that_cannot_be_used_are_refused(tmp_path, words, sentence):
+    file = SCANS / "nanodiamond-detail.al3d"
+    spectra = f"spectra:\n  - {{name: film, surface: {{file: {file}, {words}}}}}\n"
+    with pytest.raises(ConfigurationError, match=sentence) as refusal:
+        load_configuration(written(tmp_path, with_surface(spectra)))
+    assert "spectra[0].surface" in str(refusal.value)
+
+
 def test_the_table_of_a_sweep_keeps_measured_spectra(tmp_path):
     spectra = MEASURED + "  - {name: flat, short_cutoff: 2e-6, hurst: 0.8}\n"
     sweep = load_configuration(written(tmp_path, with_surface(spectra)))
@@ -531,7 +564,7 @@ def test_no_scan_is_read_for_spectra_that_are_given(tmp_path):
         ),
         (
             with_surface("spectra:\n  - {name: film, surface: {file: a.al3d, detrend: all}}\n"),
-            "spectra[0].surface.detrend is 'all'; it must be 'center', 'height', 'slope' or",
+            "spectra[0].surface: detrend is 'all'; choose one of center, height, slope,",
         ),
         (
             with_surface("spectra:\n  - {name: film, surface: {file: []}}\n"),
@@ -543,7 +576,7 @@ def test_no_scan_is_read_for_spectra_that_are_given(tmp_path):
         ),
         (
             with_surface("spectra:\n  - {name: film, surface: {file: 3}}\n"),
-            "spectra[0].surface.file is 3; it must be a list",
+            "spectra[0].surface.file[0] is 3; it must be the name of a file",
         ),
         (
             changed("{name: flat, short_cutoff: 0.1, hurst: 1.0}", "{name: flat, hurst: 1.0}"),

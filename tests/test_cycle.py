@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.ndimage import gaussian_filter
 
+from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.cycle.energy import contact_energy, dissipated_energy
@@ -725,3 +726,28 @@ def test_the_apparent_work_is_less_in_retraction_only_where_the_mean_radius_has_
                 assert release[down] > release[up] - 1e-6
                 most = max(most, work[up] - work[down])
     assert 0.01 < most < 0.2
+
+
+def many_patches(seed, interpolation):
+    """A field at three times w_int, and a length that its patches do not exceed."""
+    rng = np.random.default_rng([8, seed])
+    n_angle, n_sample = int(rng.integers(8, 64)), int(rng.integers(100, 251))
+    noise = gaussian_filter(rng.standard_normal((n_sample, n_angle)), 1, mode=("nearest", "wrap"))
+    radii = np.linspace(rng.uniform(0.05, 0.1), 3.6, n_sample)
+    adhesion = WORK_OF_ADHESION * (1 + 3 * noise / noise.std())
+    return polar_field(radii, adhesion, interpolation), 1.5 * (radii[1] - radii[0])
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+def test_means_over_the_branches_are_not_reversed_by_more_than_their_errors(interpolation):
+    found = []
+    for seed in range(400):
+        field, length = many_patches(seed, interpolation)
+        steady = steady_adhesion(run_cycle(field, LoadSchedule(1.5, 0.05)), length)
+        if not steady.sentence:
+            found.append(steady)
+    assert len(found) > 60
+    for one in found:
+        assert one.w_retr - one.w_appr > -np.hypot(one.w_appr_error, one.w_retr_error)

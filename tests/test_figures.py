@@ -8,6 +8,7 @@ import sys
 import textwrap
 from dataclasses import dataclass, replace
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -52,6 +53,28 @@ def smooth():
 def test_every_figure_has_a_configuration_and_a_drawing():
     assert {path.stem for path in CONFIGURATIONS.glob("*.yaml")} == set(FIGURES)
     assert all(callable(figure(name).draw) for name in FIGURES)
+
+
+def test_figures_that_took_longer_than_a_minute_tell_about_how_long_they_take():
+    page = (REFERENCES.parent / "gallery.md").read_text(encoding="utf-8")
+    told = re.findall(r"Scale (\w+), (\d+) s of one core.*?config/figures/([\w-]+)\.yaml", page)
+    slow = [(name, scale, float(seconds)) for scale, seconds, name in told if float(seconds) > 60]
+    assert len(slow) >= 5
+    for name, scale, seconds in slow:
+        expected = figure(name).seconds(load_figure(CONFIGURATIONS / f"{name}.yaml", scale))
+        assert seconds / 4 < expected < 4 * seconds, name
+
+
+def test_the_cost_of_a_figure_is_told_before_it_is_computed(tmp_path):
+    def computed(*_):
+        raise ValueError("computed")
+
+    shown = replace(figure("beyond-avalanches"), compute=computed)
+    with mock.patch("crackfront.studies.paper.figure.figure", return_value=shown):
+        arguments = ["figure", str(CONFIGURATIONS / "beyond-avalanches.yaml"), "--scale", "paper"]
+        result = CliRunner().invoke(main, [*arguments, "--output", str(tmp_path)])
+    assert result.exit_code == 2
+    assert result.stderr == "about 31.4 min of processor time\nError: computed\n"
 
 
 def test_a_figure_imports_no_other_figure_whose_changes_its_fingerprint_would_miss():

@@ -45,6 +45,24 @@ def test_equal_sources_have_equal_fingerprints(package):
     assert key_part() == simulation_fingerprint()
 
 
+def test_a_known_fingerprint_is_read_and_a_damaged_one_is_found_anew(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    found = fingerprint("core/units.py")
+    [kept] = (tmp_path / "crackfront/fingerprints").iterdir()
+    with monkeypatch.context() as patch:
+        patch.setattr(module.ast, "parse", None)
+        assert fingerprint("core/units.py") == found
+    for damaged in ("", found[:5], "no digits here", "\xff"):
+        kept.write_text(damaged, "latin-1")
+        assert fingerprint("core/units.py") == kept.read_text("ascii") == found
+
+
+def test_what_is_known_of_a_source_is_not_taken_for_what_only_a_part_of_it_reaches(package):
+    place = "core/units.py"
+    assert fingerprint(place) != fingerprint(reached={place: ["CONTACT_MODULUS"]})
+    assert fingerprint(place) == fingerprint(place)
+
+
 def test_a_mended_docstring_a_comment_and_an_annotation_change_no_key(package):
     before = key_part()
     edited(

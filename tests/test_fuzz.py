@@ -365,6 +365,7 @@ def changed_field(rng, dataset):
     for _ in range(int(rng.integers(0, 3))):
         [name] = dataset.data_vars
         values, coordinate = dataset[name], chosen(rng, list(dataset.coords) or ["x"])
+        size = dataset[coordinate].size if coordinate in dataset else 0
         kind = chosen(
             rng, ("value", "value", "all", "place", "axis", "type", "units", "name", "cut")
         )
@@ -376,12 +377,12 @@ def changed_field(rng, dataset):
             dataset = dataset.assign({name: (values.dims, data, values.attrs)})
         elif kind == "all":
             with np.errstate(all="ignore"):
-                dataset = dataset.assign({name: values * float(odd_number(rng))})
-        elif kind == "place" and coordinate in dataset:
+                dataset = dataset.assign({name: values.astype(float) * float(odd_number(rng))})
+        elif kind == "place" and size > 0:
             data = dataset[coordinate].values.astype(float, copy=True)
-            data[int(rng.integers(data.size))] = odd_number(rng)
+            data[int(rng.integers(size))] = odd_number(rng)
             dataset = dataset.assign_coords({coordinate: (coordinate, data)})
-        elif kind == "axis" and coordinate in dataset:
+        elif kind == "axis" and size > 0:
             with np.errstate(all="ignore"):
                 data = dataset[coordinate].values * float(odd_number(rng))
             dataset = dataset.assign_coords({coordinate: (coordinate, data)})
@@ -392,7 +393,7 @@ def changed_field(rng, dataset):
             dataset = dataset.assign({name: (values.dims, data, values.attrs)})
         elif kind == "units":
             units = chosen(rng, ("m", "J/m^2", "1", "w_int", "reduced", "", 3.0))
-            dataset[name].attrs["units"] = units
+            dataset = dataset.assign({name: values.assign_attrs(units=units)})
         elif kind == "name":
             dataset = dataset.rename({name: chosen(rng, ("height", "w", "work_of_adhesion2"))})
         elif kind == "cut":

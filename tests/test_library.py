@@ -25,6 +25,7 @@ from crackfront.simulate.files import cycle_record
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.surfaces import chosen_simulation, surface_adhesion
 from crackfront.simulate.tiles import measured_correlation_length
+from crackfront.topography.bands import scan
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.prediction import predicted, prediction_notes
 from crackfront.topography.reading import Treatment, read_measurements
@@ -384,7 +385,7 @@ def test_a_surface_that_is_periodic_is_never_refused_for_its_edge(seed):
 def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
     found = cf.read_scan(SCAN, small, shortest="0.4um")
-    [measurement] = read_measurements([SCAN], Treatment(shortest=0.4e-6))
+    measurement = replace(read_measurements([SCAN])[0], shortest=0.4e-6)
     adhesion = measured_adhesion(measurement, small)
     np.testing.assert_allclose(
         surface_adhesion(found).work_of_adhesion, adhesion.work_of_adhesion, rtol=1e-9
@@ -397,6 +398,48 @@ def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     assert told["tile"].startswith("mirrored at its edges, where a scan does not go on")
     assert told["waves"].startswith("those shorter than 400 nm were taken away")
     assert "larger than the scan of 7.2 um" in told["contact"]
+
+
+WORDS = {"channel": 0, "crop": "1um:6um,1.5um:6.5um", "detrend": 3, "mask": ["2um:3um,2um:3um"]}
+
+
+def test_scans_are_read_in_the_words_of_the_commands():
+    small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
+    region = ((1e-6, 6e-6), (1.5e-6, 6.5e-6))
+    treatment = Treatment(3, channel="0", crop=region, mask=(((2e-6, 3e-6), (2e-6, 3e-6)),))
+    [measurement] = read_measurements([SCAN], treatment)
+    found = cf.read_scan(SCAN, small, **WORDS)
+    assert found.attrs["levelling"].startswith(f"{measurement.levelling} was taken off")
+    adhesion = measured_adhesion(scan(measurement).trusted_measurement, small)
+    np.testing.assert_allclose(
+        surface_adhesion(found).work_of_adhesion, adhesion.work_of_adhesion, rtol=1e-9
+    )
+    expected = measured_surface([measurement]).conformity_energy(SPHERE.contact_modulus)
+    assert cf.predict(SCAN, SPHERE, **WORDS).e_el == expected
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ({"channel": "Phase"}, "has no channel 'Phase'"),
+        ({"crop": "1um"}, "^crop is '1um'; write both ends"),
+        ({"mask": "1um:2um"}, "has 2 dimension"),
+        ({"detrend": "spline"}, "^detrend is 'spline'; choose one"),
+        ({"detrend": 10}, "^detrend is 10; choose one"),
+        ({"size": "5x5"}, "^size is '5x5'; write one number"),
+        ({"shortest": -1.0}, "^shortest is -1 m; it must lie between"),
+        ({"shortest": "4"}, "^shortest is '4', without a unit"),
+    ],
+)
+def test_words_that_cannot_be_used_are_refused_by_their_names(words, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.read_scan(SCAN, SPHERE, **words)
+
+
+@pytest.mark.parametrize("words", [{"crop": 3}, {"mask": 3}, {"longest": [1]}])
+def test_words_of_another_type_say_what_they_expect(words):
+    with pytest.raises(TypeError, match=f"^{next(iter(words))} is .*; give a"):
+        cf.predict(SCAN, SPHERE, **words)
 
 
 def test_a_prediction_shows_itself_with_intervals_limits_and_notes():

@@ -605,12 +605,12 @@ def test_a_field_needs_the_whole_sphere_and_one_scan(tmp_path):
 
 
 def test_a_treatment_is_what_the_options_say(surface):
-    [coarse] = read_measurements([OVERVIEW], Treatment("height", shortest=2e-6))
+    coarse = measured_surface(read_measurements([OVERVIEW], Treatment("height")), 2e-6)
     found = json.loads(
         run("surface", OVERVIEW, "--detrend", "height", "--shortest", "2um", "--json").output
     )
-    assert found["measurements"][0]["shortest"]["value"] == coarse.shortest
-    energy = measured_surface([coarse]).measures[1].rms.value
+    assert found["measurements"][0]["shortest"]["value"] == 2e-6
+    energy = coarse.measures[1].rms.value
     assert found["measures"][1]["rms"]["value"] == pytest.approx(energy, rel=1e-12)
 
 

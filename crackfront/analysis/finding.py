@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-from scipy.optimize import brentq
-
 from crackfront.analysis.law import WEAKEST, law_value, pinning_factor, shipped_law
 
 PAPER_FACTOR, PERTURBATION_FACTOR = 3.0, 4.0
@@ -54,6 +52,7 @@ def departure_of_spheres(rms: float, n_large: int, n_cell: int) -> str:
 
 def crossing() -> tuple[float, float, float]:
     """Disorder s at which k of the infinite contact is the paper's, and its 95% interval."""
+    from scipy.optimize import brentq
 
     def excess(s: float, name: str) -> float:
         return float(getattr(pinning_factor(s, math.inf).factor, name)) - PAPER_FACTOR
@@ -67,6 +66,8 @@ def crossing() -> tuple[float, float, float]:
 
 def least_size() -> float:
     """Size g at which k of vanishing disorder is the paper's; smaller contacts never have it."""
+    from scipy.optimize import brentq
+
     coefficients = shipped_law().coefficients
 
     def excess(logarithm: float) -> float:

@@ -21,19 +21,20 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.resources import files
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq, least_squares
 from scipy.special import ndtr
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, larkin_length
-from crackfront.core.spectrum import Spectrum
 from crackfront.core.variables import variable
 from crackfront.data.bounds import LENGTH, refuse_outside
+
+if TYPE_CHECKING:
+    from crackfront.core.spectrum import Spectrum
 
 Array = NDArray[np.float64]
 
@@ -191,6 +192,8 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
     A cell weighs by its own error and the model error together, which is found in the same way as
     the residuals: once with the first guess, then with what they say.
     """
+    from scipy.optimize import least_squares
+
     used = [cell for cell in cells if cell.size >= LEAST_SIZE]
     s, g, breadth, k = (
         np.array([getattr(cell, name) for cell in used])
@@ -566,6 +569,8 @@ def _branch_size(
     w_rms: float, larkin: float, mean: float, sign: int, contact_radius: float, breadth: float
 ) -> float:
     """G of a branch, whose work of adhesion mean + sign k e_el depends on k itself."""
+    from scipy.optimize import brentq
+
     coefficients = shipped_law().coefficients
 
     def adhesion(factor: float) -> float:

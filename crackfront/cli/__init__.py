@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import errno
+import sys
+from collections.abc import Sequence
 from typing import Any
 
 import click
@@ -18,7 +20,22 @@ from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.cli.validate import validate
+from crackfront.data.lazy_modules import loaded_on_use
 from crackfront.sweep.parallel import ending_alike
+
+_NEVER_USED = ("numpy.f2py", "numpy.testing", "scipy.integrate", "scipy.interpolate")
+"""What libraries import for single functions of theirs."""
+
+_NO_READER = (
+    "SurfaceTopography.Generic.Fractional",
+    "SurfaceTopography.Generic.RobustStatistics",
+    "SurfaceTopography.IO.DZI",
+    "SurfaceTopography.Uniform.Filtering",
+    "SurfaceTopography.Uniform.ScalarParameters",
+)
+"""Parts of the reader of scans that give its surfaces methods, for which they import scipy.stats,
+scipy.signal and matplotlib, most of a second; `predict` and `surface` call none of these methods,
+boundary elements do."""
 
 
 class _RefusalError(click.ClickException):
@@ -37,6 +54,14 @@ class _Commands(click.Group):
                 formatter.write_dl(
                     [(str(command.name), command.get_short_help_str(90)) for command in commands]
                 )
+
+    def main(self, args: Sequence[str] | None = None, *others: Any, **options: Any) -> Any:
+        """Run a command line: that of the process where none is given, which is then alone."""
+        if args is not None:
+            return super().main(args, *others, **options)
+        reads_only = sys.argv[1:2] in (["predict"], ["surface"])
+        with loaded_on_use(_NEVER_USED + (_NO_READER if reads_only else ())):
+            return super().main(*others, **options)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""

@@ -7,7 +7,14 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, announce_compilation, examples, refuse_unwritable, whole
+from crackfront.cli.report import (
+    FILE,
+    announce_compilation,
+    announce_cost,
+    examples,
+    refuse_unwritable,
+    whole,
+)
 from crackfront.data.bounds import Range
 
 _output = click.option(
@@ -43,7 +50,7 @@ def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
     from crackfront.data.files import write_dataset
     from crackfront.data.provenance import provenance
     from crackfront.simulate.run import compile_solver
-    from crackfront.studies.accuracy.files import STUDIES
+    from crackfront.studies.accuracy.files import SECONDS, STUDIES
     from crackfront.studies.accuracy.scenes import SCENES
 
     if scene not in SCENES:
@@ -52,6 +59,7 @@ def accuracy(scene: str, output: Path, study: str, realisations: int) -> None:
         hint = f"did you mean {near[0]}?" if near else f"choose one of {names}"
         raise click.BadParameter(f"there is no scene {scene!r}; {hint}")
     refuse_unwritable(output)
+    announce_cost(realisations * SECONDS[study](SCENES[scene]))
     announce_compilation()
     compile_solver("newton")
     found = STUDIES[study](SCENES[scene], realisations, click.echo)

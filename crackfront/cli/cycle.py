@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,7 +26,7 @@ from crackfront.cli.report import (
 )
 from crackfront.cli.watch import Progress, Watch
 from crackfront.data.bounds import COUNT, DENSITY, TOLERANCE, Range
-from crackfront.simulate.cases import CASES, Resolution
+from crackfront.simulate.cases import CASES, Problem, Resolution
 from crackfront.sweep.parallel import heeding_notice, notice_is_given
 
 if TYPE_CHECKING:
@@ -172,8 +172,6 @@ def cycle(
     75 after Ctrl-C or SIGTERM: the states so far are then kept beside the output, and the same
     command goes on from there.
     """
-    from crackfront.core.cycle.record import Recorder
-    from crackfront.core.outcome import Status
     from crackfront.core.solver.relax import named_solver
     from crackfront.data.files import refuse_no_file, write_dataset
     from crackfront.data.provenance import provenance
@@ -182,62 +180,78 @@ def cycle(
 
     case = _case(geometry, given)
     refuse_no_file(output)
-    refuse_unwritable(output.parent)
+    for path in (output, figure or output):
+        refuse_unwritable(path.parent)
     solution = named_solver(solver, tolerance, max_sweeps)
-    problem = case.problem(
-        lambda: read_field(field_file, interpolation or "linear"),
-        Resolution(angles, samples_per_pixel, interpolation),
-    )
+    resolution = Resolution(angles, samples_per_pixel, interpolation)
+    problem = case.problem(lambda: read_field(field_file, interpolation or "linear"), resolution)
+    key = _key(field_file, geometry, given, tolerance, solver, max_sweeps, record, resolution)
+    keeper = _Keeper(output, key, problem.field.geometry)
+    deepest = getattr(case, "max_penetration", None)
+    shown = Watch(problem.expected, deepest) if watch else Progress(problem.expected)
+    recorder = _recorder(problem, record, shown, keeper)
+    announce_compilation(err=as_json)
+    announce_cost(problem.seconds)
+    with heeding_notice():
+        recorder.run(problem.field, problem.front, problem.loads, solution)
+    shown.finish()
+    found = loop_dataset(recorder.record(), problem.measures, problem.field.geometry, problem.sites)
+    write_dataset(output, found, provenance())
+    keeper.path.unlink(missing_ok=True)
+    drawn = () if figure is None else _draw(found, figure)
+    if as_json:
+        echo_json(_answer(recorder, found, output))
+    else:
+        click.echo("\n".join(_sentences(recorder, found, output, drawn)))
+    if recorder.status.name != case.ends_by:
+        end = f"{recorder.load_name} {recorder.load:.6g}"
+        raise click.ClickException(f"at {end} {recorder.status.value}")
+
+
+def _recorder(
+    problem: Problem, record: tuple[str, ...], shown: Progress, keeper: _Keeper
+) -> Recorder:
+    """What records what is asked for, and goes on from what was kept."""
+    from crackfront.core.cycle.record import Recorder
+
     if "fronts" in record and problem.front.size == 1:
         raise ValueError(
             "--record fronts: on rings the front is a circle, whose radius every record holds as "
             "mean_radius; leave it out"
         )
-    for path in (output, figure or output):
-        refuse_unwritable(path.parent)
-    announce_compilation(err=as_json)
-    announce_cost(problem.seconds)
-    asked = (geometry, given, tolerance, solver, max_sweeps, record, angles, samples_per_pixel)
-    keeper = _Keeper(output, _key(field_file, *asked, interpolation), problem.field.geometry)
-    resumed, deepest = keeper.found(), getattr(case, "max_penetration", None)
-    shown = Watch(problem.expected, deepest) if watch else Progress(problem.expected)
-    recorder = Recorder(
+    return Recorder(
         fronts="fronts" in record,
         energy="energy" in record,
         observers=[shown, keeper],
-        resume=resumed,
+        resume=keeper.found(),
     )
-    with heeding_notice():
-        recorder.run(problem.field, problem.front, problem.loads, solution)
-    shown.finish()
-    outcome = recorder.record()
-    found = loop_dataset(outcome, problem.measures, problem.field.geometry, problem.sites)
-    write_dataset(output, found, provenance())
-    keeper.path.unlink(missing_ok=True)
-    drawn = () if figure is None else _draw(found, figure)
-    count, load = len(recorder.states), recorder.load_name
-    if as_json:
-        forces = [state.force for state in recorder.states if hasattr(state, "force")]
-        echo_json(
-            {
-                "output": output,
-                "states": count,
-                "status": outcome.status.name.lower(),
-                f"end_{load}": outcome.end_load,
-                "lowest_force": min(forces, default=None),
-                "jump_in_force": next(iter(forces), None),
-                **{name: _number(found, name) for name in _MEASURES},
-            }
-        )
-    else:
-        click.echo(f"{count} states: {output}")
-        for path in drawn:
-            click.echo(f"figure: {path}")
-        click.echo(found.attrs["result"])
-    if outcome.status is not Status[case.ends_by]:
-        raise click.ClickException(f"at {load} {outcome.end_load:.6g} {outcome.status.value}")
-    if not as_json and outcome.status is Status.LOST_CONTACT:
-        click.echo(f"contact was lost at {load} {outcome.end_load:.6g}")
+
+
+def _answer(recorder: Recorder, found: Dataset, output: Path) -> dict[str, object]:
+    """What machines are told of a cycle."""
+    forces = [state.force for state in recorder.states if hasattr(state, "force")]
+    return {
+        "output": output,
+        "states": len(recorder.states),
+        "status": recorder.status.name.lower(),
+        f"end_{recorder.load_name}": recorder.load,
+        "lowest_force": min(forces, default=None),
+        "jump_in_force": next(iter(forces), None),
+        **{name: _number(found, name) for name in _MEASURES},
+    }
+
+
+def _sentences(
+    recorder: Recorder, found: Dataset, output: Path, drawn: tuple[Path, ...]
+) -> Iterator[str]:
+    """What people are told of a cycle."""
+    from crackfront.core.outcome import Status
+
+    yield f"{len(recorder.states)} states: {output}"
+    yield from (f"figure: {path}" for path in drawn)
+    yield found.attrs["result"]
+    if recorder.status is Status.LOST_CONTACT:
+        yield f"contact was lost at {recorder.load_name} {recorder.load:.6g}"
 
 
 class _Keeper:
@@ -250,7 +264,7 @@ class _Keeper:
 
     def found(self) -> Checkpoint | None:
         """What an earlier run of the same cycle has kept."""
-        from crackfront.data.files import UnreadableFileError, read_dataset
+        from crackfront.data.files import UnreadableFileError, read_dataset, set_aside
         from crackfront.simulate.files import known_checkpoint
 
         if not self.path.exists():
@@ -258,9 +272,12 @@ class _Keeper:
         try:
             found = known_checkpoint(read_dataset(self.path), self._key, self.path)
         except UnreadableFileError:
-            found = None
+            aside = set_aside(self.path).name
+            told = f"is damaged; it is set aside as {aside}, and the cycle begins anew"
+            click.echo(f"{self.path} {told}", err=True)
+            return None
         if found is None:
-            click.echo(f"{self.path} is of another cycle, which begins anew", err=True)
+            click.echo(f"{self.path} is of another cycle; this one begins anew", err=True)
         else:
             count = found.record.states.direction.size
             click.echo(f"going on from the {count} states in {self.path}", err=True)

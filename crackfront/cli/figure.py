@@ -14,6 +14,7 @@ import click
 from crackfront.cli.report import (
     FILE,
     announce_compilation,
+    announce_cost,
     as_json,
     echo_json,
     examples,
@@ -63,6 +64,7 @@ def figure(configuration: Path, scale: str, output: Path) -> None:
     shown = figure(configuration.stem)
     path = output / scale / f"{configuration.stem}.nc"
     refuse_unwritable(path.parent)
+    announce_cost(shown.seconds(parameters))
     if (sweep := getattr(parameters, "sweep", None)) is not None:
         record = shown.compute(parameters, click.echo, fit_of_sweep(Path(sweep)))
     else:

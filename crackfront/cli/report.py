@@ -71,7 +71,7 @@ def announce_compilation(*, err: bool = False) -> None:
     from crackfront.core.compiled import kernels_are_cached
 
     if not kernels_are_cached():
-        click.echo("compiling the solver (once)", err=err)
+        click.echo("compiling the solver (once, for half a minute to a minute)", err=err)
 
 
 def announce_cost(seconds: float, *, err: bool = True) -> None:

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from crackfront.core.units import Scales
     from crackfront.topography.measures import MeasuredSurface
     from crackfront.topography.prediction import Prediction
-    from crackfront.topography.reading import Treatment
-    from crackfront.topography.regions import Region
     from crackfront.topography.simulated import Simulated
     from crackfront.topography.tile import Placement
 
@@ -40,7 +38,7 @@ _EXIT_CODES = {"applies": 0, "applies with reservations": 3, "does not apply": 4
 
 @dataclass(frozen=True, slots=True)
 class _Reading:
-    """Files of a surface and how to read them, as options say it."""
+    """Files of a surface, and the words of :class:`crackfront.topography.wording.Wording`."""
 
     scans: tuple[Path, ...]
     channel: tuple[str, ...]
@@ -347,65 +345,10 @@ def _write_field(
 
 def _surface_of(reading: _Reading) -> MeasuredSurface:
     """Surface of the files that a command names."""
-    from crackfront.data.written_units import si_value
-    from crackfront.topography.measures import measured_surface
-    from crackfront.topography.reading import read_measurements
+    from crackfront.topography.wording import Wording
 
-    ends = [
-        None if text is None else si_value(text, "m", what=f"--{name}")
-        for name, text in (("shortest", reading.shortest), ("longest", reading.longest))
-    ]
-    return measured_surface(read_measurements(reading.scans, _treatments(reading)), *ends)
-
-
-def _treatments(reading: _Reading) -> list[Treatment]:
-    """How each of the files is read."""
-    from crackfront.topography.levelling import detrend_named
-    from crackfront.topography.reading import Treatment
-    from crackfront.topography.regions import region_named
-
-    count = len(reading.scans)
-    if reading.mask and count > 1:
-        raise ValueError(f"--mask is for one scan, and {count} are named; level them one by one")
-    mask: tuple[Region | Path, ...] = tuple(
-        region_named(text, "--mask") if ":" in text else Path(text) for text in reading.mask
-    )
-    size = reading.size
-    return [
-        Treatment(
-            detrend=detrend_named(reading.detrend),
-            unit=reading.unit,
-            size=None if size is None else _numbers(size),
-            channel=channel,
-            crop=None if crop is None else region_named(crop, "--crop"),
-            mask=mask,
-        )
-        for channel, crop in zip(
-            _each("--channel", reading.channel, count),
-            _each("--crop", reading.crop, count),
-            strict=True,
-        )
-    ]
-
-
-def _each(option: str, values: tuple[str, ...], count: int) -> tuple[str | None, ...]:
-    """What an option says of each of the scans."""
-    if len(values) not in (0, 1, count):
-        raise ValueError(
-            f"{option} is given {len(values)} times for {count} scan(s); give it once, or once for "
-            "each in their order"
-        )
-    return values if len(values) == count else (values or (None,)) * count
-
-
-def _numbers(text: str) -> tuple[float, ...]:
-    """Sides that an option like 50,50 names."""
-    try:
-        return tuple(float(side) for side in text.split(","))
-    except ValueError as error:
-        raise ValueError(
-            f"--size is {text!r}; write one number for each direction, as in 50,50"
-        ) from error
+    words = {name: getattr(reading, name) for name in reading.__slots__ if name != "scans"}
+    return Wording(**words, prefix="--").surface(reading.scans)
 
 
 def _scales_of(sphere: _Sphere) -> Scales:

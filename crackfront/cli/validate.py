@@ -10,6 +10,7 @@ from crackfront.cli.report import (
     FILE,
     StoppedError,
     announce_compilation,
+    announce_cost,
     examples,
     refuse_unwritable,
 )
@@ -34,9 +35,12 @@ def validate(configuration: Path, output: Path | None, finished: bool) -> None:
     """
     from crackfront.data.provenance import provenance
     from crackfront.studies.boundary_elements.amplitude_report import write_amplitudes
+    from crackfront.studies.boundary_elements.costs import expected_seconds
     from crackfront.studies.boundary_elements.parameters import (
         AmplitudeParameters,
+        amplitude_cases,
         load_validation,
+        validation_cases,
     )
     from crackfront.studies.boundary_elements.report import write_validation
     from crackfront.studies.boundary_elements.study import refuse_missing_libraries
@@ -51,6 +55,13 @@ def validate(configuration: Path, output: Path | None, finished: bool) -> None:
     refuse_missing_libraries()
     refuse_unwritable(folder)
     origin = provenance(configuration.read_text(encoding="utf-8"))
+    if not finished:
+        cases = (
+            amplitude_cases(parameters)
+            if isinstance(parameters, AmplitudeParameters)
+            else validation_cases(parameters)
+        )
+        announce_cost(expected_seconds(cases, folder))
     announce_compilation()
     try:
         if isinstance(parameters, AmplitudeParameters):

@@ -15,7 +15,6 @@ import hashlib
 import inspect
 import os
 import shutil
-import stat
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -27,6 +26,7 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.extending import overload
 
 from crackfront.core.fingerprint import solver_fingerprint
+from crackfront.core.private_cache import caches, is_private
 
 
 @functools.cache
@@ -41,41 +41,19 @@ def cache_folder() -> Path:
     OSError
         If there is no place for a folder.
     """
-    for parent in _caches():
-        if _is_private(parent) and _is_private(parent / solver_fingerprint()):
+    for parent in caches():
+        if is_private(parent) and is_private(parent / solver_fingerprint()):
             return parent / solver_fingerprint()
     try:
         folder = tempfile.mkdtemp(prefix="crackfront-")
     except OSError as error:
-        places = " or ".join(map(str, _caches()))
+        places = " or ".join(map(str, caches()))
         raise OSError(
             f"compiled code can be kept neither in {places}; set XDG_CACHE_HOME to a folder that "
             "is writable"
         ) from error
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return Path(folder)
-
-
-def _caches() -> Iterator[Path]:
-    """Folders in which compiled kernels may stand, the best first."""
-    # A container that runs as a number has neither HOME nor a name.
-    with contextlib.suppress(RuntimeError):
-        yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "crackfront")
-    yield Path(tempfile.gettempdir(), f"crackfront-{os.geteuid()}")
-
-
-def _is_private(folder: Path) -> bool:
-    """Whether nobody but this user writes in a folder; made, or made anew, where that helps."""
-    with contextlib.suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-        found = folder.lstat()
-        if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.geteuid():
-            return False
-        if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-            shutil.rmtree(folder)
-            folder.mkdir(mode=0o700)
-        return os.access(folder, os.W_OK)
-    return False
 
 
 class _CheckedFiles(IndexDataCacheFile):  # type: ignore[misc]

@@ -1,17 +1,24 @@
 """Fingerprints of sources by their meaning: what cannot change a number does not change them.
 
 Documentation, comments, annotations, imports and the places of definitions do not count. A name
-to which several modules give different meanings is told apart by its module.
+to which several modules give different meanings is told apart by its module. What was found of the
+same bytes before is kept in the cache of this user, as parsing the package takes a second.
 """
 
 from __future__ import annotations
 
 import ast
+import contextlib
 import functools
 import hashlib
+import os
+import re
+import sys
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+
+from crackfront.core.private_cache import caches, is_private
 
 PACKAGE = Path(__file__).parents[1]
 
@@ -44,10 +51,44 @@ def fingerprint(
     skipped = {PACKAGE / place for place in without}
     paths = {path for place in places for path in _files(PACKAGE / place)} - skipped
     chosen = {PACKAGE / place: names for place, names in (reached or {}).items()}
-    paths |= set(chosen)
-    sources = {path: ast.parse(path.read_bytes()) for path in paths if path.suffix == ".py"}
+    contents = {path: path.read_bytes() for path in sorted(paths | set(chosen))}
+    kept = _kept_in(contents, chosen)
+    with contextlib.suppress(OSError, ValueError):
+        if kept is not None and _DIGITS.fullmatch(known := kept.read_text("ascii")):
+            return known
+    found = _meaning(contents, chosen)
+    if kept is not None:
+        with contextlib.suppress(OSError):
+            part = kept.with_name(f"{kept.name}.{os.getpid()}")
+            part.write_text(found, "ascii")
+            part.replace(kept)
+    return found
+
+
+_DIGITS = re.compile("[0-9a-f]{12}")
+
+
+def _kept_in(contents: Mapping[Path, bytes], chosen: Mapping[Path, Sequence[str]]) -> Path | None:
+    """File that keeps the fingerprint of these bytes; None where this user has no cache."""
+    folder = next((parent / "fingerprints" for parent in caches() if is_private(parent)), None)
+    if folder is None or not is_private(folder):
+        return None
+    digest = hashlib.sha256(Path(__file__).read_bytes())
+    # Which modules there are tells them from other names; trees differ between Pythons.
+    modules = sorted(str(path.relative_to(PACKAGE)) for path in PACKAGE.rglob("*.py"))
+    names = {str(path.relative_to(PACKAGE)): list(names) for path, names in chosen.items()}
+    digest.update(repr((sys.version_info[:2], modules, sorted(names.items()))).encode())
+    for path, content in contents.items():
+        head = f"{path.relative_to(PACKAGE)} {len(content)}"
+        digest.update(head.encode() + content)
+    return folder / digest.hexdigest()
+
+
+def _meaning(contents: Mapping[Path, bytes], chosen: Mapping[Path, Sequence[str]]) -> str:
+    """Twelve hexadecimal digits of the meaning of sources, of some of which only names count."""
+    sources = {path: ast.parse(text) for path, text in contents.items() if path.suffix == ".py"}
     shared = _shared_names(list(sources.values()))
-    parts = [path.read_bytes() for path in paths - set(sources)]
+    parts = [content for path, content in contents.items() if path not in sources]
     for path, tree in sources.items():
         meaning = _Meaning(path.stem, tree, shared)
         kept = _reached(tree, chosen[path]) if path in chosen else tree.body

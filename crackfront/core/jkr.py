@@ -10,7 +10,6 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
@@ -182,6 +181,8 @@ def equilibrium_radius(penetration: float, work_of_adhesion: float = 1.0) -> flo
     >>> round(equilibrium_radius(1.0), 12)
     1.783484193282
     """
+    from scipy.optimize import brentq
+
     smallest, lowest = pull_off_radius(work_of_adhesion), pull_off_penetration(work_of_adhesion)
     if penetration < lowest:
         raise ValueError(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import math
 import os
+import resource
 import tempfile
 import time
 from collections.abc import Callable, Collection, Iterator
@@ -25,6 +26,9 @@ PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
 
 _SECONDS_TO_WRITE = 3600.0
 """Time after which a file that is not finished will not be."""
+
+_SECONDS_TO_OPEN = 5
+"""Processor time after which the head of a file that is being read will not end."""
 
 _UMASK = os.umask(0)
 os.umask(_UMASK)
@@ -188,9 +192,10 @@ def read_dataset(
     UnreadableFileError
         If there is no such file, it is damaged, or it is no complete netCDF file.
     """
-    refuse_damaged(path)
+    if refuse_damaged(path) is Integrity.UNKNOWN:
+        _refuse_endless(path)
     try:
-        with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
+        with _opened(path) as dataset:
             others = [] if names is None else [name for name in dataset if name not in names]
             chosen = dataset.drop_vars(others)
             refuse_beyond_memory(
@@ -200,23 +205,59 @@ def read_dataset(
     except TooLargeError:
         raise
     except Exception as error:  # a file without a digest may be wrong in any way
-        raise UnreadableFileError(
-            f"{path} is no complete netCDF file; write it again, or name another"
-        ) from error
+        raise _incomplete(path) from error
 
 
-def refuse_damaged(path: Path) -> None:
+def _opened(path: Path) -> xr.Dataset:
+    """Dataset of a netCDF file of which only the head is read."""
+    return xr.open_dataset(path, engine="netcdf4", decode_times=False)
+
+
+def _incomplete(path: Path) -> UnreadableFileError:
+    """What is raised where a file is no netCDF to its end."""
+    return UnreadableFileError(
+        f"{path} is no complete netCDF file; write it again, or name another"
+    )
+
+
+def _refuse_endless(path: Path) -> None:
+    """Raise where the library does not come to the end of a file's head, or crashes on it.
+
+    A damaged head may be a circle, in which HDF5 goes round for ever and hears no signal: it is
+    read in a copy of this process before, which the system ends.
+    """
+    copy = os.fork()
+    if copy == 0:
+        try:
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            resource.setrlimit(resource.RLIMIT_CPU, (_SECONDS_TO_OPEN, _SECONDS_TO_OPEN))
+            _opened(path).close()
+        finally:
+            os._exit(0)
+    _, status = os.waitpid(copy, 0)
+    if os.WIFSIGNALED(status):
+        raise _incomplete(path)
+
+
+def refuse_damaged(path: Path) -> Integrity:
     """Raise an `UnreadableFileError` if there is no such file, or it is not as it was written.
 
     A file that states no digest, as one of others or of an earlier version, is not refused.
+
+    Returns
+    -------
+    Integrity
+        Whether it states one.
     """
     if not path.is_file():
         raise UnreadableFileError(f"{path} does not exist; check the name")
-    if integrity(path)[0] is Integrity.DAMAGED:
+    found, _ = integrity(path)
+    if found is Integrity.DAMAGED:
         raise UnreadableFileError(
             f"{path} is damaged, its content does not have the digest that it states; restore it "
             "or write it again"
         )
+    return found
 
 
 def integrities(folder: Path) -> Iterator[tuple[Path, Integrity]]:

@@ -6,12 +6,11 @@ import importlib.util
 import sys
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec
 from typing import Any
 
 
-class _Finder(MetaPathFinder):
+class _Finder:
     """Finds modules of some names such that they load on use."""
 
     def __init__(self, names: Collection[str]) -> None:

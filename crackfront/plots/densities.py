@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,10 @@ WAVEVECTOR_LABEL = r"wavevector $q$ (m$^{-1}$)"
 PROFILE_LABEL = r"$C^\mathrm{1D}$ (m$^3$)"
 ISOTROPIC_LABEL = r"$C^\mathrm{iso}$ (m$^4$)"
 CONVERTED_LABEL = r"$q\,C^\mathrm{iso}/\pi$ (paper's conversion)"
+
+
+_NAME = 0.4
+"""Part of the axis that the name of a bar takes."""
 
 
 def draw_spectrum(
@@ -93,38 +98,53 @@ def draw_dominant_scales(axes: Axes, mean_square: Array, shortest: Array, longes
 
 def _measured_names(mean_square: Array) -> tuple[str, ...]:
     """Names of the bars over wavevectors in 1/m; arguments as of :func:`draw_dominant_scales`."""
+    height, half, slope = mean_square**0.5
+    power = math.floor(math.log10(half))
     return (
-        rf"$h_\mathrm{{rms}}^{{(0)}} = {1e9 * mean_square[0] ** 0.5:.0f}$ nm",
-        rf"$h_\mathrm{{rms}}^{{(1/2)}} = {1e4 * mean_square[1] ** 0.5:.1f}"
-        r"\times10^{-4}$ m$^{1/2}$",
-        rf"$h_\mathrm{{rms}}^{{(1)}} = {mean_square[2] ** 0.5:.2f}$",
+        rf"$h_\mathrm{{rms}}^{{(0)}} = {_two_digits(1e9 * height)}$ nm",
+        rf"$h_\mathrm{{rms}}^{{(1/2)}} = {half / 10.0**power:.1f}"
+        rf"\times10^{{{power}}}$ m$^{{1/2}}$",
+        rf"$h_\mathrm{{rms}}^{{(1)}} = {_two_digits(slope)}$",
     )
 
 
+def _two_digits(value: float) -> str:
+    """A number with at least two digits, without a power of ten where it is large."""
+    return f"{value:.0f}" if value >= 10 else f"{value:.2g}"
+
+
 def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -> None:
-    """Bars between wavevectors with their names, above what is drawn."""
-    left, right = axes.get_xlim()
+    """Bars between wavevectors with their names beside or on them, above what is drawn."""
+    left, right = np.log(axes.get_xlim())
     top = max(float(np.max(line.get_ydata())) for line in axes.get_lines())
-    for level, (name, *ends) in enumerate(zip(names, lowest, highest, strict=True)):
+    name_room = _NAME * (right - left)
+    bars = np.clip(np.log([lowest, highest]).T, left, right)
+    are_beside = all(max(low - left, right - high) > name_room for low, high in bars)
+    for level, (name, (low, high)) in enumerate(zip(names, bars, strict=True)):
         height = top * 10.0 ** (5.4 - 1.9 * level)
+        ends = lowest[level], highest[level]
         axes.plot(ends, [height, height], color=BLACK, linewidth=2.5, solid_capstyle="butt")
-        on_right = bool(ends[1] ** 2 < left * right)
+        on_right = bool(right - high > low - left)
+        middle = np.clip((low + high) / 2, left + name_room / 2, right - name_room / 2)
         axes.annotate(
             name,
-            (ends[on_right], height),
-            xytext=(4 if on_right else -4, 0),
+            (ends[on_right] if are_beside else math.exp(middle), height),
+            xytext=((4 if on_right else -4) if are_beside else 0, 0 if are_beside else 2),
             textcoords="offset points",
-            ha="left" if on_right else "right",
-            va="center",
-            bbox={"facecolor": "white", "linewidth": 0, "pad": 1},
+            ha=("left" if on_right else "right") if are_beside else "center",
+            va="center" if are_beside else "bottom",
+            bbox={"facecolor": "white", "linewidth": 0, "pad": 1} if are_beside else None,
         )
-    axes.set_ylim(top=top * 10.0**6.6)
+    axes.set_ylim(top=top * 10.0 ** (6.6 if are_beside else 7.4))
 
 
 def set_density_scales(axes: Axes, wavevector: Array) -> None:
     """Logarithmic axes, over these wavevectors."""
+    from matplotlib.ticker import NullFormatter
+
     axes.set_xscale("log")
     axes.set_yscale("log")
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlim(wavevector[0], wavevector[-1])
 
 

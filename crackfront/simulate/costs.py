@@ -53,6 +53,9 @@ _FILE_BYTES, _STATE_BYTES, _FRONT_PART = 22e3, 104.0, 0.72
 _RECORD_BYTES = 1e3
 """Memory of a state that is recorded."""
 
+_STATE_SECONDS = 1e-4
+"""Least time of a state, however few its sites and however short its way."""
+
 _LEAD_IN, _FEWEST_STEADY, _NOISE = 2.0, 9.0, 1.2
 """States of a branch before it is steady; the fewest of an approach; variance of k from state to
 state, relative to that of as many independent sites as the front has correlation lengths."""
@@ -121,7 +124,7 @@ def featured_cost(item: Features, *, fronts: bool) -> Cost:
     """What a run of some features is expected to cost, with its fronts recorded or not."""
     recorded = 8 * item.n_state * item.n_angle if fronts else 0.0
     return Cost(
-        seconds=float(_seconds(_coefficients(), [item])[0]),
+        seconds=float(_seconds(_coefficients(), *_terms([item]))[0]),
         memory=_PROCESS_BYTES
         + 8 * _TILES * item.n_point**2
         + _SITE_BYTES * item.n_angle
@@ -251,7 +254,7 @@ def measured_runs() -> list[Measured]:
 
 def predicted_seconds(runs: Sequence[Measured]) -> Array:
     """Processor times that the law gives for measured runs, in seconds."""
-    return _seconds(_coefficients(), [run.features for run in runs])
+    return _seconds(_coefficients(), *_terms([run.features for run in runs]))
 
 
 def _expected_steady(simulation: Simulation, schedule: SteadySchedule, length: float) -> float:
@@ -285,11 +288,11 @@ def integral_breadth(simulation: Simulation) -> float:
 def _coefficients() -> tuple[float, ...]:
     """Coefficients of the law, fitted to the runs that are not held out."""
     runs = [run for run in measured_runs() if not run.held_out]
-    known = [replace(run.features, n_state=run.n_state) for run in runs]
+    known = _terms([replace(run.features, n_state=run.n_state) for run in runs])
     found = np.log([run.cpu_seconds for run in runs])
 
     def residuals(coefficients: Array) -> Array:
-        return np.log(_seconds(coefficients, known)) - found
+        return np.log(_seconds(coefficients, *known)) - found
 
     return tuple(least_squares(residuals, _START).x.tolist())
 
@@ -298,9 +301,8 @@ _START = (-18.0, -12.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Logarithm of the time of a point of the tile, c_0, and exponents to begin with."""
 
 
-def _seconds(coefficients: Sequence[float] | Array, items: Sequence[Features]) -> Array:
-    """Processor times by the law, in seconds."""
-    point, constant, *exponents = coefficients
+def _terms(items: Sequence[Features]) -> tuple[Array, Array, Array]:
+    """Of runs, by rows: points of the tile, their logarithm; states, sites; terms of the law."""
     columns = np.array([astuple(item) for item in items], dtype=float).T
     n_angle, n_point, energy, tolerance, breadth, travel, full_cycle, n_state = columns
     logarithms = np.array(
@@ -315,8 +317,17 @@ def _seconds(coefficients: Sequence[float] | Array, items: Sequence[Features]) -
             full_cycle,
         ]
     )
-    tile = np.exp(point) * n_point**2 * np.log2(n_point)
-    return tile + n_state * n_angle * np.exp(constant + np.array(exponents) @ logarithms)
+    return np.array([n_point**2, np.log2(n_point)]), np.array([n_state, n_angle]), logarithms
+
+
+def _seconds(
+    coefficients: Sequence[float] | Array, tile: Array, sites: Array, logarithms: Array
+) -> Array:
+    """Processor times of the terms by the law, in seconds."""
+    point, constant, *exponents = coefficients
+    state = sites[1] * np.exp(constant + np.array(exponents) @ logarithms)
+    states = sites[0] * np.maximum(state, _STATE_SECONDS)
+    return np.asarray(np.exp(point) * tile[0] * tile[1] + states)
 
 
 def _run(row: dict[str, str]) -> Measured:

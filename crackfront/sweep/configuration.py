@@ -46,9 +46,7 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineLoad, SpringUnit
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
-from crackfront.topography.levelling import DetrendName
-from crackfront.topography.measures import measured_surface
-from crackfront.topography.reading import Treatment, read_measurements
+from crackfront.topography.wording import Wording
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 
@@ -62,30 +60,34 @@ class ScalesSection(Section):
 
 
 def _several(value: Any) -> Any:
-    """The list that a single file stands for."""
-    return (value,) if isinstance(value, str) else value
+    """The list that a single text or number stands for."""
+    return (value,) if isinstance(value, (str, int)) else value
+
+
+Words = Annotated[tuple[str | int, ...], BeforeValidator(_several)]
+Length = float | str
 
 
 class SurfaceSection(Section):
-    """Measurements of a surface, read as :class:`crackfront.topography.reading.Treatment` says."""
+    """Measurements of a surface, in the words of :class:`crackfront.topography.wording.Wording`."""
 
     file: Annotated[tuple[InputFile, ...], BeforeValidator(_several), Field(min_length=1)]
-    detrend: DetrendName = "curvature"
+    channel: Words = ()
+    crop: Words = ()
+    detrend: str | int = "curvature"
+    mask: Words = ()
     unit: str | None = None
     size: tuple[Positive, ...] | None = None
-    shortest: Positive | None = None
-
-    longest: Positive | None = None
+    shortest: Length | None = None
+    longest: Length | None = None
 
     def measured(self) -> tuple[TabulatedSpectrum, str]:
         """Spectrum in metres, and eight digits that change with any of the files.
 
         Five digits of each number, so that simulations keep their names whatever the round-off.
         """
-        treatment = Treatment(self.detrend, self.unit, self.size)
-        surface = measured_surface(
-            read_measurements(self.file, treatment), self.shortest, self.longest
-        )
+        words = self.model_dump(exclude={"file"})
+        surface = Wording(**words).surface(self.file)
         table = surface.joint.spectrum
         lengths, densities = (
             tuple(float(f"{value:.5g}") for value in values)
@@ -224,10 +226,13 @@ class NumericsSection(Section):
 
 
 class SteadySection(Section):
-    """Steady parts of the branches only, as in `SteadySchedule`."""
+    """Steady parts of the branches only, as in `SteadySchedule`.
+
+    States that are nearer than a hundredth of the correlation length tell nothing new.
+    """
 
     start: Annotated[float, Field(ge=0, allow_inf_nan=False)]
-    travel: Positive
+    travel: Annotated[Positive, Field(ge=0.01)]
     error: Positive
 
 

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.data.written_units import prefixed
 from crackfront.topography.densities import (
     Density,
     Periodogram,
@@ -19,14 +20,16 @@ from crackfront.topography.densities import (
 )
 from crackfront.topography.fitting import Instrument, seen_instrument
 from crackfront.topography.reading import Measurement
+from crackfront.topography.tips import tip_wavelength
 
 Array = NDArray[np.float64]
 
 End = Literal["shortest", "longest"]
 
-Cause = Literal["pixels", "resolution", "noise", "levelling", "form", "named"]
+Cause = Literal["pixels", "resolution", "tip", "noise", "levelling", "form", "named"]
 """What ends a band: points or what the file states of its instrument, waves that fall faster than
-those of any surface, a flat density, the levelling, what this left of the form, or the user."""
+those of any surface, peaks that are rounder than valleys, a flat density, the levelling, what this
+left of the form, or the user."""
 
 _PIXELS = 2.5
 """Points in the shortest wave of the densities in which instruments are looked for."""
@@ -35,8 +38,9 @@ _ATTENUATED, _NOISY = 0.2, 0.2
 """Part of the density that an instrument may take away, and that its noise may add, in the band;
 what is found of both is corrected."""
 
-_LOST, _DROWNED = 0.85, 1.0
-"""The same of the waves that tell the model, which has transfer and noise as parameters."""
+_LOST, _BLURRED, _DROWNED = 0.85, 0.5, 1.0
+"""The same of the waves that tell the model, which has transfer and noise as parameters: lost by an
+optic or a filter, by a tip, whose transfer is known less well, and to noise."""
 
 _NYQUIST = 2.0
 """Points in the shortest wave that pixels hold."""
@@ -99,8 +103,9 @@ class Band:
     end : float
         Shortest wavelength that the surface is continued to: that which its points hold, unless
         instrument or density end before. (Units: m)
-    finest : float
-        Shortest wavelength that it may go on to, in the draws. (Units: m)
+    finest, coarsest : float
+        Shortest wavelength that it may go on to, and longest at which it may end, in the draws.
+        (Units: m)
     """
 
     shortest: BandLimit
@@ -112,6 +117,7 @@ class Band:
     informative: float
     end: float
     finest: float
+    coarsest: float
 
     @property
     def ends(self) -> tuple[BandLimit, BandLimit]:
@@ -185,13 +191,20 @@ def scan(
     seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
     instrument = seen_instrument(seen)
     resolution = max(cliff, instrument.wavelength(_ATTENUATED))
+    tip = tip_wavelength(measurement)
+    if tip > instrument.wavelength(_ATTENUATED):
+        instrument = instrument.losing(_ATTENUATED, tip)
+    # It is corrected, so that an octave is left whatever it takes away.
+    tip = min(tip, measurement.longest / 2**_FEWEST_OCTAVES)
     noise = instrument.noisy(seen, _NOISY)
     found = [
         BandLimit("shortest", "pixels", measurement.shortest),
         BandLimit("longest", "levelling", measurement.longest),
     ]
-    if resolution > _NYQUIST * pixel:
-        found.append(BandLimit("shortest", "resolution", resolution))
+    if max(resolution, tip) > _NYQUIST * pixel:
+        # What a tip takes away may look like an attenuation as well.
+        cause: Cause = "tip" if tip > cliff else "resolution"
+        found.append(BandLimit("shortest", cause, max(resolution, tip)))
     if noise > _NYQUIST * pixel:
         found.append(BandLimit("shortest", "noise", noise))
     alternatives = _alternatives(measurement, without)
@@ -207,21 +220,24 @@ def scan(
     low = max(ends[0], key=lambda limit: limit.wavelength)
     high = min(ends[1], key=lambda limit: limit.wavelength)
     if high.wavelength < 2**_FEWEST_OCTAVES * low.wavelength:
+        short, long = (prefixed("m", limit.wavelength) for limit in (low, high))
         raise ValueError(
-            f"{measurement.path}: wavelengths from {low.wavelength:.3g} m ({low.cause}) to "
-            f"{high.wavelength:.3g} m ({high.cause}) can be trusted, less than an octave; use a "
-            "better scan, or name --shortest and --longest"
+            f"{measurement.path}: of the waves only those above {short} ({low.cause}) and below "
+            f"{long} ({high.cause}) can be trusted, less than an octave; use a better scan, or "
+            "name --shortest and --longest"
         )
-    informative, last = low.wavelength, max(behind, _NYQUIST * pixel)
+    informative, coarsest = low.wavelength, high.wavelength
+    last = max(behind, _NYQUIST * pixel)
     finest = last / _FINER
-    if low.cause in ("resolution", "noise"):
-        informative = max(
-            cliff,
-            instrument.wavelength(_LOST),
-            instrument.noisy(seen, _DROWNED),
-            measurement.shortest,
-        )
-        last = max(last, behind or informative)
+    if low.cause in ("resolution", "tip", "noise"):
+        least = max(cliff, instrument.noisy(seen, _DROWNED), measurement.shortest)
+        if low.cause == "tip":
+            # It leaves the waves below its mark there, though weaker: they end with the pixels.
+            informative, coarsest = max(least, instrument.wavelength(_BLURRED)), least
+            last = max(last, behind)
+        else:
+            informative = max(least, instrument.wavelength(_LOST))
+            last = max(last, behind or informative)
     elif low.cause == "named":
         instrument = Instrument()
     band = Band(
@@ -234,6 +250,7 @@ def scan(
         informative=informative,
         end=min(last, low.wavelength),
         finest=min(finest, low.wavelength),
+        coarsest=coarsest,
     )
     return Scan(measurement, waves, density, alternatives, band)
 

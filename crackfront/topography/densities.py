@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fftfreq, rfft, rfft2, rfftfreq
-from scipy.signal import get_window
 
 from crackfront.topography.instruments import surface_library
 from crackfront.topography.reading import Measurement
@@ -18,6 +17,10 @@ Array = NDArray[np.float64]
 
 BINS_PER_DECADE = 20
 """Bins of wavevectors; their edges are the same for all scans."""
+
+_WINDOWS = {"hann": (0.5, 0.5), "blackman": (0.42, 0.50, 0.08)}
+"""Windows by the amplitudes of their cosines, those of scipy.signal, which takes half a second to
+import."""
 
 _AXIS = 1
 """Modes beside an axis that hold what does not change along one direction: rows, steps, seams."""
@@ -129,12 +132,12 @@ def periodogram(
 ) -> Periodogram:
     """Power of all waves of a measurement, or of other heights in its place.
 
-    A window is a name that `scipy.signal.get_window` knows; a periodic measurement needs none.
+    A periodic measurement needs no window.
     """
     heights = measurement.heights if heights is None else heights
     shape, pixels = heights.shape, measurement.pixels
     windows = [
-        np.ones(count) if measurement.periodic else get_window(window, count) for count in shape
+        np.ones(count) if measurement.periodic else cosine_window(window, count) for count in shape
     ]
     weight = windows[0] if len(shape) == 1 else windows[0][:, None] * windows[1]
     square = math.prod(float(np.mean(one**2)) for one in windows)
@@ -157,12 +160,18 @@ def periodogram(
     return Periodogram(along, power, count, dependence)
 
 
+def cosine_window(name: str, count: int) -> Array:
+    """Weights of points of a period, a sum of cosines that is least at its ends."""
+    angle = np.linspace(-np.pi, np.pi, count + 1)[:-1]
+    return np.asarray(sum(part * np.cos(k * angle) for k, part in enumerate(_WINDOWS[name])))
+
+
 def profile_density(measurement: Measurement) -> Density:
     """Density of a line scan, or mean of those of the lines along x of a map."""
     if measurement.is_line:
         return periodogram(measurement).density()
     count = measurement.heights.shape[0]
-    window = np.ones(count) if measurement.periodic else get_window("hann", count)
+    window = np.ones(count) if measurement.periodic else cosine_window("hann", count)
     lines = window[:, None] * (measurement.heights - measurement.heights.mean(axis=0))
     transform = rfft(lines, axis=0, norm="forward")
     along = 2 * np.pi * rfftfreq(count, measurement.pixels[0])

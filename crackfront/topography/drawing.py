@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 import numpy as np
@@ -40,6 +41,12 @@ Array = NDArray[np.float64]
 
 _MOST_MAPS, _FEWEST_PLACES = 4, 2
 """Scans that are shown as maps, and places for them."""
+
+_LAST = 0.4
+"""Part of the last wavevector from which on a limit is named on its left."""
+
+_ENTRY = 0.085
+"""Part of the height of a panel that an entry of a legend takes."""
 
 _ROOM = 3.0
 """How far beyond the longest trusted wavelength the spectrum is shown."""
@@ -100,7 +107,22 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface) -> None:
     )
     _draw_limits(axes, surface, named=False)
     axes.set_ylabel(ISOTROPIC_LABEL)
-    axes.legend(loc="lower left", frameon=True, framealpha=1, edgecolor="none")
+    _add_legend(axes)
+
+
+def _add_legend(axes: Axes) -> None:
+    """Legend at the lower left, below all that is drawn there."""
+    middle = math.sqrt(math.prod(axes.get_xlim()))
+    bottom, top = axes.get_ylim()
+    curves = (line for line in axes.get_lines() if line.get_transform() == axes.transData)
+    points = [np.asarray(line.get_xydata(), dtype=float) for line in curves]
+    here = [each[each[:, 0] <= middle, 1] for each in points]
+    least = min((float(np.min(values)) for values in here if values.size), default=top)
+    entries = len(axes.get_legend_handles_labels()[0])
+    room = _ENTRY * (entries + 1)
+    # The legend takes a part of the axis, below the least value on the left.
+    axes.set_ylim(bottom=min(bottom, (least / top**room) ** (1 / (1 - room))))
+    axes.legend(loc="lower left")
 
 
 def _reaching(surface: MeasuredSurface) -> list[TabulatedSpectrum]:
@@ -121,13 +143,15 @@ def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
         for limit in one.band.ends:
             place = 2 * np.pi / limit.wavelength
             axes.axvline(place, color=colour, linewidth=0.5, dashes=(2, 2), zorder=1)
+            is_last = place > _LAST * axes.get_xlim()[1]
             if named:
                 axes.annotate(
                     limit.cause,
                     (place, 1.0),
                     xycoords=("data", "axes fraction"),
-                    xytext=(1.5, -2 - 6 * index),
+                    xytext=(-1.5 if is_last else 1.5, -2 - 6 * index),
                     textcoords="offset points",
+                    ha="right" if is_last else "left",
                     va="top",
                     fontsize=5,
                     color=colour,
@@ -152,7 +176,7 @@ def _draw_profiles(axes: Axes, surface: MeasuredSurface) -> None:
     axes.set_ylim(low, high * (high / low) ** (0.12 * len(surface.scans)))
     _draw_limits(axes, surface, named=True)
     axes.set_ylabel(PROFILE_LABEL)
-    axes.legend(loc="lower left", frameon=True, framealpha=1, edgecolor="none")
+    _add_legend(axes)
 
 
 def _draw_untrusted(axes: Axes, index: int, density: Density) -> None:

@@ -75,6 +75,11 @@ class Instrument:
         """Wavelength at which a part of the density is lost; 0 where nothing is (Units: m)."""
         return 2 * math.pi / self.attenuation / (-math.log1p(-part)) ** (1 / self.sharpness)
 
+    def losing(self, part: float, wavelength: float) -> Instrument:
+        """The instrument with a blunt attenuation that takes a part at a wavelength (Units: m)."""
+        attenuation = 2 * math.pi / wavelength / -math.log1p(-part)
+        return replace(self, attenuation=attenuation, sharpness=_SHARPNESS[0])
+
     def noisy(self, density: Density, part: float) -> float:
         """Wavelength below which noise adds more than a part to a density; 0 if nowhere."""
         quiet = np.flatnonzero(density.value > self.noise * (1 + 1 / part))

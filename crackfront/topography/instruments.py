@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -138,6 +139,12 @@ def library_scan(
 def _reader(path: Path, source: Path | BytesIO) -> Any:
     """The library's reader of a file."""
     library = surface_library()
+    if isinstance(source, Path):
+        known = _signed(library, source)
+        # A file that is not what it begins as is left to the readers in their order.
+        with suppress(Exception):
+            if known is not None:
+                return library.open_topography(str(source), format=known)
     try:
         return library.open_topography(str(source) if isinstance(source, Path) else source)
     except library.Exceptions.CannotDetectFileFormat as error:
@@ -148,6 +155,18 @@ def _reader(path: Path, source: Path | BytesIO) -> Any:
     # A damaged file may fail anywhere in a parser that is not ours.
     except Exception as error:
         raise _unreadable(path, "what its head says", error) from error
+
+
+def _signed(library: ModuleType, path: Path) -> str | None:
+    """Format whose signature a file begins with; None where that is none or several.
+
+    The readers in their order would each import what it needs before it finds that it cannot read.
+    """
+    with path.open("rb") as file:
+        begin = file.read(library.IO.MAGIC_BUFFER_SIZE)
+    signed = library.IO.MagicMatch.YES
+    found = [one.format() for one in library.IO.readers if one.can_read(begin) == signed]
+    return str(found[0]) if len(found) == 1 else None
 
 
 def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:

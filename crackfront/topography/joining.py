@@ -253,7 +253,8 @@ def _continued(
     between = []
     for one, other in pairwise([*first, *wavevector, last]):
         number = math.ceil(math.log10(other / one) * _CONTINUED_BINS)
-        between.append(np.geomspace(one, other, max(number, 1) + 1)[1:-1])
+        if number > 1:
+            between.append(np.geomspace(one, other, number + 1)[1:-1])
     extra = np.concatenate([first, *between, [last]])
     every = np.concatenate([wavevector, extra])
     table = np.concatenate([value, model(extra)])
@@ -291,6 +292,7 @@ def _draws(
 ) -> tuple[TabulatedSpectrum, ...]:
     """Spectra that agree with what was measured; `logarithms` are those of every state of a fit."""
     finest = math.log(min(one.band.finest for one in scans))
+    coarsest = math.log(min(one.band.coarsest for one in scans))
     rng = np.random.default_rng(_SEED)
     choices = [_choices(one, density) for one, density in zip(scans, densities, strict=True)]
     drawn = []
@@ -310,7 +312,7 @@ def _draws(
             )
         levels = (scatter * rng.standard_normal(len(parts))).tolist()
         wavevector, value, _ = _joined(parts, levels, scatter)
-        shortest = math.log(2 * np.pi / wavevector[-1])
+        shortest = min(math.log(2 * np.pi / wavevector[-1]), coarsest)
         last = math.exp(rng.uniform(min(finest, shortest), shortest))
         model = fit.state(int(state)).median
         drawn.append(_continued(wavevector, value, model, fit.lowest, last))

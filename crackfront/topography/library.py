@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, fields
 from os import PathLike
 from pathlib import Path
@@ -11,25 +11,29 @@ from xarray import DataArray
 
 from crackfront.core.units import Scales
 from crackfront.data.arguments import refuse_other_type
-from crackfront.data.written_units import prefixed, si_value
+from crackfront.data.written_units import prefixed
 from crackfront.simulate.si_units import refuse_no_scales
 from crackfront.simulate.surfaces import surface_array
 from crackfront.topography.levelling import Detrend
-from crackfront.topography.measures import MeasuredSurface, measured_surface
+from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import Prediction, predicted, prediction_notes
-from crackfront.topography.reading import Measurement, Treatment, read_measurements
+from crackfront.topography.reading import Measurement
 from crackfront.topography.report import prediction_text, surface_text, verdict_text
 from crackfront.topography.tile import tile_heights, zero_load_radius
 from crackfront.topography.verdict import verdict
+from crackfront.topography.wording import File, Name, Wording
 
 
 def read_scan(
     path: str | PathLike[str],
     sphere: Scales,
     *,
+    channel: Name | None = None,
+    crop: str | None = None,
     detrend: Detrend = "curvature",
+    mask: File | Sequence[File] = (),
     unit: str | None = None,
-    size: tuple[float, ...] | None = None,
+    size: str | Sequence[float] | None = None,
     shortest: float | str | None = None,
 ) -> DataArray:
     """A measured map as a surface to press on, levelled and made periodic.
@@ -40,15 +44,23 @@ def read_scan(
         File of an instrument, in any format that SurfaceTopography reads.
     sphere : Scales
         What is pressed on it; it says what a reduced length is.
-    detrend : {"center", "height", "slope", "curvature"}, optional
-        What is taken off: the mean, the plane of least height, that of least slope, a paraboloid.
+    channel : str or int, optional
+        Channel by name or number, for files with several.
+    crop : str, optional
+        Part of the scan to use, as in '2um:8um,0um:5um'.
+    detrend : {"center", "height", "slope", "curvature"} or int, optional
+        What is taken off: the mean, the plane of least height, that of least slope, a paraboloid,
+        or the polynomial of an order.
+    mask : str, path or sequence of them, optional
+        What the levelling leaves out and the map keeps: parts of the scan as in `crop`, or files
+        with a number for each point, not zero there.
     unit : str, optional
         Unit of lengths, for files that state none.
-    size : tuple of float, optional
-        Sides of the scan, for files that state none. (Units: those of `unit`, or of the file)
+    size : str or sequence of float, optional
+        Sides of the scan, for files that state none, as in '50,50'. (Units: those of `unit`, or of
+        the file)
     shortest : float or str, optional
-        Shortest wavelength to trust, as '0.4um'; by default four pixels, or more where the file
-        says so. (Units: m)
+        Shortest wavelength to trust, as in '0.4um', in place of that which is found. (Units: m)
 
     Returns
     -------
@@ -66,7 +78,9 @@ def read_scan(
         If the file cannot be opened.
     """
     refuse_no_scales(sphere)
-    [measurement] = _measurements([path], detrend, unit, size, shortest)
+    refuse_other_type("scan", path, (str, PathLike), "the path of a file")
+    words = Wording(channel, crop, detrend, mask, unit, size, shortest)
+    measurement = words.scan(Path(path)).trusted_measurement
     heights, pixel = tile_heights(measurement)
     return surface_array(
         "roughness",
@@ -114,13 +128,17 @@ class SurfacePrediction(Prediction):
 
 
 def predict(
-    scans: str | PathLike[str] | Iterable[str | PathLike[str]],
+    scans: File | Iterable[File],
     sphere: Scales,
     *,
+    channel: Name | Sequence[Name] | None = None,
+    crop: str | Sequence[str] | None = None,
     detrend: Detrend = "curvature",
+    mask: File | Sequence[File] = (),
     unit: str | None = None,
-    size: tuple[float, ...] | None = None,
+    size: str | Sequence[float] | None = None,
     shortest: float | str | None = None,
+    longest: float | str | None = None,
 ) -> SurfacePrediction:
     """How strongly a sphere sticks to a measured surface, by the law of k.
 
@@ -130,8 +148,12 @@ def predict(
         One measurement of the surface or several, maps or lines.
     sphere : Scales
         What is pressed on it.
-    detrend, unit, size, shortest
+    channel, crop
+        As of :func:`read_scan`; one for all scans, or a list of one for each.
+    detrend, mask, unit, size, shortest
         As of :func:`read_scan`.
+    longest : float or str, optional
+        Longest wavelength to trust, in place of that which is found. (Units: m)
 
     Returns
     -------
@@ -151,23 +173,12 @@ def predict(
     refuse_no_scales(sphere)
     paths = [scans] if isinstance(scans, (str, PathLike)) else scans
     refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
-    surface = measured_surface(_measurements(paths, detrend, unit, size, shortest))
+    files = []
+    for path in paths:
+        refuse_other_type("scan", path, (str, PathLike), "the path of a file")
+        files.append(Path(path))
+    words = Wording(channel, crop, detrend, mask, unit, size, shortest, longest)
+    surface = words.surface(files)
     found = predicted(surface, sphere)
     known = {item.name: getattr(found, item.name) for item in fields(Prediction)}
     return SurfacePrediction(**known, surface=surface)
-
-
-def _measurements(
-    paths: Iterable[str | PathLike[str]],
-    detrend: Detrend,
-    unit: str | None,
-    size: tuple[float, ...] | None,
-    shortest: float | str | None,
-) -> tuple[Measurement, ...]:
-    """Measurements of files."""
-    found = []
-    for path in paths:
-        refuse_other_type("scan", path, (str, PathLike), "the path of a file")
-        found.append(Path(path))
-    limit = si_value(shortest, "m", what="shortest") if isinstance(shortest, str) else shortest
-    return read_measurements(found, Treatment(detrend, unit, size, limit))

@@ -66,8 +66,6 @@ class Treatment:
     size : tuple of float or None
         Sides of the scan, or the length of a line, for files that state none.
         (Units: those of `unit`, or of the file)
-    shortest : float or None
-        Shortest wavelength to trust. (Units: m)
     channel : str or None
         Name or number of the channel, for files with several; by default that which the library
         takes for the heights.
@@ -81,16 +79,14 @@ class Treatment:
     detrend: Detrend = "curvature"
     unit: str | None = None
     size: tuple[float, ...] | None = None
-    shortest: float | None = None
     channel: str | None = None
     crop: Region | None = None
     mask: tuple[Region | Path, ...] = ()
 
     def __post_init__(self) -> None:
         refuse_unknown(self.detrend)
-        for name, values in (("size", self.size or ()), ("shortest", (self.shortest or 1.0,))):
-            if not all(math.isfinite(value) and value > 0 for value in values):
-                raise ValueError(f"{name} is {getattr(self, name)}; it must be positive and finite")
+        if not all(math.isfinite(side) and side > 0 for side in self.size or ()):
+            raise ValueError(f"size is {self.size}; it must be positive and finite")
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,13 +210,13 @@ def _measurement(path: Path, treatment: Treatment) -> Measurement:
         level = level.interpolate_undefined_data()
     pixel = max(side / count for side, count in zip(size, heights.shape, strict=True))
     stated = level.short_reliability_cutoff() or 0.0
-    shortest = max(_PIXELS_PER_WAVE * pixel, stated, treatment.shortest or 0.0)
+    shortest = max(_PIXELS_PER_WAVE * pixel, stated)
     longest = min(size) / _WAVES_PER_SIDE
     if longest < 2**_FEWEST_OCTAVES * shortest:
         raise ValueError(
-            f"{path}: waves longer than {prefixed('m', shortest)} and shorter than "
-            f"{prefixed('m', longest)} can be trusted; a spectrum needs {_FEWEST_OCTAVES} octaves "
-            "of them, so use a larger or finer scan"
+            f"{path}: a spectrum needs {_FEWEST_OCTAVES} octaves of waves to trust, above "
+            f"{prefixed('m', shortest)} (points or instrument) and below {prefixed('m', longest)} "
+            "(half a side); use a larger or finer scan"
         )
     return Measurement(
         path=path,

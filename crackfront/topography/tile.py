@@ -9,7 +9,6 @@ from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import RectBivariateSpline
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
@@ -87,7 +86,8 @@ def tile_heights(measurement: Measurement) -> tuple[Array, float]:
     with warnings.catch_warnings():
         # The library calls an inverse transform in a way that numpy will change.
         warnings.simplefilter("ignore", DeprecationWarning)
-        heights = tile.shortcut(cutoff_wavelength=measurement.shortest).heights()
+        cut = surface_library().Uniform.Filtering.ShortCutTopography
+        heights = cut(tile, cutoff_wavelength=measurement.shortest).heights()
     # Mirror images stand behind the scan: half a scan further its centre is that of the tile.
     behind = [0 if measurement.periodic else count // 4 for count in heights.shape]
     centred = np.ascontiguousarray(np.roll(heights, behind, axis=(0, 1)))
@@ -104,6 +104,8 @@ def _with_square_pixels(measurement: Measurement) -> Measurement:
     pixel = min(measurement.pixels)
     if max(measurement.pixels) <= pixel * (1 + _EQUAL):
         return measurement
+    from scipy.interpolate import RectBivariateSpline
+
     places = [
         (np.arange(count) + 0.5) * width
         for count, width in zip(measurement.heights.shape, measurement.pixels, strict=True)

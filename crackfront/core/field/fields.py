@@ -7,7 +7,6 @@ from typing import Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fftfreq, irfft2, rfft2, rfftfreq
-from scipy.interpolate import CubicSpline
 from scipy.ndimage import spline_filter
 
 from crackfront.core.adhesion import AdhesionMap
@@ -133,6 +132,8 @@ def polar_field(
     products = np.ascontiguousarray(radii * rays)
     slopes = np.empty((0, 0))
     if interpolation == "cubic":
+        from scipy.interpolate import CubicSpline
+
         # Ray by ray: the coefficients of all rays at once take seven times the memory.
         slopes = np.empty_like(products)
         for slope, product in zip(slopes, products, strict=True):

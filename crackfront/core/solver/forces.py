@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.field.pieces import blend, hull_until, peek_piece, polynomial, steepest_inside
 from crackfront.core.field.rays import front_products, segment_below
-from crackfront.core.field.samples import fetch, is_cubic, sample_count, sample_place
+from crackfront.core.field.samples import fetch, is_cubic, peek, sample_count, sample_place
 from crackfront.core.geometry.base import (
     lowest_place,
     mode_stiffness,
@@ -49,9 +49,17 @@ class Front(NamedTuple):
 def line_force(geometry, front):
     """Force of the line on each site against its advance."""
     modes = scipy.fft.rfft(front)
-    for n in range(modes.size):
-        modes[n] *= mode_stiffness(geometry, n)
+    _stiffen(geometry, modes.view(np.float64))
     return scipy.fft.irfft(modes, front.size)
+
+
+@kernel
+def _stiffen(geometry, modes):
+    """Multiply modes, given as real and imaginary parts in turn, by their stiffness."""
+    for n in range(modes.size // 2):
+        stiffness = mode_stiffness(geometry, n)
+        modes[2 * n] *= stiffness
+        modes[2 * n + 1] *= stiffness
 
 
 @jit
@@ -124,8 +132,11 @@ def hardening(field, memory, ray, place, product, segment, reach, load, directio
     distance = outer - place if direction > 0 else place - inner
     piece = peek_piece(field, memory, ray, segment)
     cubic = is_cubic(field)
-    coefficients = polynomial(field, piece, outer - inner)
-    steepest = steepest_inside(coefficients, place - inner, min(reach, distance), direction)
+    if cubic:
+        coefficients = polynomial(field, piece, outer - inner)
+        steepest = steepest_inside(coefficients, place - inner, min(reach, distance), direction)
+    else:
+        steepest = (piece[0] - piece[3]) * inverse
     segment += direction
     while distance < reach and 0 <= segment <= last:
         width = sample_place(field, segment + 1) - sample_place(field, segment)
@@ -146,6 +157,18 @@ def hardening(field, memory, ray, place, product, segment, reach, load, directio
     return steepest + restoring
 
 
+@kernel
+def touch_samples(field, memory, front, first, values):
+    """Read the sample under each of the sites from `first` on, so that it is at hand.
+
+    The reads do not wait for one another, as those between the computations of bounds do.
+    """
+    i = first
+    for j in range(values.size):
+        values[j] = peek(field, memory, i, front.segment[i])[0]
+        i = i + 1 if i + 1 < front.place.size else 0
+
+
 @jit
 def resting_place(field, load, direction):
     """Lowest place, where a site that recedes rests; -inf where it leaves the field before."""
@@ -159,8 +182,15 @@ def drive_sites(geometry, front, load, direction, lowest, drive):
 
     Sites that rest at the lowest place are driven back without bound, and do not count.
     """
+    return _oppose(
+        geometry, front, line_force(geometry, front.place), load, direction, lowest, drive
+    )
+
+
+@kernel
+def _oppose(geometry, front, line, load, direction, lowest, drive):
+    """The same with a given force of the line."""
     place, product = front.place, front.product
-    line = line_force(geometry, place)
     most, least = 0.0, 0.0
     for i in range(drive.size):
         drive[i] = direction * (product[i] - restoring_force(geometry, place[i], load) - line[i])

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crackfront.core.compiled import jit
+from crackfront.core.compiled import jit, kernel
 from crackfront.core.field.rays import front_products
 from crackfront.core.field.samples import distance_ahead, sample_place
 from crackfront.core.geometry.base import weight
@@ -170,18 +170,21 @@ def _line_outweighs_field(field, memory, front, row, load, direction):
     return total / count < 0.5 * left_out
 
 
-@jit
+@kernel
 def _mark(geometry, front, drive, level, active):
     """Mark the sites with a drive above a level and their neighbours; return their number."""
     count = drive.size
-    until = -1
-    active[:] = False
+    until, marked = -1, 0
+    for i in range(count):
+        active[i] = False
     for i in range(count):
         if drive[i] > level * weight(geometry, front.place[i]) * WORK_OF_ADHESION:
             for j in range(max(i - _MARGIN, until + 1), i + _MARGIN + 1):
-                active[j - count if j >= count else j] = True
+                site = j - count if j >= count else j
+                marked += 0 if active[site] else 1
+                active[site] = True
             until = i + _MARGIN
-    return np.sum(active)
+    return marked
 
 
 @jit
@@ -189,20 +192,34 @@ def _relax_active(
     window, field, memory, front, drive, active, b, direction, level, furthest, slack
 ):
     """Relax every run of active sites, in pieces that fit a window; return code and updates."""
-    count, updates = drive.size, 0
+    updates, offset = 0, 0
     start = np.argmin(active) if not np.all(active) else np.argmin(drive)
-    j = 0
-    while j < count:
-        length = 0
-        while j + length < count and length < LONGEST and active[(start + j + length) % count]:
+    while True:
+        offset, length = _next_run(active, start, offset)
+        if length == 0:
+            return CONVERGED, updates
+        first = (start + offset) % drive.size
+        code, steps = relax_window(
+            window, field, memory, front, drive, first, length, b, direction,
+            level, furthest, slack, _ROUNDS,
+        )  # fmt: skip
+        updates += steps * length
+        if code != CONVERGED:
+            return code, updates
+        offset += length
+
+
+@kernel
+def _next_run(active, start, offset):
+    """Offset from the start and length of the next run of active sites that fits a window."""
+    count, length = active.size, 0
+    i = (start + offset) % count
+    while offset + length < count and length < LONGEST:
+        if active[i]:
             length += 1
-        if length > 0:
-            code, steps = relax_window(
-                window, field, memory, front, drive, (start + j) % count, length, b, direction,
-                level, furthest, slack, _ROUNDS,
-            )  # fmt: skip
-            updates += steps * length
-            if code != CONVERGED:
-                return code, updates
-        j += max(length, 1)
-    return CONVERGED, updates
+        elif length > 0:
+            break
+        else:
+            offset += 1
+        i = i + 1 if i + 1 < count else 0
+    return offset, length

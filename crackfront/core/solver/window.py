@@ -13,7 +13,13 @@ from numpy.typing import NDArray
 
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import restoring_force, weight
-from crackfront.core.solver.forces import CONVERGED, hardening, locate, resting_place
+from crackfront.core.solver.forces import (
+    CONVERGED,
+    hardening,
+    locate,
+    resting_place,
+    touch_samples,
+)
 from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
@@ -72,7 +78,7 @@ def make_window(row):
     )
 
 
-@kernel
+@kernel(fastmath={"contract"})
 def _solve_banded(window, count):
     """Step of (K + D) step = drive with K cut to a band, by Gaussian elimination, clipped at 0.
 
@@ -107,7 +113,8 @@ def _solve_banded(window, count):
     step[count : count + HALF_BAND] = 0.0
     for i in range(count - 1, -1, -1):
         value = step[i]
-        for lag in range(1, HALF_BAND + 1):
+        # The nearest site last: its step is known last.
+        for lag in range(HALF_BAND, 0, -1):
             value -= band[i, lag] * step[i + lag]
         step[i] = window.given[i] if window.given[i] >= 0.0 else max(value * band[i, 0], 0.0)
 
@@ -134,11 +141,11 @@ def _choose_step(window, field, memory, front, first, count, b, direction, furth
     i = first
     for j in range(count):
         if part * step[j] > reach[j]:
-            short = True
             reach[j] = part * step[j]
             ahead = hardening(
                 field, memory, i, place[i], product[i], segment[i], reach[j], b, direction
             )
+            short = short or ahead > stiffness[j]
             stiffness[j] = max(ahead, stiffness[j])
         i = i + 1 if i + 1 < place.size else 0
     if short:
@@ -202,8 +209,11 @@ def relax_window(
     """
     place, local, reach, step = front.place, window.drive, window.reach, window.step
     own, lowest = window.coupling[LONGEST], resting_place(field, b, direction)
+    touch_samples(field, memory, front, first, step[:count])
+    i = first
     for j in range(count):
-        local[j] = drive[(first + j) % place.size]
+        local[j] = drive[i]
+        i = i + 1 if i + 1 < place.size else 0
         reach[j] = 4 * max(local[j], 0.0) / own
     steps = 0
     while steps < rounds:

@@ -12,10 +12,11 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.variables import ADHESION, variable
+from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Simulation, numerical_error, stated_error
 from crackfront.studies.accuracy.scenes import Progress, Scene
-from crackfront.studies.accuracy.study import measured_branches
+from crackfront.studies.accuracy.study import branches_seconds, measured_branches
 
 Array = NDArray[np.float64]
 
@@ -116,6 +117,15 @@ def sampling_errors(
 
 def _sampled(scene: Scene, knob: str, value: float, number: int) -> tuple[float, float, float]:
     """Hysteresis, its stated error and processor time with another schedule or tile."""
+    simulation = _other(scene, knob, value, number)
+    result = run_simulation(simulation)
+    steady = steady_adhesion(result.record, simulation.correlation_length)
+    error = float(np.hypot(steady.w_appr_error, steady.w_retr_error))
+    return steady.hysteresis, error, result.measures.cpu_seconds
+
+
+def _other(scene: Scene, knob: str, value: float, number: int) -> Simulation:
+    """Simulation with another schedule or tile."""
     knobs = scene.chosen_knobs(_NUMERICAL_ERROR)
     if knob == "tile":
         scene = replace(scene, tile_cutoffs=value)
@@ -124,11 +134,24 @@ def _sampled(scene: Scene, knob: str, value: float, number: int) -> tuple[float,
         if knob == "step"
         else SteadySchedule(_START, _DEEPEST, value if knob == "travel" else _TRAVEL, _NO_STOP)
     )
-    simulation = replace(scene.simulation(knobs, number), schedule=schedule)
-    result = run_simulation(simulation)
-    steady = steady_adhesion(result.record, simulation.correlation_length)
-    error = float(np.hypot(steady.w_appr_error, steady.w_retr_error))
-    return steady.hysteresis, error, result.measures.cpu_seconds
+    return replace(scene.simulation(knobs, number), schedule=schedule)
+
+
+def sampling_seconds(scene: Scene) -> float:
+    """Processor time that a surface is expected to take in `sampling_errors` (Units: s)."""
+    simulations = [
+        _other(scene, knob, value, 0) for knob, values in _TRIED.items() for value in values
+    ]
+    return sum(expected_cost(simulation).seconds for simulation in simulations)
+
+
+def coverage_seconds(scene: Scene, asked: tuple[float, ...]) -> float:
+    """Processor time that a surface is expected to take in `held_out_coverage` (Units: s)."""
+    tried = [scene.reference, *(scene.chosen_knobs(error) for error in asked)]
+    steady = [replace(scene.simulation(knobs, 0), schedule=_SCHEDULE) for knobs in tried]
+    return sum(branches_seconds(scene, knobs) for knobs in tried) + sum(
+        expected_cost(simulation).seconds for simulation in steady
+    )
 
 
 def held_out_coverage(

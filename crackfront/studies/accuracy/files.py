@@ -12,9 +12,14 @@ import xarray as xr
 from crackfront.core.variables import Variable, variables
 from crackfront.data.files import UnreadableFileError, labelled, labelled_fields, read_dataset
 from crackfront.data.records import read_records, stacked
-from crackfront.studies.accuracy.averages import held_out_coverage, sampling_errors
+from crackfront.studies.accuracy.averages import (
+    coverage_seconds,
+    held_out_coverage,
+    sampling_errors,
+    sampling_seconds,
+)
 from crackfront.studies.accuracy.scenes import SCENES, Progress, Scene
-from crackfront.studies.accuracy.study import Errors, SceneErrors, scene_errors
+from crackfront.studies.accuracy.study import Errors, SceneErrors, scene_errors, setting_seconds
 
 Record = TypeVar("Record")
 
@@ -40,6 +45,14 @@ STUDIES: dict[str, Callable[[Scene, int, Progress], xr.Dataset]] = {
     ),
 }
 """What each study measures, of a scene and a number of surfaces."""
+
+SECONDS: dict[str, Callable[[Scene], float]] = {
+    "knobs": lambda scene: setting_seconds(scene, scene.single_settings),
+    "asked": lambda scene: setting_seconds(scene, scene.asked_settings),
+    "averages": sampling_seconds,
+    "coverage": lambda scene: coverage_seconds(scene, _COVERED),
+}
+"""Processor time that a surface is expected to take in each study. (Units: s)"""
 
 
 def records_dataset(title: str, scene: Scene, records: tuple[Any, ...]) -> xr.Dataset:

@@ -18,6 +18,7 @@ from crackfront.core.outcome import Direction
 from crackfront.core.solver.relax import Solver
 from crackfront.core.variables import ADHESION, FORCE, variable
 from crackfront.simulate.contact import simulation_field
+from crackfront.simulate.costs import featured_cost, features
 from crackfront.simulate.laws import Knobs
 from crackfront.studies.accuracy.scenes import Progress, Scene, Setting
 
@@ -95,6 +96,19 @@ class SceneErrors:
         """Mean processor time and rms relative error of the hysteresis of every setting."""
         seconds = [errors.seconds.mean() for errors in self.errors]
         return np.array(seconds), np.array([rms(self.hysteresis_errors(e)) for e in self.errors])
+
+
+def branches_seconds(scene: Scene, knobs: Knobs) -> float:
+    """Processor time that both branches of a surface are expected to take (Units: s)."""
+    cycle = features(scene.simulation(knobs, 0))
+    both = replace(cycle, full_cycle=False, n_state=2.0 * scene.penetrations.size)
+    return featured_cost(both, fronts=False).seconds
+
+
+def setting_seconds(scene: Scene, settings: list[Setting]) -> float:
+    """Processor time that a surface is expected to take in `scene_errors` (Units: s)."""
+    tried = [scene.reference, *(setting.knobs for setting in settings)]
+    return sum(branches_seconds(scene, knobs) for knobs in tried)
 
 
 def scene_errors(

@@ -172,6 +172,15 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
     )
 
 
+def expected_seconds(parameters: AvalancheParameters) -> float:
+    """Processor time as measured with either scale, for any number of fronts (Units: s).
+
+    The sites of a straight front and the loads of its period grow with its spring.
+    """
+    springs = sum(spring**2 for spring in parameters.springs)
+    return 20.0 * parameters.n_surface + 3.1e-5 * springs * parameters.n_tile
+
+
 def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -> _Surface:
     """Retraction on one surface, resolved."""
     contact = parameters.contact(energy, parameters.precision / 4, realisation)
@@ -420,4 +429,5 @@ FIGURE = Figure(
     compute=avalanche_record,
     checks=avalanche_checks,
     draw=avalanche_figure,
+    seconds=expected_seconds,
 )

@@ -152,6 +152,9 @@ class Figure:
         From the record to its drawing; matplotlib is imported there and not before.
     animate : callable or None
         From the record to its animation, where it has one; the drawing is then the last frame.
+    seconds : callable
+        From the parameters to the processor time that the computation is expected to take,
+        roughly; none where that is never a minute. (Units: s)
     """
 
     title: str
@@ -161,6 +164,7 @@ class Figure:
     checks: Callable[[Any], tuple[Check, ...]]
     draw: Callable[[Any], Drawing]
     animate: Callable[[Any], Animation] | None = None
+    seconds: Callable[[Any], float] = lambda parameters: 0.0
 
 
 _GROUPS = ("main", "si", "beyond")

@@ -30,6 +30,7 @@ from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
 from crackfront.studies.paper.rough import (
     ONE_DIGIT,
     RoughCycleParameters,
+    expected_seconds,
     patch_of,
     recorded,
     rough_spectrum,
@@ -314,4 +315,5 @@ FIGURE = Figure(
     compute=pinned_loop,
     checks=pinned_loop_checks,
     draw=pinned_loop_figure,
+    seconds=expected_seconds,
 )

@@ -33,7 +33,13 @@ from crackfront.studies.paper.advances import Perimeters
 from crackfront.studies.paper.figure import Check, Figure, Progress, close_to
 from crackfront.studies.paper.film import fitted_adhesion
 from crackfront.studies.paper.measured import ForceRadius, read_force_radius
-from crackfront.studies.paper.rough import ONE_DIGIT, RoughParameters, recorded, rough_spectrum
+from crackfront.studies.paper.rough import (
+    ONE_DIGIT,
+    RoughParameters,
+    expected_seconds,
+    recorded,
+    rough_spectrum,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -562,4 +568,5 @@ FIGURE = Figure(
     compute=nanodiamond_contact,
     checks=nanodiamond_checks,
     draw=nanodiamond_figure,
+    seconds=expected_seconds,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +25,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
+from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error, simulation_of
 from crackfront.studies.paper.figure import Check
@@ -77,6 +78,14 @@ class RoughParameters(Section):
                 f"error is {self.error:g}, but the finest numerics leave {left:.2g}; ask for that"
             )
         return simulation
+
+
+class SimulatedParameters(Protocol):
+    """Parameters of a figure of one simulation."""
+
+    def simulation(self) -> Simulation:
+        """The simulation."""
+        ...
 
 
 class RoughCycleParameters(RoughParameters):
@@ -279,6 +288,11 @@ def rough_spectrum(
         return SelfAffineSpectrum(short_cutoff, roll_off, hurst, plateau)
     except ValueError as error:
         raise refusal(str(error)) from error
+
+
+def expected_seconds(parameters: SimulatedParameters) -> float:
+    """Processor time that the one simulation of a figure is expected to take (Units: s)."""
+    return expected_cost(parameters.simulation()).seconds
 
 
 def recorded(

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import spearmanr
 
 from crackfront.analysis.estimate import REACH, Estimate, slope, with_error
 from crackfront.analysis.finding import PAPER_FACTOR
+from crackfront.analysis.report import pooled_limits
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
@@ -121,6 +121,8 @@ def study_fit(study: ParametricStudy) -> SweepFit:
 
 def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
     """What the paper reads off the figure: k, the square law, one line, the onset."""
+    from scipy.stats import spearmanr
+
     fit = study_fit(study)
     factor, exponent = fit.pooled.factor, fit.pooled.exponent
     factors = fit.spectra.factor.value
@@ -141,8 +143,8 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"{PAPER_FACTOR:g} ± {ONE_DIGIT:g}",
             _interval(factor),
             bool(abs(factor.value - PAPER_FACTOR) <= ONE_DIGIT),
-            "95% interval; k grows with the size of the contact, and falls with disorder beyond "
-            "the onset: panels b and c",
+            f"{', '.join(['95% interval', *pooled_limits(fit, fit.spectra.factor)])}; k grows with "
+            "the size of the contact, and falls with disorder beyond the onset: panels b and c",
             law=_said(float(factor.value), *law.factor),
         ),
         Check(

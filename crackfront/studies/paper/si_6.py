@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
-from scipy.signal import periodogram
 
 from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.synthesis import gaussian_field, tile_mean_square
@@ -158,6 +157,8 @@ def profile_periodogram(heights: Array, pixel: float) -> Array:
     m = 1, 2, ..., below the Nyquist one; its sum times the spacing, divided by pi, is the mean
     square height about the mean of a line.
     """
+    from scipy.signal import periodogram
+
     _, density = periodogram(heights, fs=1 / pixel, axis=0, detrend=False)
     # One-sided in the frequency q / 2 pi; C_1D is one half of it.
     return np.asarray(density.mean(axis=1)[1 : len(heights) // 2] / 2)
