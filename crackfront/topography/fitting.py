@@ -215,6 +215,44 @@ def seen_instrument(density: Density) -> Instrument:
     return Instrument(math.exp(found[0]), float(found[1]), math.exp(found[2]))
 
 
+@dataclass(frozen=True, slots=True)
+class _Instruments:
+    """What a fit varies of the instruments that are seen, one row each."""
+
+    given: Array
+
+    @property
+    def free(self) -> list[tuple[int, int]]:
+        """Rows and columns that vary."""
+        return [
+            (index, column)
+            for index, row in enumerate(self.given)
+            for column in range(3)
+            if math.isfinite(row[column]) and not (column == 1 and math.isinf(row[0]))
+        ]
+
+    @property
+    def begin(self) -> list[float]:
+        """Where they begin."""
+        return [float(self.given[place]) for place in self.free]
+
+    @property
+    def limits(self) -> list[tuple[float, float]]:
+        """Between what they vary: resolution, sharpness and noise."""
+        width = {0: 0.7, 2: 1.0}
+        return [
+            _SHARPNESS if place[1] == 1 else (value - width[place[1]], value + width[place[1]])
+            for place, value in zip(self.free, self.begin, strict=True)
+        ]
+
+    def rows(self, values: Array) -> Array:
+        """All rows by the values of those that vary, (n, n_density, 3)."""
+        found = np.tile(self.given, (len(values), 1, 1))
+        for place, (index, column) in enumerate(self.free):
+            found[:, index, column] = values[:, place]
+        return found
+
+
 def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
     """Models of one surface and of the instruments that are seen in its densities.
 
@@ -230,30 +268,14 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
         )
     low = math.log(min(float(item.wavevector[0]) for item, _ in densities))
     high = math.log(max(float(item.wavevector[-1]) for item, _ in densities))
-    given = np.array([seen.row for _, seen in densities])
-    free = [
-        (index, column)
-        for index, row in enumerate(given)
-        for column in range(3)
-        if math.isfinite(row[column]) and not (column == 1 and math.isinf(row[0]))
-    ]
-    spread = [
-        (row[0] - 0.7, row[0] + 0.7)
-        if column == 0
-        else _SHARPNESS
-        if column == 1
-        else (row[2] - 1.0, row[2] + 1.0)
-        for row, column in ((given[index], column) for index, column in free)
-    ]
-    limits = np.array([*_limits(low, high), *spread])
+    instruments = _Instruments(np.array([seen.row for _, seen in densities]))
+    limits = np.array([*_limits(low, high), *instruments.limits])
 
     def models(trials: Array) -> list[Array]:
         """Logarithms of all densities by some parameters."""
-        instruments = np.tile(given, (len(trials), 1, 1))
-        for place, (index, column) in enumerate(free):
-            instruments[:, index, column] = trials[:, _SHAPE + place]
+        rows = instruments.rows(trials[:, _SHAPE:])
         return [
-            _model(trials[:, :_SHAPE], instruments[:, index], item)
+            _model(trials[:, :_SHAPE], rows[:, index], item)
             for index, (item, _) in enumerate(densities)
         ]
 
@@ -267,27 +289,23 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
         return np.where(inside, total, np.inf)
 
     only = [item for item, _ in densities]
-    begin = [given[index, column] for index, column in free]
     _, start = min(
         (
-            _likeliest(only, models, np.array([*shape, *begin]), limits)
-            for shape in _first_shapes(list(zip(only, given, strict=True)), low, high)
+            _likeliest(only, models, np.array([*shape, *instruments.begin]), limits)
+            for shape in _first_shapes(list(zip(only, instruments.given, strict=True)), low, high)
         ),
         key=lambda pair: pair[0],
     )
     rng = np.random.default_rng(_SEED)
-    scale = np.array([0.05, 0.05, 0.05, 0.2, 0.1, *[0.05] * len(free)])
+    scale = np.array([0.05, 0.05, 0.05, 0.2, 0.1, *[0.05] * len(instruments.free)])
     walkers = start + rng.standard_normal((_WALKERS, start.size)) * scale
     walkers[:, 1:] = np.clip(walkers[:, 1:], limits[1:, 0] + 1e-3, limits[1:, 1] - 1e-3)
     walkers[:, 4] = np.minimum(walkers[:, 4], walkers[:, 3])
     states = _chain(deviance, walkers, rng)
-    instruments = np.tile(given, (len(states), 1, 1))
-    for place, (index, column) in enumerate(free):
-        instruments[:, index, column] = states[:, _SHAPE + place]
     least = float(np.min(deviance(states)))
     return Fit(
         states[:, :_SHAPE],
-        instruments,
+        instruments.rows(states[:, _SHAPE:]),
         math.exp(low),
         math.exp(high),
         least / max(count - start.size, 1),
