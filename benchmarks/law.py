@@ -34,16 +34,9 @@ import numpy as np
 from benchmarks.law_page import renewed_page
 from crackfront.analysis.estimate import REACH, mean_estimate, with_error
 from crackfront.analysis.finding import departure_of_spheres, finding
-from crackfront.analysis.law import (
-    LawCell,
-    SphereFactors,
-    cells_of,
-    fitted_law,
-    measured_cells,
-    shipped_law,
-    slope_breadth,
-    sphere_factors,
-)
+from crackfront.analysis.law import shipped_law, slope_breadth
+from crackfront.analysis.law_fitting import LawCell, cells_of, fitted_law, measured_cells
+from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.analysis.table import SweepTable
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from crackfront.analysis.finding import PAPER_FACTOR, STRONG, crossing
-from crackfront.analysis.law import COEFFICIENTS, WEAKEST, Law, LawCell, pinning_factor
+from crackfront.analysis.law import COEFFICIENTS, WEAKEST, Law, pinning_factor
+from crackfront.analysis.law_fitting import LawCell
 
 DISORDERS = (WEAKEST, 0.2, 0.4, STRONG)
 """Disorders s of the table of the infinite contact."""

@@ -16,16 +16,14 @@ from crackfront.analysis.law import (
     LEAST_SIZE,
     TYPICAL_BREADTH,
     WEAKEST,
-    LawCell,
-    fitted_law,
     infinite_ratio,
     law_value,
-    measured_cells,
     pinning_factor,
     shipped_law,
     slope_breadth,
-    sphere_factors,
 )
+from crackfront.analysis.law_fitting import LawCell, fitted_law, measured_cells
+from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import force_correlation_length, larkin_length
 from crackfront.core.spectrum import SelfAffineSpectrum

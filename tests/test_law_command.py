@@ -7,7 +7,8 @@ import pytest
 from click.testing import CliRunner
 
 import crackfront as cf
-from crackfront.analysis.law import pinning_factor, shipped_law, sphere_factors
+from crackfront.analysis.law import pinning_factor, shipped_law
+from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.cli import main
 from crackfront.core.spectrum import SelfAffineSpectrum
 

@@ -14,7 +14,8 @@ from benchmarks import predictions, scans
 from benchmarks.predictions import TABLE_HEAD, comparison_row
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.finding import PAPER_FACTOR
-from crackfront.analysis.law import pinning_factor, shipped_law, sphere_factors
+from crackfront.analysis.law import pinning_factor, shipped_law
+from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.cli import main
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length

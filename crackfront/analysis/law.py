@@ -8,18 +8,17 @@ The size is the length of the springs over the Larkin length, g = L_kappa / ell.
 The Larkin length makes one curve of all surfaces at weak disorder. At strong disorder k falls with
 s, the less the broader the spectrum of the slope of w_loc is (:func:`slope_breadth`, beta).
 `python -m benchmarks.law` measures `law.csv`, fits the coefficients to it and writes `law.json`.
-A sphere is locally such a front (:func:`sphere_factors`): nothing is adjusted to spheres.
+A sphere is locally such a front (:mod:`crackfront.analysis.law_spheres`).
 docs/law.md derives all lengths.
 """
 
 from __future__ import annotations
 
-import csv
 import functools
 import json
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
@@ -28,10 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import ndtr
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
-from crackfront.core import jkr
-from crackfront.core.adhesion import FieldKind, larkin_length
-from crackfront.core.variables import variable
-from crackfront.data.bounds import LENGTH, refuse_outside
+from crackfront.core.adhesion import FieldKind
 
 if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum
@@ -47,43 +43,14 @@ FINITE_SIZE_EXPONENT = 0.612
 COEFFICIENTS = ("k_0", "A", "B", "C", "a", "b", "c", "d", "e")
 """Names of the coefficients of the law, in the order of the files and arrays that hold them."""
 
-_START = (3.9, 0.55, 0.05, 0.1, 1.2, 1.25, 1.8, 1.3, 0.6)
-
 TYPICAL_BREADTH = 1.18
 """Breadth beta_0 in the middle of those of spectra; that of one that is not known."""
-
-_NEAR = 0.8
-"""Cells as close in ln g tell their scatter together: few tiles say little of their own."""
-
-_CIRCLE = 0.01
-"""Relative error of k as a circle's period, 13 to 31 springs, and its curvature are neglected."""
-
-_LEAST_ADHESION = 0.02
-"""Work of adhesion, in units of w_int, of an approach that disorder all but stops."""
 
 LEAST_SIZE = 0.3
 """Smallest g of the fit; below, a front is pulled over nearly all of its pinning."""
 
 WEAKEST = 1e-6
 """Rms of w_loc that stands for the limit of weak disorder. (Units: w_int)"""
-
-
-@dataclass(frozen=True, slots=True)
-class LawCell:
-    """One spectrum, amplitude and spring: a row of `law.csv`."""
-
-    spectrum: str = variable("name of the spectrum", "1")
-    breadth: float = variable("breadth of the spectrum of the slope of w_loc", "1")
-    disorder: float = variable("s, rms of w_loc; 0 where sites are uncorrelated", "w_int")
-    size: float = variable("g, length of the springs over the Larkin length", "1")
-    realisations: int = variable("tiles", "1")
-    approach: float = variable("k_appr", "1")
-    retraction: float = variable("k_retr", "1")
-    both: float = variable("k, the mean of the two", "1")
-    error: float = variable("standard error of k over the tiles", "1")
-    numerical_error: float = variable("standard error of k that the numerics leave", "1")
-    front_rms: float = variable("rms of the front over the force's correlation length", "1")
-    negative_share: float = variable("part of the tile where w_loc is negative", "1")
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,64 +153,6 @@ def slope_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
     return low * high / middle**2
 
 
-def fitted_law(cells: Sequence[LawCell]) -> Law:
-    """Law of measured cells, by weighted least squares, from :data:`LEAST_SIZE` on.
-
-    A cell weighs by its own error and the model error together, which is found in the same way as
-    the residuals: once with the first guess, then with what they say.
-    """
-    from scipy.optimize import least_squares
-
-    used = [cell for cell in cells if cell.size >= LEAST_SIZE]
-    s, g, breadth, k = (
-        np.array([getattr(cell, name) for cell in used])
-        for name in ("disorder", "size", "breadth", "both")
-    )
-    places = s, g, breadth
-    error = _pooled_error(g, np.array([cell.error for cell in used]))
-    coefficients, model = np.array(_START), (0.03, 0.05)
-    for _ in range(4):
-        spread = np.hypot(error, _model_error(coefficients, s, g, breadth, model))
-
-        def residuals(trial: Array, spread: Array = spread) -> Array:
-            exponent = trial[-1] if trial.size > len(COEFFICIENTS) else FINITE_SIZE_EXPONENT
-            values = law_value(trial[: len(COEFFICIENTS)], s, g, breadth, float(exponent))
-            return (values - k) / spread
-
-        found = least_squares(residuals, coefficients)
-        coefficients = found.x
-        model = _likeliest_model(coefficients, places, k, error)
-    free = least_squares(residuals, [*coefficients, FINITE_SIZE_EXPONENT])
-    relative = law_value(coefficients, s, g, breadth)[g >= 1] / k[g >= 1] - 1
-    numerical = [cell.numerical_error / cell.both for cell in used if cell.size >= 1]
-    ranges = [(float(values[values > 0].min()), float(values.max())) for values in places]
-    return Law(
-        coefficients=tuple(coefficients.tolist()),
-        covariance=tuple(map(tuple, _covariance(found.jac).tolist())),
-        model_factor=model[0],
-        model_length=model[1],
-        numerical=float(np.sqrt(np.mean(np.square(numerical)))),
-        exponent=(float(free.x[-1]), float(np.sqrt(_covariance(free.jac)[-1, -1]))),
-        rms=float(np.sqrt(np.mean(relative**2))),
-        worst=float(np.max(np.abs(relative))),
-        disorder=ranges[0],
-        size=(LEAST_SIZE, ranges[1][1]),
-        breadth=ranges[2],
-    )
-
-
-def _pooled_error(size: Array, error: Array) -> Array:
-    """Standard errors of cells, each by the median square of those of cells of about its size."""
-    near = np.abs(np.log(size[:, None] / size)) < _NEAR
-    # The median of the squares of normal numbers is 0.455 of their mean.
-    return np.array([np.sqrt(np.nanmedian(error[row] ** 2) / 0.455) for row in near])
-
-
-def _covariance(jacobian: Array) -> Array:
-    """Covariance of parameters whose residuals have unit variance."""
-    return np.asarray(np.linalg.pinv(jacobian.T @ jacobian))
-
-
 def _slope(
     coefficients: Sequence[float] | Array, disorder: ArrayLike, size: ArrayLike, breadth: ArrayLike
 ) -> Array:
@@ -255,7 +164,7 @@ def _slope(
     return np.asarray((one - other) / (2 * step))
 
 
-def _model_error(
+def model_error(
     coefficients: Sequence[float] | Array,
     disorder: ArrayLike,
     size: ArrayLike,
@@ -266,22 +175,6 @@ def _model_error(
     factor, length = model
     value = law_value(coefficients, disorder, size, breadth)
     return np.hypot(factor * value, length * _slope(coefficients, disorder, size, breadth))
-
-
-def _likeliest_model(
-    coefficients: Array, places: tuple[Array, Array, Array], k: Array, error: Array
-) -> tuple[float, float]:
-    """Model errors that make the residuals likeliest."""
-    s, g, breadth = places
-    residuals = law_value(coefficients, s, g, breadth) - k
-    grid = np.linspace(0.002, 0.15, 75)
-    best = (math.inf, 0.0, 0.0)
-    for factor in grid:
-        for length in grid:
-            variance = error**2 + _model_error(coefficients, s, g, breadth, (factor, length)) ** 2
-            cost = float(np.sum(np.log(variance) + residuals**2 / variance))
-            best = min(best, (cost, float(factor), float(length)))
-    return best[1], best[2]
 
 
 @functools.cache
@@ -295,21 +188,6 @@ def shipped_law() -> Law:
 def _as_tuples(value: Any) -> Any:
     """Lists, as JSON has them, as tuples."""
     return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
-
-
-@functools.cache
-def measured_cells() -> tuple[LawCell, ...]:
-    """Rows of `law.csv`."""
-    return cells_of(files("crackfront.analysis").joinpath("law.csv").read_text(encoding="utf-8"))
-
-
-def cells_of(text: str) -> tuple[LawCell, ...]:
-    """Rows of the text of a `law.csv`."""
-    types: dict[str, type[Any]] = {"str": str, "int": int, "float": float}
-    return tuple(
-        LawCell(**{item.name: types[str(item.type)](row[item.name]) for item in fields(LawCell)})
-        for row in csv.DictReader(text.splitlines())
-    )
 
 
 def pinning_factor(
@@ -357,13 +235,13 @@ def pinning_factor(
     if not size > 0:
         raise ValueError(f"size g is {size:g}; it must be positive, or inf")
     law = shipped_law()
-    place = w_rms, size, TYPICAL_BREADTH if breadth is None else _measured(breadth)
+    place = w_rms, size, TYPICAL_BREADTH if breadth is None else measured_breadth(breadth)
     value = float(law_value(law.coefficients, *place))
     statistical = _statistical_error(
         law, lambda coefficients: float(law_value(coefficients, *place))
     )
     errors = law.model_factor, law.model_length
-    model = float(_model_error(law.coefficients, *place, errors))
+    model = float(model_error(law.coefficients, *place, errors))
     if breadth is None:
         ends = [float(law_value(law.coefficients, w_rms, size, end)) for end in law.breadth]
         model = math.hypot(model, (max(ends) - min(ends)) / math.sqrt(12))
@@ -379,17 +257,17 @@ def pinning_factor(
         statistical=statistical,
         numerical=numerical,
         model=model,
-        negative_share=float(ndtr(-_mean_adhesion(kind, w_rms**2 / 4) / w_rms)),
+        negative_share=float(ndtr(-mean_adhesion(kind, w_rms**2 / 4) / w_rms)),
         warning=warning,
     )
 
 
-def _measured(breadth: float) -> float:
+def measured_breadth(breadth: float) -> float:
     """A breadth, or the largest that was measured."""
     return min(breadth, shipped_law().breadth[1])
 
 
-def _mean_adhesion(kind: FieldKind, elastic_energy: float) -> float:
+def mean_adhesion(kind: FieldKind, elastic_energy: float) -> float:
     """Mean of w_loc (Units: w_int)."""
     return 1 - elastic_energy if kind == "roughness" else 1.0
 
@@ -412,7 +290,7 @@ def infinite_ratio(w_rms: float, size: float, breadth: float = TYPICAL_BREADTH) 
     >>> 1.0 < ratio.low < ratio.value < ratio.high < 1.3
     True
     """
-    law, breadth = shipped_law(), _measured(breadth)
+    law, breadth = shipped_law(), measured_breadth(breadth)
     if not size >= law.size[0]:
         return Estimate(*(math.nan,) * 4)
 
@@ -420,10 +298,6 @@ def infinite_ratio(w_rms: float, size: float, breadth: float = TYPICAL_BREADTH) 
         infinite, finite = law_value(coefficients, w_rms, np.array([math.inf, size]), breadth)
         return float(infinite / finite)
 
-    value, finite = (
-        ratio(law.coefficients),
-        float(law_value(law.coefficients, w_rms, size, breadth)),
-    )
     value = ratio(law.coefficients)
     finite = float(law_value(law.coefficients, w_rms, size, breadth))
     slope = float(_slope(law.coefficients, w_rms, size, breadth)) / finite
@@ -460,127 +334,3 @@ def _outside(law: Law, w_rms: float, size: float) -> tuple[float, str]:
             "in there, and the interval of k reaches down to zero"
         )
     return 0.0, ""
-
-
-@dataclass(frozen=True, slots=True)
-class SphereFactors:
-    """Factors k that the law gives for a rough sphere.
-
-    Attributes
-    ----------
-    approach, retraction : PinningFactor
-        Of the two branches.
-    both : Estimate of a number
-        k, the mean of the two.
-    spring : float
-        L_kappa of the smooth contact. (Units: reduced lateral length)
-    larkin_length : float
-        (Units: reduced lateral length)
-    size : float
-        g = spring / larkin_length.
-    """
-
-    approach: PinningFactor
-    retraction: PinningFactor
-    both: Estimate[float]
-    spring: float
-    larkin_length: float
-    size: float
-
-    @property
-    def warning(self) -> str:
-        """What lies outside of the measured range; empty inside."""
-        return self.approach.warning or self.retraction.warning
-
-
-def sphere_factors(
-    kind: FieldKind, spectrum: Spectrum, elastic_energy: float, contact_radius: float
-) -> SphereFactors:
-    """Factors k of a sphere on a random surface, from the straight front alone.
-
-    The edge of radius a is held as by a spring of the length :func:`crackfront.core.jkr.spring`
-    at the work of adhesion of the branch, which k decides: the two are solved together.
-
-    Parameters
-    ----------
-    kind : {"roughness", "chemical"}
-        What the spectrum describes.
-    spectrum : Spectrum
-        Shape of the spectrum. (Units: reduced lateral length)
-    elastic_energy : float
-        e_el / w_int, in (0, 1).
-    contact_radius : float
-        Radius of the contact. (Units: reduced lateral length)
-
-    Raises
-    ------
-    ValueError
-        If e_el is not between 0 and w_int, or the contact has no radius.
-
-    Examples
-    --------
-    >>> from crackfront.core.spectrum import SelfAffineSpectrum
-    >>> flat = SelfAffineSpectrum(short_cutoff=0.01, roll_off=0.01, hurst=1.0)
-    >>> found = sphere_factors("roughness", flat, elastic_energy=0.05, contact_radius=1.9)
-    >>> 2.0 < found.both.value < 2.3
-    True
-    """
-    if not 0 < elastic_energy < 1:
-        raise ValueError(
-            f"energy of full conformity is {elastic_energy:.4g} w_int; the factors k need one "
-            "between 0 and 1"
-        )
-    if not 0 < contact_radius < math.inf:
-        raise ValueError(f"contact radius is {contact_radius:g}; it must be positive and finite")
-    refuse_outside("contact radius", contact_radius, LENGTH)
-    w_rms = 2 * math.sqrt(elastic_energy)
-    larkin = larkin_length(kind, spectrum, w_rms)
-    mean, breadth = _mean_adhesion(kind, elastic_energy), _measured(slope_breadth(kind, spectrum))
-    # Contact is lost in retraction at the larger radius, which a refusal names.
-    retraction, approach = (
-        pinning_factor(
-            w_rms, _branch_size(w_rms, larkin, mean, sign, contact_radius, breadth), kind, breadth
-        )
-        for sign in (1, -1)
-    )
-    approach, retraction = _on_a_circle(approach), _on_a_circle(retraction)
-    one, other = approach.factor, retraction.factor
-    # Errors of the law are the same for both branches.
-    both = Estimate(
-        *(
-            (getattr(one, name) + getattr(other, name)) / 2
-            for name in ("value", "standard_error", "low", "high")
-        )
-    )
-    spring = jkr.spring(contact_radius, mean)
-    return SphereFactors(approach, retraction, both, spring, larkin, spring / larkin)
-
-
-def _on_a_circle(found: PinningFactor) -> PinningFactor:
-    """Factor of a straight front with the model error of a front that is none."""
-    value, low = found.factor.value, found.factor.low
-    error = math.hypot(found.factor.standard_error, _CIRCLE * value)
-    wider = normal_estimate(value, error)
-    factor = replace(wider, low=max(wider.low, 0.0) if low > 0 else 0.0)
-    return replace(found, factor=factor, model=math.hypot(found.model, _CIRCLE * value))
-
-
-def _branch_size(
-    w_rms: float, larkin: float, mean: float, sign: int, contact_radius: float, breadth: float
-) -> float:
-    """G of a branch, whose work of adhesion mean + sign k e_el depends on k itself."""
-    from scipy.optimize import brentq
-
-    coefficients = shipped_law().coefficients
-
-    def adhesion(factor: float) -> float:
-        return max(mean + sign * factor * w_rms**2 / 4, _LEAST_ADHESION)
-
-    def excess(factor: float) -> float:
-        # Towards pull-off nothing holds the edge; whether it is beyond, the root decides.
-        held = contact_radius > jkr.pull_off_radius(adhesion(factor))
-        size = jkr.spring(contact_radius, adhesion(factor)) / larkin if held else math.inf
-        return float(law_value(coefficients, w_rms, size, breadth)) - factor
-
-    root = float(brentq(excess, 0.0, coefficients[0], xtol=1e-6))
-    return jkr.spring(contact_radius, adhesion(root)) / larkin

@@ -15,8 +15,8 @@ from crackfront.analysis.law import (
     pinning_factor,
     shipped_law,
     slope_breadth,
-    sphere_factors,
 )
+from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind, larkin_length
 

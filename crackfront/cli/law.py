@@ -104,7 +104,7 @@ def _sphere_entries(
     field: FieldKind, spectrum: SelfAffineSpectrum, elastic_energy: float, contact_radius: float
 ) -> dict[str, Any]:
     """What is known of k of a sphere."""
-    from crackfront.analysis.law import sphere_factors
+    from crackfront.analysis.law_spheres import sphere_factors
 
     found = sphere_factors(field, spectrum, elastic_energy, contact_radius)
     appr, retr, k = found.approach, found.retraction, found.both

@@ -19,12 +19,12 @@ from crackfront.analysis.law import (
     TYPICAL_BREADTH,
     WEAKEST,
     Law,
-    LawCell,
     infinite_ratio,
     law_value,
     pinning_factor,
     shipped_law,
 )
+from crackfront.analysis.law_fitting import LawCell
 from crackfront.plots.parts import draw_theory, label_decimals
 from crackfront.plots.style import BLACK, COLOURS, MARKERS, PAGE, blank_figure, explain, house_style
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.finding import PAPER_FACTOR
-from crackfront.analysis.law import SphereFactors, shipped_law, sphere_factors
+from crackfront.analysis.law import shipped_law
+from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.analysis.validity import validity_sentence
 from crackfront.core import jkr
 from crackfront.core.spectrum import TabulatedSpectrum

@@ -8,7 +8,8 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.law import PinningFactor, SphereFactors
+from crackfront.analysis.law import PinningFactor
+from crackfront.analysis.law_spheres import SphereFactors
 from crackfront.core.units import Scales
 from crackfront.core.variables import Variable, variables
 from crackfront.data.written_units import prefixed

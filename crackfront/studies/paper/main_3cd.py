@@ -12,7 +12,7 @@ from pydantic import Field
 
 from crackfront.analysis.estimate import REACH, with_error
 from crackfront.analysis.finding import PAPER_FACTOR
-from crackfront.analysis.law import sphere_factors
+from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.record import Recorder

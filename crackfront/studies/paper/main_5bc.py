@@ -15,7 +15,7 @@ from pydantic import Field, model_validator
 
 from crackfront.analysis.estimate import REACH
 from crackfront.analysis.finding import PAPER_FACTOR
-from crackfront.analysis.law import SphereFactors, sphere_factors
+from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load

@@ -1,0 +1,137 @@
+"""The law behind k, fitted to measured straight fronts."""
+
+from __future__ import annotations
+
+import csv
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from crackfront.analysis.law import (
+    COEFFICIENTS,
+    FINITE_SIZE_EXPONENT,
+    LEAST_SIZE,
+    Law,
+    law_value,
+    model_error,
+)
+from crackfront.core.variables import variable
+
+Array = NDArray[np.float64]
+
+_START = (3.9, 0.55, 0.05, 0.1, 1.2, 1.25, 1.8, 1.3, 0.6)
+
+_NEAR = 0.8
+"""Cells as close in ln g tell their scatter together: few tiles say little of their own."""
+
+
+@dataclass(frozen=True, slots=True)
+class LawCell:
+    """One spectrum, amplitude and spring: a row of `law.csv`."""
+
+    spectrum: str = variable("name of the spectrum", "1")
+    breadth: float = variable("breadth of the spectrum of the slope of w_loc", "1")
+    disorder: float = variable("s, rms of w_loc; 0 where sites are uncorrelated", "w_int")
+    size: float = variable("g, length of the springs over the Larkin length", "1")
+    realisations: int = variable("tiles", "1")
+    approach: float = variable("k_appr", "1")
+    retraction: float = variable("k_retr", "1")
+    both: float = variable("k, the mean of the two", "1")
+    error: float = variable("standard error of k over the tiles", "1")
+    numerical_error: float = variable("standard error of k that the numerics leave", "1")
+    front_rms: float = variable("rms of the front over the force's correlation length", "1")
+    negative_share: float = variable("part of the tile where w_loc is negative", "1")
+
+
+@functools.cache
+def measured_cells() -> tuple[LawCell, ...]:
+    """Rows of `law.csv`."""
+    return cells_of(files("crackfront.analysis").joinpath("law.csv").read_text(encoding="utf-8"))
+
+
+def cells_of(text: str) -> tuple[LawCell, ...]:
+    """Rows of the text of a `law.csv`."""
+    types: dict[str, type[Any]] = {"str": str, "int": int, "float": float}
+    return tuple(
+        LawCell(**{item.name: types[str(item.type)](row[item.name]) for item in fields(LawCell)})
+        for row in csv.DictReader(text.splitlines())
+    )
+
+
+def fitted_law(cells: Sequence[LawCell]) -> Law:
+    """Law of measured cells, by weighted least squares, from :data:`LEAST_SIZE` on.
+
+    A cell weighs by its own error and the model error together, which is found in the same way as
+    the residuals: once with the first guess, then with what they say.
+    """
+    used = [cell for cell in cells if cell.size >= LEAST_SIZE]
+    s, g, breadth, k = (
+        np.array([getattr(cell, name) for cell in used])
+        for name in ("disorder", "size", "breadth", "both")
+    )
+    places = s, g, breadth
+    error = _pooled_error(g, np.array([cell.error for cell in used]))
+    coefficients, model = np.array(_START), (0.03, 0.05)
+    for _ in range(4):
+        spread = np.hypot(error, model_error(coefficients, s, g, breadth, model))
+
+        def residuals(trial: Array, spread: Array = spread) -> Array:
+            exponent = trial[-1] if trial.size > len(COEFFICIENTS) else FINITE_SIZE_EXPONENT
+            values = law_value(trial[: len(COEFFICIENTS)], s, g, breadth, float(exponent))
+            return (values - k) / spread
+
+        found = least_squares(residuals, coefficients)
+        coefficients = found.x
+        model = _likeliest_model(coefficients, places, k, error)
+    free = least_squares(residuals, [*coefficients, FINITE_SIZE_EXPONENT])
+    relative = law_value(coefficients, s, g, breadth)[g >= 1] / k[g >= 1] - 1
+    numerical = [cell.numerical_error / cell.both for cell in used if cell.size >= 1]
+    ranges = [(float(values[values > 0].min()), float(values.max())) for values in places]
+    return Law(
+        coefficients=tuple(coefficients.tolist()),
+        covariance=tuple(map(tuple, _covariance(found.jac).tolist())),
+        model_factor=model[0],
+        model_length=model[1],
+        numerical=float(np.sqrt(np.mean(np.square(numerical)))),
+        exponent=(float(free.x[-1]), float(np.sqrt(_covariance(free.jac)[-1, -1]))),
+        rms=float(np.sqrt(np.mean(relative**2))),
+        worst=float(np.max(np.abs(relative))),
+        disorder=ranges[0],
+        size=(LEAST_SIZE, ranges[1][1]),
+        breadth=ranges[2],
+    )
+
+
+def _pooled_error(size: Array, error: Array) -> Array:
+    """Standard errors of cells, each by the median square of those of cells of about its size."""
+    near = np.abs(np.log(size[:, None] / size)) < _NEAR
+    # The median of the squares of normal numbers is 0.455 of their mean.
+    return np.array([np.sqrt(np.nanmedian(error[row] ** 2) / 0.455) for row in near])
+
+
+def _covariance(jacobian: Array) -> Array:
+    """Covariance of parameters whose residuals have unit variance."""
+    return np.asarray(np.linalg.pinv(jacobian.T @ jacobian))
+
+
+def _likeliest_model(
+    coefficients: Array, places: tuple[Array, Array, Array], k: Array, error: Array
+) -> tuple[float, float]:
+    """Model errors that make the residuals likeliest."""
+    s, g, breadth = places
+    residuals = law_value(coefficients, s, g, breadth) - k
+    grid = np.linspace(0.002, 0.15, 75)
+    best = (math.inf, 0.0, 0.0)
+    for factor in grid:
+        for length in grid:
+            variance = error**2 + model_error(coefficients, s, g, breadth, (factor, length)) ** 2
+            cost = float(np.sum(np.log(variance) + residuals**2 / variance))
+            best = min(best, (cost, float(factor), float(length)))
+    return best[1], best[2]

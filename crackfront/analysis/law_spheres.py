@@ -1,0 +1,157 @@
+"""Factors k of a rough sphere by the law of straight fronts: nothing is adjusted to spheres."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from scipy.optimize import brentq
+
+from crackfront.analysis.estimate import Estimate, normal_estimate
+from crackfront.analysis.law import (
+    PinningFactor,
+    law_value,
+    mean_adhesion,
+    measured_breadth,
+    pinning_factor,
+    shipped_law,
+    slope_breadth,
+)
+from crackfront.core import jkr
+from crackfront.core.adhesion import FieldKind, larkin_length
+from crackfront.data.bounds import LENGTH, refuse_outside
+
+if TYPE_CHECKING:
+    from crackfront.core.spectrum import Spectrum
+
+_CIRCLE = 0.01
+"""Relative error of k as a circle's period, 13 to 31 springs, and its curvature are neglected."""
+
+_LEAST_ADHESION = 0.02
+"""Work of adhesion, in units of w_int, of an approach that disorder all but stops."""
+
+
+@dataclass(frozen=True, slots=True)
+class SphereFactors:
+    """Factors k that the law gives for a rough sphere.
+
+    Attributes
+    ----------
+    approach, retraction : PinningFactor
+        Of the two branches.
+    both : Estimate of a number
+        k, the mean of the two.
+    spring : float
+        L_kappa of the smooth contact. (Units: reduced lateral length)
+    larkin_length : float
+        (Units: reduced lateral length)
+    size : float
+        g = spring / larkin_length.
+    """
+
+    approach: PinningFactor
+    retraction: PinningFactor
+    both: Estimate[float]
+    spring: float
+    larkin_length: float
+    size: float
+
+    @property
+    def warning(self) -> str:
+        """What lies outside of the measured range; empty inside."""
+        return self.approach.warning or self.retraction.warning
+
+
+def sphere_factors(
+    kind: FieldKind, spectrum: Spectrum, elastic_energy: float, contact_radius: float
+) -> SphereFactors:
+    """Factors k of a sphere on a random surface, from the straight front alone.
+
+    The edge of radius a is held as by a spring of the length :func:`crackfront.core.jkr.spring`
+    at the work of adhesion of the branch, which k decides: the two are solved together.
+
+    Parameters
+    ----------
+    kind : {"roughness", "chemical"}
+        What the spectrum describes.
+    spectrum : Spectrum
+        Shape of the spectrum. (Units: reduced lateral length)
+    elastic_energy : float
+        e_el / w_int, in (0, 1).
+    contact_radius : float
+        Radius of the contact. (Units: reduced lateral length)
+
+    Raises
+    ------
+    ValueError
+        If e_el is not between 0 and w_int, or the contact has no radius.
+
+    Examples
+    --------
+    >>> from crackfront.core.spectrum import SelfAffineSpectrum
+    >>> flat = SelfAffineSpectrum(short_cutoff=0.01, roll_off=0.01, hurst=1.0)
+    >>> found = sphere_factors("roughness", flat, elastic_energy=0.05, contact_radius=1.9)
+    >>> 2.0 < found.both.value < 2.3
+    True
+    """
+    if not 0 < elastic_energy < 1:
+        raise ValueError(
+            f"energy of full conformity is {elastic_energy:.4g} w_int; the factors k need one "
+            "between 0 and 1"
+        )
+    if not 0 < contact_radius < math.inf:
+        raise ValueError(f"contact radius is {contact_radius:g}; it must be positive and finite")
+    refuse_outside("contact radius", contact_radius, LENGTH)
+    w_rms = 2 * math.sqrt(elastic_energy)
+    larkin = larkin_length(kind, spectrum, w_rms)
+    mean, breadth = (
+        mean_adhesion(kind, elastic_energy),
+        measured_breadth(slope_breadth(kind, spectrum)),
+    )
+    # Contact is lost in retraction at the larger radius, which a refusal names.
+    retraction, approach = (
+        pinning_factor(
+            w_rms, _branch_size(w_rms, larkin, mean, sign, contact_radius, breadth), kind, breadth
+        )
+        for sign in (1, -1)
+    )
+    approach, retraction = _on_a_circle(approach), _on_a_circle(retraction)
+    one, other = approach.factor, retraction.factor
+    # Errors of the law are the same for both branches.
+    both = Estimate(
+        *(
+            (getattr(one, name) + getattr(other, name)) / 2
+            for name in ("value", "standard_error", "low", "high")
+        )
+    )
+    spring = jkr.spring(contact_radius, mean)
+    return SphereFactors(approach, retraction, both, spring, larkin, spring / larkin)
+
+
+def _on_a_circle(found: PinningFactor) -> PinningFactor:
+    """Factor of a straight front with the model error of a front that is none."""
+    value, low = found.factor.value, found.factor.low
+    error = math.hypot(found.factor.standard_error, _CIRCLE * value)
+    wider = normal_estimate(value, error)
+    factor = replace(wider, low=max(wider.low, 0.0) if low > 0 else 0.0)
+    return replace(found, factor=factor, model=math.hypot(found.model, _CIRCLE * value))
+
+
+def _branch_size(
+    w_rms: float, larkin: float, mean: float, sign: int, contact_radius: float, breadth: float
+) -> float:
+    """G of a branch, whose work of adhesion mean + sign k e_el depends on k itself."""
+    coefficients = shipped_law().coefficients
+
+    def adhesion(factor: float) -> float:
+        return max(mean + sign * factor * w_rms**2 / 4, _LEAST_ADHESION)
+
+    def excess(factor: float) -> float:
+        # Towards pull-off nothing holds the edge; whether it is beyond, the root decides.
+        held = contact_radius > jkr.pull_off_radius(adhesion(factor))
+        size = jkr.spring(contact_radius, adhesion(factor)) / larkin if held else math.inf
+        return float(law_value(coefficients, w_rms, size, breadth)) - factor
+
+    root = float(brentq(excess, 0.0, coefficients[0], xtol=1e-6))
+    return jkr.spring(contact_radius, adhesion(root)) / larkin
