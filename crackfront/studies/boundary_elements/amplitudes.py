@@ -98,8 +98,8 @@ class SurfaceComparison:
 
     @property
     def resolution(self) -> tuple[float, ...]:
-        """Grid, range of the attraction, load step."""
-        return self.n_point, self.interaction_range, self.step
+        """Grid, range of the attraction, load step; where there is no range no grid is told."""
+        return self.n_point if self.interaction_range else 0, self.interaction_range, self.step
 
     @property
     def scene(self) -> tuple[float, ...]:
