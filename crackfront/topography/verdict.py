@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri
 
+from crackfront.analysis.validity import TOLERANCES, largest_energy, shipped_validity
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
 from crackfront.topography.measures import MeasuredSurface
@@ -30,9 +31,8 @@ _TABOR = (5.0, 1.0)
 _SLOPES = (0.3, 1.0)
 """Rms slope, whose square linear elasticity leaves out."""
 
-_NEGATIVE = (0.05, 0.25)
-"""Part of the surface where w_loc is negative; at the second w_rms is that of the strongest
-disorder that the law was measured at."""
+_MOST_NEGATIVE = 0.25
+"""Part of the surface where w_loc is negative at the strongest disorder of the law."""
 
 _MOST_UNSURE = 2.0
 """Ends of the interval of e_el over each other from which on it is said."""
@@ -200,15 +200,17 @@ def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Con
         "J/m2",
         remedies=_softer(scales, ratio),
     )
-    share = float(ndtr((ratio - 1) / (2 * math.sqrt(ratio))))
+    share = _negative_share(ratio)
     yield Condition(
         "attraction nearly everywhere",
         f"w_loc negative on {share:.2%} of the surface",
-        "the linearisation of the roughness is not to be trusted where w_loc is negative",
+        "the linearisation of the roughness is not to be trusted where w_loc is negative, and the "
+        "hysteresis of boundary elements is smaller",
         share,
-        *_NEGATIVE,
+        _negative_share(largest_energy(shipped_validity(), TOLERANCES[-1])),
+        _MOST_NEGATIVE,
         "1",
-        remedies=_softer(scales, ratio / _energy_of_share(_NEGATIVE[1])),
+        remedies=_softer(scales, ratio / _energy_of_share(_MOST_NEGATIVE)),
     )
 
 
@@ -304,14 +306,15 @@ def _modulus(side: str, scales: Scales, factor: float) -> str:
     )
 
 
+def _negative_share(energy: float) -> float:
+    """Part of the surface where a Gaussian w_loc is negative, by e_el over w_int."""
+    return float(ndtr((energy - 1) / (2 * math.sqrt(energy))))
+
+
 def _energy_of_share(share: float) -> float:
     """e_el over w_int at which a Gaussian w_loc is negative on a share of the surface."""
-    low, high = 1e-6, 1.0
-    for _ in range(60):
-        middle = (low + high) / 2
-        below = float(ndtr((middle - 1) / (2 * math.sqrt(middle)))) < share
-        low, high = (middle, high) if below else (low, middle)
-    return low
+    root = ndtri(share) + math.sqrt(ndtri(share) ** 2 + 1)
+    return float(root**2)
 
 
 def _energy_doubts(surface: MeasuredSurface, scales: Scales) -> Iterator[str]:

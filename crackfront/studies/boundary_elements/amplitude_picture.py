@@ -139,7 +139,7 @@ def validity_figure(found: Sequence[Setting], shown: Sequence[Setting]) -> Figur
     Parameters
     ----------
     found : sequence of Setting
-        Every setting; its ratio is drawn small.
+        Every setting; its ratio is drawn small and open.
     shown : sequence of Setting
         Those extrapolated to a vanishing range, whose hystereses are drawn.
     """
@@ -195,16 +195,16 @@ def _draw_ratios(axes: Axes, found: Sequence[Setting], shown: Sequence[Setting])
     for part, grey in ((0.25, "0.93"), (0.10, "0.85")):
         axes.axhspan(1 - part, 1 + part, color=grey, linewidth=0, zorder=0)
         axes.text(
-            0.99,
+            0.01,
             1 + part,
             f"{part:.0%}",
-            ha="right",
+            ha="left",
             va="top",
             transform=axes.get_yaxis_transform(),
         )
     axes.axhline(1.0, color="0.4", linewidth=0.5)
     for number, spectrum in enumerate(_spectra(shown)):
-        for many, size in ((found, 2.4), (shown, 4.2)):
+        for many, size, face in ((found, 2.4, "white"), (shown, 4.2, COLOURS[number])):
             ours = [one for one in many if one.rows[0].scene[:2] == spectrum]
             ratios = [one.hysteresis_ratio() for one in ours]
             axes.errorbar(
@@ -214,6 +214,8 @@ def _draw_ratios(axes: Axes, found: Sequence[Setting], shown: Sequence[Setting])
                 color=COLOURS[number],
                 marker=MARKERS[number],
                 markersize=size,
+                markerfacecolor=face,
+                linewidth=0.6,
                 linestyle="none",
                 label=spectrum_name(*spectrum) if many is shown else None,
             )
