@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import gc
 import sys
 from collections.abc import Sequence
 from typing import Any
@@ -23,8 +24,17 @@ from crackfront.cli.validate import validate
 from crackfront.data.lazy_modules import loaded_on_use
 from crackfront.sweep.parallel import ending_alike
 
-_NEVER_USED = ("numpy.f2py", "numpy.testing", "scipy.integrate", "scipy.interpolate")
+_NEVER_USED = (
+    "numpy.f2py",
+    "numpy.testing",
+    "scipy.integrate",
+    "scipy.interpolate",
+    "scipy.spatial",
+)
 """What libraries import for single functions of theirs."""
+
+_OBJECTS = 100_000
+"""New objects after which garbage is looked for: imports make many, and none of it."""
 
 _NO_READER = (
     "SurfaceTopography.Generic.Fractional",
@@ -59,6 +69,7 @@ class _Commands(click.Group):
         """Run a command line: that of the process where none is given, which is then alone."""
         if args is not None:
             return super().main(args, *others, **options)
+        gc.set_threshold(_OBJECTS)
         reads_only = sys.argv[1:2] in (["predict"], ["surface"])
         with loaded_on_use(_NEVER_USED + (_NO_READER if reads_only else ())):
             return super().main(*others, **options)

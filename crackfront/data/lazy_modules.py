@@ -4,10 +4,29 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+import warnings
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from importlib.machinery import ModuleSpec
+from types import ModuleType
 from typing import Any
+
+
+class _Loader(importlib.util.LazyLoader):
+    """Loads a module on use; to be imported a second time, which asks for its spec, is none."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Make the module wait."""
+        super().exec_module(module)
+        lazy = type(module)
+
+        class Waiting(lazy):  # type: ignore[misc, valid-type]
+            def __getattribute__(self, name: str) -> Any:
+                if name == "__spec__":
+                    return object.__getattribute__(self, name)
+                return super().__getattribute__(name)
+
+        module.__class__ = Waiting
 
 
 class _Finder:
@@ -27,7 +46,7 @@ class _Finder:
         finally:
             self.is_asked = False
         if spec is not None and spec.loader is not None:
-            spec.loader = importlib.util.LazyLoader(spec.loader)
+            spec.loader = _Loader(spec.loader)
         return spec
 
 
@@ -40,3 +59,18 @@ def loaded_on_use(names: Collection[str]) -> Iterator[None]:
         yield
     finally:
         sys.meta_path.remove(finder)
+
+
+@contextmanager
+def unavailable(name: str) -> Iterator[None]:
+    """Within, a module cannot be imported, and that others do without it is no warning."""
+    known = sys.modules.get(name)
+    sys.modules[name] = None  # type: ignore[assignment]
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ImportWarning)
+            yield
+    finally:
+        del sys.modules[name]
+        if known is not None:
+            sys.modules[name] = known

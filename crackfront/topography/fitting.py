@@ -188,6 +188,9 @@ def seen_instrument(density: Density) -> Instrument:
     }
     best, found, shapes = math.inf, nothing, _first_shapes([(density, nothing)], low, high)
     for extra, begins in tries.items():
+        gain = _GAIN * len(extra) ** 0.5
+        if best <= gain:  # No deviance is negative.
+            continue
         free = (*range(_SHAPE), *extra)
 
         def model(trials: Array, free: tuple[int, ...] = free) -> Array:
@@ -208,7 +211,7 @@ def seen_instrument(density: Density) -> Instrument:
         cost, parameters = min(fits, key=lambda pair: pair[0])
         if not extra:
             shapes = [parameters]
-        if cost < best - _GAIN * len(extra) ** 0.5:
+        if cost < best - gain:
             best, found = cost, nothing.copy()
             for place, value in zip(extra, parameters[_SHAPE:], strict=True):
                 found[place - _SHAPE] = value
@@ -373,8 +376,7 @@ def _logarithm(surface: Array, wavevector: Array) -> Array:
     """Logarithm of the model P, (n, n_wavevector)."""
     plateau, long, short, bend, roll_off = surface.T[:, :, None]
     q = np.log(wavevector)
-    beyond = np.logaddexp(0.0, _KNEE * (q - roll_off)) / _KNEE
-    steeper = np.logaddexp(0.0, _KNEE * (q - bend)) / _KNEE
+    beyond, steeper = (np.log1p(np.exp(_KNEE * (q - knee))) / _KNEE for knee in (roll_off, bend))
     return np.asarray(plateau - (2 + 2 * long) * beyond - 2 * (short - long) * steeper)
 
 
@@ -413,8 +415,12 @@ def _loss(instrument: Array, wavevector: Array) -> Array:
 def _model(surface: Array, instrument: Array, density: Density) -> Array:
     """Logarithm of what a density should be, (n, n_wavevector)."""
     form = _projection if density.is_profile else _logarithm
-    found = form(surface, density.wavevector) - _loss(instrument, density.wavevector)
-    return np.asarray(np.logaddexp(found, instrument[:, 2:]))
+    found = form(surface, density.wavevector)
+    if np.any(np.isfinite(instrument[:, 0])):
+        found -= _loss(instrument, density.wavevector)
+    if np.any(np.isfinite(instrument[:, 2])):
+        found = np.logaddexp(found, instrument[:, 2:])
+    return found
 
 
 def _deviances(density: Density, model: Array) -> Array:

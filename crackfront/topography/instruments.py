@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from crackfront.core.optional_libraries import MissingExtraError
-from crackfront.data.lazy_modules import loaded_on_use
+from crackfront.data.lazy_modules import loaded_on_use, unavailable
 from crackfront.data.written_units import prefixed
 from crackfront.topography.files import readable, refuse_special, refuse_too_many_points
 
-_RARELY_USED = ("pandas", "openpyxl", "requests", "h5py")
+_RARELY_USED = ("pandas", "openpyxl", "requests", "h5py", "yaml")
 """What the library imports for single formats, which takes a part of a second."""
 
 _SIDES = (1e-9, 1.0)
@@ -70,7 +70,8 @@ def surface_library() -> ModuleType:
         If it is not installed, with the command that installs it.
     """
     try:
-        with loaded_on_use(_RARELY_USED):
+        # Scans are read by one process; nodes without jobs may refuse to start MPI.
+        with loaded_on_use(_RARELY_USED), unavailable("mpi4py"):
             import SurfaceTopography
     except ModuleNotFoundError as error:
         raise MissingExtraError("measured surfaces", error, "surfaces") from error

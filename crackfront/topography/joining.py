@@ -254,7 +254,7 @@ def _continued(
     for one, other in pairwise([*first, *wavevector, last]):
         number = math.ceil(math.log10(other / one) * _CONTINUED_BINS)
         if number > 1:
-            between.append(np.geomspace(one, other, number + 1)[1:-1])
+            between.append(one * (other / one) ** (np.arange(1, number) / number))
     extra = np.concatenate([first, *between, [last]])
     every = np.concatenate([wavevector, extra])
     table = np.concatenate([value, model(extra)])

@@ -64,12 +64,15 @@ class MeasuredSurface:
         Their spectrum; maps enter by their isotropic density, lines by that of profiles.
     measures : tuple of RmsMeasure
         Of the heights, their half-derivative and their slopes.
+    half_derivative : Estimate of a number
+        Mean square of the half-derivative of the joint spectrum. (Units: m)
     """
 
     scans: tuple[Scan, ...]
     profiles: tuple[Density, ...]
     joint: JointSpectrum
     measures: tuple[RmsMeasure, ...]
+    half_derivative: Estimate[float]
 
     @property
     def measurements(self) -> tuple[Measurement, ...]:
@@ -84,8 +87,7 @@ class MeasuredSurface:
 
     def conformity_energy(self, contact_modulus: float) -> Estimate[float]:
         """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2, of E' in Pa (Units: J / m^2)."""
-        found = self.joint.estimate(lambda spectrum: spectrum.mean_square(0.5))
-        return found.each(lambda number: contact_modulus / 4 * number)
+        return self.half_derivative.each(lambda number: contact_modulus / 4 * number)
 
 
 def measured_surface(
@@ -120,6 +122,7 @@ def measured_surface(
         ),
         joint=joint,
         measures=tuple(_measure(order, joint, scans) for order in _ORDERS),
+        half_derivative=joint.estimate(lambda spectrum: spectrum.mean_square(0.5)),
     )
 
 
