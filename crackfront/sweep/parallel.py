@@ -30,6 +30,9 @@ Result = TypeVar("Result")
 _NOTICE_FILE = "CRACKFRONT_NOTICE"
 """Environment variable that names the file of a notice."""
 
+_ENDED = "ended"
+"""What the manager writes into it where it ended as told."""
+
 _SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Signals by which a process is told to end; one that was ignored at its start stays ignored."""
 
@@ -40,6 +43,21 @@ def notice_is_given() -> bool:
     """Whether this process is to end."""
     name = os.environ.get(_NOTICE_FILE)
     return _received.is_set() or (name is not None and Path(name).exists())
+
+
+def launcher_is_told() -> bool:
+    """Whether who launched this rank now knows from the file that it ended as told.
+
+    The rank then ends with 0: MPI takes any other exit code for a failure, and says so.
+    """
+    name = os.environ.get(_NOTICE_FILE)
+    if name is None:
+        return False
+    try:
+        Path(name).write_text(_ENDED, encoding="utf-8")
+    except OSError:
+        return False
+    return True
 
 
 @contextlib.contextmanager
@@ -177,8 +195,10 @@ def default_launcher() -> str:
 
 def launch_ranks(
     arguments: Sequence[str], n_worker: int, launcher: str | None, folder: Path
-) -> int:
+) -> int | None:
     """Exit code of a crackfront command that is run on a manager and a number of workers.
+
+    It is None where the manager ended as told.
 
     What tells this process to end leaves the ranks the file of a notice; the second time it ends
     the launcher.
@@ -225,7 +245,9 @@ def launch_ranks(
 
     try:
         with _when_told_to_end(leave_notice):
-            return process.wait()
+            code = process.wait()
+        ended = file.exists() and file.read_text(encoding="utf-8") == _ENDED
+        return None if code == 0 and ended else code
     finally:
         if process.poll() is None:
             process.terminate()
