@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -78,6 +80,15 @@ def surface_library() -> ModuleType:
     return SurfaceTopography
 
 
+@contextmanager
+def _silenced() -> Iterator[None]:
+    """Keep what parsers that are not ours warn of, as of pictures in a table, from the user."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
+
+
+@_silenced()
 def raw_scan(path: Path, unstated: Unstated) -> RawScan:
     """The heights of a file in metres.
 
@@ -110,6 +121,7 @@ def raw_scan(path: Path, unstated: Unstated) -> RawScan:
     return RawScan(level, reader.format(), name)
 
 
+@_silenced()
 def array_of(path: Path) -> np.ndarray[Any, Any]:
     """Numbers of a file without units, as of a mask.
 
