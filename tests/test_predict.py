@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from matplotlib.figure import Figure
 
 from benchmarks import predictions, scans
 from benchmarks.predictions import TABLE_HEAD, comparison_row
@@ -29,6 +30,7 @@ from crackfront.data.written_units import si_value
 from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import read_cycle
 from crackfront.topography.drawing import prediction_figure
+from crackfront.topography.maps import draw_scan
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.prediction import (
     Prediction,
@@ -533,6 +535,14 @@ def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
     assert values.min() == pytest.approx(-1e3 * prediction.pull_off_force.value, rel=1e-3)
     assert radius[np.argmin(values)] < 1e6 * prediction.contact_radius
     assert "mN" in force.get_ylabel()
+
+
+def test_the_figure_says_which_waves_the_density_leaves_out(surface):
+    axes = Figure().add_subplot()
+    draw_scan(axes, surface.measurements[0], stripes=(0, 1))
+    assert axes.get_title().endswith(
+        "without the paraboloid\n(a) without waves along x and y alone"
+    )
 
 
 def test_a_map_becomes_a_field_that_a_cycle_runs_on(tmp_path):
