@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 from scipy.fft import rfft
 
+from crackfront.analysis.estimate import with_error
 from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.parts import legend_entries
@@ -330,8 +331,8 @@ def _exponent_check(record: RoughnessRecord, index: int, fit: _Fit, claim: str) 
     held = "sphere's circle" if index in _SPHERE else "springs"
     return Check(
         claim,
-        f"{expected} ± {_TOLERANCE}",
-        f"{fit.exponent:.3f} ± {fit.reach:.3f}",
+        with_error(expected, _TOLERANCE),
+        with_error(fit.exponent, fit.reach),
         abs(fit.exponent - expected) <= _TOLERANCE,
         f"the 95% interval of {record.power.shape[1]} tiles {contained}; wavelengths "
         f"{low:.3g} to {high:.3g} ({np.log10(high / low):.2f} decades), their shorter half "
