@@ -274,6 +274,20 @@ def test_the_loop_lies_between_its_curves(record):
     np.testing.assert_array_equal(drawn, record.states.mean_radius[record.states.direction > 0])
 
 
+@pytest.mark.parametrize("energy", [0.002, 0.01, 0.1])
+def test_the_arrows_of_a_loop_lie_beside_all_curves_and_in_the_direction_of_motion(record, energy):
+    works = measured(steady_adhesion(record, correlation_length=0.1))
+    axes = loop_figure(record.states, *works, elastic_energy=energy).axes[0]
+    to_axes = axes.transData + axes.transAxes.inverted()
+    curves = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.get_lines()])
+    arrows = [(np.array(text.xyann), np.array(text.xy)) for text in axes.texts]
+    assert len(arrows) == 2
+    for tail, head in arrows:
+        points = np.linspace(tail, head, 20)
+        assert np.hypot(*(points[:, None] - curves).T).min() > 0.015
+    assert [np.sign(head[0] - tail[0]) for tail, head in arrows] == [1, -1]
+
+
 def test_steady_parts_are_drawn_on_the_loop_that_they_stand_for(record):
     steady = steady_adhesion(record, 0.1)
     works, window = measured(steady)
