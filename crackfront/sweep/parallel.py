@@ -33,6 +33,9 @@ _NOTICE_FILE = "CRACKFRONT_NOTICE"
 _ENDED = "ended"
 """What the manager writes into it where it ended as told."""
 
+_SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE")
+"""Environment variables in which launchers tell processes how many of them they start."""
+
 _SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Signals by which a process is told to end; one that was ignored at its start stays ignored."""
 
@@ -117,11 +120,13 @@ def is_manager(n_worker: int) -> bool:
     ------
     ValueError
         On the manager, if the number of ranks is another one. A launcher that does not belong to
-        the MPI library starts ranks that each believe to be alone.
+        the MPI library starts ranks that each believe to be alone. Without MPI, if a launcher has
+        started several of these processes, each of which would do the whole work.
     SystemExit
         On the other ranks in that case.
     """
     if not under_mpi():
+        _refuse_launched()
         return True
     from mpi4py import MPI
 
@@ -134,6 +139,17 @@ def is_manager(n_worker: int) -> bool:
         f"MPI started {world.size} rank(s) where {n_worker + 1} were expected ({n_worker} workers "
         "and a manager); launch workers + 1, by the launcher that belongs to mpi4py's MPI library"
     )
+
+
+def _refuse_launched() -> None:
+    """Raise where this is one of several processes of a launcher, and not as a rank."""
+    count = max(int(os.environ.get(name, "1")) for name in _SIZES)
+    # A shell on the first of several tasks has what they have, and is alone.
+    if count > 1 and "SLURM_PTY_PORT" not in os.environ:
+        raise ValueError(
+            f"a launcher has started this command {count} times; leave that to --ranks and "
+            "--launcher, or start ranks as python -m mpi4py -m crackfront"
+        )
 
 
 def serve_tasks(module: str) -> None:
