@@ -126,12 +126,16 @@ def _pupil(wavevector: Array) -> Array:
     return np.asarray(2 / np.pi * (np.arccos(x) - x * np.sqrt(1 - x**2)))
 
 
-def _tip(heights: Array, rng: np.random.Generator) -> Array:
-    """Dilation by a parabolic tip of a radius of one micrometre."""
-    reach = min(24, math.ceil(math.sqrt(2e-6 * float(np.ptp(heights))) / PIXEL))
-    along = PIXEL * np.arange(-reach, reach + 1)
-    shape = -(along[:, None] ** 2 + along**2) / 2e-6
-    return np.asarray(grey_dilation(heights, structure=shape, mode="wrap"))
+def _tip(radius: float) -> Distortion:
+    """Dilation by a parabolic tip of a radius in m."""
+
+    def distorted(heights: Array, rng: np.random.Generator) -> Array:
+        reach = math.ceil(math.sqrt(2 * radius * float(np.ptp(heights))) / PIXEL)
+        along = PIXEL * np.arange(-reach, reach + 1)
+        shape = -(along[:, None] ** 2 + along**2) / (2 * radius)
+        return np.asarray(grey_dilation(heights, structure=shape, mode="wrap"))
+
+    return distorted
 
 
 def _noise(heights: Array, rng: np.random.Generator) -> Array:
@@ -190,7 +194,7 @@ KINDS = (
     Kind("end at four pixels", _self_affine(0.8, cutoff=4.0)),
     Kind("optic, Gaussian", FILM, _filtered(_gaussian)),
     Kind("optic, circular pupil", FILM, _filtered(_pupil), resolved=False),
-    Kind("tip of an AFM", FILM, _tip),
+    Kind("tip of an AFM", FILM, _tip(1e-6)),
     Kind("noise", FILM, _noise),
     Kind("rows that are shifted", FILM, _rows),
     Kind("tilt and bow", FILM, _bow),
@@ -198,6 +202,8 @@ KINDS = (
     Kind("missing points", FILM, _holes),
     Kind("oblong pixels", _self_affine(0.8, cutoff=4.0), oblong=True),
     Kind("three line scans", _self_affine(0.8), is_line=True),
+    Kind("tip of 3 um, H = 0.4", _self_affine(0.4), _tip(3e-6), resolved=False),
+    Kind("tip of 10 um, H = 0.4", _self_affine(0.4), _tip(10e-6), resolved=False),
 )
 
 
