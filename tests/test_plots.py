@@ -1,6 +1,7 @@
 """Figures: what they show, that they leave no trace and are equal when drawn again."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
+from itertools import pairwise
 
 import matplotlib
 import numpy as np
@@ -239,6 +240,23 @@ def test_every_positive_mean_lies_within_the_axes_and_others_are_arrows(table, f
     shown = values[np.isfinite(values) & (values > 0)]
     assert low < shown.min() < shown.max() < high
     assert len(axes.texts) == 1
+
+
+def test_the_labels_of_a_narrow_range_of_disorder_do_not_meet(table):
+    arrays = {item.name: getattr(table, item.name) for item in fields(table)}
+    strongest = {name: one[:, 2:] for name, one in arrays.items() if np.ndim(one) > 1}
+    narrow = replace(table, **strongest, e_el_requested=table.e_el_requested[2:])
+    figure = hysteresis_figure(
+        narrow, fit_sweep(narrow, lowest_elastic_energy=0.05, highest_elastic_energy=0.15)
+    )
+    figure.draw_without_rendering()
+    axis = figure.axes[0].xaxis
+    ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
+    low, high = figure.axes[0].get_xlim()
+    shown = [one.label1 for one in ticks if one.label1.get_text() and low < one.get_loc() < high]
+    ends = sorted((box.x0, box.x1) for box in (text.get_window_extent() for text in shown))
+    assert len(ends) >= 3
+    assert all(one[1] < other[0] for one, other in pairwise(ends))
 
 
 def test_spectra_differ_by_colour_and_marker(table, fit):
