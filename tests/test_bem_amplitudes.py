@@ -31,8 +31,8 @@ from crackfront.studies.boundary_elements.amplitudes import (
 )
 from crackfront.studies.boundary_elements.averages import (
     Setting,
+    limit_settings,
     range_limits,
-    settings,
     validity_row,
 )
 from crackfront.studies.boundary_elements.cycle import ALL_LOADS, BoundaryCycle
@@ -54,7 +54,7 @@ spectra:
   - {roll_off: 0.9, hurst: 0.8}
 grids:
   - {n_point: 48, interaction_range: 0.70, step: 0.1, surfaces: 2}
-  - {n_point: 64, interaction_range: 0.61, step: 0.1, surfaces: 1, scenes: 1}
+  - {n_point: 64, interaction_range: 0.61, step: 0.1, surfaces: 1, roll_offs: [0.6]}
 """
 
 
@@ -109,11 +109,12 @@ def test_both_models_find_the_smooth_sphere_and_the_hysteresis_of_a_rough_one(ro
 def test_tables_figures_and_sentence_are_those_of_the_rows(results, rows):
     assert (results / "validation.md").read_text() == amplitude_report(rows, 0.6)
     told = validity_of((results / "validity.csv").read_text())
-    limits = range_limits(rows)
-    assert [row.n_point for row in limits if row.asked_energy > 0] == [64]
+    limits = limit_settings(rows)
+    assert [[row.n_point for row in one.rows] for one in limits] == [[64]]
     assert [row.ratio for row in told] == pytest.approx(
-        [float(one.hysteresis_ratio().value) for one in settings(limits)], rel=1e-4
+        [float(one.hysteresis_ratio().value) for one in limits], rel=1e-4
     )
+    assert [(row.surfaces, row.fine) for row in told] == [(2, 1)]
     assert validity_sentence(told) in (results / "validation.md").read_text()
     for name in ("validation", "contacts"):
         assert (results / f"{name}.png").stat().st_size > 5_000
@@ -150,7 +151,7 @@ def test_finished_is_refused_where_nothing_is_finished_or_cases_are_listed(tmp_p
         ("first: 0.2", "first: 0.5", r"first 0.5 to last 0.4"),
         ("max_penetration: 0.6", "max_penetration: 0.4", r"max_penetration 0.4 must be above last"),
         ("roll_off: 0.9", "roll_off: 0.3", r"spectra\[1\]: roll_off 0.3 is shorter"),
-        ("scenes: 1", "scenes: 3", r"grids\[1\]: scenes is 3; there are 2"),
+        ("roll_offs: [0.6]", "roll_offs: [0.5]", r"grids\[1\]: roll_offs holds 0.5; there is none"),
         (
             "0.70, step: 0.1",
             "0.70, step: 0.15",
@@ -197,13 +198,36 @@ def comparison(**changes):
 
 def test_the_ratio_of_hystereses_is_that_of_the_means_with_the_error_of_the_jackknife():
     pairs = ((0.2, 0.1), (0.4, 0.3), (0.3, 0.2))
-    rows = [comparison(front_hysteresis=one, boundary_hysteresis=other) for one, other in pairs]
+    rows = [
+        comparison(seed=seed, front_hysteresis=one, boundary_hysteresis=other)
+        for seed, (one, other) in enumerate(pairs)
+    ]
     found = Setting(tuple(rows)).hysteresis_ratio()
     assert float(found.value) == pytest.approx(1.5)
     left = np.array([0.7 / 0.5, 0.5 / 0.3, 0.6 / 0.4])
     expected = math.sqrt(2 / 3 * np.sum((left - left.mean()) ** 2))
     assert float(found.standard_error) == pytest.approx(expected)
     assert math.isnan(Setting(tuple(rows[:1])).hysteresis_ratio().standard_error)
+
+
+def test_a_limit_has_the_longer_range_of_all_surfaces_and_its_change_on_some(rng):
+    def row(seed, length, value):
+        return comparison(
+            seed=seed, interaction_range=length, boundary_hysteresis=value, front_hysteresis=1.0
+        )
+
+    long = rng.uniform(0.2, 0.3, 6)
+    rows = [row(seed, 0.4, value) for seed, value in enumerate(long)]
+    rows += [row(seed, 0.2, long[seed] + change) for seed, change in enumerate((0.07, 0.14))]
+    (limit,) = limit_settings(rows)
+    assert (limit.surfaces, len(limit.rows)) == (6, 2)
+    # Halved, the range leaves a seventh of what it changes: 0.08 and 0.16 in all.
+    assert float(limit.hysteresis("boundary").value) == pytest.approx(long.mean() + 0.12)
+    left = [np.delete(long, seed).mean() + (0.16, 0.08, 0.12)[min(seed, 2)] for seed in range(6)]
+    error = math.sqrt(5 / 6 * np.sum((np.array(left) - np.mean(left)) ** 2))
+    assert float(limit.hysteresis("boundary").standard_error) == pytest.approx(error)
+    assert float(limit.hysteresis("front").standard_error) == pytest.approx(0, abs=1e-12)
+    assert float(limit.hysteresis_ratio().value) == pytest.approx(1 / (long.mean() + 0.12))
 
 
 def test_a_vanishing_range_is_extrapolated_by_its_cube():
@@ -249,7 +273,7 @@ def test_the_square_of_the_stress_intensity_changes_the_works_and_leaves_the_smo
 
 def test_the_range_ends_below_the_first_amplitude_that_is_outside_for_any_spectrum():
     def row(energy, ratio, hurst=1.0):
-        return ValidityRow(1.0, hurst, energy, ratio, 0.02, 4, 256, 0.2)
+        return ValidityRow(1.0, hurst, energy, ratio, 0.02, 4, 4, 256, 0.2)
 
     rows = [row(0.03, 1.02), row(0.06, 0.85), row(0.1, 1.02), row(0.03, 1.24, 0.8)]
     assert largest_energy(rows, 0.25) == 0.1
@@ -273,14 +297,14 @@ def kept():
 
 def test_the_shipped_table_and_sentence_are_those_of_the_kept_comparison(kept):
     rows = read_records(kept, SurfaceComparison, "case")
-    limits = settings(row for row in range_limits(rows) if row.asked_energy > 0)
+    limits = [one for one in limit_settings(rows) if one.rows[0].asked_energy > 0]
     assert validity_text(shipped_validity()) == validity_text(
         [validity_row(one, 0.15) for one in limits]
     )
-    assert [row.surfaces for row in shipped_validity()] == [3] * 8
-    assert largest_energy(shipped_validity(), 0.1) == pytest.approx(0.06, rel=0.05)
+    assert [(row.surfaces, row.fine) for row in shipped_validity()] == [(6, 3)] * 8
+    assert largest_energy(shipped_validity(), 0.1) == 0
     assert largest_energy(shipped_validity(), 0.25) == pytest.approx(0.1, rel=0.05)
-    assert "at worst it is 1.7 ± 0.2 times theirs" in validity_sentence()
+    assert "at worst it is 1.6 ± 0.2 times theirs" in validity_sentence()
 
 
 def test_the_kept_comparison_says_where_it_comes_from_and_that_no_energy_rose(kept):

@@ -36,8 +36,8 @@ class ValidityRow:
     ratio, error : float
         Hysteresis of the front over that of boundary elements, and its standard error; NaN for one
         surface.
-    surfaces : int
-        Surfaces that are averaged.
+    surfaces, fine : int
+        Surfaces that are averaged, and those of them on the finest grids.
     n_point : int
         Points along a side of the boundary elements' grid.
     interaction_range : float
@@ -50,6 +50,7 @@ class ValidityRow:
     ratio: float
     error: float
     surfaces: int
+    fine: int
     n_point: int
     interaction_range: float
 
@@ -70,6 +71,7 @@ def validity_of(text: str) -> tuple[ValidityRow, ...]:
             ratio=float(row["ratio"]),
             error=float(row["error"]),
             surfaces=int(row["surfaces"]),
+            fine=int(row["fine"]),
             n_point=int(row["n_point"]),
             interaction_range=float(row["interaction_range"]),
         )
@@ -93,7 +95,7 @@ def largest_energy(rows: Sequence[ValidityRow], tolerance: float) -> float:
     Examples
     --------
     >>> ratios = {0.03: 1.05, 0.06: 1.2, 0.1: 1.5}
-    >>> rows = [ValidityRow(1, 1, e, r, 0.01, 4, 512, 0.2) for e, r in ratios.items()]
+    >>> rows = [ValidityRow(1, 1, e, r, 0.01, 4, 4, 512, 0.2) for e, r in ratios.items()]
     >>> [largest_energy(rows, tolerance) for tolerance in (0.01, 0.1, 0.25)]
     [0.0, 0.03, 0.06]
     """

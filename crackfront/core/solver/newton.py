@@ -294,7 +294,7 @@ def _move(newton, field, memory, front, b, direction):
         if low < 0:
             return -low
         place[i], segment[i], front.product[i] = moved, low, value
-        newton.reach[i] = 2 * step[i]
+        newton.reach[i] = 3 * step[i]
     return CONVERGED
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from crackfront.analysis.estimate import Estimate
@@ -20,15 +20,14 @@ from crackfront.studies.boundary_elements.amplitude_picture import (
 from crackfront.studies.boundary_elements.amplitudes import SurfaceComparison, compared_surfaces
 from crackfront.studies.boundary_elements.averages import (
     Setting,
-    range_limits,
+    Value,
+    limit_settings,
     settings,
     validity_row,
 )
 from crackfront.studies.boundary_elements.cycle import BoundaryCycle
 from crackfront.studies.boundary_elements.parameters import AmplitudeParameters, Case
 from crackfront.studies.boundary_elements.study import Progress, finished_cycle, stored_cycle
-
-Value = Callable[[SurfaceComparison], float]
 
 
 def write_amplitudes(
@@ -81,31 +80,28 @@ def write_amplitudes(
 
 def _write_validity(folder: Path, rows: Sequence[SurfaceComparison], short_cutoff: float) -> None:
     """Figure and table of the range within which the front's hysteresis holds."""
-    found, limits = (
-        [one for one in settings(some) if one.rows[0].asked_energy > 0]
-        for some in (rows, range_limits(rows))
-    )
+    limits = _rough(limit_settings(rows))
     if limits:
-        save_figure(validity_figure(found, limits), folder / "validation")
+        save_figure(validity_figure(_rough(settings(rows)), limits), folder / "validation")
         told = [validity_row(one, short_cutoff) for one in limits]
         write_text(folder / "validity.csv", validity_text(told))
 
 
-def _rough(rows: Iterable[SurfaceComparison]) -> list[Setting]:
+def _rough(found: Iterable[Setting]) -> list[Setting]:
     """Settings without the smooth spheres."""
-    return list(settings(row for row in rows if row.asked_energy > 0))
+    return [one for one in found if one.rows[0].asked_energy > 0]
 
 
 def amplitude_report(rows: Sequence[SurfaceComparison], short_cutoff: float) -> str:
     """Markdown tables of what is finished."""
-    found, limits = settings(rows), settings(range_limits(rows))
-    told = [validity_row(one, short_cutoff) for one in _rough(range_limits(rows))]
+    found, limits = settings(rows), limit_settings(rows)
+    told = [validity_row(one, short_cutoff) for one in _rough(limits)]
     parts = [
         ["# Crack front against boundary elements, by amplitude", ""],
         [validity_sentence(told), ""] if told else [],
         _hysteresis_rows((*found, *limits)),
-        _change_rows(_rough(rows)),
-        _difference_rows(_rough(rows)),
+        _change_rows(_rough(found)),
+        _difference_rows(_rough(found)),
         _resolution_rows(rows),
         _minimiser_rows(found),
     ]
@@ -160,7 +156,7 @@ def _hysteresis_rows(found: Sequence[Setting]) -> list[str]:
         lines.append(
             [
                 *_setting(row, float(one.mean(_energy).value)),
-                f"{len(one.rows)}",
+                f"{one.surfaces}",
                 *_cells(
                     one,
                     lambda row: row.boundary_approach,
@@ -181,7 +177,8 @@ def _hysteresis_rows(found: Sequence[Setting]) -> list[str]:
         "w_int; boundary elements first, then the front on the same surfaces; in brackets standard "
         "errors over surfaces. Hysteresis: the energy that either branch loses per area that it "
         "sweeps, summed; k is half of it over e_el. Ratio: front over boundary elements. Range 0 "
-        "is extrapolated from the two shortest of a surface.",
+        "is extrapolated from the two shortest of a surface: the mean of the longest over all "
+        "surfaces, and that of what extrapolation changes on those that have a shorter one.",
         "",
         *_table(
             (

@@ -9,10 +9,11 @@ from typing import Literal
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate, mean_estimate, student_estimate
+from crackfront.analysis.estimate import Estimate, student_estimate
 from crackfront.analysis.validity import ValidityRow
 from crackfront.studies.boundary_elements.amplitudes import SurfaceComparison
 
+Value = Callable[[SurfaceComparison], float]
 Model = Literal["boundary", "front"]
 
 _ORDER = 3
@@ -21,34 +22,62 @@ _ORDER = 3
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """Surfaces of one spectrum, amplitude, grid and load step."""
+    """Surfaces of one spectrum, amplitude, grid and load step.
+
+    Attributes
+    ----------
+    rows : tuple of SurfaceComparison
+        The surfaces.
+    coarse : tuple of SurfaceComparison
+        Where the rows are extrapolated: a longer range on them and on further surfaces.
+    """
 
     rows: tuple[SurfaceComparison, ...]
+    coarse: tuple[SurfaceComparison, ...] = ()
 
-    def mean(self, value: Callable[[SurfaceComparison], float]) -> Estimate:
+    @property
+    def surfaces(self) -> int:
+        """Number of surfaces."""
+        return max(len(self.rows), len(self.coarse))
+
+    def mean(self, value: Value) -> Estimate:
         """Mean of a quantity over the surfaces."""
-        return mean_estimate(np.array([value(row) for row in self.rows]))[0]
+        return self._estimate(lambda mean: mean, value)
 
     def hysteresis(self, model: Model) -> Estimate:
         """Mean hysteresis of a model over the surfaces (Units: w_int)."""
         return self.mean(lambda row: float(getattr(row, f"{model}_hysteresis")))
 
     def hysteresis_ratio(self) -> Estimate:
-        """Hysteresis of the front over that of the boundary elements, means over the surfaces.
-
-        The standard error is that of the jackknife.
-        """
-        front, boundary = (
-            np.array([getattr(row, f"{model}_hysteresis") for row in self.rows])
-            for model in ("front", "boundary")
+        """Hysteresis of the front over that of the boundary elements, means over the surfaces."""
+        return self._estimate(
+            lambda front, boundary: front / boundary,
+            lambda row: row.front_hysteresis,
+            lambda row: row.boundary_hysteresis,
         )
-        count = len(self.rows)
-        value = np.sum(front) / np.sum(boundary)
-        if count < 2:
-            return student_estimate(value, math.nan, 0)
-        left = (np.sum(front) - front) / (np.sum(boundary) - boundary)
-        error = math.sqrt((count - 1) / count * float(np.sum((left - np.mean(left)) ** 2)))
-        return student_estimate(value, error, count - 1)
+
+    def _estimate(self, function: Callable[..., float], *values: Value) -> Estimate:
+        """Function of means, with the standard error of the jackknife over the surfaces.
+
+        A mean over extrapolated rows is that of the longer range over all surfaces, and that of
+        what the extrapolation changes on its own.
+        """
+        fine, coarse = (
+            {row.seed: np.array([value(row) for value in values]) for row in rows}
+            for rows in (self.rows, self.coarse)
+        )
+
+        def found(left: int | None = None) -> float:
+            near = [fine[seed] - coarse.get(seed, 0.0) for seed in fine if seed != left]
+            far = [known for seed, known in coarse.items() if seed != left]
+            return function(*(np.mean(near, axis=0) + (np.mean(far, axis=0) if far else 0.0)))
+
+        if len(fine) < 2:
+            return student_estimate(found(), math.nan, 0)
+        count = self.surfaces
+        changed = np.array([found(seed) for seed in {**fine, **coarse}])
+        error = math.sqrt((count - 1) / count * float(np.sum((changed - np.mean(changed)) ** 2)))
+        return student_estimate(found(), error, len(fine) - 1)
 
 
 def settings(rows: Iterable[SurfaceComparison]) -> tuple[Setting, ...]:
@@ -57,6 +86,21 @@ def settings(rows: Iterable[SurfaceComparison]) -> tuple[Setting, ...]:
     for row in rows:
         alike.setdefault(row.setting, []).append(row)
     return tuple(Setting(tuple(alike[key])) for key in sorted(alike))
+
+
+def limit_settings(rows: Sequence[SurfaceComparison]) -> tuple[Setting, ...]:
+    """The limit of no range at every spectrum and amplitude that has one.
+
+    The longer range that all of its surfaces have, and most others, is averaged with it.
+    """
+    found = []
+    for limit in settings(range_limits(rows)):
+        row, seeds = limit.rows[0], {one.seed for one in limit.rows}
+        alike = settings(one for one in rows if (one.scene, one.step) == (row.scene, row.step))
+        known = [one for one in alike if seeds <= {other.seed for other in one.rows}]
+        coarse = max(known, key=lambda one: (len(one.rows), one.rows[0].interaction_range))
+        found.append(replace(limit, coarse=coarse.rows))
+    return tuple(found)
 
 
 def range_limits(rows: Sequence[SurfaceComparison]) -> list[SurfaceComparison]:
@@ -104,7 +148,8 @@ def validity_row(setting: Setting, short_cutoff: float) -> ValidityRow:
         elastic_energy=float(setting.mean(lambda one: one.elastic_energy).value),
         ratio=float(ratio.value),
         error=float(ratio.standard_error),
-        surfaces=len(setting.rows),
+        surfaces=setting.surfaces,
+        fine=len(setting.rows),
         n_point=row.n_point,
         interaction_range=row.interaction_range,
     )

@@ -183,15 +183,15 @@ class SpectrumSection(Section):
 class GridSection(Section):
     """Grid, range of the attraction and load step, on the first surfaces.
 
-    `scenes` is how many pairs of spectrum and amplitude it runs, those of the first spectrum first;
-    all by default, and then the smooth sphere as well.
+    Of `roll_offs` and `elastic_energies` alone; of all by default, and then the smooth sphere too.
     """
 
     n_point: Annotated[int, Field(ge=16)]
     interaction_range: Positive
     step: Positive
     surfaces: Count
-    scenes: Count | None = None
+    roll_offs: tuple[Positive, ...] | None = None
+    elastic_energies: tuple[Energy, ...] | None = None
 
 
 class AmplitudeParameters(Section):
@@ -227,8 +227,13 @@ class AmplitudeParameters(Section):
             place = f"grids[{number}]"
             if grid in self.grids[:number]:
                 raise refusal(f"{place} stands twice; remove one")
-            if (grid.scenes or 0) > (count := len(self.spectra) * len(self.elastic_energies)):
-                raise refusal(f"{place}: scenes is {grid.scenes}; there are {count}")
+            for name, known in (
+                ("roll_offs", tuple(spectrum.roll_off for spectrum in self.spectra)),
+                ("elastic_energies", self.elastic_energies),
+            ):
+                for value in getattr(grid, name) or ():
+                    if value not in known:
+                        raise refusal(f"{place}: {name} holds {value:g}; there is none such")
             _refuse_grid(place, self, grid.n_point, grid.interaction_range, self.loads)
             for name in ("first", "last", "turned", "end"):
                 count = getattr(self.loads, name) / grid.step
@@ -374,13 +379,19 @@ def amplitude_cases(parameters: AmplitudeParameters) -> tuple[Case, ...]:
     """
     cases = []
     scenes = [(shape, e) for shape in parameters.spectra for e in parameters.elastic_energies]
-    smooth = [(0, grid, scenes[0][0], 0.0) for grid in parameters.grids if grid.scenes is None]
+    smooth = [
+        (0, grid, scenes[0][0], 0.0)
+        for grid in parameters.grids
+        if grid.roll_offs is None and grid.elastic_energies is None
+    ]
     rough = [
         (surface, grid, spectrum, energy)
         for surface in range(max(grid.surfaces for grid in parameters.grids))
         for grid in parameters.grids
-        for spectrum, energy in scenes[: grid.scenes]
+        for spectrum, energy in scenes
         if surface < grid.surfaces
+        and spectrum.roll_off in (grid.roll_offs or (spectrum.roll_off,))
+        and energy in (grid.elastic_energies or (energy,))
     ]
     for surface, grid, spectrum, energy in [*smooth, *rough]:
         cases.append(
@@ -398,7 +409,7 @@ def amplitude_cases(parameters: AmplitudeParameters) -> tuple[Case, ...]:
                 hurst=spectrum.hurst,
             )
         )
-    return tuple(cases)
+    return tuple(dict.fromkeys(cases))
 
 
 def surface_seed(seed: int, surface: int) -> int:

@@ -70,6 +70,7 @@ def loop_validity(picture: ValidationPicture) -> ValidityRow:
         ratio=work[1] / work[0],
         error=math.nan,
         surfaces=1,
+        fine=1,
         n_point=picture.n_point,
         interaction_range=picture.interaction_range,
     )
