@@ -37,6 +37,7 @@ from crackfront.topography.prediction import (
     predicted,
     prediction_notes,
     reduced_spectrum,
+    surface_doubts,
 )
 from crackfront.topography.reading import Treatment, read_measurements
 from crackfront.topography.report import prediction_text
@@ -304,6 +305,18 @@ def test_a_surface_in_no_doubt_has_no_reservation(smooth):
     assert [item.standing for item in found.conditions] == ["holds"] * 7
     assert found.reservations == ()
     assert found.outcome == "applies"
+
+
+@pytest.mark.parametrize(("hurst", "told"), [(0.01, True), (0.5, False), (0.99, True)])
+def test_a_fit_at_the_edge_of_its_range_is_told_where_it_continues_much(surface, hurst, told):
+    parameters = surface.joint.fit.surface.copy()
+    parameters[:, 2] = hurst
+    fit = replace(surface.joint.fit, surface=parameters)
+    for continued in (0.05, 0.3):
+        shares = replace(surface.joint.shares, continued=continued)
+        other = replace(surface, joint=replace(surface.joint, fit=fit, shares=shares))
+        found = [text for text in surface_doubts(other) if "at the edge of what is fitted" in text]
+        assert [f", {hurst:g}, is" in text for text in found] == [True] * (told and continued > 0.1)
 
 
 def test_scans_smaller_than_the_contact_are_told(surface, prediction):

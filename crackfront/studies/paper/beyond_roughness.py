@@ -298,6 +298,11 @@ def fitted_roughness(record: RoughnessRecord, index: int) -> _Fit:
 
 def roughness_checks(record: RoughnessRecord) -> tuple[Check, ...]:
     """Exponents above and below the Larkin length."""
+    if record.radius.size != len(_EXPONENTS):
+        raise ValueError(
+            f"the data of the roughness of fronts hold {record.radius.size} kinds of fronts, not "
+            f"{len(_EXPONENTS)}; an earlier version made them, so compute them again"
+        )
     fits = [fitted_roughness(record, index) for index in range(len(_EXPONENTS))]
     strong, weak = (fits[index] for index in _SPHERE)
     claims = (
