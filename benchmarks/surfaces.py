@@ -1,15 +1,21 @@
 """Hold e_el of synthetic scans, as instruments distort them, against that of their known spectra.
 
 python -m benchmarks.surfaces --scans 14
+python -m benchmarks.surfaces --speed
 
 Every scan is cut from a larger surface, distorted, written as the file of an instrument, and read
 as `crackfront predict` reads it. The table has for each kind the e_el that is found over the true
-one, how often its 95% interval holds the truth, and how wide this is.
+one, how often its 95% interval holds the truth, and how wide this is. With --speed it has instead
+the processor time of `crackfront predict` from ten large maps, one by one and together.
 """
 
 from __future__ import annotations
 
 import math
+import os
+import resource
+import subprocess
+import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -37,6 +43,11 @@ MEAN_SQUARE = 1e-9
 """Points and side of a scan, and mean square half-derivative of its surface. (Units: m)"""
 
 _LINE_POINTS, _LINES = 600, 3
+
+_MAPS, _LARGE = 10, 1024
+"""Maps whose prediction is timed, and their points along a side."""
+
+_SPHERE = "--modulus 0.7MPa --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2"
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,12 +126,16 @@ def _pupil(wavevector: Array) -> Array:
     return np.asarray(2 / np.pi * (np.arccos(x) - x * np.sqrt(1 - x**2)))
 
 
-def _tip(heights: Array, rng: np.random.Generator) -> Array:
-    """Dilation by a parabolic tip of a radius of one micrometre."""
-    reach = min(24, math.ceil(math.sqrt(2e-6 * float(np.ptp(heights))) / PIXEL))
-    along = PIXEL * np.arange(-reach, reach + 1)
-    shape = -(along[:, None] ** 2 + along**2) / 2e-6
-    return np.asarray(grey_dilation(heights, structure=shape, mode="wrap"))
+def _tip(radius: float) -> Distortion:
+    """Dilation by a parabolic tip of a radius in m."""
+
+    def distorted(heights: Array, rng: np.random.Generator) -> Array:
+        reach = math.ceil(math.sqrt(2 * radius * float(np.ptp(heights))) / PIXEL)
+        along = PIXEL * np.arange(-reach, reach + 1)
+        shape = -(along[:, None] ** 2 + along**2) / (2 * radius)
+        return np.asarray(grey_dilation(heights, structure=shape, mode="wrap"))
+
+    return distorted
 
 
 def _noise(heights: Array, rng: np.random.Generator) -> Array:
@@ -179,7 +194,7 @@ KINDS = (
     Kind("end at four pixels", _self_affine(0.8, cutoff=4.0)),
     Kind("optic, Gaussian", FILM, _filtered(_gaussian)),
     Kind("optic, circular pupil", FILM, _filtered(_pupil), resolved=False),
-    Kind("tip of an AFM", FILM, _tip),
+    Kind("tip of an AFM", FILM, _tip(1e-6)),
     Kind("noise", FILM, _noise),
     Kind("rows that are shifted", FILM, _rows),
     Kind("tilt and bow", FILM, _bow),
@@ -187,6 +202,8 @@ KINDS = (
     Kind("missing points", FILM, _holes),
     Kind("oblong pixels", _self_affine(0.8, cutoff=4.0), oblong=True),
     Kind("three line scans", _self_affine(0.8), is_line=True),
+    Kind("tip of 3 um, H = 0.4", _self_affine(0.4), _tip(3e-6), resolved=False),
+    Kind("tip of 10 um, H = 0.4", _self_affine(0.4), _tip(10e-6), resolved=False),
 )
 
 
@@ -250,10 +267,65 @@ def rows(n_scan: int) -> Iterator[tuple[Kind, list[Found]]]:
         yield kind, [found_scan(kind, number) for number in range(n_scan)]
 
 
+@dataclass(frozen=True, slots=True)
+class Speed:
+    """Processor time of predictions from large maps (Units: s).
+
+    Attributes
+    ----------
+    what : str
+        Whether they have figures.
+    single, together : float
+        Of as many commands as there are maps, and of one with all of them.
+    """
+
+    what: str
+    single: float
+    together: float
+
+
+def speeds() -> Iterator[Speed]:
+    """Predictions from large maps, without and with figures."""
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [Path(folder) / f"{number}.al3d" for number in range(_MAPS)]
+        for number, path in enumerate(paths):
+            rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=(_LARGE, number)))
+            heights = gaussian_field(KINDS[0].truth, 2 * _LARGE, 2 * _LARGE * PIXEL, rng)
+            path.write_bytes(al3d(heights[:_LARGE, :_LARGE], PIXEL, "speed"))
+        for name, option in (("without", ["--no-figure"]), ("with", ["--figure", folder + "/f"])):
+            single = sum(_seconds([path], option) for path in paths)
+            together = _seconds(paths, option)
+            yield Speed(f"{name} figure", single, together)
+
+
+def _seconds(paths: list[Path], options: list[str]) -> float:
+    """Processor time of a prediction (Units: s)."""
+    command = [sys.executable, "-m", "crackfront", "predict", *map(str, paths), *_SPHERE.split()]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    # 3: it applies with reservations; 4: it does not.
+    code = subprocess.run(
+        [*command, *options],
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        stdout=subprocess.DEVNULL,
+        check=False,
+    ).returncode
+    assert code in (0, 3, 4)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
 @click.command()
 @click.option("--scans", type=click.IntRange(min=1), default=14, show_default=True)
-def main(scans: int) -> None:
+@click.option("--speed", "timed", is_flag=True, help="Time predictions from large maps instead.")
+def main(scans: int, timed: bool) -> None:
     """Print the table."""
+    if timed:
+        for one in speeds():
+            click.echo(
+                f"{_MAPS} maps of {_LARGE} x {_LARGE} points, {one.what}: {one.single:.1f} s of "
+                f"one core one by one, {one.together:.1f} s together"
+            )
+        return
     click.echo(TABLE_HEAD)
     every: list[Found] = []
     for kind, found in rows(scans):

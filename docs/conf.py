@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
 from sphinx.util.math import get_node_equation_number
 from sphinx.writers.html5 import HTML5Translator
 
@@ -24,7 +26,7 @@ extensions = [
     "myst_parser",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build", "_templates"]
+exclude_patterns = ["_build", "_templates", "sg_execution_times.rst"]
 templates_path = ["_templates"]
 numfig = True
 nitpicky = True
@@ -77,6 +79,8 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "show_signature": False,
     "download_all_examples": False,
+    # A page that loads its table from a network; an earlier build may have left its source.
+    "write_computation_times": False,
 }
 
 # MathML, which browsers draw themselves: no script, and nothing from a network.
@@ -152,8 +156,17 @@ def _visit_displaymath(self: HTML5Translator, node: nodes.math_block) -> None:
     raise nodes.SkipNode
 
 
+def _refuse_network(app: Sphinx, error: Exception | None) -> None:
+    """End the build where a page loads a script, a style or a picture from a network."""
+    loaded = re.compile(r"<(?:script|link|img|iframe)\b[^>]*\s(?:src|href)=\"(?:https?:)?//[^\"]*")
+    for page in Path(app.outdir).rglob("*.html"):
+        if found := loaded.search(page.read_text(encoding="utf-8")):
+            raise ExtensionError(f"{page} needs a network: {found[0]}")
+
+
 def setup(app: Sphinx) -> None:
     """Draw formulas, and leave out what is not ours before numpydoc reads what is."""
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_displaymath, None))
     app.connect("autodoc-skip-member", _is_foreign)
     app.connect("autodoc-process-docstring", _escape_magnitudes, priority=400)
+    app.connect("build-finished", _refuse_network)

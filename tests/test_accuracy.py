@@ -199,6 +199,8 @@ def test_a_study_is_read_as_it_was_written(small_study, tmp_path):
             assert np.array_equal(getattr(one, item.name), getattr(other, item.name)), item.name
     with pytest.raises(ValueError, match="does not exist; check the name"):
         read_errors(tmp_path / "none.nc")
+    with pytest.raises(ValueError, match="is no file; check the name"):
+        read_errors(tmp_path)
 
 
 def test_no_setting_of_the_pareto_front_is_beaten():

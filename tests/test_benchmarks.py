@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from benchmarks import energy_balance, needs
+from benchmarks import energy_balance, needs, surfaces
 from benchmarks.machine import peak_memory, restart_peak
 from crackfront.core.cycle.schedule import DEFAULT_STEP
 
@@ -94,3 +94,11 @@ def test_the_default_step_leaves_one_percent_of_the_energy_of_the_quasi_static_l
         for step in (DEFAULT_STEP / 2, DEFAULT_STEP)
     )
     assert 0 < default / (2 * fine - default) - 1 < 0.01
+
+
+@pytest.mark.slow
+def test_ten_large_maps_take_less_than_15_s_of_one_core():
+    found = list(surfaces.speeds())
+    assert [one.what for one in found] == ["without figure", "with figure"]
+    for one in found:
+        assert one.together < min(15, one.single)

@@ -69,6 +69,18 @@ def test_every_link_of_a_page_to_a_file_leads_to_one(page):
     assert [link for link in missing if not link.startswith("examples/")] == []
 
 
+def test_numbers_of_all_pages_have_as_many_decimals_as_their_errors():
+    pages = [ROOT / "README.md", *DOCS.glob("*.md")]
+    found = [
+        (page.name, *pair)
+        for page in pages
+        for pair in re.findall(r"(?<![\w.])(\d[\d.]*) ± (\d[\d.]*\d|\d)(?![\de])", page.read_text())
+    ]
+    assert len(found) > 200
+    uneven = [one for one in found if len({len(text.partition(".")[2]) for text in one[1:]}) > 1]
+    assert uneven == []
+
+
 def test_the_page_of_the_command_line_names_every_command_and_exit_code():
     page = (DOCS / "command-line.md").read_text()
     for name in main.commands:
@@ -82,7 +94,10 @@ def test_the_page_of_the_command_line_names_every_command_and_exit_code():
 def test_the_page_of_the_reference_names_the_whole_library():
     page = (DOCS / "reference-pages.md").read_text()
     functions = {name for name in __all__ if name.islower() and name[0] != "_"}
-    assert functions <= set(re.findall(r"^   (\w+)$", page, re.MULTILINE))
+    named = set(re.findall(r"^   (?:~[\w.]*\.)?(\w+)$", page, re.MULTILINE))
+    assert functions <= named
+    # The folder of this name is not what is called.
+    assert not re.search(r"^   sweep$", page, re.MULTILINE)
 
 
 def test_every_page_is_in_a_list_of_pages():

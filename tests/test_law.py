@@ -176,6 +176,11 @@ def test_a_sphere_has_the_k_of_the_straight_front_at_the_springs_of_either_branc
     assert found.size == pytest.approx(found.spring / found.larkin_length)
 
 
+def test_what_is_no_number_has_no_k():
+    with pytest.raises(TypeError, match="w_rms is 'inf'; give a number"):
+        pinning_factor("inf", 5.0)
+
+
 @pytest.mark.parametrize(
     ("call", "sentence"),
     [

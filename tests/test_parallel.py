@@ -64,6 +64,18 @@ def test_one_rank_does_not_import_mpi(tmp_path):
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120, capture_output=True)
 
 
+@pytest.mark.parametrize("name", ["PMI_SIZE", "OMPI_COMM_WORLD_SIZE"])
+def test_a_command_that_a_launcher_starts_several_times_is_refused(monkeypatch, name):
+    monkeypatch.setenv(name, "3")
+    with pytest.raises(ValueError, match="a launcher has started this command 3 times; leave"):
+        parallel.is_manager(2)
+    monkeypatch.setenv("SLURM_PTY_PORT", "40000")
+    assert parallel.is_manager(2)
+    monkeypatch.delenv("SLURM_PTY_PORT")
+    monkeypatch.setenv(name, "1")
+    assert parallel.is_manager(2)
+
+
 def test_a_launcher_that_does_not_exist_is_refused():
     with pytest.raises(ValueError, match="launcher 'no-such-mpiexec' cannot be started"):
         launch_ranks(["plan"], 2, "no-such-mpiexec --flag", Path())

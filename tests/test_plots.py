@@ -1,6 +1,7 @@
 """Figures: what they show, that they leave no trace and are equal when drawn again."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
+from itertools import pairwise
 
 import matplotlib
 import numpy as np
@@ -241,6 +242,23 @@ def test_every_positive_mean_lies_within_the_axes_and_others_are_arrows(table, f
     assert len(axes.texts) == 1
 
 
+def test_the_labels_of_a_narrow_range_of_disorder_do_not_meet(table):
+    arrays = {item.name: getattr(table, item.name) for item in fields(table)}
+    strongest = {name: one[:, 2:] for name, one in arrays.items() if np.ndim(one) > 1}
+    narrow = replace(table, **strongest, e_el_requested=table.e_el_requested[2:])
+    figure = hysteresis_figure(
+        narrow, fit_sweep(narrow, lowest_elastic_energy=0.05, highest_elastic_energy=0.15)
+    )
+    figure.draw_without_rendering()
+    axis = figure.axes[0].xaxis
+    ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
+    low, high = figure.axes[0].get_xlim()
+    shown = [one.label1 for one in ticks if one.label1.get_text() and low < one.get_loc() < high]
+    ends = sorted((box.x0, box.x1) for box in (text.get_window_extent() for text in shown))
+    assert len(ends) >= 3
+    assert all(one[1] < other[0] for one, other in pairwise(ends))
+
+
 def test_spectra_differ_by_colour_and_marker(table, fit):
     axes = factor_figure(table, fit).axes[0]
     filled = [c.lines[0] for c in axes.containers if c.lines[0].get_markerfacecolor() != "white"]
@@ -272,6 +290,20 @@ def test_the_loop_lies_between_its_curves(record):
         np.testing.assert_allclose(force, jkr.equilibrium_force(radius, adhesion))
     drawn = line_labelled(axes, "approach").get_xdata()
     np.testing.assert_array_equal(drawn, record.states.mean_radius[record.states.direction > 0])
+
+
+@pytest.mark.parametrize("energy", [0.002, 0.01, 0.1])
+def test_the_arrows_of_a_loop_lie_beside_all_curves_and_in_the_direction_of_motion(record, energy):
+    works = measured(steady_adhesion(record, correlation_length=0.1))
+    axes = loop_figure(record.states, *works, elastic_energy=energy).axes[0]
+    to_axes = axes.transData + axes.transAxes.inverted()
+    curves = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.get_lines()])
+    arrows = [(np.array(text.xyann), np.array(text.xy)) for text in axes.texts]
+    assert len(arrows) == 2
+    for tail, head in arrows:
+        points = np.linspace(tail, head, 20)
+        assert np.hypot(*(points[:, None] - curves).T).min() > 0.015
+    assert [np.sign(head[0] - tail[0]) for tail, head in arrows] == [1, -1]
 
 
 def test_steady_parts_are_drawn_on_the_loop_that_they_stand_for(record):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from matplotlib.figure import Figure
 
 from benchmarks import predictions, scans
 from benchmarks.predictions import TABLE_HEAD, comparison_row
@@ -29,12 +30,14 @@ from crackfront.data.written_units import si_value
 from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import read_cycle
 from crackfront.topography.drawing import prediction_figure
+from crackfront.topography.maps import draw_scan
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.prediction import (
     Prediction,
     predicted,
     prediction_notes,
     reduced_spectrum,
+    surface_doubts,
 )
 from crackfront.topography.reading import Treatment, read_measurements
 from crackfront.topography.report import prediction_text
@@ -232,10 +235,11 @@ def test_conditions_say_by_how_much_they_hold(surface, prediction):
     contact = prediction.contact_radius
     margins = {
         "full conformity": SCENE.work_of_adhesion / prediction.e_el.value,
-        "small slopes": 1 / surface.measures[2].rms.value,
-        "contact small against the sphere": 0.7 * SCENE.radius / contact,
-        "roughness fine against the contact": contact / surface.measures[1].shortest,
-        "attraction nearly everywhere": 0.25 / prediction.negative_share,
+        "small slopes": 0.3 / surface.measures[2].rms.value,
+        "contact small against the sphere": 0.3 * SCENE.radius / contact,
+        "roughness fine against the contact": contact / surface.measures[1].longest,
+        "attraction nearly everywhere": found["attraction nearly everywhere"].doubtful
+        / prediction.negative_share,
     }
     for name, margin in margins.items():
         assert found[name].margin == pytest.approx(margin)
@@ -301,6 +305,18 @@ def test_a_surface_in_no_doubt_has_no_reservation(smooth):
     assert [item.standing for item in found.conditions] == ["holds"] * 7
     assert found.reservations == ()
     assert found.outcome == "applies"
+
+
+@pytest.mark.parametrize(("hurst", "told"), [(0.01, True), (0.5, False), (0.99, True)])
+def test_a_fit_at_the_edge_of_its_range_is_told_where_it_continues_much(surface, hurst, told):
+    parameters = surface.joint.fit.surface.copy()
+    parameters[:, 2] = hurst
+    fit = replace(surface.joint.fit, surface=parameters)
+    for continued in (0.05, 0.3):
+        shares = replace(surface.joint.shares, continued=continued)
+        other = replace(surface, joint=replace(surface.joint, fit=fit, shares=shares))
+        found = [text for text in surface_doubts(other) if "at the edge of what is fitted" in text]
+        assert [f", {hurst:g}, is" in text for text in found] == [True] * (told and continued > 0.1)
 
 
 def test_scans_smaller_than_the_contact_are_told(surface, prediction):
@@ -533,6 +549,14 @@ def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
     assert values.min() == pytest.approx(-1e3 * prediction.pull_off_force.value, rel=1e-3)
     assert radius[np.argmin(values)] < 1e6 * prediction.contact_radius
     assert "mN" in force.get_ylabel()
+
+
+def test_the_figure_says_which_waves_the_density_leaves_out(surface):
+    axes = Figure().add_subplot()
+    draw_scan(axes, surface.measurements[0], stripes=(0, 1))
+    assert axes.get_title().endswith(
+        "without the paraboloid\n(a) without waves along x and y alone"
+    )
 
 
 def test_a_map_becomes_a_field_that_a_cycle_runs_on(tmp_path):

@@ -2,6 +2,7 @@
 
 import os
 import struct
+import warnings
 from dataclasses import replace
 
 import h5py
@@ -211,6 +212,23 @@ def test_levelling_by_order_takes_such_a_polynomial_off(rng):
         np.testing.assert_array_equal(
             levelled(rough + trend, everywhere, name), levelled(rough + trend, everywhere, order)
         )
+
+
+def test_warnings_of_parsers_are_none_of_the_users(tmp_path, heights, monkeypatch):
+    path, mask = tmp_path / "scan.npy", tmp_path / "mask.npy"
+    np.save(path, 1e6 * heights)
+    np.save(mask, np.zeros(heights.shape))
+    library = pytest.importorskip("SurfaceTopography")
+    opened = library.open_topography
+
+    def warning(*arguments, **options):
+        warnings.warn("wmf image format is not supported", UserWarning, stacklevel=2)
+        return opened(*arguments, **options)
+
+    monkeypatch.setattr(library, "open_topography", warning)
+    treatment = Treatment(unit="um", size=(5.0, 4.0), mask=(mask,))
+    [found] = read_measurements([path], [treatment])
+    assert found.heights.shape == heights.shape
 
 
 def test_a_mask_is_left_out_of_the_levelling_and_stays_in_the_map(tmp_path, heights):

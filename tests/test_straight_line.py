@@ -249,7 +249,7 @@ def test_a_cycle_of_the_line_with_its_fronts_goes_on_to_the_same_bits(command, m
         patched.setattr("crackfront.cli.watch.Progress.__call__", interrupted)
         assert command().exit_code == 75
     again = command()
-    assert "going on from the 9 states" in again.stderr
+    assert ", after state 9" in again.stderr
     xr.testing.assert_equal(xr.load_dataset(command.output), undisturbed)
 
 

@@ -232,6 +232,12 @@ def test_a_channel_without_heights_is_refused(monkeypatch, scan):
     assert "channel 'Default' holds phase, no heights" in refusal([scan])
 
 
+def test_a_channel_of_another_quantity_that_is_taken_for_heights_is_refused(monkeypatch, scan):
+    kind = surface_library().IO.Reader.ChannelInfo
+    monkeypatch.setattr(kind, "unit", property(lambda channel: ("nm", None)))
+    assert "channel 'Default' holds another quantity, no heights; export" in refusal([scan])
+
+
 def test_the_surface_does_not_depend_on_a_tilt_or_a_curvature(tmp_path, heights, scan):
     x = np.linspace(0, 1, len(heights))[:, None]
     bent = heights + 1e-5 * x + 3e-5 * x**2 - 2e-5 * x.T**2

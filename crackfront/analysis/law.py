@@ -28,6 +28,7 @@ from scipy.special import ndtr
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.core.adhesion import FieldKind
+from crackfront.data.arguments import refuse_no_numbers
 
 if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum
@@ -218,6 +219,8 @@ def pinning_factor(
 
     Raises
     ------
+    TypeError
+        If one of them is no number.
     ValueError
         If w_rms does not lie between 0 and 2, where e_el is w_int, or the size is not positive.
 
@@ -228,6 +231,7 @@ def pinning_factor(
     >>> 2.3 < found.factor.value < 3.2
     True
     """
+    refuse_no_numbers(w_rms=w_rms, size=size)
     if not 0 < w_rms < 2:
         raise ValueError(
             f"w_rms is {w_rms:g} w_int; it must lie between 0 and 2, where e_el reaches w_int"

@@ -280,7 +280,7 @@ class _Keeper:
             click.echo(f"{self.path} is of another cycle; this one begins anew", err=True)
         else:
             count = found.record.states.direction.size
-            click.echo(f"going on from the {count} states in {self.path}", err=True)
+            click.echo(f"going on from {self.path}, after state {count}", err=True)
         return found
 
     def __call__(self, recorder: Recorder) -> None:

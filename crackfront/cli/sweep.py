@@ -243,7 +243,13 @@ def simulate(
         click.echo(f"Warning: {sentence}; it is computed anew", err=True)
     if sentence := inventory.stale_sentence():
         click.echo(sentence)
-    fill_store(store, inventory.missing, configuration, checkpoint)
+    try:
+        fill_store(store, inventory.missing, configuration, checkpoint)
+    except StoppedError as stopped:
+        if not parallel.launcher_is_told():
+            raise
+        stopped.show()
+        return
     for shard in shards:
         manifest = store.write_manifest(shard, sweep.shard(shard.item, shard.realisations))
     click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
@@ -255,8 +261,8 @@ def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path
 
     folder.mkdir(parents=True, exist_ok=True)
     code = parallel.launch_ranks(arguments, ranks, launcher, folder)
-    if code == StoppedError.exit_code:
-        sys.exit(code)  # the manager has told it
+    if code is None or code == StoppedError.exit_code:
+        sys.exit(StoppedError.exit_code)  # the manager has told it
     if code != 0:
         click.echo(
             f"Error: the ranks ended with exit code {code}; finished simulations are stored, and "
@@ -361,7 +367,7 @@ def status(folder: Path, as_json: bool) -> None:
         )
     if len(processes) > _MOST_PROCESSES:
         click.echo(f"and {len(processes) - _MOST_PROCESSES} more, which --json tells")
-    left, ranks = sum(item.seconds for item in found), sum(item.running for item in found)
+    left, ranks = sum(item.seconds for item in found), len(processes)
     total = sum(item.done + item.failed + item.running + item.waiting for item in found)
     ended = sum(item.done + item.failed for item in found)
     sentence = f"{ended} of {total} simulations have ended"

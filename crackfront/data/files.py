@@ -250,7 +250,8 @@ def refuse_damaged(path: Path) -> Integrity:
         Whether it states one.
     """
     if not path.is_file():
-        raise UnreadableFileError(f"{path} does not exist; check the name")
+        what = "is no file" if path.exists() else "does not exist"
+        raise UnreadableFileError(f"{path} {what}; check the name")
     found, _ = integrity(path)
     if found is Integrity.DAMAGED:
         raise UnreadableFileError(

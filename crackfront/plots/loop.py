@@ -25,6 +25,14 @@ MOST_MARKERS = 60
 """Markers on a branch, roughly; of more states only every second, third ... is marked."""
 
 
+_HALF_ARROW, _MARGIN, _LEGEND = 0.07, 0.02, 0.55
+"""Half of the length of an arrow, least distance from the edges, and what a legend takes at the
+upper left. (Units: axes)"""
+
+_ASIDE = (-0.09, -0.07, -0.05, 0.05, 0.07, 0.09)
+"""Distances from its branch at which an arrow may stand. (Units: axes)"""
+
+
 class LoopStates(Protocol):
     """What is drawn of the states of a cycle."""
 
@@ -342,19 +350,31 @@ def _set_limits(axes: Axes, states: LoopStates, units: AxisUnits) -> None:
 
 
 def _draw_motion(axes: Axes, radius: Array, force: Array, colour: str) -> None:
-    """Arrow beside the outer part of a branch, in the direction of motion."""
+    """Arrow beside a branch, in the direction of motion, where it is furthest from all curves."""
     if radius.size < FEWEST_FOR_ARROW:
         return
-    outwards = radius[-1] > radius[0]
-    ends = (np.array([0.6, 0.85] if outwards else [0.15, 0.4]) * (radius.size - 1)).astype(int)
     to_axes = axes.transData + axes.transAxes.inverted()
-    tail, head = to_axes.transform(np.stack([radius[ends], force[ends]], axis=1))
-    along = (head - tail) / np.hypot(*(head - tail))
-    aside = 0.06 * np.array([-along[1], along[0]])
+    drawn = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.get_lines()])
+    places = to_axes.transform(np.stack([radius, force], axis=1))
+    span = max(1, radius.size // 5)
+    tails, heads = places[:-span], places[span:]
+    along = (heads - tails) / np.hypot(*(heads - tails).T)[:, None]
+    centres = (tails + heads) / 2
+    found = []
+    for aside in _ASIDE:
+        middle = centres + aside * np.stack([-along[:, 1], along[:, 0]], axis=1)
+        ends = np.stack([middle + part * _HALF_ARROW * along for part in (-1, 0, 1)])
+        apart = np.hypot(*(ends[:, :, None] - drawn).transpose(3, 0, 1, 2)).min(axis=(0, 2))
+        inside = np.all((ends > _MARGIN) & (ends < 1 - _MARGIN), axis=(0, 2))
+        free = inside & ~np.any((ends < _LEGEND)[..., 0] & (ends > 1 - _LEGEND)[..., 1], axis=0)
+        found += [(apart[k], *ends[::2, k]) for k in np.flatnonzero(free)]
+    if not found:
+        return
+    _, tail, head = max(found, key=lambda one: float(one[0]))
     axes.annotate(
         "",
-        xy=(tail + head) / 2 + aside + 0.07 * along,
-        xytext=(tail + head) / 2 + aside - 0.07 * along,
+        xy=head,
+        xytext=tail,
         xycoords="axes fraction",
         arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.0, "mutation_scale": 8},
         zorder=4,

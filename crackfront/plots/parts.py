@@ -242,12 +242,12 @@ def arrays(estimate: Estimate) -> tuple[Array, Array, Array, Array]:
     return estimate.value, estimate.standard_error, estimate.low, estimate.high
 
 
-def label_panel(axes: Axes, name: str) -> None:
-    """Bold letter of a panel, above its upper left corner."""
+def label_panel(axes: Axes, name: str, left: float = 4.0) -> None:
+    """Bold letter of a panel above its upper left corner, so many points to the left of it."""
     axes.annotate(
         name,
         xy=(0, 1),
-        xytext=(-4, 4),
+        xytext=(-left, 4),
         xycoords="axes fraction",
         textcoords="offset points",
         fontsize=9,

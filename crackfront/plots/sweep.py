@@ -159,6 +159,10 @@ def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
     axes.set_ylim(min(0.0, float(np.nanmin(factor))) - 0.05 * highest, 1.1 * highest)
 
 
+_DECIMALS = 100.0
+"""Ratio of the ends of an abscissa up to which its labels are decimal numbers."""
+
+
 def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the law and the theory."""
     variance, hysteresis = fit.cells.w_rms**2, fit.cells.hysteresis
@@ -179,6 +183,8 @@ def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(ends[0], ends[1])
+    if ends[1] < _DECIMALS * ends[0]:
+        label_decimals(axes)
     axes.set_ylim(lowest, PERTURBATION_FACTOR / 2 * ends[1] * 4)
     axes.set_xlabel(r"disorder $(w_\mathrm{rms}/w_\mathrm{int})^2$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")

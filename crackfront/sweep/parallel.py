@@ -30,6 +30,12 @@ Result = TypeVar("Result")
 _NOTICE_FILE = "CRACKFRONT_NOTICE"
 """Environment variable that names the file of a notice."""
 
+_ENDED = "ended"
+"""What the manager writes into it where it ended as told."""
+
+_SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE")
+"""Environment variables in which launchers tell processes how many of them they start."""
+
 _SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Signals by which a process is told to end; one that was ignored at its start stays ignored."""
 
@@ -40,6 +46,21 @@ def notice_is_given() -> bool:
     """Whether this process is to end."""
     name = os.environ.get(_NOTICE_FILE)
     return _received.is_set() or (name is not None and Path(name).exists())
+
+
+def launcher_is_told() -> bool:
+    """Whether who launched this rank now knows from the file that it ended as told.
+
+    The rank then ends with 0: MPI takes any other exit code for a failure, and says so.
+    """
+    name = os.environ.get(_NOTICE_FILE)
+    if name is None:
+        return False
+    try:
+        Path(name).write_text(_ENDED, encoding="utf-8")
+    except OSError:
+        return False
+    return True
 
 
 @contextlib.contextmanager
@@ -99,11 +120,13 @@ def is_manager(n_worker: int) -> bool:
     ------
     ValueError
         On the manager, if the number of ranks is another one. A launcher that does not belong to
-        the MPI library starts ranks that each believe to be alone.
+        the MPI library starts ranks that each believe to be alone. Without MPI, if a launcher has
+        started several of these processes, each of which would do the whole work.
     SystemExit
         On the other ranks in that case.
     """
     if not under_mpi():
+        _refuse_launched()
         return True
     from mpi4py import MPI
 
@@ -116,6 +139,17 @@ def is_manager(n_worker: int) -> bool:
         f"MPI started {world.size} rank(s) where {n_worker + 1} were expected ({n_worker} workers "
         "and a manager); launch workers + 1, by the launcher that belongs to mpi4py's MPI library"
     )
+
+
+def _refuse_launched() -> None:
+    """Raise where this is one of several processes of a launcher, and not as a rank."""
+    count = max(int(os.environ.get(name, "1")) for name in _SIZES)
+    # A shell on the first of several tasks has what they have, and is alone.
+    if count > 1 and "SLURM_PTY_PORT" not in os.environ:
+        raise ValueError(
+            f"a launcher has started this command {count} times; leave that to --ranks and "
+            "--launcher, or start ranks as python -m mpi4py -m crackfront"
+        )
 
 
 def serve_tasks(module: str) -> None:
@@ -177,8 +211,10 @@ def default_launcher() -> str:
 
 def launch_ranks(
     arguments: Sequence[str], n_worker: int, launcher: str | None, folder: Path
-) -> int:
+) -> int | None:
     """Exit code of a crackfront command that is run on a manager and a number of workers.
+
+    It is None where the manager ended as told.
 
     What tells this process to end leaves the ranks the file of a notice; the second time it ends
     the launcher.
@@ -225,7 +261,9 @@ def launch_ranks(
 
     try:
         with _when_told_to_end(leave_notice):
-            return process.wait()
+            code = process.wait()
+        ended = file.exists() and file.read_text(encoding="utf-8") == _ENDED
+        return None if code == 0 and ended else code
     finally:
         if process.poll() is None:
             process.terminate()

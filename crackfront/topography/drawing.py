@@ -45,7 +45,10 @@ _MOST_MAPS, _FEWEST_PLACES = 4, 2
 _LAST = 0.4
 """Part of the last wavevector from which on a limit is named on its left."""
 
-_ENTRY = 0.085
+_BESIDE_TICKS = 12.0
+"""Points to the left of a panel where its letter is beside the ticks of an upper axis."""
+
+_ENTRY = 0.1
 """Part of the height of a panel that an entry of a legend takes."""
 
 _ROOM = 3.0
@@ -67,11 +70,11 @@ def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figur
         lower.set_xlabel(WAVEVECTOR_LABEL)
         _draw_forces(forces, prediction)
         for name, axes in panels.items():
-            label_panel(axes, name)
-        shown = surface.measurements[:_MOST_MAPS]
+            label_panel(axes, name, _BESIDE_TICKS)
+        shown = surface.scans[:_MOST_MAPS]
         maps = below.subplots(1, max(len(shown), _FEWEST_PLACES), squeeze=False)[0]
-        for axes, measurement in zip(maps, shown, strict=False):
-            draw_scan(axes, measurement)
+        for axes, one in zip(maps, shown, strict=False):
+            draw_scan(axes, one.measurement, one.band.stripes)
         for axes in maps[len(shown) :]:
             axes.set_axis_off()
         below.text(0.005, 0.97, "d", fontsize=9, fontweight="bold", va="top")

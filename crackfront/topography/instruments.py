@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -78,6 +80,15 @@ def surface_library() -> ModuleType:
     return SurfaceTopography
 
 
+@contextmanager
+def _silenced() -> Iterator[None]:
+    """Keep what parsers that are not ours warn of, as of pictures in a table, from the user."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
+
+
+@_silenced()
 def raw_scan(path: Path, unstated: Unstated) -> RawScan:
     """The heights of a file in metres.
 
@@ -110,6 +121,7 @@ def raw_scan(path: Path, unstated: Unstated) -> RawScan:
     return RawScan(level, reader.format(), name)
 
 
+@_silenced()
 def array_of(path: Path) -> np.ndarray[Any, Any]:
     """Numbers of a file without units, as of a mask.
 
@@ -177,7 +189,7 @@ def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
         found: Any = reader.default_channel
     except Exception as error:
         raise _unreadable(path, "what its head says", error) from error
-    of_heights = [item for item in channels if item.data_kind.value == "height"]
+    of_heights = [item for item in channels if _kind(item) == "height"]
     if wanted is not None:
         named = [item for item in channels if item.name == wanted]
         named = named or [item for item in channels if str(item.index) == wanted]
@@ -187,18 +199,24 @@ def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
                 f"{_choice(channels)}"
             )
         [found] = named
-    if found.data_kind.value != "height":
+    if _kind(found) != "height":
         raise ValueError(
-            f"{path}: channel {found.name!r} holds {found.data_kind.value}, no heights; "
+            f"{path}: channel {found.name!r} holds {_kind(found)}, no heights; "
             + (_choice(of_heights) if of_heights else "export the channel of the heights")
         )
     several = f", {found.index} of {len(channels)}" if len(channels) > 1 else ""
     return found, f"{found.name!r}{several}"
 
 
+def _kind(channel: Any) -> str:
+    """What a channel holds."""
+    # A reader takes any quantity over lengths for heights, and has two units for it.
+    return "another quantity" if isinstance(channel.unit, tuple) else str(channel.data_kind.value)
+
+
 def _choice(channels: list[Any]) -> str:
     """What channels there are to choose from."""
-    known = (f"{item.index} {item.name!r} ({item.data_kind.value})" for item in channels)
+    known = (f"{item.index} {item.name!r} ({_kind(item)})" for item in channels)
     return f"choose by number or name with --channel: {', '.join(known)}"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,12 +21,15 @@ _SHOWN = (0.002, 0.998)
 _LENGTHS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 
 
-def draw_scan(axes: Axes, measurement: Measurement) -> None:
-    """A map in colours with their scale, or the heights along a line, with what was done to it."""
+def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ()) -> None:
+    """A map in colours with their scale, or the heights along a line, with what was done to it.
+
+    `stripes` are the axes along which its density leaves waves out.
+    """
     low, high = (float(end) for end in np.quantile(measurement.heights, _SHOWN))
     unit, scale = _length_unit(max(abs(low), abs(high)))
     lateral, side = _length_unit(max(measurement.size))
-    axes.set_title(_title(measurement), fontsize=6)
+    axes.set_title(_title(measurement, stripes), fontsize=6)
     axes.set_xlabel(f"x ({lateral})")
     label = f"height ({unit})"
     if measurement.is_line:
@@ -48,11 +52,13 @@ def draw_scan(axes: Axes, measurement: Measurement) -> None:
     bar.set_label(label)
 
 
-def _title(measurement: Measurement) -> str:
-    """Name of the file and its channel, and what was taken off."""
+def _title(measurement: Measurement, stripes: Sequence[int]) -> str:
+    """Name of the file and its channel, what was taken off, and what (a) leaves out."""
     channel = f", channel {measurement.channel}" if measurement.channel else ""
     levelling = f"without {measurement.levelling}" if measurement.levelling else "as it is"
-    return f"{measurement.path.name}{channel}\n{levelling}"
+    left_out = " and ".join("xy"[axis] for axis in stripes)
+    waves = f"\n(a) without waves along {left_out} alone" if stripes else ""
+    return f"{measurement.path.name}{channel}\n{levelling}{waves}"
 
 
 def _thinned(heights: NDArray[np.float64]) -> NDArray[np.float64]:

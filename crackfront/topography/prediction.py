@@ -23,6 +23,10 @@ _MOST_UNMEASURED = 0.1
 _MOST_CONTINUED = 0.5
 """Ratio of slopes and parts of e_el from which on they are doubts."""
 
+_EDGE, _MATTERS = 0.05, 0.1
+"""Distance of a Hurst exponent from 0 and from 1 below which it is at the edge of what is fitted,
+and part of e_el that is continued from which on that matters."""
+
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
@@ -201,6 +205,13 @@ def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
         yield (
             f"{joint.shares.continued:.0%} of e_el is not measured but continued by a model; look "
             "at the figure, and add a scan of the waves that are missing."
+        )
+    hurst, _, _ = joint.fit.hurst
+    if min(hurst, 1 - hurst) < _EDGE and joint.shares.continued > _MATTERS:
+        yield (
+            f"The Hurst exponent of the shortest waves, {hurst:.2g}, is at the edge of what is "
+            f"fitted, 0 to 1: the model that continues {joint.shares.continued:.0%} of e_el may "
+            "not be what the surface is."
         )
     if not joint.fit.has_roll_off:
         yield (

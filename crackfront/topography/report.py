@@ -249,7 +249,9 @@ def _standing(item: Condition) -> str:
             else "far inside"
         )
     word, end = ("FAILS", item.limit) if item.standing == "fails" else ("IN DOUBT", item.doubtful)
-    shown = f"{end:.3g}" if item.units == "1" else prefixed(item.units, end)
+    # As what was found is written.
+    number = f"{end:.2%}" if "%" in item.found else f"{end:.3g}"
+    shown = number if item.units == "1" else prefixed(item.units, end)
     return f"{word} {'below' if item.rising else 'above'} {shown}"
 
 

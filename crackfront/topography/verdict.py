@@ -78,12 +78,12 @@ class Condition:
         """Whether it holds."""
         if self._margin(self.limit) <= 1:
             return "fails"
-        return "holds" if self._margin(self.doubtful) > 1 else "in doubt"
+        return "holds" if self.margin > 1 else "in doubt"
 
     @property
     def margin(self) -> float:
-        """Factor to the limit; above 1 inside."""
-        return self._margin(self.limit)
+        """Factor to where it comes into doubt; above 1 where it holds."""
+        return self._margin(self.doubtful)
 
     def _margin(self, end: float) -> float:
         """Factor to one of the ends."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.analysis.estimate import with_error
 from crackfront.analysis.power_law import PowerLaw, truncated_power_law
 from crackfront.core.adhesion import force_correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
@@ -264,7 +265,7 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
     contained = "contains it" if law.low <= SIZE_EXPONENT <= law.high else "leaves it out"
     yield Check(
         f"sphere, {name} disorder: exponent of the swept areas",
-        f"{SIZE_EXPONENT:.2f} ± {_TOLERANCE}",
+        with_error(SIZE_EXPONENT, _TOLERANCE),
         f"{law.exponent:.2f} ({law.low:.2f} to {law.high:.2f})",
         abs(law.exponent - SIZE_EXPONENT) <= _TOLERANCE,
         f"{law.n_value} of {energy.size} avalanches; the 95% interval of a bootstrap over "

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 from scipy.fft import rfft
 
+from crackfront.analysis.estimate import with_error
 from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.parts import legend_entries
@@ -297,6 +298,11 @@ def fitted_roughness(record: RoughnessRecord, index: int) -> _Fit:
 
 def roughness_checks(record: RoughnessRecord) -> tuple[Check, ...]:
     """Exponents above and below the Larkin length."""
+    if record.radius.size != len(_EXPONENTS):
+        raise ValueError(
+            f"the data of the roughness of fronts hold {record.radius.size} kinds of fronts, not "
+            f"{len(_EXPONENTS)}; an earlier version made them, so compute them again"
+        )
     fits = [fitted_roughness(record, index) for index in range(len(_EXPONENTS))]
     strong, weak = (fits[index] for index in _SPHERE)
     claims = (
@@ -330,8 +336,8 @@ def _exponent_check(record: RoughnessRecord, index: int, fit: _Fit, claim: str) 
     held = "sphere's circle" if index in _SPHERE else "springs"
     return Check(
         claim,
-        f"{expected} ± {_TOLERANCE}",
-        f"{fit.exponent:.3f} ± {fit.reach:.3f}",
+        with_error(expected, _TOLERANCE),
+        with_error(fit.exponent, fit.reach),
         abs(fit.exponent - expected) <= _TOLERANCE,
         f"the 95% interval of {record.power.shape[1]} tiles {contained}; wavelengths "
         f"{low:.3g} to {high:.3g} ({np.log10(high / low):.2f} decades), their shorter half "

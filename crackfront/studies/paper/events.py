@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.analysis.estimate import with_error
 from crackfront.analysis.power_law import JointPowerLaw, cutoff_scale, joint_power_law
 from crackfront.core.cycle.instabilities import resolved_motion, swept_areas, swept_clusters
 from crackfront.core.variables import variable
@@ -326,8 +327,8 @@ def _exponent_check(claim: str, found: float, reach: float, expected: float, rem
         missing = f"; ± {tolerance} would need about {more} times as many events"
     return Check(
         claim,
-        f"{expected:.3f} ± {max(reach, tolerance):.2g}",
-        f"{found:.3f} ± {reach:.2g}",
+        with_error(expected, max(reach, tolerance)),
+        with_error(found, reach),
         abs(found - expected) <= max(reach, tolerance),
         f"95% interval; {remark}{missing}",
     )

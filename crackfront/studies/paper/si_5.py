@@ -140,7 +140,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
         Check(
             f"k of all spectra, e_el from {study.lowest_elastic_energy:g} to "
             f"{study.highest_elastic_energy:g} w_int: about 3",
-            f"{PAPER_FACTOR:g} ± {ONE_DIGIT:g}",
+            with_error(PAPER_FACTOR, ONE_DIGIT),
             _interval(factor),
             bool(abs(factor.value - PAPER_FACTOR) <= ONE_DIGIT),
             f"{', '.join(['95% interval', *pooled_limits(fit, fit.spectra.factor)])}; k grows with "
