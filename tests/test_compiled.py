@@ -78,17 +78,24 @@ def test_a_cache_in_which_others_may_write_is_made_anew(fresh_cache):
     assert folder.stat().st_mode & 0o077 == 0
 
 
-def test_kernels_count_as_cached_once_an_index_of_one_is_there(fresh_cache, monkeypatch):
-    monkeypatch.setattr(compiled, "cache_folder", compiled.cache_folder.__wrapped__)
-    assert not compiled.kernels_are_cached()
-    folder = compiled.cache_folder() / "relax_0"
-    folder.mkdir()
-    (folder / "kernel.nbi").write_bytes(b"")
-    assert compiled.kernels_are_cached()
-
-
 def quotient(a, b):
     return a / b
+
+
+def test_the_first_kernel_that_no_cache_holds_is_told_once(tmp_path, monkeypatch):
+    monkeypatch.setattr(compiled.numba.config, "CACHE_DIR", str(tmp_path))
+    told = []
+    compiled.when_compiling(lambda: told.append("compiling"))
+    for counts in (["compiling"], ["compiling"]):
+        assert compiled.jit(quotient)(1.0, 2.0) == 0.5
+        assert compiled.jit(quotient)(1, 2) == 0.5
+        assert told == counts
+    told.clear()
+    compiled.when_compiling(lambda: told.append("compiling"))
+    assert compiled.jit(quotient)(1.0, 2.0) == 0.5
+    assert told == []
+    assert compiled.jit(quotient)(1.0, 2) == 0.5
+    assert told == ["compiling"]
 
 
 @pytest.mark.parametrize("ending", ["nbi", "nbc"])

@@ -67,11 +67,11 @@ def _plain(value: Any) -> object:
 
 
 def announce_compilation(*, err: bool = False) -> None:
-    """Tell why nothing seems to happen, beside the output where that is for machines."""
-    from crackfront.core.compiled import kernels_are_cached
+    """Tell when something is compiled, beside the output where that is for machines."""
+    from crackfront.core.compiled import when_compiling
 
-    if not kernels_are_cached():
-        click.echo("compiling the solver (once, for half a minute to a minute)", err=err)
+    sentence = "compiling the solver (once, for half a minute to a minute)"
+    when_compiling(lambda: click.echo(sentence, err=err))
 
 
 def announce_cost(seconds: float, *, err: bool = True) -> None:

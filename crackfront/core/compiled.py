@@ -22,6 +22,7 @@ from typing import Any, TypeVar
 
 import numba
 from numba import types
+from numba.core import event
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.extending import overload
 
@@ -98,9 +99,24 @@ def _is_whole(path: str) -> bool:
     return hashlib.sha256(content[:-length]).digest() == content[-length:]
 
 
-def kernels_are_cached() -> bool:
-    """Whether an earlier run has left compiled kernels of these sources."""
-    return any(cache_folder().rglob("*.nbi"))
+class _First(event.Listener):  # type: ignore[misc]
+    """Calls a function when a kernel begins to be compiled, then never again."""
+
+    def __init__(self, told: Callable[[], None]) -> None:
+        self.told = told
+
+    def on_start(self, _: event.Event) -> None:
+        """A kernel is not in the cache."""
+        event.unregister("numba:compile", self)
+        self.told()
+
+    def on_end(self, _: event.Event) -> None:
+        """It is compiled."""
+
+
+def when_compiling(told: Callable[[], None]) -> None:
+    """Have a function called once, before the first kernel that no cache holds is compiled."""
+    event.register("numba:compile", _First(told))
 
 
 if not os.environ.get("NUMBA_CACHE_DIR"):
