@@ -18,6 +18,7 @@ from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, STEP, Variable, variables
+from crackfront.data.arguments import refuse_other_type
 from crackfront.data.files import (
     UnreadableFileError,
     labelled,
@@ -139,9 +140,12 @@ def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
     ------
     ValueError
         If the array has no name.
+    TypeError
+        If the result is of another type.
     OSError
         If the file cannot be written.
     """
+    refuse_other_type("result", result, (xr.DataArray, xr.Dataset), "a surface or a loop")
     if isinstance(result, xr.DataArray) and result.name is None:
         raise ValueError("the array has no name; give it one, as in surface.rename('height')")
     dataset = result.to_dataset() if isinstance(result, xr.DataArray) else result

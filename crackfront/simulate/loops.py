@@ -26,7 +26,7 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
-from crackfront.data.arguments import refuse_no_numbers
+from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.provenance import __version__
 from crackfront.simulate.contact import contact_field, tile_contact
@@ -117,6 +117,10 @@ def run_loop(
     ('lost_contact', ('step', 'angle'))
     """
     refuse_no_numbers(max_penetration=max_penetration, step=step)
+    for name, value in (("fronts", fronts), ("energy", energy)):
+        refuse_other_type(name, value, bool, "True or False")
+    if not callable(progress):
+        refuse_other_type("progress", progress, type(None), "a function of a state")
     solution = named_solver(solver, _TOLERANCE)
     schedule = LoadSchedule(max_penetration, step)
     contact = surface_contact(surface, schedule, error)
