@@ -109,7 +109,7 @@ def test_what_is_no_file_is_named_at_once(tmp_path, kind):
     with pytest.raises(ValueError, match=f"x.yaml is {kind}, no file; name a file"):
         regular_file(path)
     assert f"is {kind}, no file" in refused("plan", path)
-    assert "does not exist" in refused(
+    assert "x.yaml is no file; check the name" in refused(
         *("cycle", "--field", path, "--max-penetration", 1, "--output", tmp_path / "out.nc")
     )
 

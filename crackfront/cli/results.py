@@ -192,10 +192,12 @@ def _loop(result: SimulationResult) -> Figure:
 
     simulation, states = result.simulation, result.record.states
     schedule, energy = simulation.schedule, result.measures.e_el
+    title = (
+        rf"{simulation.spectrum_name}, $e_\mathrm{{el}} = {simulation.elastic_energy:g}\,"
+        rf"w_\mathrm{{int}}$, realisation {simulation.realisation}"
+    )
     if isinstance(schedule, LineSchedule):
-        return pinning_figure(
-            states, schedule.n_period, elastic_energy=energy, title=simulation.label
-        )
+        return pinning_figure(states, schedule.n_period, elastic_energy=energy, title=title)
     steady = steady_adhesion(result.record, simulation.correlation_length)
     works = steady.w_appr, steady.w_retr
     # A sweep of steady parts has no loop to draw but the one that they stand for.
@@ -206,7 +208,7 @@ def _loop(result: SimulationResult) -> Figure:
         (steady.lowest_radius, steady.highest_radius),
         elastic_energy=energy,
         kind=simulation.kind,
-        title=simulation.label,
+        title=title,
     )
 
 

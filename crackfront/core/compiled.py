@@ -103,12 +103,14 @@ class _First(event.Listener):  # type: ignore[misc]
     """Calls a function when a kernel begins to be compiled, then never again."""
 
     def __init__(self, told: Callable[[], None]) -> None:
-        self.told = told
+        self.told: Callable[[], None] | None = told
 
     def on_start(self, _: event.Event) -> None:
         """A kernel is not in the cache."""
-        event.unregister("numba:compile", self)
-        self.told()
+        # To be unregistered here would hide the event from the listener behind this one.
+        told, self.told = self.told, None
+        if told is not None:
+            told()
 
     def on_end(self, _: event.Event) -> None:
         """It is compiled."""
