@@ -33,7 +33,7 @@ _NEVER_USED = (
 )
 """What libraries import for single functions of theirs."""
 
-_OBJECTS = 100_000
+_OBJECTS = 1_000_000
 """New objects after which garbage is looked for: imports make many, and none of it."""
 
 _NO_READER = (
