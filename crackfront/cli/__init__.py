@@ -21,15 +21,21 @@ from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.cli.validate import validate
-from crackfront.data.lazy_modules import loaded_on_use
+from crackfront.data.lazy_modules import loaded_on_use, unavailable
 from crackfront.sweep.parallel import ending_alike
 
 _NEVER_USED = (
+    "asyncio",
     "numpy.f2py",
     "numpy.testing",
+    "pandas.api.typing",
     "scipy.integrate",
     "scipy.interpolate",
     "scipy.spatial",
+    "xarray.groupers",
+    "xarray.tutorial",
+    "xarray.ufuncs",
+    "yaml",
 )
 """What libraries import for single functions of theirs."""
 
@@ -71,8 +77,14 @@ class _Commands(click.Group):
             return super().main(args, *others, **options)
         gc.set_threshold(_OBJECTS)
         reads_only = sys.argv[1:2] in (["predict"], ["surface"])
-        with loaded_on_use(_NEVER_USED + (_NO_READER if reads_only else ())):
-            return super().main(*others, **options)
+        waiting = _NEVER_USED + (_NO_READER if reads_only else ())
+        try:
+            # xarray would import pint to see whether an array is one of its quantities.
+            with loaded_on_use(waiting), unavailable("pint"):
+                return super().main(*others, **options)
+        finally:
+            # Python looks for garbage as it ends, which takes a third of a second after numba.
+            gc.freeze()
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""

@@ -71,6 +71,12 @@ def unavailable(name: str) -> Iterator[None]:
             warnings.simplefilter("ignore", ImportWarning)
             yield
     finally:
-        del sys.modules[name]
+        reveal(name)
         if known is not None:
             sys.modules[name] = known
+
+
+def reveal(name: str) -> None:
+    """Let a module that is unavailable be found again."""
+    if sys.modules.get(name) is None:
+        sys.modules.pop(name, None)

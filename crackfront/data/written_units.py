@@ -9,6 +9,7 @@ from tokenize import TokenError
 from typing import Any
 
 from crackfront.data.bounds import SI, refuse_outside
+from crackfront.data.lazy_modules import reveal
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 """A number and what stands behind it."""
@@ -70,7 +71,7 @@ def _plain_factor(written: str, unit: str) -> float:
 
 def _converted(text: str, number: float, written: str, unit: str, *, what: str) -> float:
     """Value of a number with any unit in an SI unit."""
-    import pint
+    pint = _pint()
 
     example = _EXAMPLE.format(_NAMES[unit], _EXAMPLES[unit])
     try:
@@ -93,7 +94,7 @@ def unit_value(given: str, unit: str) -> float:
     >>> unit_value("mJ / m^2", "J / m^2")
     0.001
     """
-    import pint
+    pint = _pint()
 
     try:
         return float(_registry().Quantity(1.0, given).to(unit).magnitude)
@@ -109,9 +110,15 @@ _NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area"}
 @functools.cache
 def _registry() -> Any:
     """Registry of units; made once, as it takes half a second."""
+    return _pint().UnitRegistry()
+
+
+def _pint() -> Any:
+    """The library, which commands keep from all who do not ask for it here."""
+    reveal("pint")
     import pint
 
-    return pint.UnitRegistry()
+    return pint
 
 
 _PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
