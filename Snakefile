@@ -3,12 +3,18 @@
 #   snakemake --profile workflow/profiles/default --config sweep=config/test.yaml
 #
 # Every rule calls the command `crackfront`, which can be called by hand as well.
+import atexit
+import gc
 import os
 import shlex
 import sys
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
+
+# Imports make many objects and no garbage, for which Python looks, also as it ends.
+gc.set_threshold(1_000_000)
+atexit.register(gc.freeze)
 
 from crackfront.data.files import date_back, set_aside_damaged
 from crackfront.data.provenance import package_fingerprint
