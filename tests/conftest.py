@@ -1,5 +1,7 @@
 """What every test shares: floating-point errors raise, random numbers are seeded."""
 
+import atexit
+import gc
 import os
 import signal
 from collections.abc import Iterator
@@ -9,6 +11,10 @@ from pathlib import Path
 import hypothesis
 import numpy as np
 import pytest
+
+# As of the command: Python looks for garbage among what is imported, also as it ends.
+gc.set_threshold(1_000_000)
+atexit.register(gc.freeze)
 
 SEED = 20240229
 
