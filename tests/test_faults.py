@@ -11,7 +11,9 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from click.testing import CliRunner
 
+from crackfront.cli import main
 from crackfront.data.provenance import provenance
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.store import Store
@@ -51,8 +53,9 @@ def stored(folder):
 def rerun(configuration, folder, *more):
     """Run again what is missing; the number of simulations that were run."""
     before = stored(folder)
-    done = run(*command(configuration, folder, *more))
-    assert done.returncode == 0, done.stderr
+    arguments = ["simulate", str(configuration), "--output", str(folder), *more]
+    done = CliRunner().invoke(main, arguments)
+    assert done.exit_code == 0, done.output
     after = stored(folder)
     assert len(after) == N_SIMULATION
     return sum(before.get(name) != moment for name, moment in after.items())
@@ -181,10 +184,10 @@ def test_two_controllers_at_the_same_shard_do_no_harm(configuration, same, tmp_p
 @pytest.mark.parametrize(
     ("ranks", "told"),
     [
-        (1, signal.SIGTERM),
+        pytest.param(1, signal.SIGTERM, marks=pytest.mark.slow),
         (1, signal.SIGINT),
         pytest.param(2, signal.SIGTERM, marks=pytest.mark.mpi),
-        pytest.param(2, signal.SIGINT, marks=pytest.mark.mpi),
+        pytest.param(2, signal.SIGINT, marks=[pytest.mark.mpi, pytest.mark.slow]),
         pytest.param(2, signal.SIGHUP, marks=[pytest.mark.mpi, pytest.mark.slow]),
     ],
 )
@@ -203,20 +206,20 @@ def test_notice_keeps_what_runs_and_ends_cleanly(configuration, same, tmp_path, 
     # A simulation that has not come to its first state, or just ends, leaves none.
     assert len(list((tmp_path / "checkpoints").iterdir())) <= ranks
     assert not list(tmp_path.glob(".notice-*"))
-    assert rerun(configuration, tmp_path, "--ranks", str(ranks)) == N_SIMULATION - kept
+    assert rerun(configuration, tmp_path) == N_SIMULATION - kept
     assert not any((tmp_path / "checkpoints").iterdir())
     assert same(tmp_path)
 
 
 def test_a_killed_process_goes_on_from_its_last_checkpoint(configuration, same, tmp_path):
-    status = [sys.executable, "-m", "crackfront", "status", str(tmp_path)]
+    status = ["status", str(tmp_path)]
     with running(configuration, tmp_path, "--checkpoint", "0") as process:
         while not any((tmp_path / "checkpoints").glob("[!.]*.nc")):
             time.sleep(0.01)
         os.kill(process.pid, signal.SIGSTOP)
-        assert f"process {process.pid} on " in run(*status).stdout
+        assert f"process {process.pid} on " in CliRunner().invoke(main, status).stdout
         process.kill()
-    assert run(*status).stdout.endswith("have ended; nothing runs\n")
+    assert CliRunner().invoke(main, status).stdout.endswith("have ended; nothing runs\n")
     [checkpoint] = (tmp_path / "checkpoints").glob("[!.]*.nc")
     known = xr.load_dataset(checkpoint)["force"]
     kept = len(stored(tmp_path))
