@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from pydantic import ValidationError
 
+from crackfront.analysis.power_law import joint_power_law
 from crackfront.studies.paper.beyond_avalanches import AvalancheRecord, size_law
 from crackfront.studies.paper.events import cutoff_slope, depth_slope, event_law, event_record
 from crackfront.studies.paper.figure import figure, load_figure
@@ -19,6 +21,21 @@ SCENE = figure("beyond-avalanches")
 
 def parameters(**changes):
     return load_figure(CONFIGURATION, "quick").model_copy(update=changes)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _each_fit_once():
+    """Most records differ in other things than their events, whose fits take two seconds."""
+    known = {}
+
+    def fitted(samples, smallest, rng):
+        given = *(sample.tobytes() for sample in samples), smallest, str(rng.bit_generator.state)
+        if given not in known:
+            known[given] = joint_power_law(samples, smallest, rng)
+        return known[given]
+
+    with mock.patch("crackfront.studies.paper.events.joint_power_law", fitted):
+        yield
 
 
 @pytest.fixture(scope="module")
