@@ -620,7 +620,12 @@ def compiled(tmp_path_factory):
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.filterwarnings("default")
 @pytest.mark.parametrize("kind", CASES)
-def test_no_generated_input_ends_in_a_traceback_a_hang_or_a_wrong_result(kind, tmp_path):
+def test_no_generated_input_ends_in_a_traceback_a_hang_or_a_wrong_result(
+    kind, tmp_path, monkeypatch
+):
+    # Short chains fail where long ones do; these run at night.
+    monkeypatch.setattr("crackfront.topography.fitting._STEPS", 60)
+    monkeypatch.setattr("crackfront.topography.joining._DRAWS", 50)
     with np.errstate(all="warn", under="ignore"):
         assert faults(kind, range(200), tmp_path) == {}
 

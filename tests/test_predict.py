@@ -1,5 +1,6 @@
 """`crackfront surface` and `crackfront predict`: what they say, write and refuse."""
 
+import functools
 import json
 import sys
 import time
@@ -29,6 +30,7 @@ from crackfront.core.variables import variables
 from crackfront.data.written_units import si_value
 from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import read_cycle
+from crackfront.simulate.run import run_simulation
 from crackfront.topography.drawing import prediction_figure
 from crackfront.topography.maps import draw_scan
 from crackfront.topography.measures import measured_surface
@@ -471,6 +473,13 @@ def small_limits(monkeypatch):
     return limit
 
 
+@pytest.fixture
+def _each_simulated_once(monkeypatch):
+    """Equal simulations are run once."""
+    once = functools.cache(run_simulation)
+    monkeypatch.setattr("crackfront.topography.simulated.run_simulation", once)
+
+
 LONG_WAVES = replace(SCENE, radius=0.5e-3, contact_modulus=1.2e6 / 0.75)
 
 
@@ -480,6 +489,7 @@ def coarse():
     return measured_surface(read_measurements([OVERVIEW]))
 
 
+@pytest.mark.usefixtures("_each_simulated_once")
 def test_a_sphere_with_too_many_sites_is_a_straight_front_on_its_springs(
     coarse, small_limits, predict
 ):
@@ -504,6 +514,7 @@ def test_a_sphere_with_too_many_sites_is_a_straight_front_on_its_springs(
     assert predict(*more, **options).output.count(plan.remark) == 2
 
 
+@pytest.mark.usefixtures("_each_simulated_once")
 def test_a_line_with_too_many_sites_has_shorter_springs_and_is_corrected(coarse, small_limits):
     small_limits(_MOST_SITES=100)
     large = replace(SCENE, radius=5e-3)
