@@ -5,6 +5,7 @@ import json
 import os
 import re
 import shlex
+import shutil
 import signal
 import socket
 import subprocess
@@ -229,7 +230,9 @@ def test_the_resolution_of_a_tile_can_be_chosen(smooth_tile, tmp_path):
     assert xr.load_dataset(tmp_path / "out.nc").sizes["angle"] == 12
 
 
-def test_a_sweep_runs_from_its_plan_to_its_figures(tmp_path):
+def test_a_sweep_runs_from_its_plan_to_its_figures_and_tells_what_a_missing_loop_costs(
+    tmp_path, monkeypatch
+):
     output = ("--output", tmp_path / "out")
     plan = run("plan", TEST, *output)
     assert "8 simulations" in plan.output
@@ -240,10 +243,13 @@ def test_a_sweep_runs_from_its_plan_to_its_figures(tmp_path):
     again = run("simulate", TEST, *output)
     assert "8 of 8 simulations are stored" in again.output
     assert "[1/" not in again.output
+    monkeypatch.setattr("crackfront.cli.report._MOMENT", 0.0)
     for command in ("aggregate", "fit", "figures"):
         result = run(command, TEST, *output)
         assert result.exit_code == 0, result.output
         assert str(tmp_path / "out") in result.output
+        assert ("of processor time" in result.stderr) == (command == "figures")
+        shutil.rmtree(tmp_path / "out/curves", ignore_errors=True)
     made = {path.name for path in (tmp_path / "out/figures").iterdir()}
     assert made == {
         f"{name}.{suffix}" for name in ("hysteresis", "loop", "factor") for suffix in ("pdf", "png")

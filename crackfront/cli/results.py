@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE, as_json, examples
+from crackfront.cli.report import FILE, announce_cost, as_json, examples
 from crackfront.cli.sweep import (
     configuration_argument,
     fill_store,
@@ -81,13 +81,16 @@ def figures(configuration: Path, output: Path | None) -> None:
     """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
     from crackfront.plots.style import save_figure
     from crackfront.plots.sweep import factor_figure, hysteresis_figure
+    from crackfront.simulate.costs import expected_cost
     from crackfront.simulate.files import read_simulation
 
     sweep, store = sweep_and_store(configuration, output)
     fitted = _fitted(sweep, store)
     simulation = _loop_example(sweep)
     # Its file may have gone since the table was made.
-    fill_store(store, store.inventory([simulation]).missing, configuration)
+    missing = store.inventory([simulation]).missing
+    announce_cost(sum(expected_cost(one).seconds for one in missing))
+    fill_store(store, missing, configuration)
     result = read_simulation(store.path(simulation), simulation)
     drawn = {
         "hysteresis": hysteresis_figure(fitted.table, fitted),
