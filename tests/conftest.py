@@ -12,6 +12,14 @@ import hypothesis
 import numpy as np
 import pytest
 
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.fields import polar_field
+from crackfront.core.solver.relax import Newton
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.run import compile_solver
+
 # As of the command: Python looks for garbage among what is imported, also as it ends.
 gc.set_threshold(1_000_000)
 atexit.register(gc.freeze)
@@ -21,6 +29,17 @@ SEED = 20240229
 hypothesis.settings.register_profile("local", deadline=None)
 hypothesis.settings.register_profile("reproducible", deadline=None, derandomize=True)
 hypothesis.settings.load_profile("reproducible" if os.environ.get("CI") else "local")
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _kernels_shared_out() -> None:
+    """Of workers side by side, two begin with kernels of either kind: neither compiles both."""
+    match os.environ.get("PYTEST_XDIST_WORKER"):
+        case "gw0":
+            compile_solver(Newton.name)
+        case "gw1":
+            rings = polar_field(np.linspace(0.1, 3.0, 30), np.full(30, WORK_OF_ADHESION))
+            run_cycle(rings, LoadSchedule(0.0, 0.5), Newton(1e-3), Recorder())
 
 
 @pytest.fixture(autouse=True)

@@ -163,7 +163,8 @@ def test_the_force_is_the_gradient_of_the_energy():
 
 def test_places_are_those_of_the_tile_wherever_it_lies():
     values = noisy(4).work_of_adhesion
-    moved, plain = (AdhesionMap(values, 0.5, 0.0, 0.0, corner) for corner in ((-3.25, 7.0), (0, 0)))
+    corners = (-3.25, 7.0), (0.0, 0.0)
+    moved, plain = (AdhesionMap(values, 0.5, 0.0, 0.0, corner) for corner in corners)
     way = there_and_back(30.0, 40.0, 2.5)
     shifted = [Load(load.value - 3.25, load.direction) for load in way]
     found, field = run(moved, 4.0, shifted, Newton(1e-11))
