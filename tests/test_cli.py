@@ -743,8 +743,8 @@ SCAN = TEST.parents[1] / "examples/scans/nanodiamond-detail.al3d"
         (
             "cycle --field {folder}/tile.nc --max-penetration 0.5 --step 0.25 --output "
             "{folder}/cycle.nc",
-            "mpi4py.MPI snakemake matplotlib pydantic pint scipy.stats scipy.signal "
-            "scipy.interpolate numpy.f2py",
+            "mpi4py.MPI snakemake matplotlib pydantic pint yaml asyncio scipy.stats scipy.signal "
+            "scipy.interpolate numpy.f2py xarray.groupers xarray.tutorial xarray.ufuncs",
         ),
     ],
     ids=["help", "law of a front", "law of a sphere", "predict", "cycle"],
