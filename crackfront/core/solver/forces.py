@@ -95,18 +95,21 @@ def locate(field, memory, ray, place, segment, direction):
     return segment, blend(piece, (place - inner) / (outer - inner))
 
 
-@jit
-def place_front(place, field, memory, direction):
-    """Front at the given places and a code: CONVERGED, or the side on which it left the field."""
-    segment = np.empty(place.size, np.int64)
-    product = np.empty(place.size)
+@kernel
+def place_sites(front, field, memory, direction, low, high):
+    """Find the segments and products of some sites of a front.
+
+    Returns CONVERGED, or the side on which one left the field.
+    """
     code = CONVERGED
-    for i in range(place.size):
-        low = segment_below(field, place[i], direction)
-        segment[i], product[i] = locate(field, memory, i, place[i], low, direction)
-        if segment[i] < 0:
-            code = -segment[i]
-    return Front(place, segment, product), code
+    for i in range(low, high):
+        segment = segment_below(field, front.place[i], direction)
+        front.segment[i], front.product[i] = locate(
+            field, memory, i, front.place[i], segment, direction
+        )
+        if front.segment[i] < 0:
+            code = -front.segment[i]
+    return code
 
 
 @kernel(inline="always")
@@ -176,23 +179,16 @@ def resting_place(field, load, direction):
     return lowest if direction < 0 and lowest > sample_place(field, 0) else -np.inf
 
 
-@jit
-def drive_sites(geometry, front, load, direction, lowest, drive):
-    """Fill in the force along the motion; return its largest and least value relative to w_int.
-
-    Sites that rest at the lowest place are driven back without bound, and do not count.
-    """
-    return _oppose(
-        geometry, front, line_force(geometry, front.place), load, direction, lowest, drive
-    )
-
-
 @kernel
-def _oppose(geometry, front, line, load, direction, lowest, drive):
-    """The same with a given force of the line."""
+def drive_sites(geometry, front, line, load, direction, lowest, drive, low, high):
+    """Fill in the force along the motion of some sites, `line` being that of the line.
+
+    Returns its largest and least value relative to w_int. Sites that rest at the lowest place are
+    driven back without bound, and do not count.
+    """
     place, product = front.place, front.product
     most, least = 0.0, 0.0
-    for i in range(drive.size):
+    for i in range(np.uint64(low), np.uint64(high)):
         drive[i] = direction * (product[i] - restoring_force(geometry, place[i], load) - line[i])
         if place[i] <= lowest:
             drive[i] = -np.inf

@@ -13,34 +13,56 @@ Leaving out couplings (windows) or lowering the right-hand side (inexact solves)
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.field.rays import front_products
 from crackfront.core.field.samples import distance_ahead, sample_place
 from crackfront.core.geometry.base import weight
+from crackfront.core.solver.filters import apply_filter, set_filter
 from crackfront.core.solver.forces import (
     BLOCKED,
     CONVERGED,
     LIMIT,
     STILL,
     TURNED,
+    Front,
     drive_sites,
-    hardening,
-    line_force,
-    place_front,
+    place_sites,
     resting_place,
 )
-from crackfront.core.solver.newton import make_newton, newton_step
-from crackfront.core.solver.reference import rosso_krauth
+from crackfront.core.solver.newton import Newton, harden, make_newton, newton_step
+from crackfront.core.solver.team import (
+    Team,
+    another,
+    bounds,
+    greatest,
+    hear,
+    make_team,
+    my_blocks,
+    offer,
+    summed,
+    take,
+    tell,
+    wait,
+)
 from crackfront.core.solver.window import HALF_BAND, LONGEST, make_window, relax_window
 from crackfront.core.units import WORK_OF_ADHESION
+
+Array = NDArray[np.float64]
 
 _CALM = 2e-3
 """Drive, relative to w_int, below which only Newton steps of the whole front are taken."""
 
 _LEVEL = 0.1
 """Windows hold the sites above this share of the largest drive, and relax them to it."""
+
+_LEAST = 0.01
+
+_FEW = 0.1
 
 _MARGIN = 10
 """Sites added on each side of a window."""
@@ -55,46 +77,78 @@ _ROUND_OFF = 1e-9
 """Backward drive, relative to w_int, that round-off may cause."""
 
 
-@jit
-def monotone_newton(place, load, direction, field, memory, tolerance, max_sweeps):
-    """First metastable front in the direction of motion; the front is changed in place.
+class Work(NamedTuple):
+    """What the threads that relax a front share.
 
-    Returns a code, the number of FFT pairs, that of updates of a site, and the largest drive left.
+    Attributes
+    ----------
+    team : Team
+        The first of the threads.
+    front : Front
+        The front.
+    before : (n_site,) array
+        Its places at the last look.
+    drive, line : (n_site,) array
+        Forces along the motion, and of the line.
+    active : (n_site,) bool array
+        Sites that windows hold.
+    newton : Newton
+        Work space of steps of the whole front.
     """
-    if place.size <= 2 * HALF_BAND:
-        return rosso_krauth(place, load, direction, field, memory, tolerance, max_sweeps)
-    code, pairs, updates, residual = _run(
-        place, load, direction, field, memory, tolerance, max_sweeps
-    )
-    if code == BLOCKED:
-        # The field is too steep for the digits of a radius: the reference knows how to stop there.
-        code, sweeps, more, residual = rosso_krauth(
-            place, load, direction, field, memory, tolerance, max_sweeps - pairs
-        )
-        pairs += sweeps
-        updates += more
-    return code, pairs, updates, residual
+
+    team: Team
+    front: Front
+    before: Array
+    drive: Array
+    line: Array
+    active: NDArray[np.bool_]
+    newton: Newton
 
 
 @jit
-def _run(place, load, direction, field, memory, tolerance, max_sweeps):
-    """Alternate between windows around the largest drives and steps of the whole front."""
-    count, geometry = place.size, field.geometry
-    front, code = place_front(place, field, memory, direction)
-    unit = np.zeros(count)
-    unit[0] = 1.0
-    row = line_force(geometry, unit)
-    window, newton = make_window(row), make_newton(count)
-    drive, active = np.empty(count), np.empty(count, np.bool_)
+def make_work(place):
+    """What is shared to relax a front, which is changed in place."""
+    count = place.size
+    return Work(
+        make_team(count),
+        Front(place, np.zeros(count, np.int64), np.zeros(count)),
+        np.zeros(count),
+        np.zeros(count),
+        np.zeros(count),
+        np.zeros(count, np.bool_),
+        make_newton(count),
+    )
+
+
+@jit(nogil=True)
+def relax_together(work, rank, size, load, direction, field, memory, tolerance, max_sweeps):
+    """Alternate between windows around the largest drives and steps of the whole front.
+
+    Every one of `size` threads calls this with its rank, and all return the same.
+    """
+    team = another(work.team, rank, size)
+    front, newton, drive = work.front, work.newton, work.drive
+    count, geometry = drive.size, field.geometry
+    drive[0] = 1.0
+    set_filter(team, newton.transform, newton.line, geometry, 0.0, False)
+    for block in range(*my_blocks(team)):
+        low, high = bounds(team, block, count)
+        tell(team, 0, block, place_sites(front, field, memory, direction, low, high))
+        tell(team, 1, block, -np.min(front.place[low:high]))
+    told = hear(team)
+    code, innermost = int(greatest(team, told, 0)), -greatest(team, told, 1)
+    # The drives are zero but for one, and so the forces of the line are those of one site.
+    apply_filter(team, newton.transform, newton.line, drive, work.line)
+    window = make_window(work.line)
+    wait(team)
     furthest = distance_ahead(field)
-    collective = _line_outweighs_field(field, memory, front, row, load, direction)
     # A backward force within the tolerance counts as equilibrium.
-    slack = tolerance * WORK_OF_ADHESION * weight(geometry, np.min(place))
+    slack = tolerance * WORK_OF_ADHESION * weight(geometry, innermost)
     residual, first_least, pairs, updates = np.inf, 0.0, 0, 0
-    before = np.zeros(count)
+    share, collective, doubted = _LEVEL, False, 0
     lowest = resting_place(field, load, direction)
     while code == CONVERGED:
-        residual, least = drive_sites(geometry, front, load, direction, lowest, drive)
+        residual, least, moved = _look(team, work, geometry, load, direction, lowest)
         if pairs == 0:
             first_least = least
         pairs += 1
@@ -105,9 +159,8 @@ def _run(place, load, direction, field, memory, tolerance, max_sweeps):
             return BLOCKED if excused else TURNED, pairs, updates, residual
         if pairs >= max_sweeps:
             return LIMIT, pairs, updates, residual
-        if np.array_equal(front.place, before):
+        if not moved:
             return STILL, pairs, updates, residual
-        before[:] = front.place
         if count <= LONGEST:
             # Sums over pairs of sites cost no more than transforms.
             code, steps = relax_window(
@@ -116,24 +169,56 @@ def _run(place, load, direction, field, memory, tolerance, max_sweeps):
             )  # fmt: skip
             updates += steps * count
             continue
-        calm = residual <= _CALM
-        n_active = 0 if calm else _mark(geometry, front, drive, _LEVEL * residual, active)
-        if calm or (collective and n_active > 0.3 * count):
+        calm, level = residual <= _CALM, share * residual
+        n_active = 0 if calm else _mark(team, geometry, work, level)
+        share = max(0.5 * share, _LEAST) if n_active < _FEW * count else min(2 * share, _LEVEL)
+        widespread = n_active > 0.3 * count
+        if widespread and pairs >= doubted:
+            # A front that grows far comes to other places; to look costs as much as a step.
+            doubted = 2 * pairs
+            collective = _line_outweighs_field(
+                team, newton, field, memory, front, window, load, direction
+            )
+        if calm or (widespread and collective):
             accuracy = 0.02 if calm else 0.1
             code, used = newton_step(
-                newton, field, memory, front, drive, load, direction, furthest, slack, accuracy
-            )
+                team, newton, field, memory, front, drive, load, direction, furthest, slack,
+                accuracy,
+            )  # fmt: skip
             pairs += used
             updates += count
             if code != BLOCKED:
                 continue
-            _mark(geometry, front, drive, _LEVEL * residual, active)
+            n_active = _mark(team, geometry, work, level)
         code, used = _relax_active(
-            window, field, memory, front, drive, active, load, direction,
-            _LEVEL * residual, furthest, slack,
+            team, work, window, field, memory, load, direction, level, furthest, slack,
+            n_active == count,
         )  # fmt: skip
         updates += used
     return code, pairs, updates, residual
+
+
+@jit
+def _look(team, work, geometry, load, direction, lowest):
+    """Bring the drives up to date.
+
+    Returns the largest and the least relative to w_int, and whether a site moved since the last
+    look.
+    """
+    front, drive, before, newton = work.front, work.drive, work.before, work.newton
+    apply_filter(team, newton.transform, newton.line, front.place, work.line)
+    for block in range(*my_blocks(team)):
+        low, high = bounds(team, block, drive.size)
+        most, least = drive_sites(
+            geometry, front, work.line, load, direction, lowest, drive, low, high
+        )
+        tell(team, 0, block, most)
+        tell(team, 1, block, -least)
+        moved = not np.array_equal(front.place[low:high], before[low:high])
+        tell(team, 2, block, 1.0 if moved else 0.0)
+        before[low:high] = front.place[low:high]
+    told = hear(team)
+    return greatest(team, told, 0), -greatest(team, told, 1), greatest(team, told, 2) > 0.0
 
 
 @jit
@@ -150,63 +235,85 @@ def _is_round_off(place, field, drive, least):
 
 
 @jit
-def _line_outweighs_field(field, memory, front, row, load, direction):
+def _line_outweighs_field(team, newton, field, memory, front, window, load, direction):
     """Whether the coupling that windows leave out is stiffer than the field.
 
     Then large parts of the front move together, and steps of the whole front pay.
     """
     count = front.place.size
-    left_out = row[0]
-    for lag in range(1, HALF_BAND + 1):
-        left_out += 2 * row[lag]
+    left_out = np.sum(window.coupling[LONGEST - HALF_BAND : LONGEST + HALF_BAND + 1])
     reach = abs(sample_place(field, 1) - sample_place(field, 0))
-    total = 0.0
-    for i in range(count):
-        ahead = hardening(
-            field, memory, i, front.place[i], front.product[i], front.segment[i], reach,
-            load, direction,
-        )  # fmt: skip
-        total += max(ahead, 0.0)
-    return total / count < 0.5 * left_out
+    for block in range(*my_blocks(team)):
+        low, high = bounds(team, block, count)
+        newton.step[low:high] = reach
+        harden(newton.ahead, newton.step, field, memory, front, load, direction, low, high)
+        total = 0.0
+        for ahead in newton.ahead[low:high]:
+            total += max(ahead, 0.0)
+        tell(team, 0, block, total)
+    return summed(team, hear(team), 0) / count < 0.5 * left_out
+
+
+@jit
+def _mark(team, geometry, work, level):
+    """Mark the sites with a drive above a level and their neighbours; return their number."""
+    offer(team)
+    for block in range(*my_blocks(team)):
+        low, high = bounds(team, block, work.drive.size)
+        tell(team, 0, block, _mark_sites(geometry, work, level, low, high))
+    return int(summed(team, hear(team), 0))
 
 
 @kernel
-def _mark(geometry, front, drive, level, active):
-    """Mark the sites with a drive above a level and their neighbours; return their number."""
-    count = drive.size
-    until, marked = -1, 0
-    for i in range(count):
+def _mark_sites(geometry, work, level, low, high):
+    """Mark those of some sites that have a drive above a level, or a neighbour of such a site."""
+    place, drive, active, count = work.front.place, work.drive, work.active, work.drive.size
+    marked, until = 0, low
+    for i in range(low, high):
         active[i] = False
-    for i in range(count):
-        if drive[i] > level * weight(geometry, front.place[i]) * WORK_OF_ADHESION:
-            for j in range(max(i - _MARGIN, until + 1), i + _MARGIN + 1):
-                site = j - count if j >= count else j
-                marked += 0 if active[site] else 1
-                active[site] = True
-            until = i + _MARGIN
+    for i in range(low - _MARGIN, high + _MARGIN):
+        site = i + count if i < 0 else i - count if i >= count else i
+        if drive[site] > level * weight(geometry, place[site]) * WORK_OF_ADHESION:
+            start, end = max(i - _MARGIN, until), min(i + _MARGIN + 1, high)
+            for j in range(start, end):
+                active[j] = True
+            marked += max(end - start, 0)
+            until = max(until, end)
     return marked
 
 
 @jit
 def _relax_active(
-    window, field, memory, front, drive, active, b, direction, level, furthest, slack
+    team, work, window, field, memory, b, direction, level, furthest, slack, everywhere
 ):
-    """Relax every run of active sites, in pieces that fit a window; return code and updates."""
-    updates, offset = 0, 0
-    start = np.argmin(active) if not np.all(active) else np.argmin(drive)
+    """Relax every run of active sites, in pieces that fit a window; return code and updates.
+
+    The pieces do not know of one another: threads take them as they come.
+    """
+    drive, active = work.drive, work.active
+    updates, offset, code, passed = 0, 0, CONVERGED, 0
+    start = np.argmin(drive) if everywhere else np.argmin(active)
+    mine = take(team)
     while True:
         offset, length = _next_run(active, start, offset)
         if length == 0:
-            return CONVERGED, updates
-        first = (start + offset) % drive.size
-        code, steps = relax_window(
-            window, field, memory, front, drive, first, length, b, direction,
-            level, furthest, slack, _ROUNDS,
-        )  # fmt: skip
-        updates += steps * length
-        if code != CONVERGED:
-            return code, updates
+            break
+        if passed == mine:
+            first = (start + offset) % drive.size
+            end, steps = relax_window(
+                window, field, memory, work.front, drive, first, length, b, direction,
+                level, furthest, slack, _ROUNDS,
+            )  # fmt: skip
+            code, updates = max(code, end), updates + steps * length
+            mine = take(team)
+        passed += 1
         offset += length
+    own, end = my_blocks(team)
+    for block in range(own, end):
+        tell(team, 0, block, code)
+        tell(team, 1, block, updates if block == own else 0)
+    told = hear(team)
+    return int(greatest(team, told, 0)), int(summed(team, told, 1))
 
 
 @kernel

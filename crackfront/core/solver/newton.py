@@ -5,20 +5,27 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import scipy.fft
 from numpy.typing import NDArray
 
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import mode_stiffness, self_modes
+from crackfront.core.solver.filters import (
+    Filter,
+    Transform,
+    apply_filter,
+    make_filter,
+    make_transform,
+    set_filter,
+)
 from crackfront.core.solver.forces import (
     BLOCKED,
     CONVERGED,
     hardening,
-    line_force,
     locate,
     resting_place,
     touch_samples,
 )
+from crackfront.core.solver.team import bounds, greatest, hear, my_blocks, summed, tell, wait
 
 Array = NDArray[np.float64]
 
@@ -26,78 +33,70 @@ _GROWTH = 8
 """How many times as far as the furthest reach, or as its own force takes it, a site may go."""
 
 
+_LIMIT = 100
+"""Pairs of FFTs after which conjugate gradients are given up."""
+
+
 class Newton(NamedTuple):
-    """Work space of the Newton step, one entry a site.
+    """Work space of the Newton step; arrays have one entry a site.
 
     Attributes
     ----------
-    reach : (n_angle,) array
+    reach : (n_site,) array
         Distance over which the stiffness holds.
-    ahead : (n_angle,) array
+    ahead : (n_site,) array
         Stiffness of the site's own force, negative where the field softens.
-    stiffness : (n_angle,) array
+    stiffness : (n_site,) array
         Stiffness that the step uses.
-    step : (n_angle,) array
-        The step.
-    free : (n_angle,) array
+    step, right : (n_site,) array
+        The step, and the drives that it is to use up.
+    free : (n_site,) array
         1 for a site that may move, 0 for one that is driven backward and held.
-    force : (n_angle,) array
-        What a direction of search changes of the drives.
+    residual, descent, search, along, force : (n_site,) array
+        What is left of the drives, that by the preconditioner, the direction of search, the force
+        of the line along it, and with that of the sites.
+    transform : Transform
+        Work space for modes.
+    line, inverse : Filter
+        Stiffness of the line, and the preconditioner.
     """
 
     reach: Array
     ahead: Array
     stiffness: Array
     step: Array
+    right: Array
     free: Array
+    residual: Array
+    descent: Array
+    search: Array
+    along: Array
     force: Array
+    transform: Transform
+    line: Filter
+    inverse: Filter
 
 
 @jit
 def make_newton(count):
     """Work space for a front of `count` sites."""
+    transform = make_transform(count)
     return Newton(
         np.zeros(count),
-        np.zeros(count),
-        np.zeros(count),
-        np.zeros(count),
-        np.ones(count),
-        np.zeros(count),
+        np.empty(count),
+        np.empty(count),
+        np.empty(count),
+        np.empty(count),
+        np.empty(count),
+        np.empty(count),
+        np.empty(count),
+        np.empty(count),
+        np.empty(count),
+        np.empty(count),
+        transform,
+        make_filter(transform),
+        make_filter(transform),
     )
-
-
-@jit
-def _precondition(vector, inverse):
-    """Vector whose modes are multiplied by an array."""
-    modes = scipy.fft.rfft(vector)
-    _scale_modes(modes.view(np.float64), inverse)
-    return scipy.fft.irfft(modes, vector.size)
-
-
-@kernel
-def _scale_modes(modes, factors):
-    """Multiply modes, given as real and imaginary parts in turn, by factors."""
-    for n in range(factors.size):
-        modes[2 * n] *= factors[n]
-        modes[2 * n + 1] *= factors[n]
-
-
-@kernel
-def _inner_product(one, other):
-    """Sum of products in a fixed order: BLAS would use threads and give their number a say."""
-    sums = (0.0, 0.0, 0.0, 0.0)
-    whole = one.size - one.size % 4
-    for i in range(0, whole, 4):
-        sums = (
-            sums[0] + one[i] * other[i],
-            sums[1] + one[i + 1] * other[i + 1],
-            sums[2] + one[i + 2] * other[i + 2],
-            sums[3] + one[i + 3] * other[i + 3],
-        )
-    total = (sums[0] + sums[1]) + (sums[2] + sums[3])
-    for i in range(whole, one.size):
-        total += one[i] * other[i]
-    return total
 
 
 @kernel
@@ -115,200 +114,253 @@ def _largest(vector):
     return max(max(a, b), max(c, d))
 
 
-@kernel
-def _add(target, factor, other):
-    """Add a multiple of a vector to another."""
-    for i in range(target.size):
-        target[i] += factor * other[i]
+@kernel(fastmath={"contract"})
+def _begin(newton, started, low, high):
+    """Drives that a step leaves, none if it was not started; return the largest."""
+    for i in range(np.uint64(low), np.uint64(high)):
+        force = newton.force[i] + newton.stiffness[i] * newton.step[i] if started else 0.0
+        newton.residual[i] = newton.free[i] * (newton.right[i] - force)
+        newton.search[i] = newton.along[i] = 0.0
+    return _largest(newton.residual[low:high])
 
 
-@kernel
-def _scale_and_add(target, factor, other):
-    """Multiply a vector by a factor, then add another."""
-    for i in range(target.size):
-        target[i] = factor * target[i] + other[i]
+@kernel(fastmath={"contract"})
+def _turn(newton, factor, shift, low, high):
+    """Next direction of search, and the force of the line along it if all sites are free."""
+    residual, descent, free = newton.residual, newton.descent, newton.free
+    along, search = newton.along, newton.search
+    for i in range(np.uint64(low), np.uint64(high)):
+        along[i] = factor * along[i] + residual[i] - shift * descent[i]
+        search[i] = factor * search[i] + free[i] * descent[i]
 
 
-@kernel
-def _multiply(target, factors):
-    """Multiply a vector by another, entry by entry."""
-    for i in range(target.size):
-        target[i] *= factors[i]
+@kernel(fastmath={"reassoc", "nsz", "contract"})
+def _oppose(newton, low, high):
+    """Change of the drives along the direction of search; return its product with that."""
+    force, along, stiffness, search = newton.force, newton.along, newton.stiffness, newton.search
+    total = 0.0
+    for i in range(np.uint64(low), np.uint64(high)):
+        force[i] = along[i] + stiffness[i] * search[i]
+        total += search[i] * force[i]
+    return total
 
 
-@kernel
-def _add_products(target, one, first, second):
-    """Vector plus the products of two others."""
-    for i in range(target.size):
-        target[i] = one[i] + first[i] * second[i]
+@kernel(fastmath={"contract"})
+def _advance(newton, length, low, high):
+    """Go along the direction of search; return the largest drive left."""
+    step, residual, free = newton.step, newton.residual, newton.free
+    search, force = newton.search, newton.force
+    for i in range(np.uint64(low), np.uint64(high)):
+        step[i] += length * search[i]
+        residual[i] -= length * free[i] * force[i]
+    return _largest(residual[low:high])
 
 
 @jit
-def _solve(geometry, newton, right, shift, tolerance, limit):
+def _solve(team, newton, geometry, shift, tolerance, all_free, longest):
     """Conjugate gradients for (K + D) step = right on the free sites, to a tolerance in each.
 
-    Returns the number of FFT pairs and whether it succeeded; it fails where the matrix is not
-    positive definite. With all sites free, K times a direction follows by recurrence from the
-    preconditioner.
+    They start from the step, of which `longest` is the largest entry. Returns the number of FFT
+    pairs and whether it succeeded; it fails where the matrix is not positive definite. With all
+    sites free, K times a direction follows by recurrence from the preconditioner.
     """
-    step, stiffness, free, force = newton.step, newton.stiffness, newton.free, newton.force
-    all_free = np.min(free) > 0.0
-    inverse = np.empty(step.size // 2 + 1)
-    for n in range(inverse.size):
-        inverse[n] = 1.0 / (mode_stiffness(geometry, n) + shift)
-    residual = right.copy()
-    if np.max(step) > 0.0:
-        _add_products(force, line_force(geometry, step), stiffness, step)
-        _add(residual, -1.0, force)
-    _multiply(residual, free)
-    search, along, old = np.zeros(step.size), np.zeros(step.size), 1.0
-    pairs = 0
-    while pairs < limit:
+    count, transform = newton.step.size, newton.transform
+    set_filter(team, transform, newton.inverse, geometry, shift, True)
+    if longest > 0.0:
+        apply_filter(team, transform, newton.line, newton.step, newton.force)
+    for block in range(*my_blocks(team)):
+        low, high = bounds(team, block, count)
+        tell(team, 0, block, _begin(newton, longest > 0.0, low, high))
+    largest, old, pairs = greatest(team, hear(team), 0), 1.0, 0
+    while pairs < _LIMIT:
         pairs += 1
-        if _largest(residual) <= tolerance:
+        if largest <= tolerance:
             return pairs, True
-        descent = _precondition(residual, inverse)
-        new = _inner_product(residual, descent)
-        _scale_and_add(along, new / old, residual)
-        _add(along, -shift, descent)
-        _multiply(descent, free)
-        _scale_and_add(search, new / old, descent)
+        new = apply_filter(team, transform, newton.inverse, newton.residual, newton.descent)
+        for block in range(*my_blocks(team)):
+            _turn(newton, new / old, shift, *bounds(team, block, count))
         if not all_free:
-            along[:] = line_force(geometry, search)
+            wait(team)
+            apply_filter(team, transform, newton.line, newton.search, newton.along)
             pairs += 1
-        _add_products(force, along, stiffness, search)
-        curvature = _inner_product(search, force)
+        for block in range(*my_blocks(team)):
+            tell(team, 0, block, _oppose(newton, *bounds(team, block, count)))
+        curvature = summed(team, hear(team), 0)
         if not curvature > 0.0:
             return pairs, False
-        _add(step, new / curvature, search)
-        _multiply(force, free)
-        _add(residual, -new / curvature, force)
-        old = new
+        for block in range(*my_blocks(team)):
+            tell(team, 0, block, _advance(newton, new / curvature, *bounds(team, block, count)))
+        largest, old = greatest(team, hear(team), 0), new
     return pairs, False
 
 
 @kernel
-def _soften(newton, share, floor):
-    """Stiffness with a share of the softening; none at all means at least the floor."""
+def _soften(newton, share, floor, low, high):
+    """Stiffness with a share of the softening; none at all means at least the floor.
+
+    Returns the sum of what is not negative.
+    """
     total = 0.0
-    for i in range(newton.step.size):
+    for i in range(np.uint64(low), np.uint64(high)):
         ahead = newton.ahead[i]
         newton.stiffness[i] = max(ahead, share * ahead) if share > 0.0 else max(ahead, floor)
         total += max(newton.stiffness[i], 0.0)
-    return total / newton.step.size
+    return total
 
 
 @jit
-def _solve_softest(geometry, newton, right, floor, tolerance, share):
+def _solve_softest(team, newton, geometry, floor, tolerance, share, all_free, longest):
     """Step with as much softening as leaves the matrix positive definite.
 
     Returns FFT pairs, success and the share of the softening that was used.
     """
-    pairs = 0
+    pairs, count = 0, newton.step.size
     while True:
-        mean = _soften(newton, share, floor)
-        used, solved = _solve(geometry, newton, right, mean + floor, tolerance, 100)
+        for block in range(*my_blocks(team)):
+            low, high = bounds(team, block, count)
+            if longest == 0.0:
+                newton.step[low:high] = 0.0
+            tell(team, 0, block, _soften(newton, share, floor, low, high))
+        mean = summed(team, hear(team), 0) / count
+        used, solved = _solve(team, newton, geometry, mean + floor, tolerance, all_free, longest)
         pairs += used
         if solved or share == 0.0:
             return pairs, solved, share
-        newton.step[:] = 0.0
+        longest = 0.0
         share = share / 2 if share > 0.2 else 0.0
 
 
 @jit
-def newton_step(newton, field, memory, front, drive, b, direction, furthest, slack, accuracy):
+def newton_step(team, newton, field, memory, front, drive, b, direction, furthest, slack, accuracy):
     """Move the whole front by one safe step of at most about `furthest`; return code and pairs.
 
     The right-hand side is lowered by the tolerance of the linear solver and the step clipped at
     zero: an inexact step then still leaves every drive forward. Sites driven backward by more than
     `slack` are held. Where a site would pass the lowest place nothing moves, and BLOCKED is told.
     """
-    count, step, reach = drive.size, newton.step, newton.reach
-    largest = np.max(drive)
-    own = mode_stiffness(field.geometry, 1) * self_modes(count)
+    count, step, geometry = drive.size, newton.step, field.geometry
+    for block in range(*my_blocks(team)):
+        low, high = bounds(team, block, count)
+        tell(team, 0, block, np.max(drive[low:high]))
+        tell(team, 1, block, np.max(newton.reach[low:high]))
+        tell(team, 2, block, np.sum(np.maximum(drive[low:high], 0.0)))
+    told = hear(team)
+    largest, longest = greatest(team, told, 0), greatest(team, told, 1)
+    own = mode_stiffness(geometry, 1) * self_modes(count)
     floor = largest / furthest
-    furthest = min(furthest, _GROWTH * max(np.max(reach), largest / own))
-    tolerance = min(accuracy * largest, 0.3 * max(np.mean(np.maximum(drive, 0.0)), 1e-6 * largest))
-    right = np.maximum(drive, 0.0) - tolerance
-    for i in range(count):
-        newton.free[i] = 1.0 if drive[i] >= -slack else 0.0
-        reach[i] = min(max(reach[i], 1e-9 * furthest), furthest)
-    _harden(newton, field, memory, front, b, direction)
-    step[:] = 0.0
-    pairs, share, safe, part = 0, 1.0, False, 1.0
+    furthest = min(furthest, _GROWTH * max(longest, largest / own))
+    tolerance = min(accuracy * largest, 0.3 * max(summed(team, told, 2) / count, 1e-6 * largest))
+    for block in range(*my_blocks(team)):
+        low, high = bounds(team, block, count)
+        tell(team, 0, block, _prepare(newton, drive, tolerance, slack, furthest, low, high))
+        harden(newton.ahead, newton.reach, field, memory, front, b, direction, low, high)
+    all_free = greatest(team, hear(team), 0) == 0.0
+    pairs, share, safe, part, longest = 0, 1.0, False, 1.0, 0.0
     for _ in range(6):
-        used, solved, share = _solve_softest(field.geometry, newton, right, floor, tolerance, share)
+        used, solved, share = _solve_softest(
+            team, newton, geometry, floor, tolerance, share, all_free, longest
+        )
         pairs += used
         if not solved:
             break
-        np.maximum(step, 0.0, step)
+        for block in range(*my_blocks(team)):
+            low, high = bounds(team, block, count)
+            np.maximum(step[low:high], 0.0, step[low:high])
+            tell(team, 0, block, np.max(step[low:high]))
+        longest = greatest(team, hear(team), 0)
         # A part of a safe step is safe.
-        part = min(1.0, furthest / max(np.max(step), 1e-9 * furthest))
-        safe = _holds(newton, field, memory, front, b, direction, part)
+        part = min(1.0, furthest / max(longest, 1e-9 * furthest))
+        for block in range(*my_blocks(team)):
+            low, high = bounds(team, block, count)
+            fails = _fails(newton, field, memory, front, b, direction, part, low, high)
+            tell(team, 0, block, fails)
+        safe = greatest(team, hear(team), 0) == 0.0
         if safe:
             break
-    step *= part
-    if not safe or np.max(step) == 0.0:
-        _own_steps(newton, field, memory, front, drive, b, direction, furthest)
-    return _move(newton, field, memory, front, b, direction), pairs
+    for block in range(*my_blocks(team)):
+        low, high = bounds(team, block, count)
+        step[low:high] *= part
+        if not safe or longest == 0.0:
+            _own_steps(newton, field, memory, front, drive, b, direction, furthest, low, high)
+        tell(team, 0, block, _passes_lowest(newton, field, front, b, direction, low, high))
+    # That of a site is safe only together with the others.
+    if greatest(team, hear(team), 0) > 0.0:
+        return BLOCKED, pairs
+    for block in range(*my_blocks(team)):
+        low, high = bounds(team, block, count)
+        tell(team, 0, block, _move(newton, field, memory, front, direction, low, high))
+    return int(greatest(team, hear(team), 0)), pairs
 
 
 @kernel
-def _harden(newton, field, memory, front, b, direction):
-    """Stiffness ahead of every site over its reach."""
-    place, segment, product, reach = front.place, front.segment, front.product, newton.reach
-    touch_samples(field, memory, front, 0, newton.ahead)
-    for i in range(place.size):
-        newton.ahead[i] = hardening(
+def _prepare(newton, drive, tolerance, slack, furthest, low, high):
+    """Drives to use up, sites that are free, and reaches; return whether a site is held."""
+    held = 0.0
+    for i in range(np.uint64(low), np.uint64(high)):
+        newton.right[i] = max(drive[i], 0.0) - tolerance
+        newton.free[i] = 1.0 if drive[i] >= -slack else 0.0
+        held = max(held, 1.0 - newton.free[i])
+        newton.reach[i] = min(max(newton.reach[i], 1e-9 * furthest), furthest)
+    return held
+
+
+@kernel
+def harden(ahead, reach, field, memory, front, b, direction, low, high):
+    """Fill in the stiffness ahead of sites over their reach."""
+    place, segment, product = front.place, front.segment, front.product
+    touch_samples(field, memory, front, low, ahead[low:high])
+    for i in range(low, high):
+        ahead[i] = hardening(
             field, memory, i, place[i], product[i], segment[i], reach[i], b, direction
         )
 
 
 @kernel
-def _holds(newton, field, memory, front, b, direction, part):
-    """Whether the stiffness holds over part of the step; if not, it is raised for the next."""
+def _fails(newton, field, memory, front, b, direction, part, low, high):
+    """Whether a stiffness does not hold over part of the step; it is raised for the next."""
     place, segment, product = front.place, front.segment, front.product
-    step, reach, ahead, holds = newton.step, newton.reach, newton.ahead, True
-    for i in range(place.size):
+    step, reach, ahead, fails = newton.step, newton.reach, newton.ahead, 0.0
+    for i in range(low, high):
         if part * step[i] > reach[i]:
             reach[i] = part * step[i]
             further = hardening(
                 field, memory, i, place[i], product[i], segment[i], reach[i], b, direction
             )
-            holds = holds and further <= newton.stiffness[i]
+            fails = max(fails, 1.0 if further > newton.stiffness[i] else 0.0)
             ahead[i] = max(ahead[i], further)
-    return holds
+    return fails
 
 
 @kernel
-def _move(newton, field, memory, front, b, direction):
-    """Take the step, or none of it: that of a site is safe only together with the others."""
+def _passes_lowest(newton, field, front, b, direction, low, high):
+    """Whether a site would pass the lowest place."""
+    lowest, passes = resting_place(field, b, direction), 0.0
+    for i in range(low, high):
+        if newton.step[i] > max(front.place[i] - lowest, 0.0):
+            passes = 1.0
+    return passes
+
+
+@kernel
+def _move(newton, field, memory, front, direction, low, high):
+    """Take the step of some sites."""
     place, segment, step = front.place, front.segment, newton.step
-    lowest = resting_place(field, b, direction)
-    for i in range(place.size):
-        if step[i] > max(place[i] - lowest, 0.0):
-            return BLOCKED
-    for i in range(place.size):
+    for i in range(low, high):
         moved = place[i] + direction * step[i]
-        low, value = locate(field, memory, i, moved, segment[i], direction)
-        if low < 0:
-            return -low
-        place[i], segment[i], front.product[i] = moved, low, value
+        below, value = locate(field, memory, i, moved, segment[i], direction)
+        if below < 0:
+            return -below
+        place[i], segment[i], front.product[i] = moved, below, value
         newton.reach[i] = 3 * step[i]
     return CONVERGED
 
 
 @kernel
-def _own_steps(newton, field, memory, front, drive, b, direction, furthest):
+def _own_steps(newton, field, memory, front, drive, b, direction, furthest, low, high):
     """Steps of each site by its own force alone, the others held; always safe."""
-    count = drive.size
-    line = mode_stiffness(field.geometry, 1) * self_modes(count)
-    newton.step[:] = 0.0
-    for i in range(count):
-        if drive[i] > 0.0:
-            reach = min(drive[i] / line, furthest)
-            ahead = hardening(
-                field, memory, i, front.place[i], front.product[i], front.segment[i], reach,
-                b, direction,
-            )  # fmt: skip
-            newton.step[i] = min(drive[i] / (line + max(ahead, 0.0)), reach)
+    line, step = mode_stiffness(field.geometry, 1) * self_modes(drive.size), newton.step
+    for i in range(low, high):
+        step[i] = min(max(drive[i], 0.0) / line, furthest)
+    harden(newton.ahead, step, field, memory, front, b, direction, low, high)
+    for i in range(low, high):
+        step[i] = min(max(drive[i], 0.0) / (line + max(newton.ahead[i], 0.0)), step[i])

@@ -20,8 +20,8 @@ from crackfront.core.field.samples import SampleMemory, evaluate, make_memory
 from crackfront.core.geometry.base import lowest_place
 from crackfront.core.outcome import Direction, Relaxation, Status
 from crackfront.core.solver import forces
-from crackfront.core.solver.monotone import monotone_newton
 from crackfront.core.solver.reference import rosso_krauth
+from crackfront.core.solver.threads import monotone_newton
 
 Array = NDArray[np.float64]
 
