@@ -21,8 +21,8 @@ from crackfront.core.solver.threads import set_threads
 from crackfront.simulate.contact import simulation_field
 from crackfront.sweep.configuration import load_configuration
 
-LOADS = (0.0, 0.05, 0.1)
-"""Penetrations, the first from a circle of 0.97 of its smooth radius."""
+LOADS = (0.0, 0.05)
+"""Penetrations, the first from a circle of 0.9 of its smooth radius."""
 
 
 def main() -> None:
@@ -32,7 +32,7 @@ def main() -> None:
     number = parser.parse_args().threads
     simulation = next(load_configuration(Path("config/fig3c.yaml")).simulations())
     field = simulation_field(simulation)
-    circle = np.full(field.geometry.n_site, 0.97 * jkr.equilibrium_radius(0.0))
+    circle = np.full(field.geometry.n_site, 0.9 * jkr.equilibrium_radius(0.0))
     # The first call compiles.
     _timed(field, circle, 0.0, simulation.solver.tolerance * 1e5)
     click.echo(f"| penetration | FFT pairs | updates / 10^6 | 1 thread s | {number} s | ratio |")
