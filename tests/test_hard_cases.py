@@ -473,4 +473,4 @@ def test_a_scene_from_nanometres_to_metres_gives_the_reduced_result(tmp_path, ra
     assert other.status is one.status is Status.LOST_CONTACT
     assert np.allclose(other.states.penetration, one.states.penetration, rtol=1e-13, atol=1e-15)
     assert np.allclose(other.states.mean_radius, one.states.mean_radius, rtol=0, atol=1e-12)
-    assert np.allclose(other.states.force, one.states.force, rtol=0, atol=1e-11)
+    assert np.allclose(other.states.force, one.states.force, rtol=0, atol=1e-12)
