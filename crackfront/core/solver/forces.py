@@ -143,21 +143,43 @@ def hardening(field, memory, ray, place, product, segment, reach, load, directio
     segment += direction
     while distance < reach and 0 <= segment <= last:
         width = sample_place(field, segment + 1) - sample_place(field, segment)
-        part = min(1.0, (reach - distance) / width)
+        until = min(distance + width, reach)
         piece = peek_piece(field, memory, ray, segment)
         if cubic:
+            part = (until - distance) / width
             first, second, end = hull_until(piece, part, direction)
             third = part * width / 3
             steepest = max(steepest, direction * (product - first) / (distance + third))
             steepest = max(steepest, direction * (product - second) / (distance + 2 * third))
         else:
-            near, far = (piece[0], piece[3]) if direction > 0 else (piece[3], piece[0])
-            end = near + part * (far - near)
-        chord = direction * (product - end) / (distance + part * width)
-        steepest = max(steepest, chord)
+            near, end = (piece[0], piece[3]) if direction > 0 else (piece[3], piece[0])
+            if until == reach:
+                end = near + (until - distance) / width * (end - near)
+        steepest = max(steepest, direction * (product - end) / until)
         distance += width
         segment += direction
     return steepest + restoring
+
+
+@kernel
+def harden(field, memory, front, first, step, part, reach, stiffness, load, direction):
+    """Let reaches grow to part of the steps, and stiffnesses to what holds over them.
+
+    The arrays have one entry for each site from `first` on. Returns whether a stiffness grew.
+    """
+    place, segment, product = front.place, front.segment, front.product
+    grew = False
+    i = first
+    for j in range(step.size):
+        if part * step[j] > reach[j]:
+            reach[j] = part * step[j]
+            ahead = hardening(
+                field, memory, i, place[i], product[i], segment[i], reach[j], load, direction
+            )
+            grew = grew or ahead > stiffness[j]
+            stiffness[j] = max(ahead, stiffness[j])
+        i = i + 1 if i + 1 < place.size else 0
+    return grew
 
 
 @kernel

@@ -31,10 +31,12 @@ from crackfront.core.solver.forces import (
     TURNED,
     Front,
     drive_sites,
+    harden,
     place_sites,
     resting_place,
+    touch_samples,
 )
-from crackfront.core.solver.newton import Newton, harden, make_newton, newton_step
+from crackfront.core.solver.newton import Newton, make_newton, newton_step
 from crackfront.core.solver.team import (
     Team,
     another,
@@ -61,11 +63,13 @@ _LEVEL = 0.1
 """Windows hold the sites above this share of the largest drive, and relax them to it."""
 
 _LEAST = 0.01
+"""Smallest share, to which it falls while windows hold less than :data:`_FEW` of the front."""
 
 _FEW = 0.1
+"""Part of a front that windows are to hold at a look."""
 
-_MARGIN = 10
-"""Sites added on each side of a window."""
+_MARGIN = 13
+"""Sites added on each side of those with a drive; what then touches shares a window."""
 
 _ROUNDS = 12
 """Steps of one window before the whole front is looked at again."""
@@ -163,11 +167,11 @@ def relax_together(work, rank, size, load, direction, field, memory, tolerance, 
             return STILL, pairs, updates, residual
         if count <= LONGEST:
             # Sums over pairs of sites cost no more than transforms.
-            code, steps = relax_window(
+            code, used = relax_window(
                 window, field, memory, front, drive, np.argmin(drive), count, load, direction,
                 _EQUILIBRIUM * tolerance, furthest, slack, _ROUNDS,
             )  # fmt: skip
-            updates += steps * count
+            updates += used
             continue
         calm, level = residual <= _CALM, share * residual
         n_active = 0 if calm else _mark(team, geometry, work, level)
@@ -245,11 +249,16 @@ def _line_outweighs_field(team, newton, field, memory, front, window, load, dire
     reach = abs(sample_place(field, 1) - sample_place(field, 0))
     for block in range(*my_blocks(team)):
         low, high = bounds(team, block, count)
-        newton.step[low:high] = reach
-        harden(newton.ahead, newton.step, field, memory, front, load, direction, low, high)
+        ahead = newton.ahead[low:high]
+        touch_samples(field, memory, front, low, ahead)
+        newton.step[low:high], newton.right[low:high], ahead[:] = reach, 0.0, -np.inf
+        harden(
+            field, memory, front, low, newton.step[low:high], 1.0, newton.right[low:high], ahead,
+            load, direction,
+        )  # fmt: skip
         total = 0.0
-        for ahead in newton.ahead[low:high]:
-            total += max(ahead, 0.0)
+        for stiffness in ahead:
+            total += max(stiffness, 0.0)
         tell(team, 0, block, total)
     return summed(team, hear(team), 0) / count < 0.5 * left_out
 
@@ -300,11 +309,11 @@ def _relax_active(
             break
         if passed == mine:
             first = (start + offset) % drive.size
-            end, steps = relax_window(
+            end, used = relax_window(
                 window, field, memory, work.front, drive, first, length, b, direction,
                 level, furthest, slack, _ROUNDS,
             )  # fmt: skip
-            code, updates = max(code, end), updates + steps * length
+            code, updates = max(code, end), updates + used
             mine = take(team)
         passed += 1
         offset += length

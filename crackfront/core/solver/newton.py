@@ -20,7 +20,7 @@ from crackfront.core.solver.filters import (
 from crackfront.core.solver.forces import (
     BLOCKED,
     CONVERGED,
-    hardening,
+    harden,
     locate,
     resting_place,
     touch_samples,
@@ -252,8 +252,9 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
     tolerance = min(accuracy * largest, 0.3 * max(summed(team, told, 2) / count, 1e-6 * largest))
     for block in range(*my_blocks(team)):
         low, high = bounds(team, block, count)
-        tell(team, 0, block, _prepare(newton, drive, tolerance, slack, furthest, low, high))
-        harden(newton.ahead, newton.reach, field, memory, front, b, direction, low, high)
+        held = _prepare(newton, field, memory, front, drive, tolerance, slack, furthest, low, high)
+        tell(team, 0, block, held)
+        _fails(newton, field, memory, front, b, direction, 1.0, low, high)
     all_free = greatest(team, hear(team), 0) == 0.0
     pairs, share, safe, part, longest = 0, 1.0, False, 1.0, 0.0
     for _ in range(6):
@@ -293,41 +294,27 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
 
 
 @kernel
-def _prepare(newton, drive, tolerance, slack, furthest, low, high):
-    """Drives to use up, sites that are free, and reaches; return whether a site is held."""
+def _prepare(newton, field, memory, front, drive, tolerance, slack, furthest, low, high):
+    """Drives to use up, free sites and steps to look at; return whether a site is held."""
     held = 0.0
+    touch_samples(field, memory, front, low, newton.ahead[low:high])
     for i in range(np.uint64(low), np.uint64(high)):
         newton.right[i] = max(drive[i], 0.0) - tolerance
         newton.free[i] = 1.0 if drive[i] >= -slack else 0.0
         held = max(held, 1.0 - newton.free[i])
-        newton.reach[i] = min(max(newton.reach[i], 1e-9 * furthest), furthest)
+        newton.step[i] = min(max(newton.reach[i], 1e-9 * furthest), furthest)
+        newton.reach[i], newton.ahead[i] = 0.0, -np.inf
     return held
-
-
-@kernel
-def harden(ahead, reach, field, memory, front, b, direction, low, high):
-    """Fill in the stiffness ahead of sites over their reach."""
-    place, segment, product = front.place, front.segment, front.product
-    touch_samples(field, memory, front, low, ahead[low:high])
-    for i in range(low, high):
-        ahead[i] = hardening(
-            field, memory, i, place[i], product[i], segment[i], reach[i], b, direction
-        )
 
 
 @kernel
 def _fails(newton, field, memory, front, b, direction, part, low, high):
     """Whether a stiffness does not hold over part of the step; it is raised for the next."""
-    place, segment, product = front.place, front.segment, front.product
-    step, reach, ahead, fails = newton.step, newton.reach, newton.ahead, 0.0
-    for i in range(low, high):
-        if part * step[i] > reach[i]:
-            reach[i] = part * step[i]
-            further = hardening(
-                field, memory, i, place[i], product[i], segment[i], reach[i], b, direction
-            )
-            fails = max(fails, 1.0 if further > newton.stiffness[i] else 0.0)
-            ahead[i] = max(ahead[i], further)
+    ahead, fails = newton.ahead, 0.0
+    step, reach = newton.step[low:high], newton.reach[low:high]
+    if harden(field, memory, front, low, step, part, reach, ahead[low:high], b, direction):
+        for i in range(np.uint64(low), np.uint64(high)):
+            fails = max(fails, 1.0 if ahead[i] > newton.stiffness[i] else 0.0)
     return fails
 
 
@@ -361,6 +348,7 @@ def _own_steps(newton, field, memory, front, drive, b, direction, furthest, low,
     line, step = mode_stiffness(field.geometry, 1) * self_modes(drive.size), newton.step
     for i in range(low, high):
         step[i] = min(max(drive[i], 0.0) / line, furthest)
-    harden(newton.ahead, step, field, memory, front, b, direction, low, high)
+        newton.reach[i], newton.ahead[i] = 0.0, -np.inf
+    _fails(newton, field, memory, front, b, direction, 1.0, low, high)
     for i in range(low, high):
         step[i] = min(max(drive[i], 0.0) / (line + max(newton.ahead[i], 0.0)), step[i])

@@ -15,7 +15,7 @@ from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import restoring_force, weight
 from crackfront.core.solver.forces import (
     CONVERGED,
-    hardening,
+    harden,
     locate,
     resting_place,
     touch_samples,
@@ -29,6 +29,9 @@ HALF_BAND = 7
 
 LONGEST = 256
 """Largest number of sites relaxed at once."""
+
+_MARGIN = 8
+"""Sites on each side of those with a drive that a step moves, too."""
 
 _DOMINANCE = 0.02
 """By how much a pivot exceeds its row, relative to the stiffness of the line against one site."""
@@ -78,45 +81,70 @@ def make_window(row):
     )
 
 
+@kernel(inline="always")
+def _behind(row):
+    """A row of the pivot as that of the next site sees it: its coupling first, its drive last."""
+    return (row[1], row[2], row[3], row[4], row[5], row[6], row[7], 0.0, row[8])
+
+
+@kernel(fastmath={"contract", "nnan", "nsz"})
+def _less(row, pivot, inverse):
+    """A row less that part of the pivot's which takes the site of the pivot out of it."""
+    part = pivot[0] * inverse
+    return (
+        row[0] - part * pivot[0],
+        row[1] - part * pivot[1],
+        row[2] - part * pivot[2],
+        row[3] - part * pivot[3],
+        row[4] - part * pivot[4],
+        row[5] - part * pivot[5],
+        row[6] - part * pivot[6],
+        row[7] - part * pivot[7],
+        row[8] - part * pivot[8],
+    )
+
+
 @kernel(fastmath={"contract"})
 def _solve_banded(window, count):
     """Step of (K + D) step = drive with K cut to a band, by Gaussian elimination, clipped at 0.
 
     D is raised where its softening would make a pivot no larger than the rest of its row. A site
-    whose step is given has a stiffness against which all others vanish in round-off.
+    whose step is given has a stiffness against which all others vanish in round-off. The rows
+    behind the pivot go by names, so that they stay in registers.
     """
     band, step, drive, stiffness = window.band, window.step, window.drive, window.stiffness
-    row = window.coupling[LONGEST : LONGEST + HALF_BAND + 1]
-    least, given = _DOMINANCE * row[0], 1e15 * row[0]
+    k = window.coupling[LONGEST : LONGEST + HALF_BAND + 1]
+    least, given = _DOMINANCE * k[0], 1e15 * k[0]
+    fresh = (k[0], k[1], k[2], k[3], k[4], k[5], k[6], k[7], 0.0)
+    row = second = third = fourth = fifth = sixth = seventh = fresh
     for i in range(count):
-        step[i] = max(drive[i], 0.0)
-        for lag in range(HALF_BAND + 1):
-            band[i, lag] = row[lag]
-        band[i, 0] += stiffness[i]
+        pivot, c1, c2, c3, c4, c5, c6, c7, right = row
+        pivot += stiffness[i]
+        right += max(drive[i], 0.0)
         if window.given[i] >= 0.0:
-            step[i] = given * window.given[i]
-            band[i, 0] = given
-    for i in range(count):
-        rest = least
-        for lag in range(1, HALF_BAND + 1):
-            rest -= band[i, lag]
-        if band[i, 0] < rest:
-            stiffness[i] += rest - band[i, 0]
-            band[i, 0] = rest
-        inverse = 1.0 / band[i, 0]
-        for lag in range(1, HALF_BAND + 1):
-            factor = band[i, lag] * inverse
-            step[i + lag] -= factor * step[i]
-            for other in range(lag, HALF_BAND + 1):
-                band[i + lag, other - lag] -= factor * band[i, other]
-        band[i, 0] = inverse
-    step[count : count + HALF_BAND] = 0.0
+            right, pivot = given * window.given[i], given
+        rest = least - (c1 + c2) - (c3 + c4) - (c5 + c6) - c7
+        if pivot < rest:
+            stiffness[i] += rest - pivot
+            pivot = rest
+        inverse, step[i] = 1.0 / pivot, right
+        band[i, 0], band[i, 1], band[i, 2], band[i, 3] = inverse, c1, c2, c3
+        band[i, 4], band[i, 5], band[i, 6], band[i, 7] = c4, c5, c6, c7
+        seen = _behind((pivot, c1, c2, c3, c4, c5, c6, c7, right))
+        row, seen = _less(second, seen, inverse), _behind(seen)
+        second, seen = _less(third, seen, inverse), _behind(seen)
+        third, seen = _less(fourth, seen, inverse), _behind(seen)
+        fourth, seen = _less(fifth, seen, inverse), _behind(seen)
+        fifth, seen = _less(sixth, seen, inverse), _behind(seen)
+        sixth, seen = _less(seventh, seen, inverse), _behind(seen)
+        seventh = _less(fresh, seen, inverse)
+    s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
     for i in range(count - 1, -1, -1):
-        value = step[i]
         # The nearest site last: its step is known last.
-        for lag in range(HALF_BAND, 0, -1):
-            value -= band[i, lag] * step[i + lag]
+        far = band[i, 7] * s7 + band[i, 6] * s6 + band[i, 5] * s5 + band[i, 4] * s4
+        value = step[i] - far - band[i, 3] * s3 - band[i, 2] * s2 - band[i, 1] * s1
         step[i] = window.given[i] if window.given[i] >= 0.0 else max(value * band[i, 0], 0.0)
+        s1, s2, s3, s4, s5, s6, s7 = step[i], s1, s2, s3, s4, s5, s6
 
 
 @kernel
@@ -126,29 +154,16 @@ def _choose_step(window, field, memory, front, first, count, b, direction, furth
     Sites that would go beyond the reach of their stiffness get it anew for the longer way. It can
     only grow, so that the second step is shorter everywhere and needs no third.
     """
-    place, segment, product = front.place, front.segment, front.product
-    reach, stiffness, step = window.reach, window.stiffness, window.step
-    i = first
+    reach, stiffness, step = window.reach[:count], window.stiffness[:count], window.step[:count]
     for j in range(count):
-        stiffness[j] = hardening(
-            field, memory, i, place[i], product[i], segment[i], reach[j], b, direction
-        )
-        i = i + 1 if i + 1 < place.size else 0
+        # A stiffness for a way that is much too long is much too large.
+        step[j] = min(max(reach[j], 1e-9 * furthest), furthest)
+        reach[j], stiffness[j] = 0.0, -np.inf
+    harden(field, memory, front, first, step, 1.0, reach, stiffness, b, direction)
     _solve_banded(window, count)
     # A part of a safe step is safe.
-    part = min(1.0, furthest / np.max(step[:count]))
-    short = False
-    i = first
-    for j in range(count):
-        if part * step[j] > reach[j]:
-            reach[j] = part * step[j]
-            ahead = hardening(
-                field, memory, i, place[i], product[i], segment[i], reach[j], b, direction
-            )
-            short = short or ahead > stiffness[j]
-            stiffness[j] = max(ahead, stiffness[j])
-        i = i + 1 if i + 1 < place.size else 0
-    if short:
+    part = min(1.0, furthest / np.max(step))
+    if harden(field, memory, front, first, step, part, reach, stiffness, b, direction):
         _solve_banded(window, count)
     if lowest > -np.inf:
         _stop_at_lowest(window, front, first, count, lowest, part)
@@ -172,6 +187,18 @@ def _stop_at_lowest(window, front, first, count, lowest, part):
         _solve_banded(window, count)
 
 
+@kernel(fastmath={"contract"})
+def _couple(drive, coupling, step, count):
+    """Take from the drives what the line puts up against the steps, four of them at a time."""
+    step[count : count + 3] = 0.0
+    for j in range(0, count, 4):
+        first, second, third, fourth = step[j], step[j + 1], step[j + 2], step[j + 3]
+        row = coupling[LONGEST - j - 3 : LONGEST - j + count]
+        for other in range(np.uint64(count)):
+            near = first * row[other + np.uint64(3)] + second * row[other + np.uint64(2)]
+            drive[other] -= near + (third * row[other + np.uint64(1)] + fourth * row[other])
+
+
 @kernel
 def _move(window, field, memory, front, first, count, b, direction, lowest):
     """Take the step and bring the drive within the window up to date."""
@@ -190,11 +217,30 @@ def _move(window, field, memory, front, first, count, b, direction, lowest):
         drive[j] = -np.inf if resting else drive[j] + direction * (value - product[i] - rise)
         place[i], segment[i], product[i] = moved, low, value
         i = i + 1 if i + 1 < place.size else 0
-    for j in range(count):
-        row = coupling[LONGEST - j : LONGEST - j + count]
-        for other in range(count):
-            drive[other] -= row[other] * step[j]
+    _couple(drive, coupling, step, count)
     return CONVERGED
+
+
+@kernel
+def _trim(window, field, front, first, count, level, slack):
+    """Leave only the sites with a drive above a level and their neighbours in the window.
+
+    Returns the first and the number of them, which is 0 if there are none.
+    """
+    place, drive, reach = front.place, window.drive, window.reach
+    low, high = count, 0
+    i = first
+    for j in range(count):
+        if drive[j] > level * weight(field.geometry, place[i]) * WORK_OF_ADHESION:
+            low, high = min(low, j), j + 1
+        i = i + 1 if i + 1 < place.size else 0
+    if high == 0:
+        return first, 0
+    low, high = max(low - _MARGIN, 0), min(high + _MARGIN, count)
+    for j in range(low, high):
+        drive[j - low], reach[j - low] = drive[j], reach[j]
+        window.given[j - low] = 0.0 if drive[j] < -slack else -1.0
+    return (first + low) % place.size, high - low
 
 
 @kernel
@@ -205,37 +251,25 @@ def relax_window(
 
     At most `rounds` steps of at most `furthest` are taken; `drive` is that of the whole front.
     Sites driven backward by more than `slack` are held, also those that rest at the lowest place.
-    Returns a code and the number of steps.
+    Returns a code and the number of updates of a site.
     """
-    place, local, reach, step = front.place, window.drive, window.reach, window.step
+    local, reach, step = window.drive, window.reach, window.step
     own, lowest = window.coupling[LONGEST], resting_place(field, b, direction)
     touch_samples(field, memory, front, first, step[:count])
-    i = first
     for j in range(count):
-        local[j] = drive[i]
-        i = i + 1 if i + 1 < place.size else 0
+        local[j] = drive[(first + j) % drive.size]
         reach[j] = 4 * max(local[j], 0.0) / own
-    steps = 0
-    while steps < rounds:
-        far, calm = 0.0, True
-        i = first
-        for j in range(count):
-            bound = level * weight(field.geometry, place[i]) * WORK_OF_ADHESION
-            calm = calm and local[j] <= bound
-            far = max(far, reach[j])
-            window.given[j] = 0.0 if local[j] < -slack else -1.0
-            i = i + 1 if i + 1 < place.size else 0
-        if calm:
+    updates = 0
+    for _ in range(rounds):
+        first, count = _trim(window, field, front, first, count, level, slack)
+        if count == 0:
             break
-        # A stiffness for a way that is much too long is much too large.
-        far = min(_GROWTH * far, furthest)
-        for j in range(count):
-            reach[j] = min(max(reach[j], 1e-9 * far), far)
+        far = min(_GROWTH * np.max(reach[:count]), furthest)
         _choose_step(window, field, memory, front, first, count, b, direction, far, lowest)
-        steps += 1
+        updates += count
         code = _move(window, field, memory, front, first, count, b, direction, lowest)
         if code != CONVERGED:
-            return code, steps
+            return code, updates
         for j in range(count):
             reach[j] = 3 * step[j]
-    return CONVERGED, steps
+    return CONVERGED, updates
