@@ -68,6 +68,9 @@ _LEAST = 0.01
 _FEW = 0.1
 """Part of a front that windows are to hold at a look."""
 
+_DOUBT = 200
+"""Pairs of FFTs after which it is asked anew whether the line outweighs the field."""
+
 _MARGIN = 13
 """Sites added on each side of those with a drive; what then touches shares a window."""
 
@@ -179,7 +182,7 @@ def relax_together(work, rank, size, load, direction, field, memory, tolerance, 
         widespread = n_active > 0.3 * count
         if widespread and pairs >= doubted:
             # A front that grows far comes to other places; to look costs as much as a step.
-            doubted = 2 * pairs
+            doubted = pairs + _DOUBT
             collective = _line_outweighs_field(
                 team, newton, field, memory, front, window, load, direction
             )
