@@ -1,9 +1,9 @@
 """Measure the law behind k on straight fronts, fit it, and hold spheres against it.
 
 make SWEEP=config/line.yaml; make SWEEP=config/line-chemical.yaml; make SWEEP=config/line-weak.yaml
-make; make SWEEP=config/strong.yaml
+make SWEEP=config/spheres.yaml
 python -m benchmarks.law fit config/line.yaml config/line-chemical.yaml config/line-weak.yaml
-python -m benchmarks.law spheres config/default.yaml config/strong.yaml
+python -m benchmarks.law spheres config/spheres.yaml
 python -m benchmarks.law spheres --table docs/reference/spheres.csv
 python -m benchmarks.law held-out
 python -m benchmarks.law figure --table docs/reference/{spheres,held-out}.csv --output docs/figures
