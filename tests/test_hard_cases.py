@@ -448,7 +448,7 @@ def test_zero_adhesion_at_places_is_physical_and_is_accepted(solver):
 @pytest.mark.parametrize("radius", [1e-9, 1e-6, 1e-3, 1.0])
 def test_a_scene_from_nanometres_to_metres_gives_the_reduced_result(tmp_path, radius):
     reduced = yaml.safe_load(Path(__file__).parents[1].joinpath("config/test.yaml").read_text())
-    reduced["numerics"] |= {"tolerance": 1e-10}
+    reduced["numerics"] |= {"tolerance": 1e-12}
     # Adhesion and modulus that leave the contact smaller than the sphere at every size.
     scales = Scales(radius, 0.05, 1e9 * (1e-9 / radius) ** 0.5)
     metres = reduced | {
