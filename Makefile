@@ -84,6 +84,7 @@ ifeq ($(MPI),wheel)
 	@$(IN_ENV) mpiexec -n 2 .venv/bin/python -c 'from mpi4py import MPI; assert MPI.COMM_WORLD.size == 2' || { \
 	  echo "mpiexec and mpi4py in .venv do not belong together; run 'make clean env'" >&2; exit 1; }
 endif
+	@$(IN_ENV) .venv/bin/crackfront compile
 	@touch $@
 	@echo "Environment: .venv ($$(.venv/bin/python -V), MPI=$(MPI))"
 

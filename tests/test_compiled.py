@@ -1,4 +1,6 @@
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -135,3 +137,20 @@ def test_a_compiled_division_by_zero_is_infinite():
     divide = compiled.jit(cache=False)(lambda a, b: a / b)
     assert divide(1.0, 0.0) == np.inf
     assert np.isnan(divide(0.0, 0.0))
+
+
+def test_what_is_compiled_ahead_is_all_that_simulations_call():
+    program = """
+from pathlib import Path
+from crackfront.core.solver.monotone import relax_together
+from crackfront.simulate.run import compile_solver, run_simulation
+from crackfront.sweep.configuration import load_configuration
+
+for line in False, True:
+    compile_solver("newton", line)
+assert len(relax_together.signatures) == 2
+for name in "test", "line-test":
+    run_simulation(next(iter(load_configuration(Path(f"config/{name}.yaml")).simulations())))
+assert len(relax_together.signatures) == 2
+"""
+    subprocess.run([sys.executable, "-c", program], cwd=PACKAGE.parent, check=True)

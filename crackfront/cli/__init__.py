@@ -12,6 +12,7 @@ import click
 from click.shell_completion import get_completion_class
 
 from crackfront.cli.accuracy import accuracy, accuracy_report
+from crackfront.cli.compilation import compile_solvers
 from crackfront.cli.cycle import cycle
 from crackfront.cli.figure import check_figures, draw_figure, figure, gallery
 from crackfront.cli.integrity import compare, verify
@@ -137,7 +138,7 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Figures of the paper": (figure, draw_figure, check_figures, gallery),
     "Stored results": (verify, compare),
     "Numerical errors, validation": (accuracy, accuracy_report, validate),
-    "The shell": (completion,),
+    "The machine": (compile_solvers, completion),
 }
 """All commands, by what they are for."""
 

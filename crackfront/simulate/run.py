@@ -18,7 +18,9 @@ from crackfront.core.cycle.record import Checkpoint, CycleRecord, Observer, Reco
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import run_steady
+from crackfront.core.geometry.line import line_field
 from crackfront.core.solver.relax import SOLVERS
+from crackfront.core.solver.window import HALF_BAND
 from crackfront.simulate.contact import contact_field, simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import Simulation
 
@@ -64,7 +66,7 @@ def run_simulation(
     ValueError
         If the realised surface does not allow full conformity, e_el >= w_int.
     """
-    compile_solver(simulation.solver.name)
+    compile_solver(simulation.solver.name, isinstance(simulation.schedule, LineSchedule))
     before = (0.0, 0.0) if resume is None else (resume.seconds, resume.cpu_seconds)
     wall, cpu = time.perf_counter() - before[0], time.process_time() - before[1]
 
@@ -112,11 +114,20 @@ def run_simulation(
 
 
 @functools.cache
-def compile_solver(name: str) -> None:
-    """Compile what a simulation calls, or load it, once a process, on a tiny smooth contact."""
-    smooth = chemical_adhesion(np.zeros((4, 4)), pixel=1.0)
-    field = contact_field(smooth, n_angle=8, spacing=0.1, max_penetration=0.0)
-    run_cycle(field, LoadSchedule(0.0, 0.5), SOLVERS[name](1e-3), Recorder(energy=True))
+def compile_solver(name: str, line: bool = False) -> None:
+    """Compile what a simulation calls, or load it, once a process, on a tiny smooth tile.
+
+    The front is longer than those that are left to the reference.
+    """
+    smooth, n_site = chemical_adhesion(np.zeros((4, 4)), pixel=1.0), 4 * HALF_BAND
+    solver, recorder = SOLVERS[name](1e-3), Recorder(energy=True)
+    if line:
+        field = line_field(smooth, spring=1.0, loads=(0.0, 2.0), n_site=n_site)
+        schedule = LineSchedule(spring=1.0, length=4.0, period=1.0, lead_in=1.0, step=1.0)
+        run_period(field, schedule, elastic_energy=0.0, solver=solver, recorder=recorder)
+        return
+    field = contact_field(smooth, n_angle=n_site, spacing=0.1, max_penetration=0.0)
+    run_cycle(field, LoadSchedule(0.0, 0.5), solver, recorder)
 
 
 def _peak_memory() -> float:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from crackfront.core.cycle.period import LineSchedule
 from crackfront.data.files import leftover_parts, write_text
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
@@ -65,8 +66,9 @@ def fill(
     write_text(store.configuration, origin.configuration, sealed=True)
     longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
     tasks = [_Task(one, store, origin, checkpoint_seconds) for one in longest_first]
-    for solver in {item.solver.name for item in simulations}:
-        compile_solver(solver)
+    kinds = {(item.solver.name, isinstance(item.schedule, LineSchedule)) for item in simulations}
+    for solver, line in kinds:
+        compile_solver(solver, line)
     for task, finished in parallel.run_tasks(_run_task, tasks):
         yield task.simulation, finished
         if finished.status in (STOPPED, NOT_STORED):
