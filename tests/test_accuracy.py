@@ -307,11 +307,12 @@ def test_the_laws_of_the_package_are_those_that_the_study_gives():
         if (law.shape, law.elastic_energy) == ("h08", 0.0025)
     }
     scene = SCENES["h08-0.0025"]
-    study = scene_errors(scene, scene.single_settings, range(8))
+    study = scene_errors(scene, scene.single_settings, range(24))
     for law in fit_laws([study]):
         before = stored[law.knob, law.direction]
         assert law.bias == pytest.approx(before.bias, abs=0.02)
         assert law.scatter == pytest.approx(before.scatter, abs=0.02)
+        assert law.avalanche == pytest.approx(before.avalanche, abs=0.001)
 
 
 @pytest.fixture(scope="module")

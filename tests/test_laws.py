@@ -59,7 +59,9 @@ def test_the_chosen_knobs_state_no_more_than_the_error_that_was_asked_for(scene,
 def test_the_chosen_knobs_are_not_much_finer_than_the_error_needs():
     for scene in SCENES.values():
         if scene.elastic_energy >= 0.04 and scene.single_knobs:
-            assert max(stated(scene, chosen(scene, 0.01))) > 0.004
+            # Where avalanches are rare, scatter is kept below the error by up to three.
+            share = 0.65 if scene.elastic_energy == 0.16 else 0.35
+            assert max(stated(scene, chosen(scene, 0.03))) > share * 0.03
 
 
 @given(scene=scenes)
@@ -170,20 +172,27 @@ def test_few_cutoffs_along_the_front_ask_for_finer_numerics():
     assert few.angles_per_cutoff > many.angles_per_cutoff
 
 
-def test_half_of_the_asked_error_is_enough_for_avalanches_of_any_size():
+def test_a_third_of_the_asked_error_is_enough_for_avalanches_of_any_size():
     rng = np.random.default_rng(7)
     for size in (0.3, 1.0, 3.0, 4.3, 6.0, 30.0):
-        # Avalanches of one size, up or down, as rare as an rms of 0.5 asks for.
-        up, down = rng.poisson((0.5 / size) ** 2 / 2, size=(2, 20000, 8))
+        # Avalanches of one size, up or down, as rare as an rms of 1 / 3 asks for.
+        up, down = rng.poisson((1 / 3 / size) ** 2 / 2, size=(2, 20000, 8))
         rms = np.sqrt(np.mean((size * (up - down)) ** 2, axis=1))
-        assert np.mean(rms > 1.5) < 1 / 9
+        assert np.mean(rms > 1.5) < 0.055
 
 
-@given(scene=scenes, error=st.sampled_from([0.1, 0.03, 0.003]))
-def test_scatter_stays_below_the_asked_error_by_two_at_most(scene, error):
+@pytest.mark.parametrize("size", [2e3, 4e3, 1e5])
+def test_eight_surfaces_stay_within_the_bound_by_three_standard_deviations(size):
+    scene, error = SCENES["flat-0.04"], 0.03
     place = laws._place(scene.kind, scene.spectrum, scene.elastic_energy, straight=False)
-    rarity = [laws._rarity(error, place, size) for size in (1e3, 4e3, 1e6)]
-    assert 1.0 == rarity[2] <= rarity[1] <= rarity[0] <= 2.0
+    rarity = laws._rarity(error, place, size)
+    assert 1 < rarity < 3
+    square = (error / rarity) ** 2
+    largest = next(
+        law.avalanche for law in read_laws() if law.shape == "flat" and law.elastic_energy == 0.04
+    )
+    variance = square * ((largest * LAW_SIZE / size) ** 2 + 2 * square) / 8
+    assert square + 3 * math.sqrt(variance) == pytest.approx((1.5 * error) ** 2)
 
 
 def test_a_straight_front_asks_for_the_same_in_all_units():

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _LEAST = 3e-4
-"""Errors of k below this count as this: nobody asks for less, and they would bend the laws."""
+"""Errors of k below this count as this: nobody asks for less."""
 
 _FEW = 0.1
 """Scatter of k up to which the size of avalanches is measured; above, surfaces have many."""
@@ -125,9 +125,11 @@ def _laws(study: SceneErrors, knob: Knob, avalanche: float) -> Iterator[Law]:
 def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
     """Line of logarithms, at least as steep as a given slope, by the likelihood of a variance.
 
-    That of a gamma distribution about the line, of a spread that is the same everywhere.
+    That of a gamma distribution about the line, of a spread that is the same everywhere. Values
+    stand from the coarsest to the finest; the last that counts is the first that is too small.
     """
-    square = np.maximum(values, _LEAST) ** 2
+    counted = 1 + np.argmax(np.append(values[:-1] < _LEAST, True))
+    x, square = x[:counted], np.maximum(values[:counted], _LEAST) ** 2
 
     def start(slope: float) -> float:
         return float(np.log(np.mean(square * np.exp(-2 * slope * x))) / 2)

@@ -22,7 +22,7 @@ Progress = Callable[[str], None]
 ASKED = (0.1, 0.03, 0.02, 0.01, 0.003)
 """Errors of k for which the laws choose numerics that are then tried."""
 
-HELD_OUT = 1000
+HELD_OUT = 2000
 """Number of the first surface to which no law was fitted."""
 
 _SEED = 20241121
