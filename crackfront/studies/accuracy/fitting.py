@@ -87,7 +87,8 @@ def _avalanche(study: SceneErrors) -> float:
     deviations = deviations - deviations.mean(axis=1, keepdims=True)
     few = np.mean(deviations**2, axis=1, keepdims=True) < _FEW**2
     kept = np.where(few, deviations, 0.0)
-    return float(np.sqrt(np.sum(kept**4) / np.sum(kept**2)))
+    total = float(np.sum(kept**2))
+    return float(np.sqrt(np.sum(kept**4) / total)) if total > 0 else 0.0
 
 
 def _knob_errors(study: SceneErrors, knob: Knob) -> tuple[Array, Array]:
@@ -126,9 +127,9 @@ def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float
     """Line of logarithms, at least as steep as a given slope, by the likelihood of a variance.
 
     That of a gamma distribution about the line, of a spread that is the same everywhere. Values
-    stand from the coarsest to the finest; the last that counts is the first that is too small.
+    stand from the coarsest to the finest; of those too small at its end the first counts.
     """
-    counted = 1 + np.argmax(np.append(values[:-1] < _LEAST, True))
+    counted = 2 + np.max(np.flatnonzero(values >= _LEAST), initial=0)
     x, square = x[:counted], np.maximum(values[:counted], _LEAST) ** 2
 
     def start(slope: float) -> float:
@@ -168,7 +169,10 @@ def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
         panels[-1].legend(
             handles, labels, loc="center left", title=r"$e_\mathrm{el}/w_\mathrm{int}$"
         )
-        explain(figure, "lines: the fitted laws; broken line: an error of 0.01 of k")
+        explain(
+            figure,
+            "lines: the fitted laws, of a scatter for both branches; broken line: an error of 0.01",
+        )
         return figure
 
 
