@@ -164,11 +164,11 @@ class _Place:
 def _place(kind: FieldKind, spectrum: Spectrum, elastic_energy: float, straight: bool) -> _Place:
     """Shapes with the next correlation lengths, and amplitudes with as early an onset.
 
-    Of a shape counts the correlation length of w_loc, in short cutoffs. The disorder from which on
-    avalanches occur is that where the Larkin length is that of the contact, so that a shorter
-    cutoff lowers it in proportion, as yet to a factor of 2. Below it the error is that of the
-    worst amplitude up to it that may be meant, on a front of as many Larkin lengths. A straight
-    front has no radius, and counts as one of the cutoff of the laws.
+    Of a shape counts the correlation length of w_loc, in short cutoffs. Avalanches begin where the
+    Larkin length falls below the size of the contact, at a disorder that falls with the cutoff and
+    is known to a factor of 2. Below it the largest error counts of the amplitudes up to that with
+    as many Larkin lengths at the cutoff of the laws, and as few are independent. A straight front
+    has no radius, and counts as one of that cutoff.
     """
     shapes = (_NARROW[kind], "h03", "h08")
     measured = [_relative_correlation_length(*MEASURED[shape]) for shape in shapes]
