@@ -10,9 +10,9 @@ the number of its states. Each knob has a law of its own,
 
 where x is the number of sites per short cutoff (the front is smooth, so that the error falls
 exponentially), or the logarithm of samples, pixels or tolerance. Between measured shapes and
-amplitudes errors are interpolated (:func:`_place`). Scatters of different knobs are added in
-quadrature, biases as they are where they have one sign: too few samples make the hysteresis too
-small, all else makes it too large.
+amplitudes errors are interpolated. Scatters of different knobs are added in quadrature, biases as
+they are where they have one sign: too few samples make the hysteresis too small, all else makes it
+too large.
 """
 
 from __future__ import annotations

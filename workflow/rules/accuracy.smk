@@ -38,7 +38,8 @@ rule accuracy_study:
         # At weak disorder few surfaces have an avalanche, on which the laws depend.
         surfaces=lambda wildcards: (
             24
-            if wildcards.study == "knobs" and wildcards.scene.endswith(("-0.0025", "-0.01"))
+            if wildcards.study == "knobs"
+            and wildcards.scene.endswith(("-0.0025", "-0.01"))
             else 8
         ),
     shell:
@@ -54,7 +55,11 @@ rule accuracy_report:
             results=ACCURACY,
             scene=[*MEASURED, "small-0.04", "large-0.04"],
         ),
-        expand("{results}/unseen-{scene}.nc", results=ACCURACY, scene=[*MEASURED, *UNSEEN]),
+        expand(
+            "{results}/unseen-{scene}.nc",
+            results=ACCURACY,
+            scene=[*MEASURED, "small-0.04", "large-0.04", *UNSEEN],
+        ),
         expand("{results}/coverage-{scene}.nc", results=ACCURACY, scene=COVERED),
         f"{ACCURACY}/averages-flat-0.04.nc",
     output:
