@@ -297,12 +297,14 @@ def combined_error(
 
     Parameters
     ----------
-    kind, spectrum, elastic_energy, straight
+    kind, spectrum, elastic_energy
         As of :func:`chosen_knobs`.
     values : mapping
         Values of the knobs; of interpolations the one that is used.
     size : float
         Number of states times circumference of the front over the short cutoff.
+    straight : bool, optional
+        As of :func:`chosen_knobs`.
     """
     place = _place(kind, spectrum, elastic_energy, straight)
     parts = {knob: _parts(place, knob, value) for knob, value in values.items()}
