@@ -34,7 +34,7 @@ from crackfront.studies.accuracy.files import (
     records_dataset,
 )
 from crackfront.studies.accuracy.fitting import fit_laws, laws_text
-from crackfront.studies.accuracy.scenes import SCENES, with_knob
+from crackfront.studies.accuracy.scenes import HELD_OUT, SCENES, with_knob
 from crackfront.studies.accuracy.study import (
     Errors,
     SceneErrors,
@@ -45,6 +45,8 @@ from crackfront.studies.accuracy.study import (
 )
 
 MODERATE, SMALL = SCENES["chemical-0.04"], SCENES["small-0.04"]
+
+UNSEEN = re.compile("c015|f013|band|h02|h05|h09")
 
 # So weak that no front is pinned: errors are smooth, and their orders those of the theory.
 FINEST = replace(
@@ -140,7 +142,7 @@ def test_fronts_are_compared_as_trigonometric_ones():
     assert front_difference(coarse + 0.25, fine) == pytest.approx(0.25)
 
 
-def test_a_setting_of_one_knob_leaves_the_others_as_in_the_reference():
+def test_a_setting_of_one_knob_leaves_the_others_as_in_the_reference_but_for_few_sites():
     names = {
         "sites": {"angles_per_cutoff"},
         "cubic": {"samples_per_cutoff"},
@@ -155,15 +157,15 @@ def test_a_setting_of_one_knob_leaves_the_others_as_in_the_reference():
                 for name in MODERATE.reference.__dataclass_fields__
                 if getattr(numerics, name) != getattr(MODERATE.reference, name)
             }
-            assert changed
-            assert changed <= names[knob]
+            assert changed - {"angles_per_cutoff"} <= names[knob]
+            assert numerics.angles_per_cutoff == (value if knob == "sites" else 2.2)
             assert value in {getattr(numerics, name) for name in names[knob]}
 
 
 @pytest.fixture(scope="module")
 def small_study():
     finer = [setting for setting in SMALL.single_settings if setting[0] == "finer"]
-    return scene_errors(SMALL, finer + SMALL.asked_settings, range(3))
+    return scene_errors(SMALL, finer + SMALL.asked_settings(), range(3))
 
 
 def test_errors_fall_with_the_error_that_is_asked_for_and_time_grows(small_study):
@@ -171,14 +173,15 @@ def test_errors_fall_with_the_error_that_is_asked_for_and_time_grows(small_study
     asked = [errors for errors in small_study.errors if errors.knob == "asked"]
     rms = {errors.value: np.sqrt(np.mean(errors.state**2)) for errors in asked}
     seconds = [errors.seconds.mean() for errors in asked]
-    assert rms[0.1] > 3 * rms[0.01]
+    assert rms[0.1] > 3 * rms[0.003]
     assert seconds[0] < seconds[-1]
     for errors in asked:
         assert np.all(np.abs(errors.adhesion) <= errors.state * (1 + 1e-12))
         assert np.all(errors.front_rms <= errors.front_max)
     finer = small_study.errors[0]
     assert finer.knob == "finer"
-    assert np.max(np.abs(finer.adhesion)) < 0.01 * np.max(np.abs(asked[0].adhesion))
+    # One surface may have an avalanche that the reference just misses.
+    assert np.median(np.abs(finer.adhesion)) < 0.01 * np.max(np.abs(asked[0].adhesion))
 
 
 def test_errors_are_relative_to_the_mean_hysteresis(small_study):
@@ -214,20 +217,45 @@ def test_no_setting_of_the_pareto_front_is_beaten():
     assert list(pareto_front(np.array([1.0, 1.0, 2.0]), np.array([2.0, 1.0, 1.0]))) == [1]
 
 
-def synthetic_study(bias, scatter):
+def gaussian(rng, shape):
+    """Scatter of unit variance."""
+    return rng.standard_normal(shape)
+
+
+def rare(rng, shape):
+    """Scatter of unit variance, of one value in ten."""
+    return math.sqrt(10) * (rng.uniform(size=shape) < 0.1) * rng.choice([-1, 1], size=shape)
+
+
+def synthetic_study(bias, scatter, noise=gaussian, n_realisation=400, seed=5):
     """A study whose errors of k have a given bias and scatter, by knob and value."""
-    rng = np.random.default_rng(5)
-    errors = []
+    rng = np.random.default_rng(seed)
+    one, signs = np.ones(n_realisation), np.array([-1, 1])
+    errors, of_few_sites = [], 0.0
     for knob, value, numerics in MODERATE.single_settings:
         if knob == "finer":
             continue
-        noise = scatter(knob, value) * rng.standard_normal((400, 2))
-        adhesion = MODERATE.elastic_energy * (noise + np.array([-1, 1]) * bias(knob, value))
-        one = np.ones(400)
+        of_k = scatter(knob, value) * noise(rng, (n_realisation, 2)) + signs * bias(knob, value)
+        if knob != "sites":
+            of_k += of_few_sites
+        elif value == 2.2:
+            of_few_sites = of_k
+        adhesion = MODERATE.elastic_energy * of_k
         knobs = {name: of for name, of in asdict(numerics).items() if name != "angles"}
         errors.append(Errors(knob, value, one, adhesion, adhesion**2, one, one, one, **knobs))
-    reference = np.tile([0.9, 1.0], (400, 1))
-    return SceneErrors(MODERATE, tuple(errors), reference, np.ones(400))
+    reference = np.tile([0.9, 1.0], (n_realisation, 1))
+    return SceneErrors(MODERATE, tuple(errors), reference, one)
+
+
+def test_rare_avalanches_count_with_their_mean_square():
+    def law(seed):
+        study = synthetic_study(
+            lambda *_: 0.0, lambda knob, value: value**-3.0, rare, n_realisation=8, seed=seed
+        )
+        return next(law for law in fit_laws([study]) if law.knob == "cubic")
+
+    squares = [(law(seed).error(3, LAW_SIZE) * 3**3) ** 2 for seed in range(60)]
+    assert 0.8 < np.mean(squares) < 1.25
 
 
 def test_the_fit_finds_the_law_behind_the_errors():
@@ -252,6 +280,25 @@ def test_laws_are_written_in_full(tmp_path):
     assert lines[1].startswith("chemical,0.04,sites,1,")
 
 
+def largest_error(name, n_realisation, asked=0.03):
+    """The larger rms error of k of both branches of held-out surfaces, relative to that asked."""
+    scene = SCENES[name]
+    numbers = range(HELD_OUT, HELD_OUT + n_realisation)
+    (found,) = scene_errors(scene, scene.asked_settings([asked]), numbers).errors
+    return np.max(np.sqrt(np.mean(found.adhesion**2, axis=0))) / scene.elastic_energy / asked
+
+
+def test_laws_hold_for_a_band_between_the_shapes_that_they_know():
+    assert largest_error("band-0.1", 2) < 1.5
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1200)
+@pytest.mark.parametrize("name", [name for name in SCENES if UNSEEN.match(name)])
+def test_laws_hold_within_half_for_spectra_and_surfaces_they_never_saw(name):
+    assert largest_error(name, 8) < 1.5
+
+
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_the_laws_of_the_package_are_those_that_the_study_gives():
@@ -261,11 +308,12 @@ def test_the_laws_of_the_package_are_those_that_the_study_gives():
         if (law.shape, law.elastic_energy) == ("h08", 0.0025)
     }
     scene = SCENES["h08-0.0025"]
-    study = scene_errors(scene, scene.single_settings, range(8))
+    study = scene_errors(scene, scene.single_settings, range(24))
     for law in fit_laws([study]):
         before = stored[law.knob, law.direction]
         assert law.bias == pytest.approx(before.bias, abs=0.02)
         assert law.scatter == pytest.approx(before.scatter, abs=0.02)
+        assert law.avalanche == pytest.approx(before.avalanche, abs=0.001)
 
 
 @pytest.fixture(scope="module")
@@ -403,7 +451,7 @@ def test_the_cost_of_a_study_is_told_before_it_is_measured(study, tmp_path, monk
 
 def test_the_cost_of_a_study_is_that_of_its_runs():
     scene = SCENES["small-0.04"]
-    found = scene_errors(scene, scene.asked_settings, range(2))
+    found = scene_errors(scene, scene.asked_settings(), range(2))
     seconds = np.sum(found.reference_seconds) + sum(np.sum(one.seconds) for one in found.errors)
     assert seconds / 4 < 2 * SECONDS["asked"](scene) < 4 * seconds
 

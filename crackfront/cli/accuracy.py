@@ -36,11 +36,11 @@ _output = click.option(
 @_output
 @click.option(
     "--study",
-    type=click.Choice(["knobs", "asked", "averages", "coverage"]),
+    type=click.Choice(["knobs", "asked", "unseen", "averages", "coverage"]),
     default="knobs",
     show_default=True,
-    help="Errors of single knobs; of numerics that the laws choose; of schedules and tiles; true "
-    "errors beside the stated ones.",
+    help="Errors of single knobs; of numerics that the laws choose; of these on surfaces without a "
+    "part in the laws; of schedules and tiles; true errors beside the stated ones.",
 )
 @click.option(
     "--realisations", type=whole(Range(2, 1e6)), default=8, show_default=True, help="Surfaces."

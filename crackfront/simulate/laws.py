@@ -9,8 +9,10 @@ the number of its states. Each knob has a law of its own,
 .. math:: \log e = c_0 + c_1 x,
 
 where x is the number of sites per short cutoff (the front is smooth, so that the error falls
-exponentially), or the logarithm of samples, pixels or tolerance. Errors of different knobs are
-added in quadrature.
+exponentially), or the logarithm of samples, pixels or tolerance. Between measured shapes and
+amplitudes errors are interpolated. Scatters of different knobs are added in quadrature, biases as
+they are where they have one sign: too few samples make the hysteresis too small, all else makes it
+too large.
 """
 
 from __future__ import annotations
@@ -18,15 +20,15 @@ from __future__ import annotations
 import csv
 import functools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from crackfront.core.adhesion import FieldKind
+from crackfront.core.adhesion import FieldKind, correlation_length, force_correlation_length
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 
@@ -39,19 +41,33 @@ LAW_SIZE = 4000.0
 """Size of the fronts on which the laws were measured: states times circumference over the short
 cutoff, for eight states, cutoff 0.02 and mean radius 1.6."""
 
-_SHARES: dict[Knob, float] = {"sites": 0.8, "cubic": 0.4, "pixels": 0.35, "tolerance": 0.25}
-"""Parts of an asked error, the largest for the costliest knob; their squares sum up to 0.98."""
+_SHARES: dict[Knob, float] = {"sites": 0.95, "cubic": 0.2, "pixels": 0.2, "tolerance": 0.1}
+"""Parts of an asked error, the largest for the one knob that costs; squares sum up to 0.99."""
 
-_BETWEEN = 0.55
-"""Hurst exponent between those of the two broad shapes that were measured, 0.8 and 0.3."""
+MEASURED: dict[str, tuple[FieldKind, SelfAffineSpectrum]] = {
+    "chemical": ("chemical", SelfAffineSpectrum(0.02, 0.02, 1.0)),
+    "flat": ("roughness", SelfAffineSpectrum(0.02, 0.02, 1.0)),
+    "h03": ("roughness", SelfAffineSpectrum(0.02, 0.4, 0.3)),
+    "h08": ("roughness", SelfAffineSpectrum(0.02, 0.32, 0.8)),
+}
+"""Shapes of the laws, and the spectra on which they were measured."""
+
+_CUTOFF = 0.02
+"""Short cutoff of all of them. (Units: reduced lateral length)"""
+
+_NARROW: dict[FieldKind, str] = {"chemical": "chemical", "roughness": "flat"}
+"""The shape without long wavelengths; the broad ones serve both kinds."""
+
+_ONSET = 0.7
+"""Larkin length, in radii of the sphere, at which scatter was largest in all shapes."""
 
 _RANGES: dict[Knob, tuple[float, float]] = {
     "sites": (1.4, 12.0),
     "cubic": (2.5, 16.0),
     "pixels": (2.5, 8.0),
-    "tolerance": (1e-9, 1e-3),
+    "tolerance": (1e-3, 1e-9),
 }
-"""Values that may be chosen."""
+"""Values that may be chosen, from the coarsest to the finest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +111,9 @@ class Law:
         +1 for w_appr, -1 for w_retr.
     bias, scatter : tuple of float
         Coefficients (c_0, c_1) of the logarithm of both. (Units: e_el)
+    avalanche : float
+        What one avalanche changes, on fronts of :data:`LAW_SIZE`; equal for all knobs of a shape
+        and an amplitude. (Units: e_el)
     """
 
     shape: str
@@ -103,49 +122,107 @@ class Law:
     direction: int
     bias: tuple[float, float]
     scatter: tuple[float, float]
+    avalanche: float
+
+    def parts(self, values: ArrayLike) -> Array:
+        """Bias and scatter at values of the knob, of fronts of :data:`LAW_SIZE` (Units: e_el)."""
+        x = abscissa(self.knob, values)
+        return np.array([np.exp(c0 + c1 * x) for c0, c1 in (self.bias, self.scatter)])
 
     def error(self, value: float, size: float) -> float:
         """Standard error at a value of the knob, for a front of a size, in units of e_el."""
-        x = abscissa(self.knob, value)
-        bias, scatter = (math.exp(c0 + c1 * x) for c0, c1 in (self.bias, self.scatter))
+        bias, scatter = self.parts(value)
         return math.hypot(bias, scatter * math.sqrt(LAW_SIZE / size))
 
 
-def abscissa(knob: Knob, value: float) -> float:
+def abscissa(knob: Knob, values: ArrayLike) -> Array:
     """Abscissa of a law: sites themselves, else the logarithm."""
-    return value if knob == "sites" else math.log(value)
+    return np.asarray(values, dtype=float) if knob == "sites" else np.log(values)
 
 
-def spectral_shape(kind: FieldKind, spectrum: Spectrum) -> str:
-    """The measured shape that comes nearest to a spectrum: chemical, flat, h08 or h03."""
-    short, long = spectrum.short_cutoff, spectrum.longest_feature
-    if long <= 1.5 * short:
-        return "flat" if kind == "roughness" else "chemical"
-    # The Hurst exponent, or that of the self-affine spectrum with as long a correlation.
-    between = SelfAffineSpectrum(short, long, _BETWEEN)
-    return "h08" if spectrum.correlation_length > between.correlation_length else "h03"
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Where a spectrum and an amplitude lie among those that were measured.
+
+    Attributes
+    ----------
+    shapes : tuple of (str, float)
+        Measured shapes, and the parts that they have in the error.
+    lowest, highest : float
+        Amplitudes e_el / w_int of which the largest error counts.
+    independent : float
+        Part of the cutoffs along a front that are so, relative to the fronts of the laws.
+    """
+
+    shapes: tuple[tuple[str, float], ...]
+    lowest: float
+    highest: float
+    independent: float
 
 
-def chosen_knobs(error: float, kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> Knobs:
+@functools.cache
+def _place(kind: FieldKind, spectrum: Spectrum, elastic_energy: float, straight: bool) -> _Place:
+    """Shapes with the next correlation lengths, and amplitudes with as early an onset.
+
+    Of a shape counts the correlation length of w_loc, in short cutoffs. Avalanches begin where the
+    Larkin length falls below the size of the contact, at a disorder that falls with the cutoff and
+    is known to a factor of 2. Below it the largest error counts of the amplitudes up to that with
+    as many Larkin lengths at the cutoff of the laws, and as few are independent. A straight front
+    has no radius, and counts as one of that cutoff.
+    """
+    shapes = (_NARROW[kind], "h03", "h08")
+    measured = [_relative_correlation_length(*MEASURED[shape]) for shape in shapes]
+    length = math.log(_relative_correlation_length(kind, spectrum))
+    parts = [float(np.interp(length, np.log(measured), row)) for row in np.eye(len(shapes))]
+    correlated = force_correlation_length(kind, spectrum) * _CUTOFF / spectrum.short_cutoff
+    # Where the Larkin length is _ONSET, at the cutoff of the laws: w_rms**2 = 4 e_el w_int.
+    onset = 2 * math.pi * correlated / (4 * _ONSET)
+    shorter = usual_size(spectrum, straight) / LAW_SIZE
+    highest = max(elastic_energy, min(2 * elastic_energy * shorter, onset))
+    return _Place(
+        tuple((shape, part) for shape, part in zip(shapes, parts, strict=True) if part > 0),
+        elastic_energy,
+        highest,
+        max(elastic_energy / highest, 1 / max(shorter, 1.0)),
+    )
+
+
+def _relative_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
+    """Correlation length of w_loc in short cutoffs."""
+    return correlation_length(kind, spectrum) / spectrum.short_cutoff
+
+
+def usual_size(spectrum: Spectrum, straight: bool) -> float:
+    """Size of a front for which knobs are chosen: eight states, of a mean radius of 1.6."""
+    return LAW_SIZE * (1.0 if straight else _CUTOFF / spectrum.short_cutoff)
+
+
+def chosen_knobs(
+    error: float,
+    kind: FieldKind,
+    spectrum: Spectrum,
+    elastic_energy: float,
+    *,
+    straight: bool = False,
+) -> Knobs:
     """Knobs that leave an asked error in w_appr and w_retr: the coarsest that the laws allow.
 
     Parameters
     ----------
     error : float
         Standard error of the factor k of either branch that the numerics may leave, on fronts of
-        :data:`LAW_SIZE`.
+        :func:`usual_size`.
     kind : {"roughness", "chemical"}
         What the spectrum describes.
     spectrum : Spectrum
         Its shape.
     elastic_energy : float
         e_el / w_int.
+    straight : bool, optional
+        Whether the front is straight, not that of a sphere.
     """
-    shape = spectral_shape(kind, spectrum)
-    found = {
-        knob: _inverse(shape, elastic_energy, knob, share * error)
-        for knob, share in _SHARES.items()
-    }
+    place = _place(kind, spectrum, elastic_energy, straight)
+    found = _chosen_values(error, place, usual_size(spectrum, straight) * place.independent)
     return Knobs(
         angles=None,
         angles_per_cutoff=found["sites"],
@@ -156,12 +233,65 @@ def chosen_knobs(error: float, kind: FieldKind, spectrum: Spectrum, elastic_ener
     )
 
 
+@functools.cache
+def _chosen_values(error: float, place: _Place, size: float) -> dict[Knob, float]:
+    """Coarsest values of all knobs whose errors together are at most the asked one."""
+    tried = {knob: _values(knob) for knob in _SHARES}
+    parts = {knob: _parts(place, knob, values) for knob, values in tried.items()}
+    rarity = _rarity(error, place, size)
+    for of in parts.values():
+        of[1] *= rarity * math.sqrt(LAW_SIZE / size)
+    single = {knob: np.hypot(*of).max(axis=0) for knob, of in parts.items()}
+
+    def chosen(shares: float) -> dict[Knob, int]:
+        return {
+            knob: int(np.argmax(np.append(errors[:-1] <= share * shares * error, True)))
+            for (knob, share), errors in zip(_SHARES.items(), single.values(), strict=True)
+        }
+
+    # At 0.75 all biases may have one sign; above 1 knobs are cheap whose coarsest values suffice.
+    low, high = 0.75, 2.0
+    for _ in range(10):
+        middle = math.sqrt(low * high)
+        left = {knob: parts[knob][..., index] for knob, index in chosen(middle).items()}
+        low, high = (middle, high) if max(_combined(left, LAW_SIZE)) <= error else (low, middle)
+    return {knob: float(tried[knob][index]) for knob, index in chosen(low).items()}
+
+
+def _rarity(error: float, place: _Place, size: float) -> float:
+    """By how much scatter is to stay below an asked error, as few surfaces have an avalanche.
+
+    The mean square of eight surfaces has the mean s^2 and, of avalanches of one size a at random,
+    the variance s^2 (a^2 + 2 s^2) / 8. Its mean and three times its standard deviation are to be
+    the square T of 1.5 times the asked error, of which s^2 is the solution. With a third of the
+    asked error 19 of 20 draws of eight surfaces are below T, however large avalanches are.
+    """
+    largest = 0.0
+    for shape, part in place.shapes:
+        laws = _laws()[shape, "sites", 1]
+        sizes = np.array([[law.avalanche] for law in laws])
+        largest += part * float(_largest_between(laws, sizes, place)[0])
+    largest *= LAW_SIZE / size
+    bound = (1.5 * error) ** 2
+    half = bound + 9 / 16 * largest**2
+    square = bound**2 / (half + math.sqrt(half**2 + 5 / 4 * bound**2))
+    return float(np.clip(error / math.sqrt(square), 1.0, 3.0))
+
+
+def _values(knob: Knob) -> Array:
+    """Values that may be chosen, of two digits, the coarsest first."""
+    values = [float(f"{value:.2g}") for value in np.geomspace(*_RANGES[knob], 400)]
+    return np.array(list(dict.fromkeys(values)))
+
+
 def combined_error(
     kind: FieldKind,
     spectrum: Spectrum,
     elastic_energy: float,
     values: Mapping[Knob, float],
     size: float,
+    *,
+    straight: bool = False,
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that values of all knobs leave (Units: w_int).
 
@@ -173,46 +303,54 @@ def combined_error(
         Values of the knobs; of interpolations the one that is used.
     size : float
         Number of states times circumference of the front over the short cutoff.
+    straight : bool, optional
+        As of :func:`chosen_knobs`.
     """
-    shape = spectral_shape(kind, spectrum)
-    approach, retraction = (
-        elastic_energy
-        * math.hypot(
-            *(
-                _interpolated(shape, elastic_energy, knob, direction, value, size)
-                for knob, value in values.items()
-            )
+    place = _place(kind, spectrum, elastic_energy, straight)
+    parts = {knob: _parts(place, knob, value) for knob, value in values.items()}
+    approach, retraction = _combined(parts, size * place.independent)
+    return elastic_energy * approach, elastic_energy * retraction
+
+
+def _combined(parts: Mapping[Knob, Array], size: float) -> tuple[float, float]:
+    """Standard errors (w_appr, w_retr) of all knobs; their parts are (bias or scatter, branch)."""
+    lowered = [bias for knob, (bias, _) in parts.items() if knob in get_args(Interpolation)]
+    raised = [bias for knob, (bias, _) in parts.items() if knob not in get_args(Interpolation)]
+    bias = np.maximum(sum(lowered), sum(raised))
+    scatter = np.sqrt(sum(scatter**2 for _, scatter in parts.values()) * LAW_SIZE / size)
+    approach, retraction = np.hypot(bias, scatter)
+    return float(approach), float(retraction)
+
+
+def _parts(place: _Place, knob: Knob, values: ArrayLike) -> Array:
+    """Bias and scatter of both branches at values of a knob, in units of e_el.
+
+    An array of the shape (bias or scatter, branch, values). Errors are interpolated, not their
+    logarithms: between a bias and none the geometric mean would be none.
+    """
+    branches = [
+        np.tensordot(
+            [part for _, part in place.shapes],
+            [_largest(_laws()[shape, knob, branch], place, values) for shape, _ in place.shapes],
+            axes=1,
         )
-        for direction in (1, -1)
-    )
-    return approach, retraction
+        for branch in (1, -1)
+    ]
+    return np.stack(branches, axis=1)
 
 
-@functools.cache
-def _inverse(shape: str, elastic_energy: float, knob: Knob, error: float) -> float:
-    """Coarsest value of a knob that leaves an error, to two digits."""
-    low, high = _RANGES[knob]
-    values = np.geomspace(low, high, 400)
-    if knob == "tolerance":
-        values = values[::-1]
-    for value in values:
-        worst = max(
-            _interpolated(shape, elastic_energy, knob, direction, float(value), LAW_SIZE)
-            for direction in (1, -1)
-        )
-        if worst <= error:
-            break
-    return float(f"{value:.2g}")
+def _largest(laws: Sequence[Law], place: _Place, values: ArrayLike) -> Array:
+    """Bias and scatter of one shape, the largest among the amplitudes of a place."""
+    return _largest_between(laws, np.array([law.parts(values) for law in laws]), place)
 
 
-def _interpolated(
-    shape: str, elastic_energy: float, knob: Knob, direction: int, value: float, size: float
-) -> float:
-    """Error between the amplitudes that were measured, and that of the nearest one outside."""
-    laws = _laws()[shape, knob, direction]
-    measured = np.log([law.elastic_energy for law in laws])
-    errors = np.log([law.error(value, size) for law in laws])
-    return float(np.exp(np.interp(math.log(elastic_energy), measured, errors)))
+def _largest_between(laws: Sequence[Law], measured: Array, place: _Place) -> Array:
+    """The largest of what laws of rising amplitudes have, among the amplitudes of a place."""
+    energies = np.array([law.elastic_energy for law in laws])
+    between = (energies > place.lowest) & (energies < place.highest)
+    amplitudes = np.log([place.lowest, *energies[between], place.highest])
+    parts = [np.interp(amplitudes, np.log(energies), row) for row in np.eye(energies.size)]
+    return np.max(np.tensordot(np.transpose(parts), measured, axes=1), axis=0)
 
 
 @functools.cache
@@ -235,6 +373,7 @@ def read_laws() -> Iterator[Law]:
                 int(row["direction"]),
                 (float(row["bias_0"]), float(row["bias_1"])),
                 (float(row["scatter_0"]), float(row["scatter_1"])),
+                float(row["avalanche"]),
             )
 
 

@@ -71,7 +71,7 @@ class LineLoad:
         larkin = larkin_length(kind, spectrum, 2 * math.sqrt(elastic_energy))
         length = correlation_length(kind, spectrum)
         spring *= length if self.spring_unit == "correlation_length" else larkin
-        knobs = numerics.knobs_of(kind, spectrum, elastic_energy)
+        knobs = numerics.knobs_of(kind, spectrum, elastic_energy, straight=True)
         pixel = spectrum.short_cutoff / knobs.pixels_per_cutoff
         least = numerics.tile_side(spectrum)
         rms = expected_rms(kind, spectrum, spring / larkin)

@@ -23,7 +23,7 @@ from crackfront.core.field.fields import Interpolation
 from crackfront.core.fingerprint import NO_PART, SOLVER, fingerprint
 from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import Spectrum
-from crackfront.simulate.laws import LAW_SIZE, Knob, Knobs, chosen_knobs, combined_error
+from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error, usual_size
 
 Schedule = LoadSchedule | SteadySchedule | LineSchedule
 """Loads of a simulation: a full cycle or its steady parts, or those of a straight front."""
@@ -56,11 +56,13 @@ class Numerics:
     max_sweeps: int = 100_000_000
     solver: str = "newton"
 
-    def knobs_of(self, kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> Knobs:
+    def knobs_of(
+        self, kind: FieldKind, spectrum: Spectrum, elastic_energy: float, *, straight: bool = False
+    ) -> Knobs:
         """Knobs for one spectrum and amplitude."""
         if isinstance(self.knobs, Knobs):
             return self.knobs
-        return chosen_knobs(self.knobs, kind, spectrum, elastic_energy)
+        return chosen_knobs(self.knobs, kind, spectrum, elastic_energy, straight=straight)
 
     def tile_side(self, spectrum: Spectrum) -> float:
         """Least side of a tile (Units: that of the spectrum)."""
@@ -255,7 +257,8 @@ def simulation_of(
     The name is that of the spectrum, the numerics are how it is resolved and solved, and `record`
     is what is kept beside the curves; the rest is as in :class:`Simulation`.
     """
-    knobs = numerics.knobs_of(kind, spectrum, elastic_energy)
+    straight = isinstance(schedule, LineSchedule)
+    knobs = numerics.knobs_of(kind, spectrum, elastic_energy, straight=straight)
     return Simulation(
         spectrum_name=name,
         kind=kind,
@@ -279,7 +282,7 @@ def missed_error(simulation: Simulation, asked: float) -> float:
 
 
 def numerical_error(
-    simulation: Simulation, size: float = LAW_SIZE, front_length: float | None = None
+    simulation: Simulation, size: float | None = None, front_length: float | None = None
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
 
@@ -288,7 +291,7 @@ def numerical_error(
     simulation : Simulation
         A simulation.
     size : float, optional
-        Number of states times length of the front over the short cutoff.
+        Number of states times length of the front over the short cutoff; by default the usual one.
     front_length : float, optional
         Length of the longest front; by default that of a smooth contact.
         (Units: reduced lateral length)
@@ -302,8 +305,14 @@ def numerical_error(
         "pixels": cutoff * sizes.n_point / sizes.tile_side,
         "tolerance": simulation.solver.tolerance,
     }
+    straight = isinstance(simulation.schedule, LineSchedule)
     return combined_error(
-        simulation.kind, simulation.spectrum, simulation.elastic_energy, values, size
+        simulation.kind,
+        simulation.spectrum,
+        simulation.elastic_energy,
+        values,
+        usual_size(simulation.spectrum, straight) if size is None else size,
+        straight=straight,
     )
 
 

@@ -453,10 +453,10 @@ def _refuse_endless(sweep: Sweep) -> None:
         16.0 * sweep.fit.n_bootstrap * sweep.n_realisation,
         "lower bootstrap",
     )
-    seconds = 0.0
+    seconds, straight = 0.0, isinstance(sweep.schedule, LineLoad)
     for item in sweep.spectra:
         for energy in sweep.elastic_energies:
-            knobs = sweep.numerics.knobs_of(sweep.kind, item.spectrum, energy)
+            knobs = sweep.numerics.knobs_of(sweep.kind, item.spectrum, energy, straight=straight)
             deepest = getattr(sweep.schedule, "max_penetration", 0.0)
             refuse_oversized(item.spectrum, sweep.numerics, knobs, deepest)
             cost = expected_cost(sweep.simulation(item, energy, 0))

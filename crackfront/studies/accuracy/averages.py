@@ -15,7 +15,7 @@ from crackfront.core.variables import ADHESION, variable
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Simulation, numerical_error, stated_error
-from crackfront.studies.accuracy.scenes import Progress, Scene
+from crackfront.studies.accuracy.scenes import HELD_OUT, Progress, Scene
 from crackfront.studies.accuracy.study import branches_seconds, measured_branches
 
 Array = NDArray[np.float64]
@@ -37,9 +37,6 @@ _TRIED: dict[str, tuple[float, ...]] = {
 
 LEVEL = 0.92
 """Share of the errors that an interval of the stated standard errors is meant to cover."""
-
-_HELD_OUT = 1000
-"""Number of the first surface to which no law was fitted."""
 
 _SCHEDULE = SteadySchedule(start=0.0, max_penetration=3.0, travel=1.5, standard_error=0.1)
 
@@ -169,7 +166,7 @@ def held_out_coverage(
     """
     if n_realisation < 3:
         raise ValueError(f"coverage needs 3 surfaces or more, not {n_realisation}; ask for more")
-    numbers = range(_HELD_OUT, _HELD_OUT + n_realisation)
+    numbers = range(HELD_OUT, HELD_OUT + n_realisation)
     exact = [measured_branches(scene, scene.reference, number) for number in numbers]
     truth = np.array([_steady(scene.simulation(scene.reference, number))[0] for number in numbers])
     others = [np.delete(truth, row, axis=0) for row in range(n_realisation)]

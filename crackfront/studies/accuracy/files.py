@@ -1,4 +1,4 @@
-"""The four studies of a scene, and the files that they write."""
+"""The five studies of a scene, and the files that they write."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from crackfront.studies.accuracy.averages import (
     sampling_errors,
     sampling_seconds,
 )
-from crackfront.studies.accuracy.scenes import SCENES, Progress, Scene
+from crackfront.studies.accuracy.scenes import HELD_OUT, SCENES, Progress, Scene
 from crackfront.studies.accuracy.study import Errors, SceneErrors, scene_errors, setting_seconds
 
 Record = TypeVar("Record")
@@ -28,12 +28,23 @@ _SETTING, _BRANCH = "setting", "branch"
 _COVERED = (0.1, 0.03, 0.01)
 """Errors of k whose coverage is measured."""
 
+_UNSEEN = (0.03, 0.01)
+"""Errors of k that are asked for on surfaces to which no law was fitted."""
+
 STUDIES: dict[str, Callable[[Scene, int, Progress], xr.Dataset]] = {
     "knobs": lambda scene, n_realisation, progress: errors_dataset(
         scene_errors(scene, scene.single_settings, range(n_realisation), progress)
     ),
     "asked": lambda scene, n_realisation, progress: errors_dataset(
-        scene_errors(scene, scene.asked_settings, range(n_realisation), progress)
+        scene_errors(scene, scene.asked_settings(), range(n_realisation), progress)
+    ),
+    "unseen": lambda scene, n_realisation, progress: errors_dataset(
+        scene_errors(
+            scene,
+            scene.asked_settings(_UNSEEN),
+            range(HELD_OUT, HELD_OUT + n_realisation),
+            progress,
+        )
     ),
     "averages": lambda scene, n_realisation, progress: records_dataset(
         "errors of averaging", scene, sampling_errors(scene, range(n_realisation), progress)
@@ -48,7 +59,8 @@ STUDIES: dict[str, Callable[[Scene, int, Progress], xr.Dataset]] = {
 
 SECONDS: dict[str, Callable[[Scene], float]] = {
     "knobs": lambda scene: setting_seconds(scene, scene.single_settings),
-    "asked": lambda scene: setting_seconds(scene, scene.asked_settings),
+    "asked": lambda scene: setting_seconds(scene, scene.asked_settings()),
+    "unseen": lambda scene: setting_seconds(scene, scene.asked_settings(_UNSEEN)),
     "averages": sampling_seconds,
     "coverage": lambda scene: coverage_seconds(scene, _COVERED),
 }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 from crackfront.plots.style import (
     BLACK,
@@ -21,7 +22,7 @@ from crackfront.plots.style import (
     house_style,
 )
 from crackfront.simulate.laws import KNOBS, LAW_SIZE, Knob, Law, abscissa
-from crackfront.studies.accuracy.study import Errors, SceneErrors, rms
+from crackfront.studies.accuracy.study import SceneErrors, rms
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,7 +31,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _LEAST = 3e-4
-"""Errors of k below this count as this: nobody asks for less, and they would bend the laws."""
+"""Errors of k below this count as this: nobody asks for less."""
+
+_FEW = 0.1
+"""Scatter of k up to which the size of avalanches is measured; above, surfaces have many."""
 
 _SLOWEST: dict[Knob, float] = {
     "sites": -0.6,
@@ -45,6 +49,9 @@ An avalanche that one discretisation triggers and another does not is of a size 
 chance falls with the error of the field, and the rms with the root of that. Among a few surfaces a
 single such event can hide the slope.
 """
+
+_STEEPEST = 10.0
+"""Slope that no law exceeds, relative to the slowest one."""
 
 _NO_BIAS = (-99.0, 0.0)
 """Coefficients of a bias that is not seen."""
@@ -62,18 +69,44 @@ def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[Law]:
     """Law of every knob, amplitude and branch, fitted to the errors of scenes.
 
     A bias counts where it is twice its standard error; elsewhere only scatter is seen, that of
-    both branches together. Both are fitted by least squares of their logarithms.
+    both branches together. The mean of measured over fitted mean squares is one: few surfaces have
+    an avalanche that changes, and logarithms would count those without one as much.
     """
     for study in studies:
+        avalanche = _avalanche(study)
         for knob in KNOBS:
-            tried = [errors for errors in study.errors if errors.knob == knob]
-            yield from _laws(study, knob, tried)
+            yield from _laws(study, knob, avalanche)
 
 
-def _laws(study: SceneErrors, knob: Knob, tried: list[Errors]) -> Iterator[Law]:
+def _avalanche(study: SceneErrors) -> float:
+    """Size of the avalanches that make the scatter of k, where settings leave little of it.
+
+    Of rare avalanches the ratio of the fourth moment to the second one is its square.
+    """
+    deviations = np.concatenate([_knob_errors(study, knob)[1] for knob in KNOBS])
+    deviations = deviations - deviations.mean(axis=1, keepdims=True)
+    few = np.mean(deviations**2, axis=1, keepdims=True) < _FEW**2
+    kept = np.where(few, deviations, 0.0)
+    total = float(np.sum(kept**2))
+    return float(np.sqrt(np.sum(kept**4) / total)) if total > 0 else 0.0
+
+
+def _knob_errors(study: SceneErrors, knob: Knob) -> tuple[Array, Array]:
+    """Values of a knob, and the errors of k that it adds, (value, realisation, branch)."""
+    tried = [errors for errors in study.errors if errors.knob == knob]
+    without = {errors.value: errors.adhesion for errors in study.errors if errors.knob == "sites"}
+    added = [
+        errors.adhesion - (0.0 if knob == "sites" else without[errors.angles_per_cutoff])
+        for errors in tried
+    ]
+    values = np.array([errors.value for errors in tried])
+    return values, np.array(added) / study.scene.elastic_energy
+
+
+def _laws(study: SceneErrors, knob: Knob, avalanche: float) -> Iterator[Law]:
     """Laws of one knob, of both branches."""
-    x = np.array([abscissa(knob, errors.value) for errors in tried])
-    values = np.array([errors.adhesion for errors in tried]) / study.scene.elastic_energy
+    tried, values = _knob_errors(study, knob)
+    x = abscissa(knob, tried)
     n_realisation = values.shape[1]
     bias = np.abs(values.mean(axis=1))
     uncertainty = values.std(axis=1, ddof=1) / np.sqrt(n_realisation)
@@ -85,16 +118,29 @@ def _laws(study: SceneErrors, knob: Knob, tried: list[Errors]) -> Iterator[Law]:
         seen = np.count_nonzero(certain) > 1
         bias_line = _falling_line(x[certain], bias[certain, branch], slowest) if seen else _NO_BIAS
         scene = study.scene
-        yield Law(scene.shape, scene.elastic_energy, knob, direction, bias_line, scatter_line)
+        yield Law(
+            scene.shape, scene.elastic_energy, knob, direction, bias_line, scatter_line, avalanche
+        )
 
 
 def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
-    """Line through logarithms, at least as steep as a given slope."""
-    y = np.log(np.maximum(values, _LEAST))
-    slope, start = np.polyfit(x, y, 1)
-    if slope / slowest < 1:
-        return float(np.mean(y - slowest * x)), slowest
-    return float(start), float(slope)
+    """Line of logarithms, at least as steep as a given slope, by the likelihood of a variance.
+
+    That of a gamma distribution about the line, of a spread that is the same everywhere. Values
+    stand from the coarsest to the finest; of those too small at its end the first counts.
+    """
+    counted = 2 + np.max(np.flatnonzero(values >= _LEAST), initial=0)
+    x, square = x[:counted], np.maximum(values[:counted], _LEAST) ** 2
+
+    def start(slope: float) -> float:
+        return float(np.log(np.mean(square * np.exp(-2 * slope * x))) / 2)
+
+    slope = minimize_scalar(
+        lambda slope: start(slope) + slope * np.mean(x),
+        bounds=sorted((slowest, _STEEPEST * slowest)),
+        method="bounded",
+    ).x
+    return start(slope), float(slope)
 
 
 def laws_text(laws: Iterable[Law]) -> str:
@@ -102,9 +148,9 @@ def laws_text(laws: Iterable[Law]) -> str:
     text = io.StringIO()
     columns = ("shape", "elastic_energy", "knob", "direction")
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([*columns, "bias_0", "bias_1", "scatter_0", "scatter_1"])
+    writer.writerow([*columns, "bias_0", "bias_1", "scatter_0", "scatter_1", "avalanche"])
     for law in laws:
-        coefficients = [f"{value:.4f}" for value in (*law.bias, *law.scatter)]
+        coefficients = [f"{value:.4f}" for value in (*law.bias, *law.scatter, law.avalanche)]
         writer.writerow([*(getattr(law, name) for name in columns), *coefficients])
     return text.getvalue()
 
@@ -123,7 +169,10 @@ def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
         panels[-1].legend(
             handles, labels, loc="center left", title=r"$e_\mathrm{el}/w_\mathrm{int}$"
         )
-        explain(figure, "lines: the fitted laws; broken line: an error of 0.01 of k")
+        explain(
+            figure,
+            "lines: the fitted laws, of a scatter for both branches; broken line: an error of 0.01",
+        )
         return figure
 
 
@@ -133,12 +182,10 @@ def _draw_laws(axes: Axes, knob: Knob, studies: Sequence[SceneErrors], laws: Seq
 
     for study, colour, marker in zip(studies, COLOURS, MARKERS, strict=False):
         scene = study.scene
-        tried = [errors for errors in study.errors if errors.knob == knob]
-        values = np.array([errors.value for errors in tried])
-        found = np.array([rms(errors.adhesion[:, 1]) for errors in tried])
+        values, found = _knob_errors(study, knob)
         axes.plot(
             values,
-            found / scene.elastic_energy,
+            [rms(errors[:, 1]) for errors in found],
             marker=marker,
             linestyle="none",
             color=colour,

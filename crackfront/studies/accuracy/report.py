@@ -77,11 +77,12 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     }
     if not studies:
         raise ValueError(f"{folder} holds no measured errors; run crackfront accuracy first")
+    unseen = _stored(folder, "unseen", read_errors)
     samples = _stored(folder, "averages", lambda path: read_study(path, Sample))
     coverages = _stored(folder, "coverage", lambda path: read_study(path, Coverage))
     laws = list(fit_laws(study for study in knobs.values() if study.scene.single_knobs))
     write_text(folder / "laws.csv", laws_text(laws))
-    tables = _tables(list(studies.values()), samples.values(), coverages.values())
+    tables = _tables(list(studies.values()), unseen.values(), samples.values(), coverages.values())
     parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
     write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]), sealed=True)
     if page is not None:
@@ -108,6 +109,7 @@ def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str
 
 def _tables(
     studies: Sequence[SceneErrors],
+    unseen: Collection[SceneErrors],
     samples: Iterable[tuple[Scene, tuple[Sample, ...]]],
     coverages: Collection[tuple[Scene, tuple[Coverage, ...]]],
 ) -> dict[str, str]:
@@ -116,6 +118,8 @@ def _tables(
         "Time to an error of the hysteresis": _target_rows(studies),
         "Errors that were asked for": _asked_rows(studies),
     }
+    if unseen:
+        tables["Errors on unseen surfaces"] = _unseen_rows(unseen)
     if coverages:
         tables["Stated and true errors"] = _coverage_rows(coverages)
     tables |= {f"Averages, {scene.name}": _sample_rows(found) for scene, found in samples}
@@ -200,6 +204,30 @@ def _asked_rows(studies: Sequence[SceneErrors]) -> Iterator[str]:
         if errors.knob == "asked"
     ]
     return _markdown("scene | asked for | numerics | CPU s | k of w_appr | k of w_retr", rows)
+
+
+def _unseen_rows(studies: Iterable[SceneErrors]) -> Iterator[str]:
+    """Rms errors and biases of k where the laws chose the numerics for surfaces unknown to them."""
+    rows = []
+    for study in studies:
+        for errors in study.errors:
+            of_k = errors.adhesion / study.scene.elastic_energy
+            rows.append(
+                [
+                    study.scene.name,
+                    f"{errors.value:g}",
+                    _numbers(errors),
+                    f"{errors.seconds.mean():.3g}",
+                    *_of_k(study, errors),
+                    *(f"{bias:+.2g}" for bias in of_k.mean(axis=0)),
+                    f"{np.abs(of_k).max():.2g}",
+                ]
+            )
+    return _markdown(
+        "scene | asked for | numerics | CPU s | k of w_appr: rms | k of w_retr: rms "
+        "| k of w_appr: bias | k of w_retr: bias | largest of one surface",
+        rows,
+    )
 
 
 def _coverage_rows(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> Iterator[str]:
