@@ -31,7 +31,7 @@ export PYTHONNOUSERSITE := 1
 RESULTS  = results/$(basename $(notdir $(SWEEP)))/
 REPORT   = results/tests/junit.xml
 IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1
-PIP      = PIP_USE_PEP517=1 .venv/bin/python -m pip install --quiet --no-deps --no-build-isolation
+PIP      = PIP_USE_PEP517=1 .venv/bin/python -m pip install --quiet --no-deps --no-build-isolation --no-compile
 # Tests on all cores, of which eight are enough; one that is done takes from another.
 PARALLEL = -n auto --maxprocesses 8 --dist worksteal
 PACKAGES = .venv/.packages-$(MPI)
