@@ -106,7 +106,7 @@ class Law:
     Attributes
     ----------
     shape : str
-        Shape of the spectrum, as :func:`spectral_shape` names it.
+        Shape of the spectrum, a name in :data:`MEASURED`.
     direction : {1, -1}
         +1 for w_appr, -1 for w_retr.
     bias, scatter : tuple of float
