@@ -187,10 +187,8 @@ def relax_together(work, rank, size, load, direction, field, memory, tolerance, 
                 team, newton, field, memory, front, window, load, direction
             )
         if calm or (widespread and collective):
-            accuracy = 0.02 if calm else 0.1
             code, used = newton_step(
-                team, newton, field, memory, front, drive, load, direction, furthest, slack,
-                accuracy,
+                team, newton, field, memory, front, drive, load, direction, furthest, slack
             )  # fmt: skip
             pairs += used
             updates += count

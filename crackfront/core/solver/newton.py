@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core.compiled import jit, kernel
-from crackfront.core.geometry.base import mode_stiffness, self_modes
+from crackfront.core.geometry.base import mode_stiffness, restoring_slope, self_modes
 from crackfront.core.solver.filters import (
     Filter,
     Transform,
@@ -32,6 +32,8 @@ Array = NDArray[np.float64]
 _GROWTH = 8
 """How many times as far as the furthest reach, or as its own force takes it, a site may go."""
 
+_ACCURACY = 0.05
+"""To which part of the mean drive the linear system is solved."""
 
 _LIMIT = 100
 """Pairs of FFTs after which conjugate gradients are given up."""
@@ -231,7 +233,7 @@ def _solve_softest(team, newton, geometry, floor, tolerance, share, all_free, lo
 
 
 @jit
-def newton_step(team, newton, field, memory, front, drive, b, direction, furthest, slack, accuracy):
+def newton_step(team, newton, field, memory, front, drive, b, direction, furthest, slack):
     """Move the whole front by one safe step of at most about `furthest`; return code and pairs.
 
     The right-hand side is lowered by the tolerance of the linear solver and the step clipped at
@@ -248,11 +250,19 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
     largest, longest = greatest(team, told, 0), greatest(team, told, 1)
     own = mode_stiffness(geometry, 1) * self_modes(count)
     floor = largest / furthest
-    furthest = min(furthest, _GROWTH * max(longest, largest / own))
-    tolerance = min(accuracy * largest, 0.3 * max(summed(team, told, 2) / count, 1e-6 * largest))
+    guess = 0.0
+    if longest == 0.0:
+        # How far the front would go as a whole, if only the load held it.
+        guess = min(
+            furthest / _GROWTH, largest / max(restoring_slope(geometry, front.place[0], b), floor)
+        )
+    furthest = min(furthest, _GROWTH * max(longest, guess, largest / own))
+    tolerance = _ACCURACY * max(summed(team, told, 2) / count, 1e-6 * largest)
     for block in range(*my_blocks(team)):
         low, high = bounds(team, block, count)
-        held = _prepare(newton, field, memory, front, drive, tolerance, slack, furthest, low, high)
+        held = _prepare(
+            newton, field, memory, front, drive, tolerance, slack, furthest, guess, low, high
+        )
         tell(team, 0, block, held)
         _fails(newton, field, memory, front, b, direction, 1.0, low, high)
     all_free = greatest(team, hear(team), 0) == 0.0
@@ -294,7 +304,7 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
 
 
 @kernel
-def _prepare(newton, field, memory, front, drive, tolerance, slack, furthest, low, high):
+def _prepare(newton, field, memory, front, drive, tolerance, slack, furthest, guess, low, high):
     """Drives to use up, free sites and steps to look at; return whether a site is held."""
     held = 0.0
     touch_samples(field, memory, front, low, newton.ahead[low:high])
@@ -302,7 +312,7 @@ def _prepare(newton, field, memory, front, drive, tolerance, slack, furthest, lo
         newton.right[i] = max(drive[i], 0.0) - tolerance
         newton.free[i] = 1.0 if drive[i] >= -slack else 0.0
         held = max(held, 1.0 - newton.free[i])
-        newton.step[i] = min(max(newton.reach[i], 1e-9 * furthest), furthest)
+        newton.step[i] = min(max(newton.reach[i], guess, 1e-9 * furthest), furthest)
         newton.reach[i], newton.ahead[i] = 0.0, -np.inf
     return held
 
