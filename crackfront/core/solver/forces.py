@@ -134,27 +134,31 @@ def hardening(field, memory, ray, place, product, segment, reach, load, directio
         fetch(field, memory, ray, max(segment - further, 0), segment + 1)
     distance = outer - place if direction > 0 else place - inner
     piece = peek_piece(field, memory, ray, segment)
-    cubic = is_cubic(field)
-    if cubic:
-        coefficients = polynomial(field, piece, outer - inner)
-        steepest = steepest_inside(coefficients, place - inner, min(reach, distance), direction)
-    else:
+    if not is_cubic(field):
         steepest = (piece[0] - piece[3]) * inverse
+        sample, end = (segment + 1, piece[3]) if direction > 0 else (segment, piece[0])
+        while distance < reach and 0 <= sample + direction <= last + 1:
+            before, near = distance, end
+            sample += direction
+            distance = direction * (sample_place(field, sample) - place)
+            end, _ = peek(field, memory, ray, sample)
+            if distance > reach:
+                end = near + (reach - before) / (distance - before) * (end - near)
+                distance = reach
+            steepest = max(steepest, direction * (product - end) / distance)
+        return steepest + restoring
+    coefficients = polynomial(field, piece, outer - inner)
+    steepest = steepest_inside(coefficients, place - inner, min(reach, distance), direction)
     segment += direction
     while distance < reach and 0 <= segment <= last:
         width = sample_place(field, segment + 1) - sample_place(field, segment)
         until = min(distance + width, reach)
         piece = peek_piece(field, memory, ray, segment)
-        if cubic:
-            part = (until - distance) / width
-            first, second, end = hull_until(piece, part, direction)
-            third = part * width / 3
-            steepest = max(steepest, direction * (product - first) / (distance + third))
-            steepest = max(steepest, direction * (product - second) / (distance + 2 * third))
-        else:
-            near, end = (piece[0], piece[3]) if direction > 0 else (piece[3], piece[0])
-            if until == reach:
-                end = near + (until - distance) / width * (end - near)
+        part = (until - distance) / width
+        first, second, end = hull_until(piece, part, direction)
+        third = part * width / 3
+        steepest = max(steepest, direction * (product - first) / (distance + third))
+        steepest = max(steepest, direction * (product - second) / (distance + 2 * third))
         steepest = max(steepest, direction * (product - end) / until)
         distance += width
         segment += direction
