@@ -72,19 +72,15 @@ def polynomial(field, piece, width):
 
 @kernel(inline="always")
 def steepest_inside(coefficients, position, reach, direction):
-    """Largest of d (p(x) - p(x + d s)) / s over 0 < s <= reach in the direction d of motion.
+    """Bound on d (p(x) - p(x + d s)) / s over 0 < s <= reach in the direction d of motion.
 
-    Exact: the slope of a chord is a quadratic in s.
+    The slope of a chord is a quadratic in s, nowhere above the largest of its Bezier ordinates.
     """
     _, first, second, third = coefficients
     linear = -(first + position * (2 * second + 3 * position * third))
     quadratic = -direction * (second + 3 * position * third)
-    steepest = max(linear, linear + reach * (quadratic - reach * third))
-    if third > 0.0:
-        highest = 0.5 * quadratic / third
-        if 0.0 < highest < reach:
-            steepest = max(steepest, linear + 0.5 * highest * quadratic)
-    return steepest
+    end = reach * (quadratic - reach * third)
+    return linear + max(0.0, 0.5 * reach * quadratic, end)
 
 
 @kernel(inline="always")

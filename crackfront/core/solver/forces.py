@@ -116,8 +116,8 @@ def place_sites(front, field, memory, direction, low, high):
 def hardening(field, memory, ray, place, product, segment, reach, load, direction):
     """Stiffness D >= (f(0) - f(s)) / s for 0 < s <= reach, f the site's own drive after s.
 
-    On the piece under the site the steepest chord of the product is exact; further pieces lie in
-    the hull of their control points, so that no chord is steeper than the steepest to one of those.
+    Pieces lie in the hull of their control points, so that no chord of the product is steeper than
+    the steepest to one of those; of straight pieces only the ends count.
     The slope of the restoring force increases and is convex: no chord outward is steeper than the
     mean of the slopes at its ends, none inward steeper than that under the site.
     """
