@@ -231,8 +231,9 @@ def _refuse_unknown(interpolation: str) -> None:
 
 def _refuse_unusable(values: Array, names: tuple[str, ...]) -> None:
     """Raise if a field holds NaN or infinity, or nothing but zeros."""
-    bad = np.argwhere(~np.isfinite(values))
-    if bad.size:
+    finite = np.isfinite(values)
+    if not np.all(finite):
+        bad = np.argwhere(~finite)
         place = ", ".join(f"{name} index {i}" for name, i in zip(names, bad[0], strict=True))
         raise ValueError(
             f"work of adhesion is {values[tuple(bad[0])]} at {place} ({len(bad)} such values); "

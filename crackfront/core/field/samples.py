@@ -131,16 +131,24 @@ def _tile_place(field: Any, sample: int) -> float:
 @implements(evaluate, TileField)
 def _tile_evaluate(field: Any, ray: int, sample: int) -> Any:
     """By bicubic B-splines."""
-    coefficients = field.coefficients
-    n_x, n_y = coefficients.shape[0] - 3, coefficients.shape[1] - 3
+    n_x, n_y = field.coefficients.shape[0] - 3, field.coefficients.shape[1] - 3
     place = (sample + 1) * field.spacing + field.origin
     cosine, sine = ray_direction(field.geometry, ray)
     start_x, start_y = ray_start(field.geometry, ray, n_x, n_y, field.inverse_pixel)
     x = place * cosine * field.inverse_pixel + start_x
     y = place * sine * field.inverse_pixel + start_y
     column, row = np.floor(x), np.floor(y)
-    t, u = x - column, y - row
-    i, j = (int(column) - 1) % n_x, (int(row) - 1) % n_y
+    value, by_x, by_y = _bicubic(
+        field.coefficients, (int(column) - 1) % n_x, (int(row) - 1) % n_y, x - column, y - row
+    )
+    rise = (by_x * cosine + by_y * sine) * field.inverse_pixel
+    times = weight(field.geometry, place)
+    return times * value, weight_slope(field.geometry) * value + times * rise
+
+
+@kernel(fastmath={"contract"})
+def _bicubic(coefficients, i, j, t, u):
+    """Value and derivatives of a B-spline, t and u pixels ahead of the second of four points."""
     t0, t3 = (1 - t) ** 3, t**3
     t1, t2 = 4 - 3 * t * t * (2 - t), 4 - 3 * (1 - t) * (1 - t) * (1 + t)
     u0, u3 = (1 - u) ** 3, u**3
@@ -156,9 +164,7 @@ def _tile_evaluate(field: Any, ray: int, sample: int) -> Any:
         total += share * part
         by_x += along[k] * part
         by_y += share * (v0 * c0 + v1 * c1 + v2 * c2 + v3 * c3)
-    rise = (by_x * cosine + by_y * sine) * field.inverse_pixel
-    times = weight(field.geometry, place)
-    return times * total / 36.0, weight_slope(field.geometry) * total / 36.0 + times * rise / 12.0
+    return total / 36.0, by_x / 12.0, by_y / 12.0
 
 
 @implements(sample_count, TileField)

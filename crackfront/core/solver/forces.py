@@ -165,7 +165,7 @@ def hardening(field, memory, ray, place, product, segment, reach, load, directio
     return steepest + restoring
 
 
-@kernel
+@kernel(fastmath={"contract", "nnan", "nsz"})
 def harden(field, memory, front, first, step, part, reach, stiffness, load, direction):
     """Let reaches grow to part of the steps, and stiffnesses to what holds over them.
 
