@@ -37,6 +37,9 @@ PARALLEL = -n auto --maxprocesses 8 --dist worksteal
 PACKAGES = .venv/.packages-$(MPI)
 READY    = .venv/.ready-$(MPI)
 
+# What the solver is compiled with, while the other packages are installed.
+SOLVER   = numpy|scipy|numba|llvmlite|rocket-fft|click|pyyaml
+
 # The blocks of the lock whose package matches the pattern $(1); those that do not with $(2) = !
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
@@ -67,9 +70,12 @@ $(PACKAGES): requirements.lock
 	@$(call locked,setuptools|cython) > .venv/lock-build.txt
 	@$(call locked,mpi4py|mpich) > .venv/lock-mpi.txt
 	@$(call locked,mpi4py) > .venv/lock-mpi4py.txt
-	@$(call locked,(mpi4py|mpich),!) > .venv/lock-rest.txt
+	@$(call locked,$(SOLVER)) > .venv/lock-solver.txt
+	@$(call locked,($(SOLVER)|mpi4py|mpich),!) > .venv/lock-rest.txt
 	@$(PIP) --require-hashes --requirement .venv/lock-build.txt
-	@$(PIP) --require-hashes --requirement .venv/lock-rest.txt
+	@$(PIP) --require-hashes --requirement .venv/lock-solver.txt
+	@$(IN_ENV) .venv/bin/python -m crackfront compile & \
+	$(PIP) --require-hashes --requirement .venv/lock-rest.txt && wait $$!
 ifeq ($(MPI),wheel)
 	@$(PIP) --require-hashes --only-binary mpi4py,mpich --requirement .venv/lock-mpi.txt
 else
@@ -84,7 +90,6 @@ ifeq ($(MPI),wheel)
 	@$(IN_ENV) mpiexec -n 2 .venv/bin/python -c 'from mpi4py import MPI; assert MPI.COMM_WORLD.size == 2' || { \
 	  echo "mpiexec and mpi4py in .venv do not belong together; run 'make clean env'" >&2; exit 1; }
 endif
-	@$(IN_ENV) .venv/bin/crackfront compile
 	@touch $@
 	@echo "Environment: .venv ($$(.venv/bin/python -V), MPI=$(MPI))"
 

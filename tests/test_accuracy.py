@@ -318,7 +318,7 @@ def test_the_laws_of_the_package_are_those_that_the_study_gives():
 
 @pytest.fixture(scope="module")
 def coverage():
-    return held_out_coverage(SCENES["flat-0.04"], (0.1, 0.03), 8)
+    return held_out_coverage(SCENES["flat-0.04"], (0.1, 0.03), 5)
 
 
 def check_stated_errors(items):

@@ -130,9 +130,11 @@ def copied(undisturbed, tmp_path):
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("victim", ["rank", pytest.param("launcher", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("victim", "again"), [("rank", "1"), pytest.param("launcher", "2", marks=pytest.mark.slow)]
+)
 def test_a_killed_rank_or_launcher_ends_the_job_and_costs_what_was_running(
-    configuration, same, tmp_path, victim
+    configuration, same, tmp_path, victim, again
 ):
     with running(configuration, tmp_path, "--ranks", "2") as process:
         found = children(process.pid)
@@ -146,7 +148,7 @@ def test_a_killed_rank_or_launcher_ends_the_job_and_costs_what_was_running(
     assert gone(found)
     kept = len(stored(tmp_path))
     assert 3 <= kept < N_SIMULATION
-    assert rerun(configuration, tmp_path, "--ranks", "2") == N_SIMULATION - kept
+    assert rerun(configuration, tmp_path, "--ranks", again) == N_SIMULATION - kept
     assert same(tmp_path)
 
 

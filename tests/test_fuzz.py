@@ -3,6 +3,7 @@
 Every case is the number of a fixed seed: a failure names it, and `fault` of it repeats it.
 """
 
+import gc
 import json
 import math
 import os
@@ -627,7 +628,9 @@ def test_no_generated_input_ends_in_a_traceback_a_hang_or_a_wrong_result(
     monkeypatch.setattr("crackfront.topography.fitting._STEPS", 60)
     monkeypatch.setattr("crackfront.topography.joining._DRAWS", 50)
     with np.errstate(all="warn", under="ignore"):
-        assert faults(kind, range(200), tmp_path) == {}
+        assert faults(kind, range(100), tmp_path) == {}
+        # What libraries leave open warns here, and not amid another test.
+        gc.collect()
 
 
 @pytest.mark.slow
@@ -635,6 +638,6 @@ def test_no_generated_input_ends_in_a_traceback_a_hang_or_a_wrong_result(
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.filterwarnings("default")
 @pytest.mark.parametrize("kind", CASES)
-def test_no_generated_input_of_ten_times_as_many_does(kind, tmp_path):
+def test_no_generated_input_of_twenty_times_as_many_does(kind, tmp_path):
     with np.errstate(all="warn", under="ignore"):
-        assert faults(kind, range(200, 2000), tmp_path) == {}
+        assert faults(kind, range(100, 2000), tmp_path) == {}

@@ -335,21 +335,15 @@ def test_an_empty_record_is_refused(record):
         loop_figure(empty, *measured(steady_adhesion(record, 0.1)))
 
 
-def test_a_figure_is_the_same_file_again_whatever_the_user_settings(table, fit, record, tmp_path):
-    steady = steady_adhesion(record, correlation_length=0.1)
-    makers = (
-        lambda: hysteresis_figure(table, fit),
-        lambda: loop_figure(record.states, *measured(steady), elastic_energy=0.01),
-    )
-    for number, make in enumerate(makers):
-        first = save_figure(make(), tmp_path / "one" / f"figure.{number}")
-        with matplotlib.rc_context({"font.size": 20.0, "lines.linewidth": 9.0}):
-            second = save_figure(make(), tmp_path / "two" / f"figure.{number}")
-            assert matplotlib.rcParams["font.size"] == 20.0
-        assert [path.name for path in first] == [f"figure.{number}.pdf", f"figure.{number}.png"]
-        for one, two in zip(first, second, strict=True):
-            assert one.read_bytes() == two.read_bytes()
-            assert one.stat().st_size > 1000
+def test_a_figure_is_the_same_file_again_whatever_the_user_settings(table, fit, tmp_path):
+    first = save_figure(hysteresis_figure(table, fit), tmp_path / "one" / "figure.0")
+    with matplotlib.rc_context({"font.size": 20.0, "lines.linewidth": 9.0}):
+        second = save_figure(hysteresis_figure(table, fit), tmp_path / "two" / "figure.0")
+        assert matplotlib.rcParams["font.size"] == 20.0
+    assert [path.name for path in first] == ["figure.0.pdf", "figure.0.png"]
+    for one, two in zip(first, second, strict=True):
+        assert one.read_bytes() == two.read_bytes()
+        assert one.stat().st_size > 1000
 
 
 def test_k_is_shown_against_disorder_and_size(table, fit):
