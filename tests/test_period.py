@@ -50,7 +50,7 @@ def run(simulation, adhesion=None):
         simulation_field(simulation, adhesion),
         simulation.schedule,
         elastic_energy=simulation.elastic_energy,
-        solver=SOLVERS["newton"](1e-9),
+        solver=SOLVERS["newton"](1e-10),
         recorder=Recorder(fronts=True),
     )
 
@@ -66,7 +66,8 @@ def test_after_the_lead_in_a_period_later_the_front_is_the_same_further_on(energ
             fronts[-2 * schedule.n_period : -schedule.n_period],
         )
         assert len(before) == schedule.n_period
-        # The first of two periods may begin anywhere within the tolerance, 1e-9.
+        # The first of two periods may begin anywhere within the tolerance, and soft sites differ by
+        # more than that.
         assert np.max(np.abs(last - before - direction * schedule.period)) < 2e-9
 
 
