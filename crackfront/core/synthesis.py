@@ -12,6 +12,9 @@ from crackfront.core.spectrum import Spectrum
 
 Array = NDArray[np.float64]
 
+_AT_ONCE = 16384
+"""Modes that are drawn at once."""
+
 
 def gaussian_field(
     spectrum: Spectrum,
@@ -58,13 +61,15 @@ def gaussian_field(
     step = 2 * np.pi / l_y
     columns = np.arange(highest_y + 1)
     modes = np.zeros((n_x, n_y // 2 + 1), dtype=complex)
-    for row in range(-highest_x, highest_x + 1):
-        noise = rng.standard_normal((2, highest_y + 1))
-        if abs(row) > kept_x:
-            continue
-        wavevector = step * np.hypot(row * (l_y / l_x), columns)
+    height = max(_AT_ONCE // columns.size, 1)
+    for first in range(-highest_x, highest_x + 1, height):
+        rows = np.arange(first, min(first + height, highest_x + 1))
+        noise = rng.standard_normal((rows.size, 2, columns.size))
+        wavevector = step * np.hypot(rows[:, None] * (l_y / l_x), columns)
         amplitude = np.sqrt(spectrum.density(wavevector) / 2) / math.sqrt(l_x * l_y)
-        modes[row, : kept_y + 1] = ((noise[0] + 1j * noise[1]) * amplitude)[: kept_y + 1]
+        kept = np.abs(rows) <= kept_x
+        found = (noise[:, 0] + 1j * noise[:, 1]) * amplitude
+        modes[rows[kept], : kept_y + 1] = found[kept, : kept_y + 1]
     # A real field: on the column q_y = 0 the modes at -q_x are the conjugates of those at q_x.
     modes[0, 0] = 0.0
     modes[-kept_x:, 0] = np.conj(modes[kept_x:0:-1, 0])
