@@ -18,6 +18,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, as_completed
 from pathlib import Path
@@ -134,6 +135,8 @@ def is_manager(n_worker: int) -> bool:
     if world.size == n_worker + 1:
         return world.rank == 0
     if world.rank != 0:
+        # The first that exits ends them all; the manager has its say before.
+        time.sleep(5)
         sys.exit(2)
     raise ValueError(
         f"MPI started {world.size} rank(s) where {n_worker + 1} were expected ({n_worker} workers "
