@@ -1,11 +1,12 @@
-"""How far a steady front has to go before its apparent work of adhesion is another one.
+"""Errors of k from steady branches, and how far a front has to go before w is another one.
 
 python -m benchmarks.independence
 
-The autocorrelation of w along a branch, in mean radius, pooled over surfaces and summed up to where
-it first falls below a twentieth, gives the distance of independent states; beside it stand the
-correlation length of w_loc and the rms deviation of the fronts from their mean radius, of which
-:func:`crackfront.core.cycle.steady.standard_error` makes it.
+The error of k that was asked for is held against the scatter of k between surfaces, and against
+what a run states. The autocorrelation of w along a branch, in mean radius, pooled over surfaces and
+summed up to where it first falls below a twentieth, gives the distance of independent states;
+beside it stand the correlation length of w_loc and the rms deviation of the fronts from their mean
+radius, of which :func:`crackfront.core.cycle.steady.standard_error` makes it.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.adhesion import correlation_length
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.steady import SteadySchedule
@@ -31,6 +33,8 @@ _FIRST = 2000
 
 _SCHEDULE = SteadySchedule(start=0.3, max_penetration=2.0, travel=0.5, standard_error=1e-4)
 _FORGOTTEN = 0.05
+
+_ASKED = SteadySchedule(start=0.3, max_penetration=2.0, travel=1.5, standard_error=0.1)
 
 NAMES = [name for name in SCENES if name.startswith(("chemical", "flat", "h08", "h03"))]
 
@@ -68,10 +72,36 @@ def independent_distance(
     return spacing * float(1 + 2 * relative[1:end].sum()), float(np.mean(roughness))
 
 
+def errors_of_k(scene: Scene) -> tuple[float, float, float, float]:
+    """States of an approach, the scatter of k, its stated error, that of the branches apart."""
+    rows = []
+    for number in range(_FIRST, _FIRST + N_REALISATION):
+        simulation = replace(scene.simulation(scene.chosen_knobs(0.03), number), schedule=_ASKED)
+        result = run_simulation(simulation)
+        found = steady_adhesion(result.record, simulation.correlation_length)
+        apart = np.hypot(found.w_appr_error, found.w_retr_error)
+        values = np.array([found.hysteresis, found.hysteresis_error, apart])
+        rows.append((found.n_approach, *values / (2 * result.measures.e_el)))
+    count, factor, stated, apart = np.transpose(rows)
+    scatter = float(np.std(factor, ddof=1))
+    return float(np.mean(count)), scatter, _root_mean_square(stated), _root_mean_square(apart)
+
+
+def _root_mean_square(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
 def main() -> None:
-    """Print the table of all scenes."""
+    """Print the tables of all scenes."""
     click.echo(
-        "| scene | branch | independent / correlation length | rms of the front / correlation "
+        f"| scene, k to {_ASKED.standard_error:g} | states of the approach | scatter of k between "
+        "surfaces | stated error | that of the branches apart |\n|---|---|---|---|---|"
+    )
+    for name in NAMES:
+        n_state, *errors = errors_of_k(SCENES[name])
+        click.echo(f"| {name} | {n_state:.1f} | " + " | ".join(f"{x:.3f}" for x in errors) + " |")
+    click.echo(
+        "\n| scene | branch | independent / correlation length | rms of the front / correlation "
         "length | independent / rms |\n|---|---|---|---|---|"
     )
     branches: tuple[tuple[Direction, str], ...] = ((1, "approach"), (-1, "retraction"))

@@ -14,6 +14,7 @@ from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import FEWEST_STATES, SteadySchedule, standard_error
+from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import ADHESION, LATERAL, variable
 
 Array = NDArray[np.float64]
@@ -29,7 +30,9 @@ STEADY_DEFINITION = (
     "that fits force against mean radius best, by least squares of the force over the same states. "
     "The standard errors are those of the means over the states of one realisation; states closer "
     "than a correlation length, or three times the rms deviation of the front from its mean radius "
-    "where that is larger, count as one."
+    "where that is larger, count as one. That of the hysteresis of a sphere is of the differences "
+    "between every state of the approach and that of the retraction whose mean radius is closest: "
+    "what the surface raises and lowers in both branches alike is no error of it."
 )
 """What `w_appr` and `w_retr` mean; stored in every file that holds them."""
 
@@ -46,6 +49,7 @@ class SteadyMeasures:
     w_appr_error: float = variable("standard error of w_appr over its states", ADHESION)
     w_retr_error: float = variable("standard error of w_retr over its states", ADHESION)
     hysteresis: float = variable("w_retr - w_appr", ADHESION)
+    hysteresis_error: float = variable("standard error of w_retr - w_appr", ADHESION)
     midpoint: float = variable("(w_retr + w_appr) / 2", ADHESION)
     w_appr_from_force: float = variable("w of the JKR curve fitted to the approach", ADHESION)
     w_retr_from_force: float = variable("w of the JKR curve fitted to the retraction", ADHESION)
@@ -144,6 +148,7 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
         w_appr_error=errors[0],
         w_retr_error=errors[1],
         hysteresis=w_retr - w_appr,
+        hysteresis_error=_error_of_difference(states, branches, correlation_length),
         midpoint=(w_retr + w_appr) / 2,
         w_appr_from_force=from_force[0],
         w_retr_from_force=from_force[1],
@@ -194,6 +199,7 @@ def period_adhesion(
         w_appr_error=errors[0],
         w_retr_error=errors[1],
         hysteresis=w_retr - w_appr,
+        hysteresis_error=math.hypot(*errors),
         midpoint=(w_retr + w_appr) / 2,
         # What pulls the springs is the force.
         w_appr_from_force=w_appr,
@@ -205,6 +211,17 @@ def period_adhesion(
         highest_radius=math.nan,
         front_rms=float(np.mean(states.rms_position[np.concatenate(branches)])),
     )
+
+
+def _error_of_difference(
+    states: ContactState[Array], branches: Sequence[NDArray[np.bool_]], correlation_length: float
+) -> float:
+    """Standard error of the hysteresis, from states of both branches that are closest."""
+    radii = [states.mean_radius[branch] for branch in branches]
+    approach, retraction = (states.apparent_work_of_adhesion[branch] for branch in branches)
+    closest = np.argmin(np.abs(radii[0][:, np.newaxis] - radii[1]), axis=1)
+    roughness = states.rms_radius[branches[0]]
+    return standard_error(retraction[closest] - approach, radii[0], roughness, correlation_length)
 
 
 def _counts(branches: Sequence[NDArray[np.bool_]]) -> tuple[int, int]:
@@ -224,4 +241,4 @@ def _adhesion_from_force(radius: Array, force: Array) -> float:
 def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
     """A result without values, and why."""
     nan = math.nan
-    return SteadyAdhesion(*(nan,) * 9, *counts, nan, nan, nan, sentence)
+    return SteadyAdhesion(*(nan,) * 10, *counts, nan, nan, nan, sentence)

@@ -51,6 +51,7 @@ _MEASURES = (
     "w_appr_error",
     "w_retr_error",
     "hysteresis",
+    "hysteresis_error",
     "lowest_radius",
     "highest_radius",
 )
@@ -187,11 +188,10 @@ def result_sentence(record: CycleRecord, steady: SteadyAdhesion | None = None) -
         return forces
     if steady.sentence:
         return f"no steady part: w_appr and w_retr are unknown; {forces}"
-    both = math.hypot(steady.w_appr_error, steady.w_retr_error)
     works = (
         ("w_appr", steady.w_appr, steady.w_appr_error),
         ("w_retr", steady.w_retr, steady.w_retr_error),
-        ("hysteresis", steady.hysteresis, both),
+        ("hysteresis", steady.hysteresis, steady.hysteresis_error),
     )
     told = ", ".join(f"{name} {_with_error(value, error)}" for name, value, error in works)
     return f"{told} (w_int); {forces}"

@@ -60,7 +60,8 @@ class SteadySchedule:
     travel : float
         Way of a smooth front from state to state, in correlation lengths of w_loc.
     standard_error : float
-        Standard error of w_appr at which the approach turns, in units of e_el: that of its k.
+        Standard error of k, of (w_retr - w_appr) / (2 e_el), at which the approach turns: the
+        retraction is taken to scatter as much.
 
     Raises
     ------
@@ -96,7 +97,7 @@ def run_steady(
 ) -> CycleRecord:
     """Approach and retraction over the radii that an estimate of the hysteresis needs.
 
-    Each branch begins at the circle of `forward_circle`. The approach goes on until w_appr has the
+    Each branch begins at the circle of `forward_circle`. The approach goes on until k has the
     requested standard error or the largest penetration is reached; the retraction from about its
     largest radius until it has left the radii over which the approach was steady.
 
@@ -110,7 +111,7 @@ def run_steady(
         Distance that every site must travel before a branch counts as steady.
         (Units: reduced lateral length)
     elastic_energy : float
-        Unit of the requested error. (Units: w_int)
+        Hysteresis per 2 k. (Units: w_int)
     solver, recorder
         As of :func:`crackfront.core.cycle.run.run_cycle`.
 
@@ -144,19 +145,24 @@ def _loads(
     n_step = math.floor((schedule.max_penetration - schedule.start) / step)
     near = jkr.equilibrium_radius(schedule.start) - correlation_length
     circle = forward_circle(field, schedule.start, 1, near)
+    steady, shared = [], []
     for k in range(n_step + 1):
         yield Load(schedule.start + k * step, 1, circle if k == 0 else None)
         if recorder.status is not Status.CONVERGED:
             return
-        steady = [item for item in recorder.states if item.least_travel >= correlation_length]
+        if recorder.states[-1].least_travel < correlation_length:
+            continue
+        steady.append(recorder.states[-1])
+        shared.append(_circle_adhesion(field, recorder.states[-1].mean_radius))
         radius, values, roughness = (
             np.array([getattr(item, name) for item in steady])
             for name in ("mean_radius", "apparent_work_of_adhesion", "rms_radius")
         )
-        error = standard_error(values, radius, roughness, correlation_length) / elastic_energy
-        if values.size >= _FEWEST_TO_STOP and error <= schedule.standard_error:
+        own = own_part(values, np.array(shared))
+        error = standard_error(own, radius, roughness, correlation_length) / math.sqrt(2)
+        if len(steady) >= _FEWEST_TO_STOP and error <= schedule.standard_error * elastic_energy:
             break
-    lowest = np.min(radius, initial=math.inf)
+    lowest = min((item.mean_radius for item in steady), default=math.inf)
     last = recorder.states[-1]
     penetration = _retraction_start(field, last)
     yield Load(
@@ -175,10 +181,40 @@ def _retraction_start(field: Field, last: ContactState[float]) -> float:
     The mean of w_loc is taken to lie in the middle between the branches, so that the retraction
     begins outside rather than inside where it is in the upper half.
     """
-    circle = np.full(field.geometry.n_site, last.mean_radius)
-    mean = float(np.mean(front_adhesion(circle, field))) / WORK_OF_ADHESION
+    mean = _circle_adhesion(field, last.mean_radius)
     expected = max(mean + 0.8 * (mean - last.apparent_work_of_adhesion), 0.0)
     return min(float(jkr.equilibrium_penetration(last.mean_radius, expected)), last.penetration)
+
+
+def _circle_adhesion(field: Field, radius: float) -> float:
+    """Mean of w_loc on a circle (Units: w_int)."""
+    circle = np.full(field.geometry.n_site, radius)
+    return float(np.mean(front_adhesion(circle, field))) / WORK_OF_ADHESION
+
+
+def own_part(values: Array, shared: Array) -> Array:
+    """What one branch does not share with the other over the same radii.
+
+    The mean of w_loc on the circles raises and lowers both branches alike, the more the smoother
+    their fronts are; the hysteresis is free of it, and of its noise.
+
+    Parameters
+    ----------
+    values : (n_state,) array
+        Apparent work of adhesion of steady states. (Units: w_int)
+    shared : (n_state,) array
+        Mean of w_loc on the circles of their mean radii. (Units: w_int)
+
+    Returns
+    -------
+    (n_state,) array
+        The values without what follows the circles, by least squares. (Units: w_int)
+    """
+    deviation = shared - np.mean(shared)
+    variance = np.mean(deviation**2)
+    if variance == 0:
+        return values
+    return np.asarray(values - deviation * (np.mean(deviation * values) / variance))
 
 
 def forward_circle(field: Field, penetration: float, direction: Direction, near: float) -> Array:

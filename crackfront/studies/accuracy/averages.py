@@ -117,8 +117,7 @@ def _sampled(scene: Scene, knob: str, value: float, number: int) -> tuple[float,
     simulation = _other(scene, knob, value, number)
     result = run_simulation(simulation)
     steady = steady_adhesion(result.record, simulation.correlation_length)
-    error = float(np.hypot(steady.w_appr_error, steady.w_retr_error))
-    return steady.hysteresis, error, result.measures.cpu_seconds
+    return steady.hysteresis, steady.hysteresis_error, result.measures.cpu_seconds
 
 
 def _other(scene: Scene, knob: str, value: float, number: int) -> Simulation:
