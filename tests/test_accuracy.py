@@ -446,7 +446,7 @@ def test_the_cost_of_a_study_is_told_before_it_is_measured(study, tmp_path, monk
     arguments = ["accuracy", "large-0.04", "--study", study, "--realisations", "16"]
     stopped = CliRunner().invoke(main, [*arguments, "--output", str(tmp_path)])
     told, _ = stopped.stderr.split("Error: measured")
-    assert re.fullmatch(r"about [\d.]+ (min|hours) of processor time\n", told)
+    assert re.fullmatch(r"about [\d.]+ (s|min|hours) of processor time\n", told)
 
 
 def test_the_cost_of_a_study_is_that_of_its_runs():

@@ -44,7 +44,10 @@ def test_the_measured_runs_are_those_that_the_command_would_measure():
 
 def test_numbers_of_states_are_predicted_too():
     found = np.array([run.n_state for run in RUNS])
-    assert np.all(np.abs(found - [run.features.n_state for run in RUNS]) <= 2 + 0.1 * found)
+    expected = [run.features.n_state for run in RUNS]
+    # At weak disorder surfaces take 17 to 31 states to the same error of k.
+    assert np.all(np.abs(found - expected) <= 2 + 0.2 * found)
+    assert np.mean(np.abs(found - expected)) < 1
 
 
 @pytest.mark.parametrize("step", [0.05, 0.2])
