@@ -6,6 +6,16 @@ PAPER = f"results/figures/{SCALE}"
 ANIMATED = [name for name in FIGURES if figure(name).animate]
 
 
+def expected_seconds(name):
+    """Processor time of the data of a figure."""
+    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+    return figure(name).seconds(parameters)
+
+
+# Those that take longest go first: one that began last would leave the other cores waiting.
+LONGEST = sorted(FIGURES, key=expected_seconds)[-5:]
+
+
 wildcard_constraints:
     figure="(main|si|beyond)-[a-z0-9-]+",
 
@@ -42,6 +52,14 @@ rule figure_data:
         " --output results/figures"
 
 
+use rule figure_data as longest_figure_data with:
+    output:
+        f"{PAPER}/{{figure}}.nc",
+    wildcard_constraints:
+        figure="|".join(LONGEST),
+    priority: 1
+
+
 rule figure_of_sweep:
     input:
         f"results/{Path(SWEEPS[SCALE]).stem}/hysteresis.nc",
@@ -55,7 +73,7 @@ rule figure_of_sweep:
         "crackfront figure {FIGURE_SETTINGS:q}/si-5.yaml --scale {SCALE} --output results/figures"
 
 
-ruleorder: figure_of_sweep > figure_data
+ruleorder: figure_of_sweep > longest_figure_data > figure_data
 
 
 rule figure_drawing:

@@ -27,7 +27,7 @@ rule simulate:
     output:
         f"{RESULTS}/shards/{{shard}}.json",
     # What takes all cores comes before what takes one, which would leave the others waiting.
-    priority: 1
+    priority: 2
     threads: int(config.get("ranks", workflow.resource_settings.cores or 1))
     params:
         # Changes with everything that determines the simulations, the solver's sources included.
