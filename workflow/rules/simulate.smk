@@ -26,8 +26,9 @@ def block_option(shard):
 rule simulate:
     output:
         f"{RESULTS}/shards/{{shard}}.json",
-    # What takes all cores comes before what takes one, which would leave the others waiting.
-    priority: 2
+    # What takes all cores comes before what takes one, which would leave the others waiting: jobs
+    # are chosen by the sum of their priorities.
+    priority: 100
     threads: int(config.get("ranks", workflow.resource_settings.cores or 1))
     params:
         # Changes with everything that determines the simulations, the solver's sources included.
