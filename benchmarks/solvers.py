@@ -31,8 +31,8 @@ class Row:
     ----------
     group, label, status : str
         The problem, and how its cycle ended.
-    n_visit : float
-        Sites times samples that the front crosses.
+    n_cutoff : float
+        Sites times short cutoffs that the front crosses.
     reference_seconds, newton_seconds : float
         CPU time of the cycle, the least of the repeats. (Units: s)
     reference_pairs, newton_pairs : int
@@ -48,7 +48,7 @@ class Row:
     group: str
     label: str
     status: str
-    n_visit: float
+    n_cutoff: float
     reference_seconds: float
     newton_seconds: float
     reference_pairs: int
@@ -86,12 +86,11 @@ def measure(problem: Problem, seed: int, repeats: int) -> Row:
     if reference.fronts is None or newton.fronts is None or reference.status != newton.status:
         raise RuntimeError(f"{problem.label}: the solvers end with different states")
     travel = 2 * float(reference.states.max_radius.max())
-    spacing = problem.spectrum.short_cutoff / problem.samples_per_cutoff
     return Row(
         group=problem.group,
         label=problem.label,
         status=newton.status.name.lower(),
-        n_visit=problem.n_angle * travel / spacing,
+        n_cutoff=problem.n_angle * travel / problem.spectrum.short_cutoff,
         reference_seconds=min(run["reference"][0] for run in runs),
         newton_seconds=min(run["newton"][0] for run in runs),
         reference_pairs=int(reference.states.iterations.sum()),
@@ -107,29 +106,29 @@ def measure(problem: Problem, seed: int, repeats: int) -> Row:
 def table(rows: Iterable[Row]) -> str:
     """Markdown table of rows."""
     lines = [
-        "| problem | reference s | newton s | ratio | FFT pairs | updates/visit "
-        "| newton ns/visit | error / lambda_s | MB |",
+        "| problem | reference s | newton s | ratio | FFT pairs | updates a site and cutoff "
+        "| newton us a site and cutoff | error / lambda_s | MB |",
         "|---|---|---|---|---|---|---|---|---|",
     ]
     lines += [
         f"| {row.label} | {row.reference_seconds:.2f} | {row.newton_seconds:.2f} | {row.ratio:.1f} "
         f"| {row.reference_pairs} / {row.newton_pairs} "
-        f"| {row.reference_updates / row.n_visit:.1f} / {row.newton_updates / row.n_visit:.1f} "
-        f"| {1e9 * row.newton_seconds / row.n_visit:.0f} | {row.error:.1e} | {row.memory:.0f} |"
+        f"| {row.reference_updates / row.n_cutoff:.1f} / {row.newton_updates / row.n_cutoff:.1f} "
+        f"| {1e6 * row.newton_seconds / row.n_cutoff:.2f} | {row.error:.1e} | {row.memory:.0f} |"
         for row in rows
     ]
     return "\n".join(lines)
 
 
 def exponents(rows: Iterable[Row]) -> str:
-    """How the time grows with sites times samples crossed, at every disorder."""
+    """How the time grows with sites times cutoffs crossed, at every disorder."""
     scaling = [row for row in rows if row.group == "scaling"]
     lines = []
     for disorder in sorted({row.label.split(", ")[1] for row in scaling}):
         chosen = [row for row in scaling if row.label.split(", ")[1] == disorder]
-        visits = np.log([row.n_visit for row in chosen])
+        crossed = np.log([row.n_cutoff for row in chosen])
         grown = {
-            solver: np.polyfit(visits, np.log([getattr(row, solver) for row in chosen]), 1)[0]
+            solver: np.polyfit(crossed, np.log([getattr(row, solver) for row in chosen]), 1)[0]
             for solver in ("reference_seconds", "newton_seconds")
         }
         lines.append(
@@ -140,7 +139,7 @@ def exponents(rows: Iterable[Row]) -> str:
 
 
 def scaling_figure(rows: Iterable[Row]) -> Figure:
-    """Time of both solvers against sites times samples crossed."""
+    """Time of both solvers against sites times cutoffs crossed."""
     scaling = [row for row in rows if row.group == "scaling"]
     disorders = sorted({row.label.split(", ")[1] for row in scaling})
     with house_style():
@@ -149,11 +148,11 @@ def scaling_figure(rows: Iterable[Row]) -> Figure:
         for disorder, colour in zip(disorders, (BLUE, VERMILION), strict=True):
             strength = rf"$w_\mathrm{{rms}} = {disorder.split()[1]}\,w_\mathrm{{int}}$"
             chosen = [row for row in scaling if row.label.split(", ")[1] == disorder]
-            visits = np.array([row.n_visit for row in chosen])
+            crossed = np.array([row.n_cutoff for row in chosen])
             for solver, marker, dashes in (("reference", "s", (3, 2)), ("newton", "o", (1, 0))):
                 seconds = np.array([getattr(row, f"{solver}_seconds") for row in chosen])
                 axes.plot(
-                    visits,
+                    crossed,
                     seconds,
                     color=colour,
                     marker=marker,
@@ -164,7 +163,7 @@ def scaling_figure(rows: Iterable[Row]) -> Figure:
                 )
         axes.set_xscale("log")
         axes.set_yscale("log")
-        axes.set_xlabel("sites times samples crossed")
+        axes.set_xlabel("sites times short cutoffs crossed")
         axes.set_ylabel("CPU time of a cycle / s")
         axes.legend(loc="upper left")
         return figure
@@ -176,7 +175,7 @@ def dataset(rows: list[Row]) -> xr.Dataset:
         "group": ("1", "table of the problem"),
         "label": ("1", "problem"),
         "status": ("1", "how its cycle ended"),
-        "n_visit": ("1", "sites times samples crossed"),
+        "n_cutoff": ("1", "sites times short cutoffs crossed"),
         "reference_seconds": ("s", "CPU time of the reference"),
         "newton_seconds": ("s", "CPU time of the fast solver"),
         "reference_pairs": ("1", "pairs of FFTs of the reference"),
@@ -205,8 +204,8 @@ def report(rows: list[Row], repeats: int) -> str:
         "",
         "Made by `make benchmark`. One process, one core; both solvers in turn on the same field,",
         f"tolerance {TOLERANCE:g} w_int, penetration 0 to 1 and back to pull-off; CPU seconds, the",
-        f"least of {repeats} runs. A visit is one site and one sample that it crosses. The error",
-        "is the largest difference of the fronts over all load steps.",
+        f"least of {repeats} runs. The error is the largest difference of the fronts over all load",
+        "steps.",
         "",
         described_machine(),
     ]
@@ -216,7 +215,7 @@ def report(rows: list[Row], repeats: int) -> str:
     if any(row.group == "scaling" for row in rows):
         parts += [
             "",
-            "Exponent of the time in sites times samples crossed (least squares of logarithms):",
+            "Exponent of the time in sites times cutoffs crossed (least squares of logarithms):",
             "",
             exponents(rows),
         ]
