@@ -59,9 +59,10 @@ _STATE_SECONDS = 1e-4
 _LEAD_IN, _FEWEST_STEADY = 1.0, 9.0
 """States of a branch before it is steady; the fewest of an approach."""
 
-_NOISE, _SHARED = 0.6, 0.002
+_NOISE, _SHARED = 0.6, 0.17
 """Variance of k from state to state, relative to that of as many independent sites as the front has
-correlation lengths; e_el below which most of it is shared by both branches. (Units: 1, w_int)"""
+correlation lengths; e_el below which both branches share most of it, over that length: a contact of
+fewer sites is pinned as a whole."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,9 +265,9 @@ def _expected_steady(simulation: Simulation, schedule: SteadySchedule, length: f
     """Number of states that the steady parts of both branches are expected to have."""
     step = schedule.travel * length * jkr.penetration_slope(schedule.start)
     n_most = 1 + math.floor((schedule.max_penetration - schedule.start) / step)
-    breadth = integral_breadth(simulation)
-    n_independent = 2 * math.pi * jkr.equilibrium_radius(schedule.start) / (length * breadth)
-    variance = _NOISE / ((simulation.elastic_energy + _SHARED * breadth) * n_independent)
+    alike = length * integral_breadth(simulation)
+    n_independent = 2 * math.pi * jkr.equilibrium_radius(schedule.start) / alike
+    variance = _NOISE / ((simulation.elastic_energy + _SHARED * alike) * n_independent)
     return 2 * min(n_most, max(_FEWEST_STEADY, _LEAD_IN + variance / schedule.standard_error**2))
 
 
