@@ -8,6 +8,7 @@
 # written and installed. Where that is impossible it says why and runs the command without Slurm.
 set -euo pipefail
 
+export PATH="$PATH:/usr/sbin:/sbin" # where the daemons stand
 packages=(slurmctld slurmd slurm-client munge)
 configuration=/etc/slurm/slurm.conf
 folder='' before='' shared='' daemons=()
@@ -109,10 +110,8 @@ for node in n1 n2; do
   slurmd -D -N "$node" >/dev/null 2>&1 &
   daemons+=($!)
 done
-idle() { [ "$(sinfo --noheader --Node --states=idle 2>/dev/null | wc -l)" = 2 ]; }
-for _ in $(seq 60); do
-  idle && break
-  sleep 0.5
-done
+idle() { [ "$(timeout 5 sinfo --noheader --Node --states=idle 2>/dev/null | wc -l)" = 2 ]; }
+late=$((SECONDS + 30))
+until idle || [ "$SECONDS" -gt "$late" ]; do sleep 0.5; done
 idle || tail -n 5 "$folder"/*.log
 "$@"
