@@ -147,7 +147,7 @@ def test_at_weak_disorder_k_scatters_by_the_error_that_was_asked_for():
         apart.append(math.hypot(adhesion.w_appr_error, adhesion.w_retr_error) / unit)
     scatter = np.std(factors, ddof=1)
     assert 0.6 * asked < scatter < 1.7 * asked
-    # What both branches share would make the error of each by itself more than twice as large.
+    # The errors of both branches by themselves would say far more, as they share most of it.
     assert 0.6 < np.mean(stated) / scatter < 1.7 < np.mean(apart) / scatter
 
 
