@@ -16,7 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.fft
+from numba.extending import overload
 from numpy.typing import NDArray
+from rocket_fft import lowlevel
 
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import mode_stiffness
@@ -107,7 +109,32 @@ def set_filter(team, transform, filtering, geometry, shift, inverted):
     wait(team)
 
 
-@jit
+_AXIS = np.zeros(1, np.int64)
+
+
+def _to_modes(row, modes):
+    """Modes of a row."""
+    modes[:] = scipy.fft.fft(row)
+
+
+def _from_modes(modes, row):
+    """Row of modes."""
+    row[:] = scipy.fft.ifft(modes)
+
+
+@overload(_to_modes)
+def _to_modes_compiled(row, modes):
+    """Into memory that is there; scipy's functions ask for new memory every time."""
+    return lambda row, modes: lowlevel.c2c(row, modes, _AXIS, True, 1.0, 1)
+
+
+@overload(_from_modes)
+def _from_modes_compiled(modes, row):
+    """The same backward."""
+    return lambda modes, row: lowlevel.c2c(modes, row, _AXIS, False, 1.0 / row.size, 1)
+
+
+@kernel
 def apply_filter(team, transform, filtering, vector, result):
     """Fill in what a filter makes of a vector; return the product of the two."""
     rows, columns = transform.sine.shape
@@ -116,7 +143,9 @@ def apply_filter(team, transform, filtering, vector, result):
         source = vector.view(np.complex128).reshape((rows, columns))
         target = result.view(np.complex128).reshape((rows, columns))
     else:
-        source, target = vector.astype(np.complex128).reshape((rows, columns)), after
+        source, target = before, after
+        for i in range(vector.size):
+            before[0, i] = vector[i]
     if rows > 1:
         for block in range(*my_blocks(team)):
             low, high = bounds(team, block, columns)
@@ -124,7 +153,7 @@ def apply_filter(team, transform, filtering, vector, result):
         wait(team)
     for block in range(*my_blocks(team)):
         for row in range(*bounds(team, block, rows)):
-            before[row] = scipy.fft.fft(before[row] if rows > 1 else source[row])
+            _to_modes(before[row] if rows > 1 else source[row], before[row])
     wait(team)
     for block in range(*my_blocks(team)):
         product = 0.0
@@ -141,10 +170,7 @@ def apply_filter(team, transform, filtering, vector, result):
                 here[2 * first :], there[2 * first :], straight[first:], crossed[first:],
                 mixed[2 * first :],
             )  # fmt: skip
-            if rows > 1:
-                after[row] = scipy.fft.ifft(after[row])
-            else:
-                target[row] = scipy.fft.ifft(after[row])
+            _from_modes(after[row], after[row] if rows > 1 else target[row])
         tell(team, 0, block, product / (rows * columns))
     product = summed(team, hear(team), 0)
     if rows > 1:
@@ -153,7 +179,8 @@ def apply_filter(team, transform, filtering, vector, result):
             _gather(after, transform.turn, target, low, high)
         wait(team)
     elif not transform.paired:
-        result[:] = target[0].real
+        for i in range(result.size):
+            result[i] = target[0, i].real
     return product
 
 

@@ -203,7 +203,7 @@ def relax_together(work, rank, size, load, direction, field, memory, tolerance, 
     return code, pairs, updates, residual
 
 
-@jit
+@kernel
 def _look(team, work, geometry, load, direction, lowest):
     """Bring the drives up to date.
 
@@ -219,11 +219,19 @@ def _look(team, work, geometry, load, direction, lowest):
         )
         tell(team, 0, block, most)
         tell(team, 1, block, -least)
-        moved = not np.array_equal(front.place[low:high], before[low:high])
-        tell(team, 2, block, 1.0 if moved else 0.0)
-        before[low:high] = front.place[low:high]
+        tell(team, 2, block, _remember(front.place, before, low, high))
     told = hear(team)
     return greatest(team, told, 0), -greatest(team, told, 1), greatest(team, told, 2) > 0.0
+
+
+@kernel
+def _remember(place, before, low, high):
+    """Note where some sites are; return how many of them moved."""
+    moved = 0
+    for i in range(np.uint64(low), np.uint64(high)):
+        moved += place[i] != before[i]
+        before[i] = place[i]
+    return moved
 
 
 @jit
@@ -239,7 +247,7 @@ def _is_round_off(place, field, drive, least):
     return True
 
 
-@jit
+@kernel
 def _line_outweighs_field(team, newton, field, memory, front, window, load, direction):
     """Whether the coupling that windows leave out is stiffer than the field.
 
@@ -264,7 +272,7 @@ def _line_outweighs_field(team, newton, field, memory, front, window, load, dire
     return summed(team, hear(team), 0) / count < 0.5 * left_out
 
 
-@jit
+@kernel
 def _mark(team, geometry, work, level):
     """Mark the sites with a drive above a level and their neighbours; return their number."""
     offer(team)
@@ -292,7 +300,7 @@ def _mark_sites(geometry, work, level, low, high):
     return marked
 
 
-@jit
+@kernel
 def _relax_active(
     team, work, window, field, memory, b, direction, level, furthest, slack, everywhere
 ):

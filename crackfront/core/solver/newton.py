@@ -116,6 +116,15 @@ def _largest(vector):
     return max(max(a, b), max(c, d))
 
 
+@kernel(fastmath={"reassoc", "nsz"})
+def _forward(vector):
+    """Sum of what is positive."""
+    total = 0.0
+    for i in range(np.uint64(vector.size)):
+        total += max(vector[i], 0.0)
+    return total
+
+
 @kernel(fastmath={"contract"})
 def _begin(newton, started, low, high):
     """Drives that a step leaves, none if it was not started; return the largest."""
@@ -158,7 +167,7 @@ def _advance(newton, length, low, high):
     return _largest(residual[low:high])
 
 
-@jit
+@kernel
 def _solve(team, newton, geometry, shift, tolerance, all_free, longest):
     """Conjugate gradients for (K + D) step = right on the free sites, to a tolerance in each.
 
@@ -210,7 +219,7 @@ def _soften(newton, share, floor, low, high):
     return total
 
 
-@jit
+@kernel
 def _solve_softest(team, newton, geometry, floor, tolerance, share, all_free, longest):
     """Step with as much softening as leaves the matrix positive definite.
 
@@ -232,7 +241,7 @@ def _solve_softest(team, newton, geometry, floor, tolerance, share, all_free, lo
         share = share / 2 if share > 0.2 else 0.0
 
 
-@jit
+@kernel
 def newton_step(team, newton, field, memory, front, drive, b, direction, furthest, slack):
     """Move the whole front by one safe step of at most about `furthest`; return code and pairs.
 
@@ -245,7 +254,7 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
         low, high = bounds(team, block, count)
         tell(team, 0, block, np.max(drive[low:high]))
         tell(team, 1, block, np.max(newton.reach[low:high]))
-        tell(team, 2, block, np.sum(np.maximum(drive[low:high], 0.0)))
+        tell(team, 2, block, _forward(drive[low:high]))
     told = hear(team)
     largest, longest = greatest(team, told, 0), greatest(team, told, 1)
     own = mode_stiffness(geometry, 1) * self_modes(count)
@@ -290,7 +299,8 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
             break
     for block in range(*my_blocks(team)):
         low, high = bounds(team, block, count)
-        step[low:high] *= part
+        for i in range(low, high):
+            step[i] *= part
         if not safe or longest == 0.0:
             _own_steps(newton, field, memory, front, drive, b, direction, furthest, low, high)
         tell(team, 0, block, _passes_lowest(newton, field, front, b, direction, low, high))
