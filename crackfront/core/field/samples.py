@@ -119,6 +119,7 @@ def _ray_fetch(field: Any, memory: Any, ray: int, first: int, last: int) -> None
 
 @implements(peek, RayField)
 def _ray_peek(field: Any, memory: Any, ray: int, sample: int) -> Any:
+    ray, sample = np.uint64(ray), np.uint64(sample)
     slope = field.slopes[ray, sample] if field.slopes.size > 0 else 0.0
     return field.products[ray, sample], slope
 
@@ -190,13 +191,15 @@ def _tile_memory(field: Any) -> SampleMemory:
 def _tile_fetch(field: Any, memory: Any, ray: int, first: int, last: int) -> None:
     """Evaluate samples where some are missing; the test stays small so that it is inlined."""
     if first < memory.first[ray] or last > memory.last[ray]:
-        _fill(field, memory, ray, first, last)
+        # With one type for all callers it is one kernel, which gives the same bits to all.
+        _fill(field, memory, np.int64(ray), first, last)
 
 
 @implements(peek, TileField)
 def _tile_peek(field: Any, memory: Any, ray: int, sample: int) -> Any:
     """From memory."""
-    place = sample & (memory.samples.shape[1] - 1)
+    ray = np.uint64(ray)
+    place = np.uint64(sample) & np.uint64(memory.samples.shape[1] - 1)
     slope = memory.samples[ray, place, 1] if field.cubic else 0.0
     return memory.samples[ray, place, 0], slope
 

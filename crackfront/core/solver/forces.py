@@ -165,6 +165,13 @@ def hardening(field, memory, ray, place, product, segment, reach, load, directio
     return steepest + restoring
 
 
+@kernel(inline="always")
+def following(site, count):
+    """Site after another, as a number without a sign: others may count from the end."""
+    after = site + np.uint64(1)
+    return after if after < np.uint64(count) else np.uint64(0)
+
+
 @kernel(fastmath={"contract", "nnan", "nsz"})
 def harden(field, memory, front, first, step, part, reach, stiffness, load, direction):
     """Let reaches grow to part of the steps, and stiffnesses to what holds over them.
@@ -173,7 +180,7 @@ def harden(field, memory, front, first, step, part, reach, stiffness, load, dire
     """
     place, segment, product = front.place, front.segment, front.product
     grew = False
-    i = first
+    i = np.uint64(first)
     for j in range(step.size):
         if part * step[j] > reach[j]:
             reach[j] = part * step[j]
@@ -182,7 +189,7 @@ def harden(field, memory, front, first, step, part, reach, stiffness, load, dire
             )
             grew = grew or ahead > stiffness[j]
             stiffness[j] = max(ahead, stiffness[j])
-        i = i + 1 if i + 1 < place.size else 0
+        i = following(i, place.size)
     return grew
 
 
@@ -192,10 +199,10 @@ def touch_samples(field, memory, front, first, values):
 
     The reads do not wait for one another, as those between the computations of bounds do.
     """
-    i = first
+    i = np.uint64(first)
     for j in range(values.size):
         values[j] = peek(field, memory, i, front.segment[i])[0]
-        i = i + 1 if i + 1 < front.place.size else 0
+        i = following(i, front.place.size)
 
 
 @jit

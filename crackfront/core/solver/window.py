@@ -15,6 +15,7 @@ from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import restoring_force, weight
 from crackfront.core.solver.forces import (
     CONVERGED,
+    following,
     harden,
     locate,
     resting_place,
@@ -205,7 +206,7 @@ def _move(window, field, memory, front, first, count, b, direction, lowest):
     place, segment, product = front.place, front.segment, front.product
     drive, step, coupling = window.drive, window.step, window.coupling
     geometry = field.geometry
-    i = first
+    i = np.uint64(first)
     for j in range(count):
         moved = place[i] + direction * step[j]
         resting = direction < 0 and moved <= lowest
@@ -216,7 +217,7 @@ def _move(window, field, memory, front, first, count, b, direction, lowest):
         rise = restoring_force(geometry, moved, b) - restoring_force(geometry, place[i], b)
         drive[j] = -np.inf if resting else drive[j] + direction * (value - product[i] - rise)
         place[i], segment[i], product[i] = moved, low, value
-        i = i + 1 if i + 1 < place.size else 0
+        i = following(i, place.size)
     _couple(drive, coupling, step, count)
     return CONVERGED
 
@@ -229,11 +230,11 @@ def _trim(window, field, front, first, count, level, slack):
     """
     place, drive, reach = front.place, window.drive, window.reach
     low, high = count, 0
-    i = first
+    i = np.uint64(first)
     for j in range(count):
         if drive[j] > level * weight(field.geometry, place[i]) * WORK_OF_ADHESION:
             low, high = min(low, j), j + 1
-        i = i + 1 if i + 1 < place.size else 0
+        i = following(i, place.size)
     if high == 0:
         return first, 0
     low, high = max(low - _MARGIN, 0), min(high + _MARGIN, count)
