@@ -97,8 +97,8 @@ class Work(NamedTuple):
         Its places at the last look.
     drive, line : (n_site,) array
         Forces along the motion, and of the line.
-    active : (n_site,) bool array
-        Sites that windows hold.
+    runs : (n_run, 2) int array
+        First site of each run of driven sites, and the first after it.
     newton : Newton
         Work space of steps of the whole front.
     """
@@ -108,7 +108,7 @@ class Work(NamedTuple):
     before: Array
     drive: Array
     line: Array
-    active: NDArray[np.bool_]
+    runs: NDArray[np.int64]
     newton: Newton
 
 
@@ -122,7 +122,7 @@ def make_work(place):
         np.zeros(count),
         np.zeros(count),
         np.zeros(count),
-        np.zeros(count, np.bool_),
+        np.zeros((count // (2 * _MARGIN + 1) + 2, 2), np.int64),
         make_newton(count),
     )
 
@@ -177,7 +177,7 @@ def relax_together(work, rank, size, load, direction, field, memory, tolerance, 
             updates += used
             continue
         calm, level = residual <= _CALM, share * residual
-        n_active = 0 if calm else _mark(team, geometry, work, level)
+        n_run, n_active = (0, 0) if calm else _find_runs(team, geometry, work, level)
         share = max(0.5 * share, _LEAST) if n_active < _FEW * count else min(2 * share, _LEVEL)
         widespread = n_active > 0.3 * count
         if widespread and pairs >= doubted:
@@ -194,11 +194,10 @@ def relax_together(work, rank, size, load, direction, field, memory, tolerance, 
             updates += count
             if code != BLOCKED:
                 continue
-            n_active = _mark(team, geometry, work, level)
-        code, used = _relax_active(
-            team, work, window, field, memory, load, direction, level, furthest, slack,
-            n_active == count,
-        )  # fmt: skip
+            n_run, _ = _find_runs(team, geometry, work, level)
+        code, used = _relax_runs(
+            team, work, window, field, memory, n_run, load, direction, level, furthest, slack
+        )
         updates += used
     return code, pairs, updates, residual
 
@@ -273,78 +272,84 @@ def _line_outweighs_field(team, newton, field, memory, front, window, load, dire
 
 
 @kernel
-def _mark(team, geometry, work, level):
-    """Mark the sites with a drive above a level and their neighbours; return their number."""
+def _find_runs(team, geometry, work, level):
+    """Find the runs of sites with a drive above a level; return their number and that of sites."""
     offer(team)
-    for block in range(*my_blocks(team)):
-        low, high = bounds(team, block, work.drive.size)
-        tell(team, 0, block, _mark_sites(geometry, work, level, low, high))
-    return int(summed(team, hear(team), 0))
+    n_run, n_active = 0, 0
+    if team.rank == 0:
+        n_run = _list_runs(geometry, work, level)
+        for run in range(n_run):
+            n_active += work.runs[run, 1] - work.runs[run, 0]
+    own, end = my_blocks(team)
+    for block in range(own, end):
+        tell(team, 0, block, n_run if block == 0 else 0)
+        tell(team, 1, block, n_active if block == 0 else 0)
+    told = hear(team)
+    return int(summed(team, told, 0)), int(summed(team, told, 1))
 
 
 @kernel
-def _mark_sites(geometry, work, level, low, high):
-    """Mark those of some sites that have a drive above a level, or a neighbour of such a site."""
-    place, drive, active, count = work.front.place, work.drive, work.active, work.drive.size
-    marked, until = 0, low
-    for i in range(low, high):
-        active[i] = False
-    for i in range(low - _MARGIN, high + _MARGIN):
-        site = i + count if i < 0 else i - count if i >= count else i
+def _list_runs(geometry, work, level):
+    """First site of each run and the first after it, which may pass the ends of the front."""
+    runs, count = work.runs, work.drive.size
+    n_run, site = 0, _next_driven(geometry, work, level, 0)
+    while site < count:
+        if n_run == 0 or site - _MARGIN > runs[n_run - 1, 1]:
+            runs[n_run, 0] = site - _MARGIN
+            n_run += 1
+        runs[n_run - 1, 1] = site + _MARGIN + 1
+        site = _next_driven(geometry, work, level, site + 1)
+    if n_run > 0 and runs[n_run - 1, 1] - count >= runs[0, 0]:
+        # The last touches the first.
+        if n_run > 1:
+            n_run -= 1
+            runs[0, 0] = runs[n_run, 0] - count
+        else:
+            runs[0, 0] = np.argmin(work.drive)
+            runs[0, 1] = runs[0, 0] + count
+    return n_run
+
+
+@kernel
+def _next_driven(geometry, work, level, site):
+    """First site from one on with a drive above a level relative to w_int; their number if none."""
+    place, drive = work.front.place, work.drive
+    while site < drive.size:
+        if site + 8 <= drive.size:
+            driven = False
+            for i in range(np.uint64(site), np.uint64(site + 8)):
+                driven |= drive[i] > level * weight(geometry, place[i]) * WORK_OF_ADHESION
+            if not driven:
+                site += 8
+                continue
         if drive[site] > level * weight(geometry, place[site]) * WORK_OF_ADHESION:
-            start, end = max(i - _MARGIN, until), min(i + _MARGIN + 1, high)
-            for j in range(start, end):
-                active[j] = True
-            marked += max(end - start, 0)
-            until = max(until, end)
-    return marked
+            break
+        site += 1
+    return site
 
 
 @kernel
-def _relax_active(
-    team, work, window, field, memory, b, direction, level, furthest, slack, everywhere
-):
-    """Relax every run of active sites, in pieces that fit a window; return code and updates.
+def _relax_runs(team, work, window, field, memory, n_run, b, direction, level, furthest, slack):
+    """Relax every run of driven sites, in pieces that fit a window; return code and updates.
 
     The pieces do not know of one another: threads take them as they come.
     """
-    drive, active = work.drive, work.active
-    updates, offset, code, passed = 0, 0, CONVERGED, 0
-    start = np.argmin(drive) if everywhere else np.argmin(active)
+    drive, runs = work.drive, work.runs
+    updates, code, passed = 0, CONVERGED, 0
     mine = take(team)
-    while True:
-        offset, length = _next_run(active, start, offset)
-        if length == 0:
-            break
-        if passed == mine:
-            first = (start + offset) % drive.size
-            end, used = relax_window(
-                window, field, memory, work.front, drive, first, length, b, direction,
-                level, furthest, slack, _ROUNDS,
-            )  # fmt: skip
-            code, updates = max(code, end), updates + used
-            mine = take(team)
-        passed += 1
-        offset += length
+    for run in range(n_run):
+        for first in range(runs[run, 0], runs[run, 1], LONGEST):
+            if passed == mine:
+                end, used = relax_window(
+                    window, field, memory, work.front, drive, first % drive.size,
+                    min(runs[run, 1] - first, LONGEST), b, direction, level, furthest, slack, _ROUNDS,
+                )  # fmt: skip
+                code, updates = max(code, end), updates + used
+                mine = take(team)
+            passed += 1
     own, end = my_blocks(team)
     for block in range(own, end):
         tell(team, 0, block, code)
         tell(team, 1, block, updates if block == own else 0)
     told = hear(team)
     return int(greatest(team, told, 0)), int(summed(team, told, 1))
-
-
-@kernel
-def _next_run(active, start, offset):
-    """Offset from the start and length of the next run of active sites that fits a window."""
-    count, length = active.size, 0
-    i = (start + offset) % count
-    while offset + length < count and length < LONGEST:
-        if active[i]:
-            length += 1
-        elif length > 0:
-            break
-        else:
-            offset += 1
-        i = i + 1 if i + 1 < count else 0
-    return offset, length
