@@ -135,14 +135,18 @@ def _begin(newton, started, low, high):
     return _largest(newton.residual[low:high])
 
 
-@kernel(fastmath={"contract"})
+@kernel(fastmath={"reassoc", "nsz", "contract"})
 def _turn(newton, factor, shift, low, high):
-    """Next direction of search, and the force of the line along it if all sites are free."""
+    """Next direction of search, and :func:`_oppose` for it if all sites are free."""
     residual, descent, free = newton.residual, newton.descent, newton.free
-    along, search = newton.along, newton.search
+    force, along, stiffness, search = newton.force, newton.along, newton.stiffness, newton.search
+    total = 0.0
     for i in range(np.uint64(low), np.uint64(high)):
         along[i] = factor * along[i] + residual[i] - shift * descent[i]
         search[i] = factor * search[i] + free[i] * descent[i]
+        force[i] = along[i] + stiffness[i] * search[i]
+        total += search[i] * force[i]
+    return total
 
 
 @kernel(fastmath={"reassoc", "nsz", "contract"})
@@ -189,13 +193,14 @@ def _solve(team, newton, geometry, shift, tolerance, all_free, longest):
             return pairs, True
         new = apply_filter(team, transform, newton.inverse, newton.residual, newton.descent)
         for block in range(*my_blocks(team)):
-            _turn(newton, new / old, shift, *bounds(team, block, count))
+            low, high = bounds(team, block, count)
+            tell(team, 0, block, _turn(newton, new / old, shift, low, high))
         if not all_free:
             wait(team)
             apply_filter(team, transform, newton.line, newton.search, newton.along)
             pairs += 1
-        for block in range(*my_blocks(team)):
-            tell(team, 0, block, _oppose(newton, *bounds(team, block, count)))
+            for block in range(*my_blocks(team)):
+                tell(team, 0, block, _oppose(newton, *bounds(team, block, count)))
         curvature = summed(team, hear(team), 0)
         if not curvature > 0.0:
             return pairs, False
@@ -253,7 +258,7 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
     for block in range(*my_blocks(team)):
         low, high = bounds(team, block, count)
         tell(team, 0, block, np.max(drive[low:high]))
-        tell(team, 1, block, np.max(newton.reach[low:high]))
+        tell(team, 1, block, _largest(newton.reach[low:high]))
         tell(team, 2, block, _forward(drive[low:high]))
     told = hear(team)
     largest, longest = greatest(team, told, 0), greatest(team, told, 1)
@@ -286,7 +291,7 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
         for block in range(*my_blocks(team)):
             low, high = bounds(team, block, count)
             np.maximum(step[low:high], 0.0, step[low:high])
-            tell(team, 0, block, np.max(step[low:high]))
+            tell(team, 0, block, _largest(step[low:high]))
         longest = greatest(team, hear(team), 0)
         # A part of a safe step is safe.
         part = min(1.0, furthest / max(longest, 1e-9 * furthest))
