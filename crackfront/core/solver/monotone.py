@@ -268,7 +268,7 @@ def _line_outweighs_field(team, newton, field, memory, front, window, load, dire
         for stiffness in ahead:
             total += max(stiffness, 0.0)
         tell(team, 0, block, total)
-    return summed(team, hear(team), 0) / count < 0.5 * left_out
+    return summed(team, hear(team), 0) / count < left_out
 
 
 @kernel
