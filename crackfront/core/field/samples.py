@@ -52,7 +52,7 @@ def fetch(field: Any, memory: SampleMemory, ray: int, first: int, last: int) -> 
 
 
 @dispatched
-def peek(field: Any, memory: SampleMemory, ray: int, sample: int) -> Any:
+def peek(field: Any, memory: SampleMemory, ray: int | np.uint64, sample: int) -> Any:
     """Product and slope at a sample of a ray that has been fetched."""
     raise NotImplementedError
 
@@ -119,9 +119,9 @@ def _ray_fetch(field: Any, memory: Any, ray: int, first: int, last: int) -> None
 
 @implements(peek, RayField)
 def _ray_peek(field: Any, memory: Any, ray: int, sample: int) -> Any:
-    ray, sample = np.uint64(ray), np.uint64(sample)
-    slope = field.slopes[ray, sample] if field.slopes.size > 0 else 0.0
-    return field.products[ray, sample], slope
+    site, place = np.uint64(ray), np.uint64(sample)
+    slope = field.slopes[site, place] if field.slopes.size > 0 else 0.0
+    return field.products[site, place], slope
 
 
 @implements(sample_place, TileField)
@@ -198,10 +198,10 @@ def _tile_fetch(field: Any, memory: Any, ray: int, first: int, last: int) -> Non
 @implements(peek, TileField)
 def _tile_peek(field: Any, memory: Any, ray: int, sample: int) -> Any:
     """From memory."""
-    ray = np.uint64(ray)
+    site = np.uint64(ray)
     place = np.uint64(sample) & np.uint64(memory.samples.shape[1] - 1)
-    slope = memory.samples[ray, place, 1] if field.cubic else 0.0
-    return memory.samples[ray, place, 0], slope
+    slope = memory.samples[site, place, 1] if field.cubic else 0.0
+    return memory.samples[site, place, 0], slope
 
 
 @kernel

@@ -12,7 +12,7 @@ k % rows and column k // rows.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.fft
@@ -63,12 +63,12 @@ class Filter(NamedTuple):
 
 
 @jit
-def make_transform(count):
-    """Work space for a front of `count` sites."""
+def make_transform(count, like):
+    """Work space for a front of `count` sites, of the precision of a complex array."""
     half = count // 2 if count % 2 == 0 else count
     rows = ROWS if count >= LARGE and half % ROWS == 0 else 1
     shape = (rows, half // rows)
-    turn = np.empty(shape, np.complex128)
+    turn = np.empty(shape, like.dtype)
     cosine, sine = np.empty(shape), np.empty(shape)
     for row in range(rows):
         for column in range(shape[1]):
@@ -77,15 +77,15 @@ def make_transform(count):
             if rows > 1:
                 angle = 2 * np.pi * row * column / half
                 turn[row, column] = complex(np.cos(angle), -np.sin(angle))
-    before, after = np.empty(shape, np.complex128), np.empty(shape, np.complex128)
+    before, after = np.empty(shape, like.dtype), np.empty(shape, like.dtype)
     return Transform(count % 2 == 0, turn, cosine, sine, before, after)
 
 
 @jit
 def make_filter(transform):
     """Filter without factors yet."""
-    shape = transform.sine.shape
-    return Filter(np.empty(shape), np.empty(shape))
+    shape, kind = transform.sine.shape, transform.turn.real.dtype
+    return Filter(np.empty(shape, kind), np.empty(shape, kind))
 
 
 @kernel
@@ -112,14 +112,14 @@ def set_filter(team, transform, filtering, geometry, shift, inverted):
 _AXIS = np.zeros(1, np.int64)
 
 
-def _to_modes(row, modes):
+def _to_modes(row: Any, modes: Any) -> None:
     """Modes of a row."""
     modes[:] = scipy.fft.fft(row)
 
 
-def _from_modes(modes, row):
-    """Row of modes."""
-    row[:] = scipy.fft.ifft(modes)
+def _from_modes(modes: Any, row: Any, count: int) -> None:
+    """Row of the modes of a number of sites or pairs."""
+    row[:] = scipy.fft.ifft(modes, norm="forward") / count
 
 
 @overload(_to_modes)
@@ -129,9 +129,9 @@ def _to_modes_compiled(row, modes):
 
 
 @overload(_from_modes)
-def _from_modes_compiled(modes, row):
+def _from_modes_compiled(modes, row, count):
     """The same backward."""
-    return lambda modes, row: lowlevel.c2c(modes, row, _AXIS, False, 1.0 / row.size, 1)
+    return lambda modes, row, count: lowlevel.c2c(modes, row, _AXIS, False, 1.0 / count, 1)
 
 
 @kernel
@@ -140,8 +140,8 @@ def apply_filter(team, transform, filtering, vector, result):
     rows, columns = transform.sine.shape
     before, after = transform.before, transform.after
     if transform.paired:
-        source = vector.view(np.complex128).reshape((rows, columns))
-        target = result.view(np.complex128).reshape((rows, columns))
+        source = vector.view(before.dtype).reshape((rows, columns))
+        target = result.view(before.dtype).reshape((rows, columns))
     else:
         source, target = before, after
         for i in range(vector.size):
@@ -158,9 +158,9 @@ def apply_filter(team, transform, filtering, vector, result):
     for block in range(*my_blocks(team)):
         product = 0.0
         for row in range(*bounds(team, block, rows)):
-            here, there = before[row].view(np.float64), before[-row].view(np.float64)
-            mixed = after[row].view(np.float64)
             straight, crossed = filtering.straight[row], filtering.crossed[row]
+            here, there = before[row].view(straight.dtype), before[-row].view(straight.dtype)
+            mixed = after[row].view(straight.dtype)
             first = 0
             if row == 0:
                 # The partner of the first mode is itself.
@@ -170,7 +170,7 @@ def apply_filter(team, transform, filtering, vector, result):
                 here[2 * first :], there[2 * first :], straight[first:], crossed[first:],
                 mixed[2 * first :],
             )  # fmt: skip
-            _from_modes(after[row], after[row] if rows > 1 else target[row])
+            _from_modes(after[row], after[row] if rows > 1 else target[row], rows * columns)
         tell(team, 0, block, product / (rows * columns))
     product = summed(team, hear(team), 0)
     if rows > 1:
@@ -192,7 +192,8 @@ def _scatter(source, turn, parts, low, high):
         even, odd = a + c, b + d
         parts[0, column] = even + odd
         parts[2, column] = turn[2, column] * (even - odd)
-        even, odd = a - c, -1j * (b - d)
+        even, odd = a - c, b - d
+        odd = complex(odd.imag, -odd.real)
         parts[1, column] = turn[1, column] * (even + odd)
         parts[3, column] = turn[3, column] * (even - odd)
 
@@ -204,9 +205,10 @@ def _gather(parts, turn, target, low, high):
         a, b = parts[0, column], np.conj(turn[1, column]) * parts[1, column]
         c = np.conj(turn[2, column]) * parts[2, column]
         d = np.conj(turn[3, column]) * parts[3, column]
-        even, odd = 0.25 * (a + c), 0.25 * (b + d)
+        even, odd = a + c, b + d
         target[0, column], target[2, column] = even + odd, even - odd
-        even, odd = 0.25 * (a - c), 0.25j * (b - d)
+        even, odd = a - c, b - d
+        odd = complex(-odd.imag, odd.real)
         target[1, column], target[3, column] = even + odd, even - odd
 
 
@@ -216,7 +218,7 @@ def _mix(here, there, straight, crossed, mixed):
 
     Modes are given as real and imaginary parts in turn.
     """
-    total, last = 0.0, np.uint64(there.size - 1)
+    total, last = straight.dtype.type(0.0), np.uint64(there.size - 1)
     for column in range(straight.size):
         # Numbers without a sign, as those that may count from the end are no loop for vectors.
         k = np.uint64(2) * np.uint64(column)

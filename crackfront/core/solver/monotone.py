@@ -138,6 +138,7 @@ def relax_together(work, rank, size, load, direction, field, memory, tolerance, 
     count, geometry = drive.size, field.geometry
     drive[0] = 1.0
     set_filter(team, newton.transform, newton.line, geometry, 0.0, False)
+    set_filter(team, newton.coarse, newton.coarse_line, geometry, 0.0, False)
     for block in range(*my_blocks(team)):
         low, high = bounds(team, block, count)
         tell(team, 0, block, place_sites(front, field, memory, direction, low, high))
@@ -342,7 +343,8 @@ def _relax_runs(team, work, window, field, memory, n_run, b, direction, level, f
             if passed == mine:
                 end, used = relax_window(
                     window, field, memory, work.front, drive, first % drive.size,
-                    min(runs[run, 1] - first, LONGEST), b, direction, level, furthest, slack, _ROUNDS,
+                    min(runs[run, 1] - first, LONGEST), b, direction, level, furthest, slack,
+                    _ROUNDS,
                 )  # fmt: skip
                 code, updates = max(code, end), updates + used
                 mine = take(team)

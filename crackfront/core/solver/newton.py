@@ -1,4 +1,8 @@
-"""A safe Newton step of the whole front, by conjugate gradients."""
+"""A safe Newton step of the whole front, by conjugate gradients.
+
+They run in single precision; what their step leaves of the drives is then told in double precision,
+and they go on from there where it is too much.
+"""
 
 from __future__ import annotations
 
@@ -28,12 +32,16 @@ from crackfront.core.solver.forces import (
 from crackfront.core.solver.team import bounds, greatest, hear, my_blocks, summed, tell, wait
 
 Array = NDArray[np.float64]
+Single = NDArray[np.float32]
 
 _GROWTH = 8
 """How many times as far as the furthest reach, or as its own force takes it, a site may go."""
 
 _ACCURACY = 0.05
 """To which part of the mean drive the linear system is solved."""
+
+_MARGIN = 0.9
+"""To which part of that single precision is to come, before double precision tells."""
 
 _LIMIT = 100
 """Pairs of FFTs after which conjugate gradients are given up."""
@@ -48,63 +56,70 @@ class Newton(NamedTuple):
         Distance over which the stiffness holds.
     ahead : (n_site,) array
         Stiffness of the site's own force, negative where the field softens.
-    stiffness : (n_site,) array
+    step, right, line_force : (n_site,) array
+        The step, the drives that it is to use up, and the force of the line against it.
+    stiffness : (n_site,) array, in single precision as all that follow
         Stiffness that the step uses.
-    step, right : (n_site,) array
-        The step, and the drives that it is to use up.
     free : (n_site,) array
         1 for a site that may move, 0 for one that is driven backward and held.
     residual, descent, search, along, force : (n_site,) array
         What is left of the drives, that by the preconditioner, the direction of search, the force
         of the line along it, and with that of the sites.
-    transform : Transform
-        Work space for modes.
-    line, inverse : Filter
-        Stiffness of the line, and the preconditioner.
+    transform, coarse : Transform
+        Work space for modes in double and in single precision.
+    line, coarse_line, inverse : Filter
+        Stiffness of the line in both, and the preconditioner.
     """
 
     reach: Array
     ahead: Array
-    stiffness: Array
     step: Array
     right: Array
-    free: Array
-    residual: Array
-    descent: Array
-    search: Array
-    along: Array
-    force: Array
+    line_force: Array
+    stiffness: Single
+    free: Single
+    residual: Single
+    descent: Single
+    search: Single
+    along: Single
+    force: Single
     transform: Transform
+    coarse: Transform
     line: Filter
+    coarse_line: Filter
     inverse: Filter
 
 
 @jit
 def make_newton(count):
     """Work space for a front of `count` sites."""
-    transform = make_transform(count)
+    transform = make_transform(count, np.empty(0, np.complex128))
+    coarse = make_transform(count, np.empty(0, np.complex64))
     return Newton(
         np.zeros(count),
         np.empty(count),
         np.empty(count),
         np.empty(count),
         np.empty(count),
-        np.empty(count),
-        np.empty(count),
-        np.empty(count),
-        np.empty(count),
-        np.empty(count),
-        np.empty(count),
+        np.empty(count, np.float32),
+        np.empty(count, np.float32),
+        np.empty(count, np.float32),
+        np.empty(count, np.float32),
+        np.empty(count, np.float32),
+        np.empty(count, np.float32),
+        np.empty(count, np.float32),
         transform,
+        coarse,
         make_filter(transform),
-        make_filter(transform),
+        make_filter(coarse),
+        make_filter(coarse),
     )
 
 
 @kernel
 def _largest(vector):
     """Largest absolute value."""
-    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    a = b = c = d = vector.dtype.type(0.0)
     whole = vector.size - vector.size % 4
     for i in range(0, whole, 4):
         a = max(a, abs(vector[i]))
@@ -129,7 +144,7 @@ def _forward(vector):
 def _begin(newton, started, low, high):
     """Drives that a step leaves, none if it was not started; return the largest."""
     for i in range(np.uint64(low), np.uint64(high)):
-        force = newton.force[i] + newton.stiffness[i] * newton.step[i] if started else 0.0
+        force = newton.line_force[i] + newton.stiffness[i] * newton.step[i] if started else 0.0
         newton.residual[i] = newton.free[i] * (newton.right[i] - force)
         newton.search[i] = newton.along[i] = 0.0
     return _largest(newton.residual[low:high])
@@ -140,7 +155,7 @@ def _turn(newton, factor, shift, low, high):
     """Next direction of search, and :func:`_oppose` for it if all sites are free."""
     residual, descent, free = newton.residual, newton.descent, newton.free
     force, along, stiffness, search = newton.force, newton.along, newton.stiffness, newton.search
-    total = 0.0
+    factor, shift, total = np.float32(factor), np.float32(shift), 0.0
     for i in range(np.uint64(low), np.uint64(high)):
         along[i] = factor * along[i] + residual[i] - shift * descent[i]
         search[i] = factor * search[i] + free[i] * descent[i]
@@ -165,6 +180,7 @@ def _advance(newton, length, low, high):
     """Go along the direction of search; return the largest drive left."""
     step, residual, free = newton.step, newton.residual, newton.free
     search, force = newton.search, newton.force
+    length = np.float32(length)
     for i in range(np.uint64(low), np.uint64(high)):
         step[i] += length * search[i]
         residual[i] -= length * free[i] * force[i]
@@ -179,25 +195,29 @@ def _solve(team, newton, geometry, shift, tolerance, all_free, longest):
     pairs and whether it succeeded; it fails where the matrix is not positive definite. With all
     sites free, K times a direction follows by recurrence from the preconditioner.
     """
-    count, transform = newton.step.size, newton.transform
-    set_filter(team, transform, newton.inverse, geometry, shift, True)
-    if longest > 0.0:
-        apply_filter(team, transform, newton.line, newton.step, newton.force)
-    for block in range(*my_blocks(team)):
-        low, high = bounds(team, block, count)
-        tell(team, 0, block, _begin(newton, longest > 0.0, low, high))
-    largest, old, pairs = greatest(team, hear(team), 0), 1.0, 0
+    count, coarse, started = newton.step.size, newton.coarse, longest > 0.0
+    set_filter(team, coarse, newton.inverse, geometry, shift, True)
+    largest, old, pairs = 0.0, 1.0, 0
     while pairs < _LIMIT:
+        if largest <= _MARGIN * tolerance:
+            if started:
+                apply_filter(team, newton.transform, newton.line, newton.step, newton.line_force)
+                pairs += 1
+            for block in range(*my_blocks(team)):
+                low, high = bounds(team, block, count)
+                tell(team, 0, block, _begin(newton, started, low, high))
+            largest = greatest(team, hear(team), 0)
+            if largest <= tolerance:
+                return pairs, True
+            started = True
+        new = apply_filter(team, coarse, newton.inverse, newton.residual, newton.descent)
         pairs += 1
-        if largest <= tolerance:
-            return pairs, True
-        new = apply_filter(team, transform, newton.inverse, newton.residual, newton.descent)
         for block in range(*my_blocks(team)):
             low, high = bounds(team, block, count)
             tell(team, 0, block, _turn(newton, new / old, shift, low, high))
         if not all_free:
             wait(team)
-            apply_filter(team, transform, newton.line, newton.search, newton.along)
+            apply_filter(team, coarse, newton.coarse_line, newton.search, newton.along)
             pairs += 1
             for block in range(*my_blocks(team)):
                 tell(team, 0, block, _oppose(newton, *bounds(team, block, count)))
@@ -219,8 +239,10 @@ def _soften(newton, share, floor, low, high):
     total = 0.0
     for i in range(np.uint64(low), np.uint64(high)):
         ahead = newton.ahead[i]
-        newton.stiffness[i] = max(ahead, share * ahead) if share > 0.0 else max(ahead, floor)
-        total += max(newton.stiffness[i], 0.0)
+        stiffness = max(ahead, share * ahead) if share > 0.0 else max(ahead, floor)
+        # Rounded up, as it is a bound.
+        newton.stiffness[i] = stiffness + 2.0**-23 * abs(stiffness)
+        total += max(stiffness, 0.0)
     return total
 
 
@@ -271,7 +293,7 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
             furthest / _GROWTH, largest / max(restoring_slope(geometry, front.place[0], b), floor)
         )
     furthest = min(furthest, _GROWTH * max(longest, guess, largest / own))
-    tolerance = _ACCURACY * max(summed(team, told, 2) / count, 1e-6 * largest)
+    tolerance = _ACCURACY * max(summed(team, told, 2) / count, 1e-4 * largest)
     for block in range(*my_blocks(team)):
         low, high = bounds(team, block, count)
         held = _prepare(
