@@ -45,6 +45,21 @@ class Front(NamedTuple):
     product: Array
 
 
+@kernel
+def largest_entry(vector):
+    """Largest absolute value."""
+    a = b = c = d = vector.dtype.type(0.0)
+    whole = vector.size - vector.size % 4
+    for i in range(0, whole, 4):
+        a = max(a, abs(vector[i]))
+        b = max(b, abs(vector[i + 1]))
+        c = max(c, abs(vector[i + 2]))
+        d = max(d, abs(vector[i + 3]))
+    for i in range(whole, vector.size):
+        a = max(a, abs(vector[i]))
+    return max(max(a, b), max(c, d))
+
+
 @jit
 def line_force(geometry, front):
     """Force of the line on each site against its advance."""

@@ -25,6 +25,7 @@ from crackfront.core.solver.forces import (
     BLOCKED,
     CONVERGED,
     harden,
+    largest_entry,
     locate,
     resting_place,
     touch_samples,
@@ -116,21 +117,6 @@ def make_newton(count):
     )
 
 
-@kernel
-def _largest(vector):
-    """Largest absolute value."""
-    a = b = c = d = vector.dtype.type(0.0)
-    whole = vector.size - vector.size % 4
-    for i in range(0, whole, 4):
-        a = max(a, abs(vector[i]))
-        b = max(b, abs(vector[i + 1]))
-        c = max(c, abs(vector[i + 2]))
-        d = max(d, abs(vector[i + 3]))
-    for i in range(whole, vector.size):
-        a = max(a, abs(vector[i]))
-    return max(max(a, b), max(c, d))
-
-
 @kernel(fastmath={"reassoc", "nsz"})
 def _forward(vector):
     """Sum of what is positive."""
@@ -147,7 +133,7 @@ def _begin(newton, started, low, high):
         force = newton.line_force[i] + newton.stiffness[i] * newton.step[i] if started else 0.0
         newton.residual[i] = newton.free[i] * (newton.right[i] - force)
         newton.search[i] = newton.along[i] = 0.0
-    return _largest(newton.residual[low:high])
+    return largest_entry(newton.residual[low:high])
 
 
 @kernel(fastmath={"reassoc", "nsz", "contract"})
@@ -184,7 +170,7 @@ def _advance(newton, length, low, high):
     for i in range(np.uint64(low), np.uint64(high)):
         step[i] += length * search[i]
         residual[i] -= length * free[i] * force[i]
-    return _largest(residual[low:high])
+    return largest_entry(residual[low:high])
 
 
 @kernel
@@ -280,7 +266,7 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
     for block in range(*my_blocks(team)):
         low, high = bounds(team, block, count)
         tell(team, 0, block, np.max(drive[low:high]))
-        tell(team, 1, block, _largest(newton.reach[low:high]))
+        tell(team, 1, block, largest_entry(newton.reach[low:high]))
         tell(team, 2, block, _forward(drive[low:high]))
     told = hear(team)
     largest, longest = greatest(team, told, 0), greatest(team, told, 1)
@@ -313,7 +299,7 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
         for block in range(*my_blocks(team)):
             low, high = bounds(team, block, count)
             np.maximum(step[low:high], 0.0, step[low:high])
-            tell(team, 0, block, _largest(step[low:high]))
+            tell(team, 0, block, largest_entry(step[low:high]))
         longest = greatest(team, hear(team), 0)
         # A part of a safe step is safe.
         part = min(1.0, furthest / max(longest, 1e-9 * furthest))

@@ -17,6 +17,7 @@ from crackfront.core.solver.forces import (
     CONVERGED,
     following,
     harden,
+    largest_entry,
     locate,
     resting_place,
     touch_samples,
@@ -163,7 +164,7 @@ def _choose_step(window, field, memory, front, first, count, b, direction, furth
     harden(field, memory, front, first, step, 1.0, reach, stiffness, b, direction)
     _solve_banded(window, count)
     # A part of a safe step is safe.
-    part = min(1.0, furthest / np.max(step))
+    part = min(1.0, furthest / largest_entry(step))
     if harden(field, memory, front, first, step, part, reach, stiffness, b, direction):
         _solve_banded(window, count)
     if lowest > -np.inf:
@@ -265,7 +266,7 @@ def relax_window(
         first, count = _trim(window, field, front, first, count, level, slack)
         if count == 0:
             break
-        far = min(_GROWTH * np.max(reach[:count]), furthest)
+        far = min(_GROWTH * largest_entry(reach[:count]), furthest)
         _choose_step(window, field, memory, front, first, count, b, direction, far, lowest)
         updates += count
         code = _move(window, field, memory, front, first, count, b, direction, lowest)
