@@ -21,7 +21,9 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.fingerprint import NO_PART, SOLVER, fingerprint
+from crackfront.core.solver.filters import ROWS
 from crackfront.core.solver.relax import Solver, named_solver
+from crackfront.core.solver.team import LARGE
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error, usual_size
 
@@ -348,5 +350,10 @@ def simulation_fingerprint() -> str:
 
 
 def n_site(least: float) -> int:
-    """Even number of sites, 4 or more and not below a number, whose transforms are fast."""
-    return 2 * int(next_fast_len(math.ceil(max(4.0, least * (1 - 1e-12)) / 2), real=True))
+    """Even number of sites, 4 or more and not below a number, whose transforms are fast.
+
+    Of larger fronts four pairs of sites are transformed at once, in each part of the largest.
+    """
+    least = max(4.0, least * (1 - 1e-12))
+    together = 2 if least < 256 else 8 if least < LARGE else 8 * ROWS
+    return together * int(next_fast_len(math.ceil(least / together), real=True))
