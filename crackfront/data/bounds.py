@@ -168,15 +168,15 @@ def in_time(seconds: float) -> str:
 
     Examples
     --------
-    >>> in_time(45.2), in_time(9000.0), in_time(1e12)
-    ('45 s', '2.5 hours', '3.17e+04 years')
+    >>> in_time(0.452), in_time(110.0), in_time(9000.0), in_time(1e12)
+    ('0.45 s', '110 s', '2.5 hours', '3.17e+04 years')
     """
     if not math.isfinite(seconds):
         return "for ever"
     for unit, name in ((31557600.0, "years"), (86400.0, "days"), (3600.0, "hours"), (60.0, "min")):
         if seconds >= 2 * unit:
             return f"{seconds / unit:.3g} {name}"
-    return f"{seconds:.2g} s"
+    return f"{seconds:.0f} s" if seconds >= 10 else f"{seconds:.2g} s"
 
 
 def regular_file(path: Path, most_bytes: float = math.inf) -> Path:
