@@ -153,7 +153,7 @@ def relax_together(work, rank, size, load, direction, field, memory, tolerance, 
     # A backward force within the tolerance counts as equilibrium.
     slack = tolerance * WORK_OF_ADHESION * weight(geometry, innermost)
     residual, first_least, pairs, updates = np.inf, 0.0, 0, 0
-    share, collective, doubted = _LEVEL, False, 0
+    share, softening, collective, doubted = _LEVEL, 1.0, False, 0
     lowest = resting_place(field, load, direction)
     while code == CONVERGED:
         residual, least, moved = _look(team, work, geometry, load, direction, lowest)
@@ -188,8 +188,9 @@ def relax_together(work, rank, size, load, direction, field, memory, tolerance, 
                 team, newton, field, memory, front, window, load, direction
             )
         if calm or (widespread and collective):
-            code, used = newton_step(
-                team, newton, field, memory, front, drive, load, direction, furthest, slack
+            code, used, softening = newton_step(
+                team, newton, field, memory, front, drive, load, direction, furthest, slack,
+                softening,
             )  # fmt: skip
             pairs += used
             updates += count

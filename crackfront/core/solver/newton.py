@@ -47,6 +47,15 @@ _MARGIN = 0.9
 _LIMIT = 100
 """Pairs of FFTs after which conjugate gradients are given up."""
 
+_FALL = 0.8
+"""Part of the softening that is tried next where the matrix is not positive definite."""
+
+_RISE = 1.1
+"""How many times as much of the softening as the last step used the next one tries."""
+
+_LEAST = 0.2
+"""Share of the softening below which none is used."""
+
 
 class Newton(NamedTuple):
     """Work space of the Newton step; arrays have one entry a site.
@@ -251,12 +260,17 @@ def _solve_softest(team, newton, geometry, floor, tolerance, share, all_free, lo
         if solved or share == 0.0:
             return pairs, solved, share
         longest = 0.0
-        share = share / 2 if share > 0.2 else 0.0
+        share = _FALL * share if share > _LEAST else 0.0
 
 
 @kernel
-def newton_step(team, newton, field, memory, front, drive, b, direction, furthest, slack):
-    """Move the whole front by one safe step of at most about `furthest`; return code and pairs.
+def newton_step(
+    team, newton, field, memory, front, drive, b, direction, furthest, slack, share
+):  # fmt: skip
+    """Move the whole front by one safe step of at most about `furthest`.
+
+    `share` is the part of the softening that the last step used. Returns code, pairs of FFTs and
+    the share of this step.
 
     The right-hand side is lowered by the tolerance of the linear solver and the step clipped at
     zero: an inexact step then still leaves every drive forward. Sites driven backward by more than
@@ -288,7 +302,8 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
         tell(team, 0, block, held)
         _fails(newton, field, memory, front, b, direction, 1.0, low, high)
     all_free = greatest(team, hear(team), 0) == 0.0
-    pairs, share, safe, part, longest = 0, 1.0, False, 1.0, 0.0
+    share = min(_RISE * max(share, _LEAST), 1.0)
+    pairs, safe, part, longest = 0, False, 1.0, 0.0
     for _ in range(6):
         used, solved, share = _solve_softest(
             team, newton, geometry, floor, tolerance, share, all_free, longest
@@ -319,11 +334,11 @@ def newton_step(team, newton, field, memory, front, drive, b, direction, furthes
         tell(team, 0, block, _passes_lowest(newton, field, front, b, direction, low, high))
     # That of a site is safe only together with the others.
     if greatest(team, hear(team), 0) > 0.0:
-        return BLOCKED, pairs
+        return BLOCKED, pairs, share
     for block in range(*my_blocks(team)):
         low, high = bounds(team, block, count)
         tell(team, 0, block, _move(newton, field, memory, front, direction, low, high))
-    return int(greatest(team, hear(team), 0)), pairs
+    return int(greatest(team, hear(team), 0)), pairs, share
 
 
 @kernel
