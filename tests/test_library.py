@@ -126,8 +126,9 @@ def test_the_loop_of_a_simulation_is_that_of_the_library_to_round_off(surface, l
             record_fronts=True,
         )
     ).record
-    # Only the pixel differs, which the library takes from the coordinates.
-    np.testing.assert_allclose(loop.radius, record.fronts, rtol=1e-8)
+    # Only the pixel differs, by round-off that fronts enlarge where they are about to jump: the
+    # library takes it from the coordinates.
+    np.testing.assert_allclose(loop.radius, record.fronts, rtol=1e-7)
     np.testing.assert_allclose(loop.force, record.states.force, rtol=1e-7, atol=1e-7)
 
 
