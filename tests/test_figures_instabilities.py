@@ -67,9 +67,15 @@ def test_disorder_in_the_wrong_order_is_refused():
         SCENE.parameters.model_validate(parameters().model_dump() | {"weak": 0.1})
 
 
-def test_fronts_of_different_sizes_are_refused():
-    with pytest.raises(ValueError, match="raise least_angles to"):
-        SCENE.compute(parameters(error=0.02, least_angles=4), lambda line: None)
+def test_both_contacts_take_the_sites_of_the_larger():
+    coarse = parameters(error=0.1, least_angles=4)
+    sites = [
+        coarse.contact(energy, coarse.precision / 10).field.geometry.n_site
+        for energy in (coarse.strong, coarse.weak)
+    ]
+    assert sites[0] != sites[1]
+    computed = SCENE.compute(coarse, lambda line: None)
+    assert computed.before.shape[1] == max(sites)
 
 
 def test_its_drawing_has_patches_and_a_cycle(record):

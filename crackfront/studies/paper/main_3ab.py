@@ -195,19 +195,16 @@ def expected_seconds(parameters: InstabilityParameters) -> float:
 
 
 def _contacts(parameters: InstabilityParameters) -> list[RoughContact]:
-    """The two contacts, of one surface."""
-    tolerance, least = parameters.precision / 10, parameters.least_angles
-    contacts = [
-        parameters.contact(energy, tolerance, least_angles=least)
-        for energy in (parameters.strong, parameters.weak)
-    ]
-    sites = [contact.field.geometry.n_site for contact in contacts]
-    if sites[STRONG] != sites[WEAK]:
-        raise ValueError(
-            f"the fronts have {sites[STRONG]} and {sites[WEAK]} sites; raise least_angles to "
-            f"{max(sites)}"
-        )
-    return contacts
+    """The two contacts, of one surface and as many sites each."""
+    tolerance, sites = parameters.precision / 10, parameters.least_angles
+    while True:
+        contacts = [
+            parameters.contact(energy, tolerance, least_angles=sites)
+            for energy in (parameters.strong, parameters.weak)
+        ]
+        least, sites = sorted(contact.field.geometry.n_site for contact in contacts)
+        if least == sites:
+            return contacts
 
 
 def _branch(
