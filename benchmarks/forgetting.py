@@ -25,7 +25,9 @@ from crackfront.core.solver.relax import Newton
 from crackfront.simulate.contact import simulation_field
 from crackfront.studies.accuracy.scenes import SCENES, Scene
 
-_CHEMICAL, _H03, _H08 = (SCENES[f"{shape}-0.04"] for shape in ("chemical", "h03", "h08"))
+_CHEMICAL, _H03, _H08, _LARGE = (
+    SCENES[f"{shape}-0.04"] for shape in ("chemical", "h03", "h08", "large")
+)
 KNOBS = replace(
     _CHEMICAL.reference,
     angles_per_cutoff=2.2,
@@ -44,6 +46,8 @@ SURFACES = tuple(
         (_CHEMICAL, (0.1, 0.4, 0.84, 1.5)),
         (_H03, (0.45, 0.77)),
         (_H08, (0.45,)),
+        (SCENES["f013-0.14"], (0.2, 0.77)),
+        (_LARGE, (0.4,)),
     )
     for rms in amplitudes
 )
@@ -68,7 +72,7 @@ def differing(scene: Scene, sign: Direction) -> tuple[int, int]:
         furthest = first_place(field) if sign > 0 else last_place(field)
         behind = branch(field, np.full(field.geometry.n_site, furthest), loads, sign)
         begin = jkr.equilibrium_radius(1.0) - sign * length
-        near = branch(field, forward_circle(field, 1.0, sign, begin), loads, sign)
+        near = branch(field, forward_circle(field, 1.0, sign, begin, length), loads, sign)
         if near.fronts is None or behind.fronts is None:
             raise RuntimeError("fronts were not recorded")
         steady = near.states.least_travel >= length

@@ -171,7 +171,7 @@ def test_the_circle_of_the_start_moves_forward():
     for penetration in (0.0, 0.3, 1.0):
         for direction, nearby in ((1, 0.5), (-1, 1.5)):
             smooth = jkr.equilibrium_radius(penetration)
-            circle = forward_circle(field, penetration, direction, smooth)
+            circle = forward_circle(field, penetration, direction, smooth, LENGTH)
             assert np.ptp(circle) == 0
             release = jkr.energy_release_rate(circle, penetration)
             drive = direction * (front_adhesion(circle, field) - release)
@@ -180,14 +180,26 @@ def test_the_circle_of_the_start_moves_forward():
             assert np.all(direction * (circle - nearest) > 0)
 
 
+def test_a_circle_that_is_far_behind_needs_less_margin():
+    field, smooth = field_of(simulation(0.01)), jkr.equilibrium_radius(0.3)
+
+    def margin(length):
+        circle = forward_circle(field, 0.3, 1, smooth, length)
+        adhesion = front_adhesion(circle, field)
+        drive = np.mean(adhesion) - jkr.energy_release_rate(circle[0], 0.3)
+        return drive / np.std(adhesion)
+
+    assert 0.5 < margin(1e-6) < 1.5 < margin(1.0)
+
+
 def test_where_the_surface_repels_the_start_is_the_edge_in_compression():
     radii = 0.05 * np.arange(1, 61)
     adhesion = np.full((60, 8), WORK_OF_ADHESION)
     adhesion[:, 3:6] = -0.1
     field = polar_field(radii, adhesion)
-    assert np.allclose(forward_circle(field, 0.81, 1, 1.7), 0.9)
-    assert np.all(forward_circle(field, 0.0, 1, 1.4) == 0.05)
-    assert np.all(forward_circle(polar_field(radii, 40 * adhesion), 0.0, -1, 1.4) == 3.0)
+    assert np.allclose(forward_circle(field, 0.81, 1, 1.7, LENGTH), 0.9)
+    assert np.all(forward_circle(field, 0.0, 1, 1.4, LENGTH) == 0.05)
+    assert np.all(forward_circle(polar_field(radii, 40 * adhesion), 0.0, -1, 1.4, LENGTH) == 3.0)
 
 
 def test_contact_that_is_lost_on_the_way_back_is_told():

@@ -15,11 +15,11 @@ from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.steady import forward_circle
 from crackfront.core.field.fields import TileField
 from crackfront.core.outcome import Direction
-from crackfront.core.solver.relax import Solver
 from crackfront.core.variables import ADHESION, FORCE, variable
 from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.costs import featured_cost, features
 from crackfront.simulate.laws import Knobs
+from crackfront.simulate.simulation import Simulation
 from crackfront.studies.accuracy.scenes import Progress, Scene, Setting
 
 Array = NDArray[np.float64]
@@ -178,7 +178,7 @@ def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
     field = simulation_field(simulation)
     adhesion, force, radius = [], [], []
     for direction in (1, -1):
-        record = _branch(field, scene.penetrations[::direction], direction, simulation.solver)
+        record = _branch(field, scene.penetrations[::direction], direction, simulation)
         if record.fronts is None or len(record.fronts) != scene.penetrations.size:
             raise RuntimeError(f"{simulation.label}: {record.status.value}")
         adhesion.append(record.states.apparent_work_of_adhesion[::direction])
@@ -189,14 +189,14 @@ def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
 
 
 def _branch(
-    field: TileField, penetrations: Array, direction: Direction, solver: Solver
+    field: TileField, penetrations: Array, direction: Direction, simulation: Simulation
 ) -> CycleRecord:
     """One branch over given loads."""
-    first = float(penetrations[0])
-    circle = forward_circle(field, first, direction, jkr.equilibrium_radius(first))
+    first, length = float(penetrations[0]), simulation.correlation_length
+    circle = forward_circle(field, first, direction, jkr.equilibrium_radius(first), length)
     recorder = Recorder(fronts=True)
     loads = [Load(float(penetration), direction) for penetration in penetrations]
-    recorder.run(field, circle, loads, solver)
+    recorder.run(field, circle, loads, simulation.solver)
     return recorder.record()
 
 
