@@ -67,6 +67,8 @@ def fitted_to() -> Iterator[Simulation]:
     for energy in (0.01, 0.05):
         yield _simulation("flat", (0.00125, 0.00125, 1.0), energy, STEADY)
         yield _simulation("h08", (0.000625, 0.01, 0.8), energy, STEADY)
+    for energy in (0.003, 0.15):
+        yield _simulation("h03", (0.000625, 0.1, 0.3), energy, STEADY)
     for tolerance in (1e-3, 1e-6):
         knobs = replace(KNOBS, tolerance=tolerance)
         for energy in ENERGIES:

@@ -7,7 +7,8 @@ the tile and that of the load steps,
 
 with the :math:`n_p^2` points of the tile, the states :math:`n_b`, the sites :math:`N` and, as
 :math:`x`, logarithms of what the sweeps of a load step depend on and whether the load is a full
-cycle: its steps into and out of contact take longer than those of the steady branches. The
+cycle: its steps into and out of contact take longer than those of the steady branches, whose
+starts are the closer the more correlation lengths the front has. The
 coefficients are fitted where they are asked for, to the rows that are not held out.
 """
 
@@ -301,7 +302,7 @@ def _coefficients() -> tuple[float, ...]:
     return tuple(least_squares(residuals, _START).x.tolist())
 
 
-_START = (-18.0, -12.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_START = (-18.0, -12.0, 0.5, *(0.0,) * 9)
 """Logarithm of the time of a point of the tile, c_0, and exponents to begin with."""
 
 
@@ -309,12 +310,15 @@ def _terms(items: Sequence[Features]) -> tuple[Array, Array, Array]:
     """Of runs, by rows: points of the tile, their logarithm; states, sites; terms of the law."""
     columns = np.array([astuple(item) for item in items], dtype=float).T
     n_angle, n_point, energy, tolerance, breadth, travel, full_cycle, n_state = columns
+    sites, disorder, steady = np.log(n_angle / 1e3), np.log(energy / 0.02), 1 - full_cycle
     logarithms = np.array(
         [
-            np.log(n_angle / 1e3),
-            np.log(n_angle / 1e3) ** 2,
-            np.log(energy / 0.02),
-            np.log(energy / 0.02) ** 2,
+            sites,
+            sites**2,
+            disorder,
+            disorder**2,
+            steady * disorder,
+            steady * disorder * sites,
             np.log(tolerance / 1e-4),
             np.log(breadth),
             np.log(travel),
