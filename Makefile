@@ -112,7 +112,7 @@ benchmark: env  ## Solvers against the reference, what requests cost, how sweeps
 	$(IN_ENV) .venv/bin/python -m benchmarks.costs --output results/benchmark
 	$(IN_ENV) .venv/bin/python -m benchmarks.scaling --output results/benchmark
 
-accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half an hour on two cores)
+accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (16 minutes on two cores)
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default accuracy
 	@echo "Results: results/accuracy/"
 
@@ -120,7 +120,7 @@ validate: env  ## The model against boundary elements (15 minutes); VALIDATION=c
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config validation=$(VALIDATION) -- validation
 	@echo "Results: results/$(basename $(notdir $(VALIDATION)))/validation.md"
 
-figures: env  ## All figures of the paper; SCALE=quick (15 minutes) or SCALE=paper
+figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=paper (15)
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config scale=$(SCALE) -- figures
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
 
