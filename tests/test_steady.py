@@ -180,7 +180,7 @@ def test_the_circle_of_the_start_moves_forward():
             assert np.all(direction * (circle - nearest) > 0)
 
 
-def test_a_circle_that_is_far_behind_needs_less_margin():
+def test_a_circle_that_is_far_behind_the_most_pinned_front_needs_less_margin():
     field, smooth = field_of(simulation(0.01)), jkr.equilibrium_radius(0.3)
 
     def margin(length):
@@ -189,7 +189,8 @@ def test_a_circle_that_is_far_behind_needs_less_margin():
         drive = np.mean(adhesion) - jkr.energy_release_rate(circle[0], 0.3)
         return drive / np.std(adhesion)
 
-    assert 0.5 < margin(1e-6) < 1.5 < margin(1.0)
+    # The drive k e_el over the rms 2 sqrt(e_el), for k = 2.6 and e_el = 0.01.
+    assert 0.13 < margin(1e-6) < 0.5 < 1.5 < margin(1.0)
 
 
 def test_where_the_surface_repels_the_start_is_the_edge_in_compression():

@@ -46,8 +46,8 @@ docs/model.md says how often fronts then differ from those that come from far be
 single site moves forward is not asked: where some repel, no circle with an open edge fulfils it.
 """
 
-_FAR = 20.0
-"""Correlation lengths of w_loc from which on a third of that margin is enough.
+_STRONGEST, _FAR = 2.6, 20.0
+"""Largest k, and correlation lengths behind where it lets a front rest from which on a circle will do.
 
 On fine spectra 1.5 times the rms is hundreds of them, where fronts deviate by 7 at most.
 """
@@ -226,7 +226,8 @@ def forward_circle(
 ) -> Array:
     """The first circle behind a radius that moves forward even against 1.5 times the rms of w_loc.
 
-    From 20 correlation lengths on, half the rms is enough.
+    Nearer, where that is 20 correlation lengths behind a front that is pinned by k = 2.6: its drive
+    is k e_el, and the rms of w_loc 2 (e_el w_int)^(1/2).
 
     Parameters
     ----------
@@ -253,12 +254,16 @@ def forward_circle(
         furthest = max(math.sqrt(max(penetration, 0.0)), first_place(field))
     if direction * (furthest - near) > 0:
         return np.full(field.geometry.n_site, furthest)
+    resting = None
     for radius in np.linspace(near, furthest, _N_CIRCLE):
         circle = np.full(field.geometry.n_site, radius)
         adhesion = front_adhesion(circle, field)
         drive = direction * (np.mean(adhesion) - jkr.energy_release_rate(radius, penetration))
-        far = abs(radius - near) > _FAR * correlation_length
-        if drive > (_MARGIN / 3 if far else _MARGIN) * np.std(adhesion):
+        if drive > _MARGIN * np.std(adhesion):
+            return circle
+        if resting is None and drive > _STRONGEST * np.var(adhesion) / (4 * WORK_OF_ADHESION):
+            resting = radius
+        if resting is not None and abs(radius - resting) > _FAR * correlation_length:
             return circle
     return np.full(field.geometry.n_site, furthest)
 
