@@ -47,7 +47,7 @@ single site moves forward is not asked: where some repel, no circle with an open
 """
 
 _STRONGEST, _FAR = 2.6, 20.0
-"""Largest k, and correlation lengths behind where it lets a front rest from which on a circle will do.
+"""Largest k, and how many correlation lengths behind where it lets a front rest a circle will do.
 
 On fine spectra 1.5 times the rms is hundreds of them, where fronts deviate by 7 at most.
 """
