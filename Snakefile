@@ -2,7 +2,7 @@
 #
 #   snakemake --profile workflow/profiles/default --config sweep=config/test.yaml
 #
-# Every rule calls the command `crackfront`, which can be called by hand as well.
+# Every rule calls `crackfront` or `python -m studies`, which can be called by hand as well.
 import atexit
 import gc
 import os
@@ -16,9 +16,14 @@ from snakemake.exceptions import WorkflowError
 gc.set_threshold(1_000_000)
 atexit.register(gc.freeze)
 
+sys.path.insert(0, workflow.basedir)  # where the studies stand
+
 from crackfront.data.files import date_back, set_aside_damaged
 from crackfront.data.provenance import package_fingerprint
-from crackfront.studies.paper.figure import (
+from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.store import Store
+from crackfront.sweep.sweep import shard_fingerprint
+from studies.paper.figure import (
     FIGURES,
     SCALES,
     figure,
@@ -26,9 +31,6 @@ from crackfront.studies.paper.figure import (
     load_figure,
     settings_fingerprint,
 )
-from crackfront.sweep.configuration import load_configuration, results_folder
-from crackfront.sweep.store import Store
-from crackfront.sweep.sweep import shard_fingerprint
 
 unknown = set(config) - {"sweep", "ranks", "block", "scale", "validation"}
 if unknown:
@@ -60,7 +62,11 @@ SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
 
 # The command stands beside the Python that runs Snakemake, in a folder of any name.
 BESIDE = shlex.quote(str(Path(sys.executable).parent))
-shell.prefix("set -euo pipefail; export PATH={BESIDE}:$PATH; ")
+STUDIES = shlex.quote(str(workflow.basedir))
+shell.prefix(
+    "set -euo pipefail; export PATH={BESIDE}:$PATH"
+    " PYTHONPATH={STUDIES}${{PYTHONPATH:+:$PYTHONPATH}}; "
+)
 
 
 report: "workflow/report/workflow.rst"

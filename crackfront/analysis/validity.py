@@ -1,7 +1,7 @@
 """Up to which roughness the hysteresis of a crack front is that of boundary elements.
 
-`crackfront validate` computes both on the same surfaces and writes `validity.csv`, which is kept
-here.
+`python -m studies boundary-elements validate` computes both on the same surfaces and writes
+`validity.csv`, which is kept here.
 """
 
 from __future__ import annotations

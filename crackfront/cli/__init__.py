@@ -11,17 +11,14 @@ from typing import Any
 import click
 from click.shell_completion import get_completion_class
 
-from crackfront.cli.accuracy import accuracy, accuracy_report
 from crackfront.cli.compilation import compile_solvers
 from crackfront.cli.cycle import cycle
-from crackfront.cli.figure import check_figures, draw_figure, figure, gallery
 from crackfront.cli.integrity import compare, verify
 from crackfront.cli.law import law
 from crackfront.cli.report import StoppedError, examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
-from crackfront.cli.validate import validate
 from crackfront.data.lazy_modules import loaded_on_use, unavailable
 from crackfront.sweep.parallel import ending_alike
 
@@ -61,16 +58,8 @@ class _RefusalError(click.ClickException):
     exit_code = 2
 
 
-class _Commands(click.Group):
-    """Commands whose errors are sentences, listed by what they are for."""
-
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the commands section by section."""
-        for title, commands in SECTIONS.items():
-            with formatter.section(title):
-                formatter.write_dl(
-                    [(str(command.name), command.get_short_help_str(90)) for command in commands]
-                )
+class Commands(click.Group):
+    """Commands whose errors are sentences."""
 
     def main(self, args: Sequence[str] | None = None, *others: Any, **options: Any) -> Any:
         """Run a command line: that of the process where none is given, which is then alone."""
@@ -105,6 +94,18 @@ class _Commands(click.Group):
             raise _RefusalError(str(error)) from error
 
 
+class _Sections(Commands):
+    """The commands of the library, listed by what they are for."""
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands section by section."""
+        for title, commands in SECTIONS.items():
+            with formatter.section(title):
+                formatter.write_dl(
+                    [(str(command.name), command.get_short_help_str(90)) for command in commands]
+                )
+
+
 def _file_sentence(error: OSError) -> str:
     """What is wrong with a file or folder."""
     if error.filename is None or error.strerror is None:
@@ -135,9 +136,7 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Predictions": (predict, surface, law),
     "One contact": (cycle,),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
-    "Figures of the paper": (figure, draw_figure, check_figures, gallery),
     "Stored results": (verify, compare),
-    "Numerical errors, validation": (accuracy, accuracy_report, validate),
     "The machine": (compile_solvers, completion),
 }
 """All commands, by what they are for."""
@@ -173,7 +172,7 @@ def _tell_version(context: click.Context, parameter: click.Parameter, asked: boo
 
 
 @click.group(
-    cls=_Commands, epilog=_EPILOG, context_settings={"help_option_names": ["-h", "--help"]}
+    cls=_Sections, epilog=_EPILOG, context_settings={"help_option_names": ["-h", "--help"]}
 )
 @click.option(
     "--version",

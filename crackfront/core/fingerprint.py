@@ -25,7 +25,7 @@ PACKAGE = Path(__file__).parents[1]
 SOLVER = ("core",)
 """Folders whose sources determine the fronts of a simulation."""
 
-NO_PART = ("core/rotated.py", "core/cycle/instabilities.py")
+NO_PART = ("core/cycle/instabilities.py",)
 """Sources there that no simulation uses."""
 
 

@@ -7,6 +7,7 @@ fronts of one spectrum share a colour, their springs differ by the marker.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -20,12 +21,11 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
-from crackfront.analysis.law import law_value, shipped_law, slope_breadth
+from crackfront.analysis.law import WEAKEST, law_value, pinning_factor, shipped_law, slope_breadth
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import LARGE
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind
-from crackfront.plots.law import draw_infinite_law
 from crackfront.plots.parts import (
     Series,
     arrays,
@@ -43,7 +43,7 @@ from crackfront.plots.parts import (
     spring_label,
     sweep_series,
 )
-from crackfront.plots.style import COLUMN, MARKERS, PAGE, blank_figure, explain, house_style
+from crackfront.plots.style import BLACK, COLUMN, MARKERS, PAGE, blank_figure, explain, house_style
 
 POINTS_EXPLAINED = (
     "bars: 95% intervals over realisations; open symbols: amplitudes outside the range of the fit"
@@ -283,3 +283,32 @@ def draw_factor_by_length(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
         rf"\leq {fit.highest_elastic_energy:g}$",
         fontsize=7,
     )
+
+
+def draw_infinite_law(axes: Axes) -> None:
+    """Draw k of the infinite contact against disorder with its 95% band, and the theories."""
+    strongest = shipped_law().disorder[1]
+    disorder = np.linspace(WEAKEST, strongest, 100)
+    known = [pinning_factor(float(s), math.inf).factor for s in disorder]
+    axes.fill_between(
+        disorder,
+        [one.low for one in known],
+        [one.high for one in known],
+        color="0.85",
+        linewidth=0,
+        label="95% interval",
+        zorder=0.5,
+    )
+    axes.plot(
+        disorder,
+        [one.value for one in known],
+        color=BLACK,
+        linewidth=1.0,
+        label=r"law, $g\to\infty$",
+        zorder=2,
+    )
+    ends = strongest * np.array([-0.05, 1.06])
+    draw_theory(axes, ends, lambda factor, abscissa: np.full(abscissa.shape, factor))
+    axes.set_xlim(*ends)
+    axes.set_xlabel(r"disorder $s=w_\mathrm{rms}/w_\mathrm{int}$")
+    axes.set_ylabel(r"$k$ of the infinite contact")

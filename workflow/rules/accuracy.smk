@@ -43,7 +43,7 @@ rule accuracy_study:
             else 8
         ),
     shell:
-        "crackfront accuracy {wildcards.scene} --study {wildcards.study} "
+        "python -m studies accuracy scene {wildcards.scene} --study {wildcards.study} "
         "--realisations {params.surfaces} --output {ACCURACY:q}"
 
 
@@ -74,4 +74,4 @@ rule accuracy_report:
     params:
         sources=package_fingerprint(),
     shell:
-        "crackfront accuracy-report --output {ACCURACY:q}"
+        "python -m studies accuracy report --output {ACCURACY:q}"

@@ -48,7 +48,7 @@ rule figure_data:
         sources=lambda wildcards: figure_fingerprint(wildcards.figure),
         settings=settings_of,
     shell:
-        "crackfront figure {FIGURE_SETTINGS:q}/{wildcards.figure}.yaml --scale {SCALE}"
+        "python -m studies paper figure {FIGURE_SETTINGS:q}/{wildcards.figure}.yaml --scale {SCALE}"
         " --output results/figures"
 
 
@@ -70,7 +70,7 @@ rule figure_of_sweep:
         settings=settings_of,
         sweep=lambda wildcards: load_configuration(Path(SWEEPS[SCALE])).fingerprint,
     shell:
-        "crackfront figure {FIGURE_SETTINGS:q}/si-5.yaml --scale {SCALE} --output results/figures"
+        "python -m studies paper figure {FIGURE_SETTINGS:q}/si-5.yaml --scale {SCALE} --output results/figures"
 
 
 ruleorder: figure_of_sweep > longest_figure_data > figure_data
@@ -86,7 +86,7 @@ rule figure_drawing:
         sources=package_fingerprint(),
         settings=settings_of,
     shell:
-        "crackfront draw-figure {input:q}"
+        "python -m studies paper draw {input:q}"
 
 
 rule figure_animation:
@@ -102,7 +102,7 @@ rule figure_animation:
         sources=package_fingerprint(),
         settings=settings_of,
     shell:
-        "crackfront draw-figure {input:q}"
+        "python -m studies paper draw {input:q}"
 
 
 rule figure_checks:
@@ -114,4 +114,4 @@ rule figure_checks:
         sources=package_fingerprint(),
         scale=SCALE,
     shell:
-        "crackfront check-figures --output results/figures"
+        "python -m studies paper check --output results/figures"

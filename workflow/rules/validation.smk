@@ -1,6 +1,6 @@
 # `make validate`: the crack-front model against boundary elements. The cycles of the boundary
 # elements are resumed from their last load step; the rule owns what is made of them.
-from crackfront.studies.boundary_elements.parameters import load_validation
+from studies.boundary_elements.parameters import load_validation
 
 VALIDATION = config.get("validation", "config/validation.yaml")
 VALIDATED = str(results_folder(Path(VALIDATION)))
@@ -23,4 +23,4 @@ rule validate:
         sources=package_fingerprint(),
         settings=lambda wildcards: repr(load_validation(Path(VALIDATION))),
     shell:
-        "crackfront validate {VALIDATION:q} --output {VALIDATED:q}"
+        "python -m studies boundary-elements validate {VALIDATION:q} --output {VALIDATED:q}"

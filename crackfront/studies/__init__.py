@@ -1,1 +1,0 @@
-"""What is built on all of the rest and nothing imports."""

@@ -1,0 +1,1 @@
+"""What was measured with crackfront, one folder a study; nothing imports them."""

@@ -1,0 +1,227 @@
+"""What steady runs are wrong by: averaging too little, and whether they state their true errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from crackfront.analysis.steady import steady_adhesion
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.variables import ADHESION, variable
+from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.run import run_simulation
+from crackfront.simulate.simulation import Simulation, numerical_error, stated_error
+from studies.accuracy.scenes import HELD_OUT, Progress, Scene
+from studies.accuracy.study import branches_seconds, measured_branches
+
+Array = NDArray[np.float64]
+
+_RUN, _BRANCH = "realisation", "branch"
+
+_NUMERICAL_ERROR = 0.03
+"""Error of k that the numerics leave where schedules vary; it is the same surface by surface."""
+
+_START, _DEEPEST, _TRAVEL = 0.3, 1.0, 1.5
+_NO_STOP = 1e-9
+
+_TRIED: dict[str, tuple[float, ...]] = {
+    "travel": (0.25, 0.5, 1.0, 1.5, 2.0, 3.0),
+    "step": (0.0125, 0.025, 0.05, 0.1, 0.2),
+    "tile": (16, 32, 64, 128, 256),
+}
+"""What is varied, the finest value of travel and step first."""
+
+LEVEL = 0.92
+"""Share of the errors that an interval of the stated standard errors is meant to cover."""
+
+_SCHEDULE = SteadySchedule(start=0.0, max_penetration=3.0, travel=1.5, standard_error=0.1)
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """Hysteresis of all realisations at one value of a schedule or of the tile.
+
+    The value is the way between steady states in correlation lengths, the load step of full cycles
+    in reduced vertical lengths, or the side of the tile in short cutoffs.
+    """
+
+    knob: str = variable("what is varied: travel, step or tile", "1")
+    value: float = variable("correlation lengths, reduced vertical length, cutoffs", "1")
+    hysteresis: Array = variable("w_retr - w_appr", ADHESION, _RUN)
+    standard_error: Array = variable("that which a run states", ADHESION, _RUN)
+    seconds: Array = variable("processor time", "s", _RUN)
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """True and stated errors of w_appr and w_retr where the laws chose the numerics.
+
+    The numerical error is that against the reference on the same surface at the same loads, the
+    total one that of a steady run from the mean of the reference's runs on the other surfaces,
+    whose own standard error is that of the truth.
+    """
+
+    asked: float = variable("standard error that was asked for", "e_el")
+    numerical: Array = variable("numerical error of w_appr and w_retr", ADHESION, _RUN, _BRANCH)
+    numerical_stated: Array = variable("stated numerical standard error", ADHESION, _BRANCH)
+    total: Array = variable("error of a steady run", ADHESION, _RUN, _BRANCH)
+    run_numerical: Array = variable("numerical standard error it states", ADHESION, _RUN, _BRANCH)
+    run_statistical: Array = variable(
+        "statistical standard error it states", ADHESION, _RUN, _BRANCH
+    )
+    n_state: Array = variable("its steady states", "1", _RUN, _BRANCH)
+    truth_error: Array = variable("standard error of the truth", ADHESION, _RUN, _BRANCH)
+
+    @property
+    def numerical_interval(self) -> Array:
+        """Half width of the interval of the numerical error, as of a normal distribution."""
+        width = stats.norm.ppf((1 + LEVEL) / 2) * self.numerical_stated
+        return np.broadcast_to(width, self.numerical.shape)
+
+    @property
+    def total_interval(self) -> Array:
+        """Half width of the interval of the total error; Student's t for the statistical part.
+
+        What the mean of the other surfaces is off by is part of the difference, and of the
+        interval.
+        """
+        share = (1 + LEVEL) / 2
+        statistical = stats.t.ppf(share, np.maximum(self.n_state - 1, 1)) * self.run_statistical
+        known = np.hypot(self.run_numerical, self.truth_error)
+        return np.hypot(statistical, stats.norm.ppf(share) * known)
+
+
+def sampling_errors(
+    scene: Scene, surfaces: range, progress: Progress = lambda line: None
+) -> tuple[Sample, ...]:
+    """Hysteresis of a scene with other schedules and tiles.
+
+    By path independence the states of a coarse schedule are among those of a fine one, so that
+    travel and step change the mean alone; another tile is another surface.
+    """
+    samples = []
+    for knob, values in _TRIED.items():
+        for value in values:
+            rows = [_sampled(scene, knob, value, number) for number in surfaces]
+            samples.append(Sample(knob, value, *np.array(rows).T))
+            progress(f"{knob} {value:g}: {samples[-1].hysteresis.mean():.5g} w_int")
+    return tuple(samples)
+
+
+def _sampled(scene: Scene, knob: str, value: float, number: int) -> tuple[float, float, float]:
+    """Hysteresis, its stated error and processor time with another schedule or tile."""
+    simulation = _other(scene, knob, value, number)
+    result = run_simulation(simulation)
+    steady = steady_adhesion(result.record, simulation.correlation_length)
+    return steady.hysteresis, steady.hysteresis_error, result.measures.cpu_seconds
+
+
+def _other(scene: Scene, knob: str, value: float, number: int) -> Simulation:
+    """Simulation with another schedule or tile."""
+    knobs = scene.chosen_knobs(_NUMERICAL_ERROR)
+    if knob == "tile":
+        scene = replace(scene, tile_cutoffs=value)
+    schedule = (
+        LoadSchedule(_DEEPEST, value)
+        if knob == "step"
+        else SteadySchedule(_START, _DEEPEST, value if knob == "travel" else _TRAVEL, _NO_STOP)
+    )
+    return replace(scene.simulation(knobs, number), schedule=schedule)
+
+
+def sampling_seconds(scene: Scene) -> float:
+    """Processor time that a surface is expected to take in `sampling_errors` (Units: s)."""
+    simulations = [
+        _other(scene, knob, value, 0) for knob, values in _TRIED.items() for value in values
+    ]
+    return sum(expected_cost(simulation).seconds for simulation in simulations)
+
+
+def coverage_seconds(scene: Scene, asked: tuple[float, ...]) -> float:
+    """Processor time that a surface is expected to take in `held_out_coverage` (Units: s)."""
+    tried = [scene.reference, *(scene.chosen_knobs(error) for error in asked)]
+    steady = [replace(scene.simulation(knobs, 0), schedule=_SCHEDULE) for knobs in tried]
+    return sum(branches_seconds(scene, knobs) for knobs in tried) + sum(
+        expected_cost(simulation).seconds for simulation in steady
+    )
+
+
+def held_out_coverage(
+    scene: Scene,
+    asked: tuple[float, ...],
+    n_realisation: int,
+    progress: Progress = lambda line: None,
+) -> tuple[Coverage, ...]:
+    """True and stated errors on surfaces that no law was fitted to, for errors of k.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than three surfaces: the others' scatter is part of the interval.
+    """
+    if n_realisation < 3:
+        raise ValueError(f"coverage needs 3 surfaces or more, not {n_realisation}; ask for more")
+    numbers = range(HELD_OUT, HELD_OUT + n_realisation)
+    exact = [measured_branches(scene, scene.reference, number) for number in numbers]
+    truth = np.array([_steady(scene.simulation(scene.reference, number))[0] for number in numbers])
+    others = [np.delete(truth, row, axis=0) for row in range(n_realisation)]
+    of_others = np.array([rows.mean(axis=0) for rows in others])
+    scatter = np.array([rows.std(axis=0, ddof=1) for rows in others])
+    # Cutoffs along the front, summed over its states.
+    circumference = 2 * np.pi * float(exact[0].radius.mean())
+    size = scene.penetrations.size * circumference / scene.spectrum.short_cutoff
+    found = []
+    for error in asked:
+        knobs = scene.chosen_knobs(error)
+        simulations = [scene.simulation(knobs, number) for number in numbers]
+        branches = [measured_branches(scene, knobs, number) for number in numbers]
+        runs = np.array([_steady(simulation) for simulation in simulations])
+        item = Coverage(
+            asked=error,
+            numerical=np.array(
+                [one.adhesion - other.adhesion for one, other in zip(branches, exact, strict=True)]
+            ),
+            numerical_stated=np.array(numerical_error(simulations[0], size)),
+            total=runs[:, 0] - of_others,
+            run_numerical=runs[:, 1],
+            run_statistical=runs[:, 2],
+            n_state=runs[:, 3],
+            truth_error=scatter / np.sqrt(n_realisation - 1),
+        )
+        found.append(item)
+        shares = [
+            np.mean(np.abs(true[known]) <= interval[known])
+            for true, interval, known in (
+                (item.numerical, item.numerical_interval, np.isfinite(item.numerical)),
+                (item.total, item.total_interval, np.isfinite(item.run_statistical)),
+            )
+        ]
+        progress(
+            f"asked {error:g}: {100 * shares[0]:.0f}% of the numerical and {100 * shares[1]:.0f}% "
+            "of the total errors are covered"
+        )
+    return tuple(found)
+
+
+def _steady(simulation: Simulation) -> list[tuple[float, float]]:
+    """Adhesion, its stated errors and the number of states, of both branches of a steady run.
+
+    Adhesion is that about the mean of w_loc, relative to the e_el of the run's own tile, times the
+    requested e_el: what k is made of. Tiles differ in both.
+    """
+    simulation = replace(simulation, schedule=_SCHEDULE)
+    length = simulation.correlation_length
+    result = run_simulation(simulation)
+    steady = steady_adhesion(result.record, length)
+    mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
+    scale = simulation.elastic_energy / result.measures.e_el
+    return [
+        (scale * (steady.w_appr - mean), scale * (steady.w_retr - mean)),
+        stated_error(simulation, steady, length),
+        (steady.w_appr_error, steady.w_retr_error),
+        (float(steady.n_approach), float(steady.n_retraction)),
+    ]

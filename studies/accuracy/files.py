@@ -1,0 +1,106 @@
+"""The five studies of a scene, and the files that they write."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+import xarray as xr
+
+from crackfront.core.variables import Variable, variables
+from crackfront.data.files import UnreadableFileError, labelled, labelled_fields, read_dataset
+from crackfront.data.records import read_records, stacked
+from studies.accuracy.averages import (
+    coverage_seconds,
+    held_out_coverage,
+    sampling_errors,
+    sampling_seconds,
+)
+from studies.accuracy.scenes import HELD_OUT, SCENES, Progress, Scene
+from studies.accuracy.study import Errors, SceneErrors, scene_errors, setting_seconds
+
+Record = TypeVar("Record")
+
+_SETTING, _BRANCH = "setting", "branch"
+
+_COVERED = (0.1, 0.03, 0.01)
+"""Errors of k whose coverage is measured."""
+
+_UNSEEN = (0.03, 0.01)
+"""Errors of k that are asked for on surfaces to which no law was fitted."""
+
+STUDIES: dict[str, Callable[[Scene, int, Progress], xr.Dataset]] = {
+    "knobs": lambda scene, n_realisation, progress: errors_dataset(
+        scene_errors(scene, scene.single_settings, range(n_realisation), progress)
+    ),
+    "asked": lambda scene, n_realisation, progress: errors_dataset(
+        scene_errors(scene, scene.asked_settings(), range(n_realisation), progress)
+    ),
+    "unseen": lambda scene, n_realisation, progress: errors_dataset(
+        scene_errors(
+            scene,
+            scene.asked_settings(_UNSEEN),
+            range(HELD_OUT, HELD_OUT + n_realisation),
+            progress,
+        )
+    ),
+    "averages": lambda scene, n_realisation, progress: records_dataset(
+        "errors of averaging", scene, sampling_errors(scene, range(n_realisation), progress)
+    ),
+    "coverage": lambda scene, n_realisation, progress: records_dataset(
+        "true and stated errors",
+        scene,
+        held_out_coverage(scene, _COVERED, n_realisation, progress),
+    ),
+}
+"""What each study measures, of a scene and a number of surfaces."""
+
+SECONDS: dict[str, Callable[[Scene], float]] = {
+    "knobs": lambda scene: setting_seconds(scene, scene.single_settings),
+    "asked": lambda scene: setting_seconds(scene, scene.asked_settings()),
+    "unseen": lambda scene: setting_seconds(scene, scene.asked_settings(_UNSEEN)),
+    "averages": sampling_seconds,
+    "coverage": lambda scene: coverage_seconds(scene, _COVERED),
+}
+"""Processor time that a surface is expected to take in each study. (Units: s)"""
+
+
+def records_dataset(title: str, scene: Scene, records: tuple[Any, ...]) -> xr.Dataset:
+    """Dataset of records of a scene, one a setting."""
+    attributes = {"title": f"{title}, {scene.name}", "scene": scene.name}
+    return xr.Dataset(stacked(records, _SETTING), attrs=attributes)
+
+
+def errors_dataset(study: SceneErrors) -> xr.Dataset:
+    """Dataset of the errors of all settings of a scene."""
+    scene, branches = study.scene, Variable(_BRANCH, (_BRANCH,), "1", "approach or retraction")
+    return (
+        records_dataset("numerical errors", scene, study.errors)
+        .assign(labelled_fields(study))
+        .assign_coords({_BRANCH: labelled(branches, np.array(["approach", "retraction"]))})
+        .assign_attrs(elastic_energy=scene.elastic_energy, penetrations=scene.penetrations)
+    )
+
+
+def read_study(path: Path, kind: type[Record]) -> tuple[Scene, tuple[Record, ...]]:
+    """Scene and records of the file of a study.
+
+    Raises
+    ------
+    ValueError
+        If the file is missing, truncated, or of a scene that is not known.
+    """
+    scene = SCENES.get(str(read_dataset(path).attrs.get("scene")))
+    if scene is None:
+        raise UnreadableFileError(f"{path} holds no errors of a known scene; measure them again")
+    return scene, read_records(path, kind, _SETTING)
+
+
+def read_errors(path: Path) -> SceneErrors:
+    """Errors of all settings of a scene, as of :func:`read_study`."""
+    scene, errors = read_study(path, Errors)
+    dataset = read_dataset(path)
+    references = (np.asarray(dataset[item.name]) for item in variables(SceneErrors))
+    return SceneErrors(scene, errors, *references)

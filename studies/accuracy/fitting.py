@@ -1,0 +1,209 @@
+"""From measured errors to laws: how they are fitted, written and drawn."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from crackfront.plots.style import (
+    BLACK,
+    COLOURS,
+    COLUMN,
+    MARKERS,
+    PAGE,
+    blank_figure,
+    explain,
+    house_style,
+)
+from crackfront.simulate.laws import KNOBS, LAW_SIZE, Knob, Law, abscissa
+from studies.accuracy.study import SceneErrors, rms
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+_LEAST = 3e-4
+"""Errors of k below this count as this: nobody asks for less."""
+
+_FEW = 0.1
+"""Scatter of k up to which the size of avalanches is measured; above, surfaces have many."""
+
+_SLOWEST: dict[Knob, float] = {
+    "sites": -0.6,
+    "cubic": -2.0,
+    "linear": -1.0,
+    "pixels": -2.0,
+    "tolerance": 0.5,
+}
+"""Slopes that a law of scatter has at least: half the order of the knob.
+
+An avalanche that one discretisation triggers and another does not is of a size of its own; only its
+chance falls with the error of the field, and the rms with the root of that. Among a few surfaces a
+single such event can hide the slope.
+"""
+
+_STEEPEST = 10.0
+"""Slope that no law exceeds, relative to the slowest one."""
+
+_NO_BIAS = (-99.0, 0.0)
+"""Coefficients of a bias that is not seen."""
+
+_AXES: dict[Knob, str] = {
+    "sites": "sites per short cutoff",
+    "cubic": "cubic samples per short cutoff",
+    "linear": "linear samples per short cutoff",
+    "pixels": "pixels per short cutoff",
+    "tolerance": r"tolerance / $w_\mathrm{int}$",
+}
+
+
+def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[Law]:
+    """Law of every knob, amplitude and branch, fitted to the errors of scenes.
+
+    A bias counts where it is twice its standard error; elsewhere only scatter is seen, that of
+    both branches together. The mean of measured over fitted mean squares is one: few surfaces have
+    an avalanche that changes, and logarithms would count those without one as much.
+    """
+    for study in studies:
+        avalanche = _avalanche(study)
+        for knob in KNOBS:
+            yield from _laws(study, knob, avalanche)
+
+
+def _avalanche(study: SceneErrors) -> float:
+    """Size of the avalanches that make the scatter of k, where settings leave little of it.
+
+    Of rare avalanches the ratio of the fourth moment to the second one is its square.
+    """
+    deviations = np.concatenate([_knob_errors(study, knob)[1] for knob in KNOBS])
+    deviations = deviations - deviations.mean(axis=1, keepdims=True)
+    few = np.mean(deviations**2, axis=1, keepdims=True) < _FEW**2
+    kept = np.where(few, deviations, 0.0)
+    total = float(np.sum(kept**2))
+    return float(np.sqrt(np.sum(kept**4) / total)) if total > 0 else 0.0
+
+
+def _knob_errors(study: SceneErrors, knob: Knob) -> tuple[Array, Array]:
+    """Values of a knob, and the errors of k that it adds, (value, realisation, branch)."""
+    tried = [errors for errors in study.errors if errors.knob == knob]
+    without = {errors.value: errors.adhesion for errors in study.errors if errors.knob == "sites"}
+    added = [
+        errors.adhesion - (0.0 if knob == "sites" else without[errors.angles_per_cutoff])
+        for errors in tried
+    ]
+    values = np.array([errors.value for errors in tried])
+    return values, np.array(added) / study.scene.elastic_energy
+
+
+def _laws(study: SceneErrors, knob: Knob, avalanche: float) -> Iterator[Law]:
+    """Laws of one knob, of both branches."""
+    tried, values = _knob_errors(study, knob)
+    x = abscissa(knob, tried)
+    n_realisation = values.shape[1]
+    bias = np.abs(values.mean(axis=1))
+    uncertainty = values.std(axis=1, ddof=1) / np.sqrt(n_realisation)
+    scatter = np.sqrt(np.mean(values.var(axis=1, ddof=1), axis=1))
+    slowest = _SLOWEST[knob]
+    scatter_line = _falling_line(x, scatter, slowest)
+    for branch, direction in enumerate((1, -1)):
+        certain = bias[:, branch] > 2 * uncertainty[:, branch]
+        seen = np.count_nonzero(certain) > 1
+        bias_line = _falling_line(x[certain], bias[certain, branch], slowest) if seen else _NO_BIAS
+        scene = study.scene
+        yield Law(
+            scene.shape, scene.elastic_energy, knob, direction, bias_line, scatter_line, avalanche
+        )
+
+
+def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
+    """Line of logarithms, at least as steep as a given slope, by the likelihood of a variance.
+
+    That of a gamma distribution about the line, of a spread that is the same everywhere. Values
+    stand from the coarsest to the finest; of those too small at its end the first counts.
+    """
+    counted = 2 + np.max(np.flatnonzero(values >= _LEAST), initial=0)
+    x, square = x[:counted], np.maximum(values[:counted], _LEAST) ** 2
+
+    def start(slope: float) -> float:
+        return float(np.log(np.mean(square * np.exp(-2 * slope * x))) / 2)
+
+    slope = minimize_scalar(
+        lambda slope: start(slope) + slope * np.mean(x),
+        bounds=sorted((slowest, _STEEPEST * slowest)),
+        method="bounded",
+    ).x
+    return start(slope), float(slope)
+
+
+def laws_text(laws: Iterable[Law]) -> str:
+    """Laws as the lines of `laws.csv`, five digits each."""
+    text = io.StringIO()
+    columns = ("shape", "elastic_energy", "knob", "direction")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([*columns, "bias_0", "bias_1", "scatter_0", "scatter_1", "avalanche"])
+    for law in laws:
+        coefficients = [f"{value:.4f}" for value in (*law.bias, *law.scatter, law.avalanche)]
+        writer.writerow([*(getattr(law, name) for name in columns), *coefficients])
+    return text.getvalue()
+
+
+def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
+    """Measured errors of k of w_retr of one shape against every knob, and the fitted laws."""
+    with house_style():
+        figure = blank_figure(PAGE, 1.1 * COLUMN)
+        panels = figure.subplots(2, 3).ravel()
+        for axes, knob in zip(panels, KNOBS, strict=False):
+            _draw_laws(axes, knob, studies, laws)
+        for axes in panels[::3]:
+            axes.set_ylabel(r"rms error of $w_\mathrm{retr}$ / $e_\mathrm{el}$")
+        panels[-1].set_axis_off()
+        handles, labels = panels[0].get_legend_handles_labels()
+        panels[-1].legend(
+            handles, labels, loc="center left", title=r"$e_\mathrm{el}/w_\mathrm{int}$"
+        )
+        explain(
+            figure,
+            "lines: the fitted laws, of a scatter for both branches; broken line: an error of 0.01",
+        )
+        return figure
+
+
+def _draw_laws(axes: Axes, knob: Knob, studies: Sequence[SceneErrors], laws: Sequence[Law]) -> None:
+    """One knob."""
+    from matplotlib.ticker import NullFormatter
+
+    for study, colour, marker in zip(studies, COLOURS, MARKERS, strict=False):
+        scene = study.scene
+        values, found = _knob_errors(study, knob)
+        axes.plot(
+            values,
+            [rms(errors[:, 1]) for errors in found],
+            marker=marker,
+            linestyle="none",
+            color=colour,
+            label=f"{scene.elastic_energy:g}",
+        )
+        law = next(
+            law
+            for law in laws
+            if (law.shape, law.elastic_energy, law.knob, law.direction)
+            == (scene.shape, scene.elastic_energy, knob, -1)
+        )
+        between = np.geomspace(values.min(), values.max(), 60)
+        axes.plot(between, [law.error(x, LAW_SIZE) for x in between], color=colour)
+    axes.axhline(0.01, color=BLACK, linewidth=0.4, dashes=(4, 2))
+    axes.set_yscale("log")
+    if knob != "sites":
+        axes.set_xscale("log")
+    if knob not in ("sites", "tolerance"):
+        axes.set_xticks(values, [f"{value:g}" for value in values])
+        axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_xlabel(_AXES[knob])

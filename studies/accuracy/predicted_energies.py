@@ -1,0 +1,343 @@
+"""Hold e_el of synthetic scans, as instruments distort them, against that of their known spectra.
+
+python -m studies.accuracy.predicted_energies --scans 14
+python -m studies.accuracy.predicted_energies --speed
+
+Every scan is cut from a larger surface, distorted, written as the file of an instrument, and read
+as `crackfront predict` reads it. The table has for each kind the e_el that is found over the true
+one, how often its 95% interval holds the truth, and how wide this is. With --speed it has instead
+the processor time of `crackfront predict` from ten large maps, one by one and together.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import grey_dilation
+
+from crackfront.analysis.estimate import Estimate
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.topography.measures import MeasuredSurface, measured_surface
+from crackfront.topography.reading import Treatment, read_measurements
+from studies.accuracy.scans import al3d
+
+Array = NDArray[np.float64]
+Distortion = Callable[[Array, np.random.Generator], Array]
+
+SEED = 20240229
+N_POINT, PIXEL = 192, 0.1e-6
+SIDE = N_POINT * PIXEL
+MEAN_SQUARE = 1e-9
+"""Points and side of a scan, and mean square half-derivative of its surface. (Units: m)"""
+
+_LINE_POINTS, _LINES = 600, 3
+
+_MAPS, _LARGE = 10, 1024
+"""Maps whose prediction is timed, and their points along a side."""
+
+_SPHERE = "--modulus 0.7MPa --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2"
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """Scans of one spectrum that are distorted in one way.
+
+    Attributes
+    ----------
+    name : str
+        What is done to them.
+    spectrum : Spectrum
+        Shape of their spectrum. (Units: m)
+    distortion : callable
+        What becomes of heights of twice the side, periodic, with some noise; by default nothing.
+    tile : int
+        Sides of the scan in the surface that it is cut from.
+    resolved : bool
+        Whether the scan resolves the scales that matter to e_el.
+    oblong : bool
+        Whether every other column is left out.
+    is_line : bool
+        Whether lines are scanned in place of a map.
+    """
+
+    name: str
+    spectrum: Spectrum
+    distortion: Distortion = lambda heights, rng: heights
+    tile: int = 2
+    resolved: bool = True
+    oblong: bool = False
+    is_line: bool = False
+
+    @property
+    def truth(self) -> Spectrum:
+        """The spectrum with its amplitude."""
+        return self.spectrum.amplified(MEAN_SQUARE / self.spectrum.mean_square(0.5))
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Mean square half-derivative that was found for a scan, relative to the true one."""
+
+    ratio: Estimate[float]
+    surface: MeasuredSurface
+
+    @property
+    def covers(self) -> bool:
+        """Whether the interval holds the truth."""
+        return self.ratio.low <= 1 <= self.ratio.high
+
+    @property
+    def factor(self) -> float:
+        """Factor by which the interval reaches to either side of its middle."""
+        return math.sqrt(self.ratio.high / self.ratio.low)
+
+
+def _filtered(transfer: Callable[[Array], Array]) -> Distortion:
+    """What an optic does, whose transfer of heights depends on the wavevector."""
+
+    def distorted(heights: Array, rng: np.random.Generator) -> Array:
+        along = 2 * np.pi * np.fft.fftfreq(len(heights), PIXEL)
+        waves = np.fft.fft2(heights) * transfer(np.hypot(along[:, None], along))
+        return np.asarray(np.fft.ifft2(waves).real)
+
+    return distorted
+
+
+def _gaussian(wavevector: Array) -> Array:
+    """Transfer of a Gaussian spot with a standard deviation of one pixel."""
+    return np.asarray(np.exp(-((wavevector * PIXEL) ** 2) / 2))
+
+
+def _pupil(wavevector: Array) -> Array:
+    """Transfer of a circular pupil that ends at 2.5 pixels."""
+    x = np.minimum(wavevector * 2.5 * PIXEL / (2 * np.pi), 1.0)
+    return np.asarray(2 / np.pi * (np.arccos(x) - x * np.sqrt(1 - x**2)))
+
+
+def _tip(radius: float) -> Distortion:
+    """Dilation by a parabolic tip of a radius in m."""
+
+    def distorted(heights: Array, rng: np.random.Generator) -> Array:
+        reach = math.ceil(math.sqrt(2 * radius * float(np.ptp(heights))) / PIXEL)
+        along = PIXEL * np.arange(-reach, reach + 1)
+        shape = -(along[:, None] ** 2 + along**2) / (2 * radius)
+        return np.asarray(grey_dilation(heights, structure=shape, mode="wrap"))
+
+    return distorted
+
+
+def _noise(heights: Array, rng: np.random.Generator) -> Array:
+    """White noise of a tenth of the heights, above short waves."""
+    return heights + 0.1 * heights.std() * rng.standard_normal(heights.shape)
+
+
+def _rows(heights: Array, rng: np.random.Generator) -> Array:
+    """Rows that are shifted, each by itself."""
+    return heights + 0.1 * heights.std() * rng.standard_normal((1, heights.shape[1]))
+
+
+def _bow(heights: Array, rng: np.random.Generator) -> Array:
+    """Tilt, and a bow that a paraboloid takes off."""
+    x = np.linspace(-1, 1, len(heights))
+    return heights + 40 * heights.std() * (x[:, None] - x[:, None] ** 2 + 0.7 * x**2)
+
+
+def _form(heights: Array, rng: np.random.Generator) -> Array:
+    """Tilt, and a bow that no paraboloid takes off."""
+    x = np.linspace(-1, 1, len(heights))
+    return heights + 40 * heights.std() * (x[:, None] + x**3 - x[:, None] ** 4)
+
+
+def _holes(heights: Array, rng: np.random.Generator) -> Array:
+    """Missing points, single ones and patches."""
+    holes = heights.copy()
+    holes[rng.uniform(size=holes.shape) < 0.03] = np.nan
+    for x, y in rng.integers(0, N_POINT - 12, (4, 2)):
+        holes[x : x + 12, y : y + 12] = np.nan
+    return holes
+
+
+def _two_slopes(first: float, then: float) -> TabulatedSpectrum:
+    """A spectrum with two Hurst exponents, of long and of short waves."""
+    lengths = SIDE / 8, SIDE / 32, 2 * PIXEL
+    middle = 4.0 ** (-2 - 2 * first)
+    last = middle * (lengths[1] / lengths[2]) ** (-2 - 2 * then)
+    return TabulatedSpectrum(lengths, (1.0, middle, last))
+
+
+def _self_affine(hurst: float, roll_off: float = SIDE / 8, cutoff: float = 2.0) -> Spectrum:
+    """A self-affine spectrum that ends at some pixels."""
+    return SelfAffineSpectrum(cutoff * PIXEL, roll_off, hurst)
+
+
+FILM = _self_affine(0.8)
+KINDS = (
+    Kind("self-affine, H = 0.8", FILM),
+    Kind("self-affine, H = 1", _self_affine(1.0)),
+    Kind("self-affine, H = 0.4", _self_affine(0.4), resolved=False),
+    Kind("two slopes, H = 0.9 and 0.3", _two_slopes(0.9, 0.3)),
+    Kind("two slopes, H = 0.3 and 0.9", _two_slopes(0.3, 0.9)),
+    Kind("roll-off at the side", _self_affine(0.8, SIDE), tile=4, resolved=False),
+    Kind("roll-off outside", _self_affine(0.8, 2 * SIDE), tile=6, resolved=False),
+    Kind("end at four pixels", _self_affine(0.8, cutoff=4.0)),
+    Kind("optic, Gaussian", FILM, _filtered(_gaussian)),
+    Kind("optic, circular pupil", FILM, _filtered(_pupil), resolved=False),
+    Kind("tip of an AFM", FILM, _tip(1e-6)),
+    Kind("noise", FILM, _noise),
+    Kind("rows that are shifted", FILM, _rows),
+    Kind("tilt and bow", FILM, _bow),
+    Kind("form that is left", FILM, _form),
+    Kind("missing points", FILM, _holes),
+    Kind("oblong pixels", _self_affine(0.8, cutoff=4.0), oblong=True),
+    Kind("three line scans", _self_affine(0.8), is_line=True),
+    Kind("tip of 3 um, H = 0.4", _self_affine(0.4), _tip(3e-6), resolved=False),
+    Kind("tip of 10 um, H = 0.4", _self_affine(0.4), _tip(10e-6), resolved=False),
+)
+
+
+def found_scan(kind: Kind, number: int) -> Found:
+    """What is found for a scan of a kind."""
+    key = (KINDS.index(kind), number)
+    rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=key))
+    with tempfile.TemporaryDirectory() as folder:
+        surface = (_lines if kind.is_line else _map)(kind, rng, Path(folder))
+    found = surface.joint.estimate(lambda spectrum: spectrum.mean_square(0.5))
+    return Found(found.each(lambda number: number / MEAN_SQUARE), surface)
+
+
+def _map(kind: Kind, rng: np.random.Generator, folder: Path) -> MeasuredSurface:
+    """Surface of a map."""
+    whole = kind.tile * N_POINT
+    heights = gaussian_field(kind.truth, whole, kind.tile * SIDE, rng)
+    local = kind.distortion in (_bow, _form, _holes)
+    heights = heights if not local else heights[:N_POINT, :N_POINT]
+    heights = kind.distortion(heights, rng)[:N_POINT, :N_POINT]
+    path = folder / "scan.al3d"
+    if kind.oblong:
+        path.write_bytes(al3d(heights[:, ::2], (PIXEL, 2 * PIXEL), kind.name))
+    else:
+        path.write_bytes(al3d(heights, PIXEL, kind.name))
+    return measured_surface(read_measurements([path]))
+
+
+def _lines(kind: Kind, rng: np.random.Generator, folder: Path) -> MeasuredSurface:
+    """Surface of lines."""
+    whole = 2 * _LINE_POINTS
+    heights = gaussian_field(kind.truth, whole, whole * PIXEL, rng)[:_LINE_POINTS]
+    paths = [folder / f"{number}.xyz" for number in range(_LINES)]
+    for number, path in enumerate(paths):
+        line = heights[:, number * whole // _LINES]
+        places = PIXEL * np.arange(_LINE_POINTS)
+        np.savetxt(path, 1e6 * np.column_stack([places, line]))
+    return measured_surface(read_measurements(paths, Treatment(unit="um")))
+
+
+def kind_row(kind: Kind, found: list[Found]) -> str:
+    """Row of the table."""
+    ratios = np.array([one.ratio.value for one in found])
+    shares = [one.surface.joint.shares.measured for one in found]
+    return (
+        f"| {kind.name} | {'yes' if kind.resolved else 'no'} | {np.median(ratios):.2f} | "
+        f"{np.median(np.abs(ratios - 1)):.0%} | {np.mean([one.covers for one in found]):.0%} | "
+        f"{np.median([one.factor for one in found]):.2f} | {np.median(shares):.0%} |"
+    )
+
+
+TABLE_HEAD = (
+    "| scans | resolved | e_el found / true | median error | intervals that hold it | "
+    "their factor | e_el measured |\n| --- | --- | --- | --- | --- | --- | --- |"
+)
+
+
+def rows(n_scan: int) -> Iterator[tuple[Kind, list[Found]]]:
+    """All kinds with what is found for so many scans of each."""
+    for kind in KINDS:
+        yield kind, [found_scan(kind, number) for number in range(n_scan)]
+
+
+@dataclass(frozen=True, slots=True)
+class Speed:
+    """Processor time of predictions from large maps (Units: s).
+
+    Attributes
+    ----------
+    what : str
+        Whether they have figures.
+    single, together : float
+        Of as many commands as there are maps, and of one with all of them.
+    """
+
+    what: str
+    single: float
+    together: float
+
+
+def speeds() -> Iterator[Speed]:
+    """Predictions from large maps, without and with figures."""
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [Path(folder) / f"{number}.al3d" for number in range(_MAPS)]
+        for number, path in enumerate(paths):
+            rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=(_LARGE, number)))
+            heights = gaussian_field(KINDS[0].truth, 2 * _LARGE, 2 * _LARGE * PIXEL, rng)
+            path.write_bytes(al3d(heights[:_LARGE, :_LARGE], PIXEL, "speed"))
+        for name, option in (("without", ["--no-figure"]), ("with", ["--figure", folder + "/f"])):
+            single = sum(_seconds([path], option) for path in paths)
+            together = _seconds(paths, option)
+            yield Speed(f"{name} figure", single, together)
+
+
+def _seconds(paths: list[Path], options: list[str]) -> float:
+    """Processor time of a prediction (Units: s)."""
+    command = [sys.executable, "-m", "crackfront", "predict", *map(str, paths), *_SPHERE.split()]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    # 3: it applies with reservations; 4: it does not.
+    code = subprocess.run(
+        [*command, *options],
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        stdout=subprocess.DEVNULL,
+        check=False,
+    ).returncode
+    assert code in (0, 3, 4)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+@click.command()
+@click.option("--scans", type=click.IntRange(min=1), default=14, show_default=True)
+@click.option("--speed", "timed", is_flag=True, help="Time predictions from large maps instead.")
+def main(scans: int, timed: bool) -> None:
+    """Print the table."""
+    if timed:
+        for one in speeds():
+            click.echo(
+                f"{_MAPS} maps of {_LARGE} x {_LARGE} points, {one.what}: {one.single:.1f} s of "
+                f"one core one by one, {one.together:.1f} s together"
+            )
+        return
+    click.echo(TABLE_HEAD)
+    every: list[Found] = []
+    for kind, found in rows(scans):
+        click.echo(kind_row(kind, found))
+        every += found
+    errors = [abs(one.ratio.value - 1) for one in every]
+    covered = np.mean([one.covers for one in every])
+    click.echo(
+        f"\n{len(every)} scans: median error {np.median(errors):.0%}, {covered:.0%} of the "
+        "intervals hold the truth"
+    )
+
+
+if __name__ == "__main__":
+    main()

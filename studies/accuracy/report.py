@@ -1,0 +1,369 @@
+"""Measured errors as a person reads them: tables, and time against error."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.data.files import write_text
+from crackfront.plots.style import (
+    COLOURS,
+    COLUMN,
+    MARKERS,
+    PAGE,
+    blank_figure,
+    explain,
+    house_style,
+    save_figure,
+)
+from studies.accuracy.averages import Coverage, Sample
+from studies.accuracy.files import read_errors, read_study
+from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
+from studies.accuracy.scenes import SCENES, Progress, Scene
+from studies.accuracy.study import Errors, SceneErrors, joined, pareto_front, rms
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+Found = TypeVar("Found")
+
+_TABLE = re.compile(r"<!-- table: (?P<name>.*?) -->.*?<!-- end -->", re.DOTALL)
+
+_TARGETS = (0.1, 0.03, 0.01, 0.003)
+"""Relative errors of the hysteresis whose cheapest settings the report names."""
+
+_SHOWN = ("chemical-0.0025", "chemical-0.04", "flat-0.16", "h03-0.04")
+"""Scenes of the figure of time against error."""
+
+_NAMES = {
+    "sites": "sites of the front",
+    "cubic": "samples, cubic pieces",
+    "linear": "samples, linear pieces",
+    "pixels": "pixels of the tile",
+    "tolerance": "tolerance of the force",
+    "asked": "chosen for an error",
+    "finer": "finer than the reference",
+}
+
+
+def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
+    """Fit the laws, write the tables and draw the figures of all studies that a folder holds.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the studies' files, and of what is written.
+    page : Path or None
+        Markdown page whose tables are written anew; each stands between `<!-- table: NAME -->` and
+        `<!-- end -->`.
+
+    Raises
+    ------
+    ValueError
+        If there are no errors of numerics, or the page asks for a table that was not measured.
+    """
+    knobs, asked = (_stored(folder, study, read_errors) for study in ("knobs", "asked"))
+    studies = {
+        name: joined(*(part[name] for part in (knobs, asked) if name in part))
+        for name in SCENES
+        if name in knobs | asked
+    }
+    if not studies:
+        raise ValueError(f"{folder} holds no errors; run python -m studies accuracy scene")
+    unseen = _stored(folder, "unseen", read_errors)
+    samples = _stored(folder, "averages", lambda path: read_study(path, Sample))
+    coverages = _stored(folder, "coverage", lambda path: read_study(path, Coverage))
+    laws = list(fit_laws(study for study in knobs.values() if study.scene.single_knobs))
+    write_text(folder / "laws.csv", laws_text(laws))
+    tables = _tables(list(studies.values()), unseen.values(), samples.values(), coverages.values())
+    parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
+    write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]), sealed=True)
+    if page is not None:
+        write_text(page, filled_page(page.read_text(encoding="utf-8"), tables))
+    shown = [studies[name] for name in _SHOWN if name in studies]
+    flat = [study for study in knobs.values() if study.scene.shape == "flat"]
+    drawn = {}
+    if shown:
+        drawn["work-precision"] = _work_precision_figure(shown)
+    if flat:
+        drawn["laws"] = laws_figure(flat, laws)
+    for name, figure in drawn.items():
+        for path in save_figure(figure, folder / name):
+            progress(f"figure: {path}")
+    progress(f"laws: {folder / 'laws.csv'}")
+    progress(f"tables: {folder / 'accuracy.md'}")
+
+
+def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str, Found]:
+    """What a folder holds of a study, by the names of its scenes."""
+    paths = {name: folder / f"{study}-{name}.nc" for name in SCENES}
+    return {name: read(path) for name, path in paths.items() if path.exists()}
+
+
+def _tables(
+    studies: Sequence[SceneErrors],
+    unseen: Collection[SceneErrors],
+    samples: Iterable[tuple[Scene, tuple[Sample, ...]]],
+    coverages: Collection[tuple[Scene, tuple[Coverage, ...]]],
+) -> dict[str, str]:
+    """Markdown tables of all scenes; their names are the headings of the report."""
+    tables = {
+        "Time to an error of the hysteresis": _target_rows(studies),
+        "Errors that were asked for": _asked_rows(studies),
+    }
+    if unseen:
+        tables["Errors on unseen surfaces"] = _unseen_rows(unseen)
+    if coverages:
+        tables["Stated and true errors"] = _coverage_rows(coverages)
+    tables |= {f"Averages, {scene.name}": _sample_rows(found) for scene, found in samples}
+    tables |= {f"Settings, {study.scene.name}": _setting_rows(study) for study in studies}
+    return {name: "\n".join(rows) for name, rows in tables.items()}
+
+
+def filled_page(page: str, tables: Mapping[str, str]) -> str:
+    r"""A page with its tables written anew.
+
+    Examples
+    --------
+    >>> filled_page("<!-- table: a --><!-- end -->", {"a": "| 1 |"}).split("\n\n")
+    ['<!-- table: a -->', '| 1 |', '<!-- end -->']
+    """
+
+    def filled(found: re.Match[str]) -> str:
+        name = found["name"]
+        if name not in tables:
+            raise ValueError(
+                f"the page asks for the table {name!r}, which was not measured; there are "
+                f"{', '.join(tables)}"
+            )
+        return f"<!-- table: {name} -->\n\n{tables[name]}\n\n<!-- end -->"
+
+    return _TABLE.sub(filled, page)
+
+
+def _markdown(header: str, rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    """Lines of a table; its header has a bar between columns."""
+    columns = header.split(" | ")
+    for row in (columns, ["---"] * len(columns), *rows):
+        yield "| " + " | ".join(row) + " |"
+
+
+def _numbers(errors: Errors) -> str:
+    """All numerics in a few words."""
+    return (
+        f"{errors.angles_per_cutoff:g} sites, {errors.samples_per_cutoff:g} "
+        f"{errors.interpolation}, {errors.pixels_per_cutoff:g} pixels, {errors.tolerance:g}"
+    )
+
+
+def _of_k(study: SceneErrors, errors: Errors) -> list[str]:
+    """Rms errors of k of both branches."""
+    return [f"{rms(column) / study.scene.elastic_energy:.2g}" for column in errors.adhesion.T]
+
+
+def _target_rows(studies: Sequence[SceneErrors]) -> Iterator[str]:
+    """Seconds of the cheapest setting for every error."""
+    rows = []
+    for study in studies:
+        seconds, error = study.work_and_precision()
+        entries = []
+        for target in _TARGETS:
+            enough = np.flatnonzero(error <= target)
+            if enough.size == 0:
+                entries.append("-")
+                continue
+            best = enough[np.argmin(seconds[enough])]
+            entry = f"{seconds[best]:.3g} s ({100 * error[best]:.2g}%)"
+            if study.scene.authors_seconds is not None:
+                entry += f", {study.scene.authors_seconds / seconds[best]:.0f} times"
+            entries.append(entry)
+        rows.append([study.scene.name, f"{study.hysteresis:.4g}", *entries])
+    targets = " | ".join(f"{100 * target:g}%" for target in _TARGETS)
+    return _markdown(f"scene | hysteresis | {targets}", rows)
+
+
+def _asked_rows(studies: Sequence[SceneErrors]) -> Iterator[str]:
+    """Measured errors of k where the laws chose the numerics."""
+    rows = [
+        [
+            study.scene.name,
+            f"{errors.value:g}",
+            _numbers(errors),
+            f"{errors.seconds.mean():.3g}",
+            *_of_k(study, errors),
+        ]
+        for study in studies
+        for errors in study.errors
+        if errors.knob == "asked"
+    ]
+    return _markdown("scene | asked for | numerics | CPU s | k of w_appr | k of w_retr", rows)
+
+
+def _unseen_rows(studies: Iterable[SceneErrors]) -> Iterator[str]:
+    """Rms errors and biases of k where the laws chose the numerics for surfaces unknown to them."""
+    rows = []
+    for study in studies:
+        for errors in study.errors:
+            of_k = errors.adhesion / study.scene.elastic_energy
+            rows.append(
+                [
+                    study.scene.name,
+                    f"{errors.value:g}",
+                    _numbers(errors),
+                    f"{errors.seconds.mean():.3g}",
+                    *_of_k(study, errors),
+                    *(f"{bias:+.2g}" for bias in of_k.mean(axis=0)),
+                    f"{np.abs(of_k).max():.2g}",
+                ]
+            )
+    return _markdown(
+        "scene | asked for | numerics | CPU s | k of w_appr: rms | k of w_retr: rms "
+        "| k of w_appr: bias | k of w_retr: bias | largest of one surface",
+        rows,
+    )
+
+
+def _coverage_rows(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> Iterator[str]:
+    """How often intervals of the stated errors cover the true ones, and how wide they are."""
+    rows = []
+    pooled: tuple[list[Array], list[Array]] = [], []
+    for scene, found in coverages:
+        for item in found:
+            parts = (item.numerical, item.numerical_interval), (item.total, item.total_interval)
+            entries = [f"{rms(item.numerical) / scene.elastic_energy:.2g}"]
+            for (true, interval), every in zip(parts, pooled, strict=True):
+                known = np.isfinite(interval) & np.isfinite(true)
+                error = np.abs(true[known])
+                every.append(error / interval[known])
+                entries += [
+                    f"{np.median(error) / scene.elastic_energy:.2g}",
+                    f"{np.median(interval[known]) / scene.elastic_energy:.2g}",
+                    f"{100 * np.mean(every[-1] <= 1):.0f}%",
+                ]
+            rows.append([scene.name, f"{item.asked:g}", *entries])
+    ends = []
+    for every in pooled:
+        relative = np.concatenate(every)
+        widths = f"{1 / np.median(relative):.1f} times the median"
+        ends += ["", widths, f"{100 * np.mean(relative <= 1):.1f}%"]
+    rows.append(["**all**", "", "", *ends])
+    return _markdown(
+        "scene | asked for | numerical: rms | median | interval | covered | total: median "
+        "| interval | covered",
+        rows,
+    )
+
+
+def _setting_rows(study: SceneErrors) -> Iterator[str]:
+    """Errors of all settings of a scene; those on the Pareto front in bold."""
+    seconds, error = study.work_and_precision()
+    best = pareto_front(seconds, error)
+    rows = [["", "reference", f"{study.reference_seconds.mean():.3g}", *[""] * 7]]
+    for index, errors in enumerate(study.errors):
+        values = study.hysteresis_errors(errors)
+        spread = np.std(values, ddof=1) / np.sqrt(values.size)
+        name = f"{errors.knob} {errors.value:g}" if errors.value else errors.knob
+        rows.append(
+            [
+                f"**{name}**" if index in best else name,
+                _numbers(errors),
+                f"{seconds[index]:.3g}",
+                f"{100 * values.mean():+.2f} ± {100 * spread:.2f}",
+                f"{100 * error[index]:.2f}",
+                *_of_k(study, errors),
+                f"{rms(errors.force):.1g}",
+                f"{rms(errors.front_rms):.2g}",
+                f"{np.max(errors.front_max):.2g}",
+            ]
+        )
+    return _markdown(
+        "varied | numerics | CPU s | hysteresis: bias % | rms % | k of w_appr | k of w_retr "
+        "| force | front rms | front max",
+        rows,
+    )
+
+
+def _sample_rows(samples: tuple[Sample, ...]) -> Iterator[str]:
+    """Hysteresis for schedules and tiles; differences from the first on the same surfaces."""
+    rows = []
+    for sample in samples:
+        values, setting = sample.hysteresis, f"{sample.knob} {sample.value:g}"
+        if not np.all(np.isfinite(values)):
+            rows.append([setting, "too few states", *[""] * 5])
+            continue
+        error = np.std(values, ddof=1)
+        difference = values - samples[0].hysteresis
+        compared = [f"{difference.mean():+.5f}", f"{rms(difference):.5f}"]
+        rows.append(
+            [
+                setting,
+                f"{sample.seconds.mean():.3g}",
+                f"{values.mean():.5f} ± {error / np.sqrt(values.size):.5f}",
+                f"{error:.5f}",
+                f"{rms(sample.standard_error):.5f}",
+                *(["", ""] if sample.knob == "tile" else compared),
+            ]
+        )
+    return _markdown(
+        "varied | CPU s | mean hysteresis | one realisation, rms | stated by the runs, rms "
+        "| against the first, mean | rms",
+        rows,
+    )
+
+
+def _work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
+    """Error of the hysteresis against time of up to four scenes; the Pareto front is marked."""
+    with house_style():
+        figure = blank_figure(PAGE, 1.25 * COLUMN)
+        rows = (len(studies) + 1) // 2
+        panels = figure.subplots(rows, 2, squeeze=False).ravel()
+        for axes, study in zip(panels, studies, strict=False):
+            _draw_work_precision(axes, study)
+        for axes in panels[len(studies) :]:
+            axes.set_axis_off()
+        for axes in panels[len(studies) - 2 : len(studies)]:
+            axes.set_xlabel("CPU time of one realisation / s")
+        for axes in panels[::2]:
+            axes.set_ylabel("rms error of the hysteresis / %")
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside right upper", title="varied")
+        explain(figure, "grey: the Pareto front, from setting to setting that none beats in both")
+        return figure
+
+
+def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
+    """One scene."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    seconds, relative = study.work_and_precision()
+    error, best = 100 * relative, pareto_front(seconds, relative)
+    knobs = np.array([errors.knob for errors in study.errors])
+    axes.plot(seconds[best], error[best], color="0.8", linewidth=4, zorder=1, label="Pareto front")
+    for knob, colour, marker in zip(_NAMES, COLOURS, MARKERS, strict=False):
+        chosen = knobs == knob
+        axes.plot(
+            seconds[chosen],
+            error[chosen],
+            marker=marker,
+            linewidth=0.8,
+            color=colour,
+            label=_NAMES[knob],
+            zorder=3 if knob == "asked" else 2,
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
+    scene = study.scene
+    axes.set_title(
+        rf"{scene.shape}, $e_\mathrm{{el}} = {scene.elastic_energy:g}\,w_\mathrm{{int}}$"
+    )

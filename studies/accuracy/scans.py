@@ -1,0 +1,120 @@
+"""Write the synthetic scans of `examples/scans`: nanodiamond as Main Fig. 5 describes it.
+
+python -m studies.accuracy.scans --output examples/scans
+
+Two maps of one surface, an overview and a detail, each cut from a larger periodic surface so that
+its edges do not fit together, as those of a measurement do not. They are AL3D files, the format of
+Alicona's focus-variation microscopes: a list of tags, a comment, and single-precision heights in
+metres. Their comments say that they are synthetic.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+
+SEED = 20240229
+ROLL_OFF, HURST, PLATEAU = 2.1e-6, 1.0, 8.4e-27
+"""Spectrum of nanodiamond. (Units: m, 1, m^4; Sanner et al., Sci. Adv. 2024, Fig. 5)"""
+
+MAGIC = b"AliconaImaging\x00\r\n"
+COMMENT_BYTES = 256
+END = b"\r\n"
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """A map to write.
+
+    Attributes
+    ----------
+    name : str
+        Name of the file without suffix.
+    n_point : int
+        Points along a side; even, as rows are padded to eight bytes.
+    pixel : float
+        Distance of points. (Units: m)
+    """
+
+    name: str
+    n_point: int
+    pixel: float
+
+
+SCANS = (
+    Scan("nanodiamond-overview", n_point=144, pixel=0.3e-6),
+    Scan("nanodiamond-detail", n_point=144, pixel=0.05e-6),
+)
+
+
+def scan_heights(scan: Scan, seed: np.random.SeedSequence) -> NDArray[np.float64]:
+    """Heights of a scan, with the waves that its pixels resolve (Units: m)."""
+    spectrum = SelfAffineSpectrum(2 * scan.pixel, ROLL_OFF, HURST, PLATEAU)
+    side = 2 * scan.n_point * scan.pixel
+    heights = gaussian_field(spectrum, 2 * scan.n_point, side, np.random.default_rng(seed))
+    return heights[: scan.n_point, : scan.n_point]
+
+
+def al3d(heights: NDArray[np.float64], pixel: float | tuple[float, float], comment: str) -> bytes:
+    """Content of an AL3D file.
+
+    Parameters
+    ----------
+    heights : (n_x, n_y) array
+        Heights; n_x is even. (Units: m)
+    pixel : float or tuple of float
+        Distance of points, along x and y where these differ. (Units: m)
+    comment : str
+        What the file says of itself, in fewer than 255 characters of Latin-1.
+    """
+    columns, rows = heights.shape
+    along_x, along_y = pixel if isinstance(pixel, tuple) else (pixel, pixel)
+    tags = {
+        "Type": "SurfaceData",
+        "DirSpacer": "\\",
+        "Rows": str(rows),
+        "Cols": str(columns),
+        "NumberOfPlanes": "0",
+        "PixelSizeXMeter": f"{along_x:.10g}",
+        "PixelSizeYMeter": f"{along_y:.10g}",
+        "InvalidPixelValue": "NaN",
+        "DepthImageOffset": "",
+        "TextureImageOffset": "0",
+    }
+    head = len(MAGIC) + (2 + len(tags)) * len(_tag("", ""))
+    tags["DepthImageOffset"] = str(head + COMMENT_BYTES)
+    lines = [_tag("Version", "1"), _tag("TagCount", str(len(tags)))]
+    lines += [_tag(key, value) for key, value in tags.items()]
+    text = comment.encode("latin-1").ljust(COMMENT_BYTES - len(END), b"\x00") + END
+    return MAGIC + b"".join(lines) + text + heights.T.astype("<f4").tobytes()
+
+
+def _tag(key: str, value: str) -> bytes:
+    """A line of the list of tags."""
+    return key.encode("ascii").ljust(20, b"\x00") + value.encode("ascii").ljust(30, b"\x00") + END
+
+
+def main() -> None:
+    """Write the scans."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--output", type=Path, default=Path("examples/scans"))
+    folder = parser.parse_args().output
+    for scan, seed in zip(SCANS, np.random.SeedSequence(SEED).spawn(len(SCANS)), strict=True):
+        comment = (
+            "SYNTHETIC, not a measurement: random self-affine surface with the published spectrum "
+            f"of nanodiamond (H = {HURST:g}, roll-off {1e6 * ROLL_OFF:g} um, plateau "
+            f"{PLATEAU:g} m^4), seed {SEED}"
+        )
+        content = al3d(scan_heights(scan, seed), scan.pixel, comment)
+        (folder / f"{scan.name}.al3d").write_bytes(content)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,221 @@
+"""What numerics cost and how wrong they are, on the same surfaces at the same loads."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import resample
+
+from crackfront.core import jkr
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.cycle.steady import forward_circle
+from crackfront.core.field.fields import TileField
+from crackfront.core.outcome import Direction
+from crackfront.core.variables import ADHESION, FORCE, variable
+from crackfront.simulate.contact import simulation_field
+from crackfront.simulate.costs import featured_cost, features
+from crackfront.simulate.laws import Knobs
+from crackfront.simulate.simulation import Simulation
+from studies.accuracy.scenes import Progress, Scene, Setting
+
+Array = NDArray[np.float64]
+
+_RUN, _BRANCH, _PER_CUTOFF = "realisation", "branch", "1 / short cutoff"
+
+
+@dataclass(frozen=True, slots=True)
+class Branches:
+    """States of both branches at the loads of a scene, the approach first.
+
+    Attributes
+    ----------
+    apparent_work_of_adhesion, force : (2, n_state) array
+        At the same loads in both. (Units: w_int, pi w_int R)
+    radius : (2, n_state, n_angle) array
+        Fronts. (Units: reduced lateral length)
+    seconds : float
+        Processor time, synthesis of the surface included. (Units: s)
+    """
+
+    apparent_work_of_adhesion: Array
+    force: Array
+    radius: Array
+    seconds: float
+
+    @property
+    def adhesion(self) -> Array:
+        """Means over the loads, w_appr and w_retr (Units: w_int)."""
+        return self.apparent_work_of_adhesion.mean(axis=1)
+
+
+@dataclass(frozen=True, slots=True)
+class Errors:
+    """Errors of one setting against the reference on the same surfaces at the same loads.
+
+    What is varied is a knob of :data:`crackfront.simulate.laws.KNOBS`, `finer` or `asked`.
+    """
+
+    knob: str = variable("what is varied", "1")
+    value: float = variable("its value; of asked the error of k", "1")
+    seconds: Array = variable("processor time of both branches, synthesis included", "s", _RUN)
+    adhesion: Array = variable("error of w_appr and w_retr", ADHESION, _RUN, _BRANCH)
+    state: Array = variable("rms error of one state's w", ADHESION, _RUN, _BRANCH)
+    force: Array = variable("rms error of the normal force", FORCE, _RUN)
+    front_rms: Array = variable("rms error of the radius", "short cutoff", _RUN)
+    front_max: Array = variable("largest error of the radius", "short cutoff", _RUN)
+    angles_per_cutoff: float = variable("sites of the front", _PER_CUTOFF)
+    samples_per_cutoff: float = variable("samples along a ray", _PER_CUTOFF)
+    interpolation: str = variable("pieces between samples", "1")
+    pixels_per_cutoff: float = variable("points of the tile", _PER_CUTOFF)
+    tolerance: float = variable("force that may be left, per front length", ADHESION)
+
+
+@dataclass(frozen=True, slots=True)
+class SceneErrors:
+    """Errors of all settings of a scene, and what its reference found."""
+
+    scene: Scene
+    errors: tuple[Errors, ...]
+    reference_adhesion: Array = variable("w_appr and w_retr", ADHESION, _RUN, _BRANCH)
+    reference_seconds: Array = variable("processor time of the reference", "s", _RUN)
+
+    @property
+    def hysteresis(self) -> float:
+        """Mean hysteresis of the reference (Units: w_int)."""
+        return float(np.mean(self.reference_adhesion[:, 1] - self.reference_adhesion[:, 0]))
+
+    def hysteresis_errors(self, errors: Errors) -> Array:
+        """Errors of the hysteresis of all realisations, relative to the mean of the reference."""
+        return (errors.adhesion[:, 1] - errors.adhesion[:, 0]) / self.hysteresis
+
+    def work_and_precision(self) -> tuple[Array, Array]:
+        """Mean processor time and rms relative error of the hysteresis of every setting."""
+        seconds = [errors.seconds.mean() for errors in self.errors]
+        return np.array(seconds), np.array([rms(self.hysteresis_errors(e)) for e in self.errors])
+
+
+def branches_seconds(scene: Scene, knobs: Knobs) -> float:
+    """Processor time that both branches of a surface are expected to take (Units: s)."""
+    cycle = features(scene.simulation(knobs, 0))
+    both = replace(cycle, full_cycle=False, n_state=2.0 * scene.penetrations.size)
+    return featured_cost(both, fronts=False).seconds
+
+
+def setting_seconds(scene: Scene, settings: list[Setting]) -> float:
+    """Processor time that a surface is expected to take in `scene_errors` (Units: s)."""
+    tried = [scene.reference, *(setting.knobs for setting in settings)]
+    return sum(branches_seconds(scene, knobs) for knobs in tried)
+
+
+def scene_errors(
+    scene: Scene, settings: list[Setting], surfaces: range, progress: Progress = lambda line: None
+) -> SceneErrors:
+    """Errors of settings of the numerics on surfaces of a scene, which have numbers."""
+    exact = [measured_branches(scene, scene.reference, number) for number in surfaces]
+    study = SceneErrors(
+        scene=scene,
+        errors=(),
+        reference_adhesion=np.array([item.adhesion for item in exact]),
+        reference_seconds=np.array([item.seconds for item in exact]),
+    )
+    seconds = study.reference_seconds.mean()
+    progress(f"reference: hysteresis {study.hysteresis:.5g} w_int, {seconds:.2f} s")
+    errors = []
+    for setting in settings:
+        found = [measured_branches(scene, setting.knobs, number) for number in surfaces]
+        errors.append(_errors(scene, setting, found, exact))
+        of_k, seconds = rms(errors[-1].adhesion) / scene.elastic_energy, errors[-1].seconds.mean()
+        progress(f"{setting.knob} {setting.value:g}: rms error of k {of_k:.2g}, {seconds:.2f} s")
+    return replace(study, errors=tuple(errors))
+
+
+def joined(*studies: SceneErrors) -> SceneErrors:
+    """Studies of one scene, on the same surfaces, as one."""
+    errors = tuple(errors for study in studies for errors in study.errors)
+    return replace(studies[0], errors=errors)
+
+
+def _errors(scene: Scene, setting: Setting, found: list[Branches], exact: list[Branches]) -> Errors:
+    """Differences of the found branches from the exact ones, surface by surface."""
+    pairs = list(zip(found, exact, strict=True))
+    adhesion = np.array(
+        [one.apparent_work_of_adhesion - other.apparent_work_of_adhesion for one, other in pairs]
+    )
+    force = np.array([one.force - other.force for one, other in pairs])
+    fronts = [
+        front_difference(one.radius, other.radius) / scene.spectrum.short_cutoff
+        for one, other in pairs
+    ]
+    numerics = asdict(setting.knobs)
+    del numerics["angles"]  # None in all settings: they count sites per cutoff
+    return Errors(
+        knob=setting.knob,
+        value=setting.value,
+        seconds=np.array([one.seconds for one in found]),
+        adhesion=adhesion.mean(axis=2),
+        state=np.sqrt(np.mean(adhesion**2, axis=2)),
+        force=np.sqrt(np.mean(force**2, axis=(1, 2))),
+        front_rms=np.array([rms(front) for front in fronts]),
+        front_max=np.array([np.max(np.abs(front)) for front in fronts]),
+        **numerics,
+    )
+
+
+def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
+    """Both branches of a scene, each begun at a circle that moves forward.
+
+    Raises
+    ------
+    RuntimeError
+        If there is a load without a state.
+    """
+    start = time.process_time()
+    simulation = scene.simulation(knobs, realisation)
+    field = simulation_field(simulation)
+    adhesion, force, radius = [], [], []
+    for direction in (1, -1):
+        record = _branch(field, scene.penetrations[::direction], direction, simulation)
+        if record.fronts is None or len(record.fronts) != scene.penetrations.size:
+            raise RuntimeError(f"{simulation.label}: {record.status.value}")
+        adhesion.append(record.states.apparent_work_of_adhesion[::direction])
+        force.append(record.states.force[::direction])
+        radius.append(record.fronts[::direction])
+    seconds = time.process_time() - start
+    return Branches(np.array(adhesion), np.array(force), np.array(radius), seconds)
+
+
+def _branch(
+    field: TileField, penetrations: Array, direction: Direction, simulation: Simulation
+) -> CycleRecord:
+    """One branch over given loads."""
+    first, length = float(penetrations[0]), simulation.correlation_length
+    circle = forward_circle(field, first, direction, jkr.equilibrium_radius(first), length)
+    recorder = Recorder(fronts=True)
+    loads = [Load(float(penetration), direction) for penetration in penetrations]
+    recorder.run(field, circle, loads, simulation.solver)
+    return recorder.record()
+
+
+def front_difference(fronts: Array, exact: Array) -> Array:
+    """Difference of fronts, trigonometric between their sites, at those of finer ones.
+
+    Arrays are of the shapes (..., n_angle) and (..., n_fine), the difference of the latter.
+    """
+    return resample(fronts, exact.shape[-1], axis=-1) - exact
+
+
+def rms(values: Array) -> float:
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def pareto_front(seconds: Array, error: Array) -> NDArray[np.intp]:
+    """Positions of settings that no other one beats in time and in error, the fastest first."""
+    order = np.lexsort((error, seconds))
+    best = np.minimum.accumulate(error[order])
+    first = np.concatenate([[True], error[order][1:] < best[:-1]])
+    return order[first]

@@ -1,0 +1,207 @@
+"""A whole cycle as it is seen: every front over the field, beside the loop that it draws."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core import jkr
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
+from crackfront.plots.parts import FORCE_LABEL, PENETRATION_LABEL, RADIUS_LABEL
+from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.simulate.contact import simulation_adhesion, simulation_field
+from crackfront.simulate.run import compile_solver
+from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.rough import RoughCycleParameters, patch_of, whole_cycle
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+    from crackfront.plots.animation import Animation
+
+Array = NDArray[np.float64]
+
+_STATE, _ANGLE, _X, _Y = "state", "angle", "x", "y"
+
+_PATCH_POINTS = 400
+"""Points along a side of the field that is shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class AnimatedCycle:
+    """All states of a cycle with their fronts, and the field."""
+
+    status: str = variable("what ended the cycle", "1")
+    elastic_energy: float = variable("energy of full conformity on the tile", ADHESION)
+    end_penetration: float = variable("penetration at which contact was lost", VERTICAL)
+    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    penetration: Array = variable("rigid body penetration", VERTICAL, _STATE)
+    mean_radius: Array = variable("mean contact radius", LATERAL, _STATE)
+    force: Array = variable("normal force", FORCE, _STATE)
+    dissipated_energy: Array = variable("energy lost in a load step", ENERGY, _STATE)
+    pull_off_energy: float = variable("energy lost when the contact vanishes", ENERGY)
+    angle: Array = variable("angle of a site", "rad", _ANGLE)
+    front: Array = variable("front", LATERAL, _STATE, _ANGLE)
+    x: Array = variable("abscissa of the field", LATERAL, _X)
+    y: Array = variable("ordinate of the field", LATERAL, _Y)
+    patch: NDArray[np.float32] = variable("local work of adhesion", ADHESION, _X, _Y)
+
+
+def motion(parameters: RoughCycleParameters, progress: Progress) -> AnimatedCycle:
+    """A full cycle with all its fronts.
+
+    Raises
+    ------
+    ValueError
+        If the cycle does not end by losing contact.
+    """
+    simulation = parameters.simulation()
+    adhesion = simulation_adhesion(simulation)
+    field = simulation_field(simulation, adhesion)
+    compile_solver(simulation.solver.name)
+    recorder = Recorder(fronts=True, energy=True)
+    record = run_cycle(field, parameters.schedule, simulation.solver, recorder)
+    progress(f"{record.states.penetration.size} states: {record.status.value}")
+    if record.fronts is None or record.dissipated_energy is None or record.pull_off_energy is None:
+        raise ValueError(f"the cycle ended early: {record.status.value}")
+    reach = 1.08 * record.states.max_radius.max()
+    axis = np.linspace(-reach, reach, _PATCH_POINTS)
+    return AnimatedCycle(
+        status=record.status.value,
+        elastic_energy=adhesion.e_el,
+        end_penetration=record.end_load,
+        direction=record.states.direction,
+        penetration=record.states.penetration,
+        mean_radius=record.states.mean_radius,
+        force=record.states.force,
+        dissipated_energy=record.dissipated_energy,
+        pull_off_energy=record.pull_off_energy,
+        angle=2 * np.pi * np.arange(record.fronts.shape[1]) / record.fronts.shape[1],
+        front=record.fronts,
+        x=axis,
+        y=axis,
+        patch=patch_of(field, axis, axis),
+    )
+
+
+def motion_checks(shown: AnimatedCycle) -> tuple[Check, ...]:
+    """What must be true of every frame."""
+    approach = shown.direction > 0
+    moved = shown.direction[1:, None] * np.diff(shown.front, axis=0)
+    smallest, work = float(shown.dissipated_energy.min()), _loop_work(shown)
+    dissipated = float(shown.dissipated_energy.sum()) + shown.pull_off_energy
+    mean = np.mean(jkr.force(shown.front, shown.penetration[:, None]), axis=1)
+    return (
+        whole_cycle(shown.status),
+        Check(
+            "no site of the front moves back, neither in approach nor in retraction",
+            "the least way forward is 0 or more",
+            f"{moved.min():.2g}",
+            bool(moved.min() >= 0),
+        ),
+        close_to(
+            "the fronts that are shown have the forces that are shown, largest difference",
+            float(np.max(np.abs(mean - shown.force))),
+            0.0,
+            1e-9,
+            units=FORCE,
+        ),
+        Check(
+            "every load step dissipates",
+            "the least energy is 0 or more",
+            f"{smallest:.2g}",
+            smallest >= 0,
+        ),
+        close_to(
+            "the dissipated energies sum up to the work of the loop",
+            dissipated,
+            work,
+            1e-9,
+            remark=f"in {FORCE} times a reduced vertical length; {np.count_nonzero(approach)} "
+            f"states in approach, {np.count_nonzero(~approach)} in retraction",
+        ),
+    )
+
+
+def _loop_work(shown: AnimatedCycle) -> float:
+    """Loop integral of F db, in which each front is held while the penetration changes."""
+    ends = np.append(shown.penetration[1:], shown.end_penetration)
+    held = np.mean(jkr.force(shown.front, ends[:, None]), axis=1)
+    return float(np.sum((shown.force + held) / 2 * (ends - shown.penetration)))
+
+
+_LAST_FRAMES = 10
+"""Frames without contact at the end."""
+
+
+def motion_figure(shown: AnimatedCycle) -> Drawing:
+    """The last frame with contact, and the whole loop."""
+    animation = motion_animation(shown)
+    with house_style():
+        animation.show(shown.direction.size - 1)
+        return animation.figure
+
+
+def motion_animation(shown: AnimatedCycle) -> Animation:
+    """The front over the field beside the loop: one frame a state, and some without contact."""
+    from crackfront.plots.animation import Animation
+    from crackfront.plots.fronts import closed_front, draw_field
+
+    with house_style():
+        figure = blank_figure(PAGE, 0.47 * PAGE)
+        left, right = figure.subplots(1, 2)
+        mean, reach = 1 - shown.elastic_energy, 4 * np.sqrt(shown.elastic_energy)
+        draw_field(left, shown.x, shown.y, shown.patch, mean, reach)
+        _draw_axes(right, shown)
+        (line,) = left.plot([], [], linewidth=1.2)
+        title = left.set_title(f"{PENETRATION_LABEL} = $+0.00$")
+        branches = {
+            direction: right.plot([], [], color=colour, label=label)[0]
+            for direction, colour, label in ((1, BLUE, "approach"), (-1, VERMILION, "retraction"))
+        }
+        (point,) = right.plot([], [], "o", color=BLACK, zorder=4, label="state of the front beside")
+        right.legend(loc="upper left")
+    last = shown.direction.size
+
+    def show(frame: int) -> None:
+        state, touching = min(frame, last - 1), frame < last
+        line.set_color(BLUE if shown.direction[state] > 0 else VERMILION)
+        line.set_data(*closed_front(shown.angle, shown.front[state]) if touching else ([], []))
+        b = shown.penetration[state] if touching else shown.end_penetration
+        title.set_text(f"{PENETRATION_LABEL} = ${b:+.2f}${'' if touching else ': contact lost'}")
+        for direction, drawn in branches.items():
+            branch = np.flatnonzero(shown.direction[: state + 1] == direction)
+            drawn.set_data(shown.mean_radius[branch], shown.force[branch])
+        seen = slice(state, state + 1) if touching else slice(0, 0)
+        point.set_data(shown.mean_radius[seen], shown.force[seen])
+
+    return Animation(figure, (line, title, *branches.values(), point), last + _LAST_FRAMES, show)
+
+
+def _draw_axes(axes: Axes, shown: AnimatedCycle) -> None:
+    """Axes that hold the whole loop."""
+    for values, setter, above in (
+        (shown.mean_radius, axes.set_xlim, 0.06),
+        (shown.force, axes.set_ylim, 0.2),
+    ):
+        low, high = values.min(), values.max()
+        setter(low - 0.06 * (high - low), high + above * (high - low))
+    axes.set_xlabel(f"mean {RADIUS_LABEL}")
+    axes.set_ylabel(FORCE_LABEL)
+
+
+FIGURE = Figure(
+    title="Animation: the fronts of a cycle over the field, beside its loop",
+    parameters=RoughCycleParameters,
+    record=AnimatedCycle,
+    compute=motion,
+    checks=motion_checks,
+    draw=motion_figure,
+    animate=motion_animation,
+)

@@ -1,0 +1,434 @@
+"""Beyond the paper: avalanches of straight fronts on springs, and of a sphere in retraction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.analysis.estimate import with_error
+from crackfront.core.adhesion import force_correlation_length
+from crackfront.core.cycle.energy import dissipated_energy
+from crackfront.core.cycle.instabilities import resolved_motion, swept_clusters
+from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
+from crackfront.data.section import Count, Positive
+from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
+from studies.law.power_law import PowerLaw, truncated_power_law
+from studies.paper.events import (
+    SIZE_EXPONENT,
+    EventParameters,
+    EventRecord,
+    draw_cutoffs,
+    draw_depths,
+    draw_events,
+    event_checks,
+    event_record,
+    logarithmic_edges,
+)
+from studies.paper.figure import Check, Figure, Progress
+from studies.paper.rough import (
+    STRONG,
+    WEAK,
+    RetractionParameters,
+    circle_stiffness,
+    flat_spectrum,
+    surface_means,
+)
+from studies.paper.straight import Springs
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+    from matplotlib.legend import Legend
+
+Array = NDArray[np.float64]
+
+_DISORDER, _AVALANCHE = "disorder", "avalanche"
+
+
+class AvalancheParameters(RetractionParameters):
+    """Surfaces, the part of their retraction that is resolved, the range of the fit, and lines.
+
+    The closer the penetrations are to pull-off, the softer is the circle, and the larger may
+    avalanches become.
+
+    Attributes
+    ----------
+    load_step : float
+        Penetrations that are visited in any case. (Units: reduced vertical length)
+    travel : float
+        Largest motion of a site in a smooth step, over the short cutoff.
+    precision : float
+        Penetration to which an avalanche is located; avalanches that are closer come out as one.
+        (Units: reduced vertical length)
+    smallest_area : float
+        Where the power law begins, over the Larkin length times the correlation length of the
+        force.
+    line : EventParameters
+        Straight fronts, and how their events are told apart.
+    springs : tuple of float
+        Their L_kappa, over the Larkin length.
+    n_tile : int
+        Tiles of each spring; each front goes over a whole period.
+    """
+
+    load_step: Positive
+    travel: Positive
+    precision: Positive
+    smallest_area: Positive
+    line: EventParameters
+    springs: Springs
+    n_tile: Count
+
+
+@dataclass(frozen=True, slots=True)
+class AvalancheRecord(EventRecord):
+    """Whole events of straight fronts, and avalanches of all surfaces of a sphere."""
+
+    short_cutoff: float = variable("shortest wavelength of the roughness", LATERAL)
+    correlation_length: float = variable("correlation length of w_loc", LATERAL)
+    precision: float = variable("penetration to which they are located", VERTICAL)
+    seed: int = variable("seed of the surfaces", "1")
+    elastic_energy: Array = variable("requested e_el", ADHESION, _DISORDER)
+    rms: Array = variable("w_rms, mean of the tiles", ADHESION, _DISORDER)
+    larkin_length: Array = variable("Larkin length", LATERAL, _DISORDER)
+    smallest_area: Array = variable("where the power law begins", f"({LATERAL})^2", _DISORDER)
+    circle_length: Array = variable(
+        "perimeter over the stiffness of the circle, a dG/da / w_int", LATERAL, _DISORDER
+    )
+    smooth_area: Array = variable("share of the area left in smooth steps", "1", _DISORDER)
+    disorder_index: NDArray[np.int64] = variable("which disorder", "1", _AVALANCHE)
+    surface: NDArray[np.int64] = variable("number of the surface", "1", _AVALANCHE)
+    penetration: Array = variable("penetration of the avalanche", VERTICAL, _AVALANCHE)
+    area: Array = variable("area that it sweeps", f"({LATERAL})^2", _AVALANCHE)
+    extent: Array = variable("width of its largest patch, area over depth", LATERAL, _AVALANCHE)
+    n_patch: NDArray[np.int64] = variable("patches that do not touch", "1", _AVALANCHE)
+    energy: Array = variable("energy that it dissipates", ENERGY, _AVALANCHE)
+
+
+@dataclass(frozen=True, slots=True)
+class _Avalanche:
+    """One instability."""
+
+    surface: int
+    penetration: float
+    area: float
+    extent: float
+    n_patch: int
+    energy: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Surface:
+    """Avalanches on one surface and what they are compared with."""
+
+    avalanches: list[_Avalanche]
+    smooth_area: float
+    circle_length: float
+    rms: float
+    larkin_length: float
+
+
+def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> AvalancheRecord:
+    """Whole events of straight fronts, then avalanches on surfaces of two amplitudes."""
+    line, springs = parameters.line, parameters.springs
+    whole = event_record(line, springs, parameters.n_tile, parameters.seed, progress)
+    surfaces: list[list[_Surface]] = []
+    for name, energy in (("strong", parameters.strong), ("weak", parameters.weak)):
+        surfaces.append([])
+        for realisation in range(parameters.n_surface):
+            surfaces[-1].append(_surface(parameters, energy, realisation))
+            count = len(surfaces[-1][-1].avalanches)
+            progress(f"{name} disorder, surface {realisation}: {count} avalanches")
+    spectrum = flat_spectrum(parameters.short_cutoff)
+    larkin = surface_means(surfaces, "larkin_length")
+    unit = larkin * force_correlation_length("roughness", spectrum)
+    events = [[event for one in kind for event in one.avalanches] for kind in surfaces]
+
+    def each(name: str) -> NDArray[Any]:
+        return np.array([getattr(event, name) for kind in events for event in kind])
+
+    return AvalancheRecord(
+        **{one.name: getattr(whole, one.name) for one in fields(whole)},
+        short_cutoff=parameters.short_cutoff,
+        correlation_length=spectrum.correlation_length,
+        precision=parameters.precision,
+        seed=parameters.seed,
+        elastic_energy=np.array([parameters.strong, parameters.weak]),
+        rms=surface_means(surfaces, "rms"),
+        larkin_length=larkin,
+        smallest_area=parameters.smallest_area * unit,
+        circle_length=surface_means(surfaces, "circle_length"),
+        smooth_area=surface_means(surfaces, "smooth_area"),
+        disorder_index=np.repeat([STRONG, WEAK], [len(kind) for kind in events]),
+        surface=each("surface"),
+        penetration=each("penetration"),
+        area=each("area"),
+        extent=each("extent"),
+        n_patch=each("n_patch"),
+        energy=each("energy"),
+    )
+
+
+def expected_seconds(parameters: AvalancheParameters) -> float:
+    """Processor time as measured with either scale, for any number of fronts (Units: s).
+
+    The sites of a straight front and the loads of its period grow with its spring.
+    """
+    springs = sum(spring**2 for spring in parameters.springs)
+    return 20.0 * parameters.n_surface + 3.1e-5 * springs * parameters.n_tile
+
+
+def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -> _Surface:
+    """Retraction on one surface, resolved."""
+    contact = parameters.contact(energy, parameters.precision / 4, realisation)
+    start, stop = parameters.first_penetration, parameters.last_penetration
+    travel = parameters.travel * parameters.short_cutoff
+    front = contact.moved(contact.touched(parameters.max_penetration), start, -1)
+    n_load = max(round((start - stop) / parameters.load_step), 1)
+    steps = resolved_motion(
+        contact.field,
+        front,
+        start,
+        np.linspace(start, stop, n_load + 1)[1:],
+        -1,
+        travel=travel,
+        precision=parameters.precision,
+        solver=contact.solver,
+    )
+    avalanches, areas, last = [], [0.0, 0.0], front
+    for step in steps:
+        area = float(np.pi * np.mean(step.before**2 - step.after**2))
+        areas[step.unstable] += area
+        last = step.after
+        if step.unstable:
+            patches = swept_clusters(step.before, step.after, travel, contact.field.geometry)
+            lost = dissipated_energy(step.before, step.after, step.end, contact.field)
+            avalanches.append(
+                _Avalanche(realisation, step.end, area, patches[0].extent, len(patches), lost)
+            )
+    middle = float(np.mean([front, last]))
+    return _Surface(
+        avalanches=avalanches,
+        smooth_area=areas[0] / sum(areas),
+        circle_length=2 * np.pi * middle / float(circle_stiffness(middle, (start + stop) / 2)),
+        rms=contact.w_rms,
+        larkin_length=contact.larkin_length,
+    )
+
+
+_TOLERANCE = 0.1
+"""Largest deviation of that of a sphere."""
+
+
+def size_law(record: AvalancheRecord, index: int) -> PowerLaw:
+    """Power law of the swept areas of one disorder."""
+    rng = np.random.default_rng(np.random.SeedSequence(record.seed, spawn_key=(index,)))
+    areas = record.area[record.disorder_index == index]
+    return truncated_power_law(areas, float(record.smallest_area[index]), rng)
+
+
+def avalanche_checks(record: AvalancheRecord) -> tuple[Check, ...]:
+    """Exponents, and the lengths between which avalanches lie."""
+    checks = [*event_checks(record)]
+    checks += [
+        check
+        for index, name in ((STRONG, "strong"), (WEAK, "weak"))
+        for check in _checks(record, index, name)
+    ]
+    smallest = [
+        float(np.quantile(record.extent[record.disorder_index == index], 0.1))
+        for index in (STRONG, WEAK)
+    ]
+    checks.append(
+        Check(
+            "sphere: the smallest extent grows for weaker disorder",
+            "> 1",
+            f"{smallest[WEAK] / smallest[STRONG]:.3g} times",
+            smallest[WEAK] > smallest[STRONG],
+            f"tenth percentiles {smallest[STRONG]:.3g} and {smallest[WEAK]:.3g}; Larkin lengths "
+            f"{record.larkin_length[STRONG]:.3g} and {record.larkin_length[WEAK]:.3g}, correlation "
+            f"length {record.correlation_length:.3g}",
+        )
+    )
+    return tuple(checks)
+
+
+def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
+    """Claims about one disorder."""
+    chosen = record.disorder_index == index
+    energy, extent = record.energy[chosen], record.extent[chosen]
+    law = size_law(record, index)
+    contained = "contains it" if law.low <= SIZE_EXPONENT <= law.high else "leaves it out"
+    yield Check(
+        f"sphere, {name} disorder: exponent of the swept areas",
+        with_error(SIZE_EXPONENT, _TOLERANCE),
+        f"{law.exponent:.2f} ({law.low:.2f} to {law.high:.2f})",
+        abs(law.exponent - SIZE_EXPONENT) <= _TOLERANCE,
+        f"{law.n_value} of {energy.size} avalanches; the 95% interval of a bootstrap over "
+        f"avalanches {contained}; from {law.smallest:.2g} to the cut-off at {law.cutoff:.2g}, "
+        f"{np.log10(law.cutoff / law.smallest):.1f} decades; an effective exponent where these are "
+        "few, as the sphere's own cut-off need not be exponential",
+    )
+    yield Check(
+        f"sphere, {name} disorder: every avalanche dissipates energy",
+        "> 0",
+        f"{energy.size} from {energy.min():.2g} to {energy.max():.2g}",
+        bool(np.all(energy > 0)),
+        f"smooth steps sweep {record.smooth_area[index]:.2g} of the area",
+    )
+    longest = float(np.quantile(extent, 0.99))
+    yield Check(
+        f"sphere, {name} disorder: avalanches end below the length on which the circle is stiffer "
+        "than the line",
+        f"99% below {record.circle_length[index]:.3g}",
+        f"{longest:.3g}",
+        longest < record.circle_length[index],
+        "perimeter over a dG/da; the upper cut-off is that of the sphere, not of the disorder",
+    )
+
+
+_KINDS = ((STRONG, "strong", BLUE, "o"), (WEAK, "weak", VERMILION, "s"))
+
+
+def avalanche_figure(record: AvalancheRecord) -> Drawing:
+    """Whole events of the line above, and below densities of the sphere."""
+    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
+
+    with house_style():
+        figure = blank_figure(PAGE, 0.76 * PAGE)
+        grid = figure.add_gridspec(2, 1)
+        above, below = (figure.add_subfigure(grid[row]) for row in range(2))
+        lines, panels = above.subplots(1, 3), below.subplots(1, 3)
+        draw_events(lines[0], record)
+        draw_cutoffs(lines[1], record)
+        draw_depths(lines[2], record)
+        _draw_areas(panels[0], record)
+        _draw_extents(panels[1], record)
+        # The reduced unit of energy is pi times w_int times the lateral unit squared.
+        energies = record.energy / (record.short_cutoff**2 / np.pi)
+        label = r"dissipated energy $/\,w_\mathrm{int}\lambda_\mathrm{s}^2$"
+        _draw_densities(panels[2], record, energies, label)
+        for axes, letter in zip([*lines, *panels], "abcdef", strict=True):
+            axes.set_xscale("log")
+            axes.set_yscale("log")
+            axes.set_title(letter, loc="left", fontweight="bold")
+        # Less than two decades: powers of ten alone would be too few.
+        for axis, places in (
+            (lines[1].xaxis, FixedLocator(record.spring.tolist())),
+            (lines[1].yaxis, LogLocator(subs=(1.0, 2.0, 5.0))),
+            (lines[2].yaxis, LogLocator(subs=(1.0, 2.0, 5.0))),
+        ):
+            axis.set_major_locator(places)
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
+        # The last one is the law of the theory, which the panel names.
+        handles, labels = (part[:-1] for part in lines[0].get_legend_handles_labels())
+        title = "straight front on springs"
+        above.legend(handles, labels, title=title, loc="outside upper center", ncols=len(labels))
+        handles, labels = panels[2].get_legend_handles_labels()
+        below.legend(handles, labels, title="sphere", loc="outside upper center", ncols=2)
+        return figure
+
+
+def _draw_densities(axes: Axes, record: AvalancheRecord, values: Array, what: str) -> None:
+    """Densities of both disorders in logarithmic bins, with the error of counting."""
+    edges = logarithmic_edges(values)
+    for index, name, colour, marker in _KINDS:
+        chosen = values[record.disorder_index == index]
+        counts, _ = np.histogram(chosen, edges)
+        filled = counts > 0
+        density = counts / np.diff(edges) / chosen.size
+        disorder = rf"$w_\mathrm{{rms}} = {record.rms[index]:.2f}\,w_\mathrm{{int}}$"
+        axes.errorbar(
+            np.sqrt(edges[1:] * edges[:-1])[filled],
+            density[filled],
+            # A bar that reached zero would have no end on a logarithmic axis.
+            yerr=0.98 * (density / np.sqrt(np.maximum(counts, 1)))[filled],
+            linestyle="none",
+            marker=marker,
+            markersize=2.6,
+            elinewidth=0.6,
+            color=colour,
+            label=f"{name} disorder, {disorder}, {chosen.size} avalanches",
+        )
+    axes.set_xlabel(what)
+    axes.set_ylabel("probability density")
+
+
+def _draw_areas(axes: Axes, record: AvalancheRecord) -> None:
+    """Swept areas with the laws that were fitted, and a line of the exponent of the theory."""
+    unit = record.short_cutoff**2
+    _draw_densities(axes, record, record.area / unit, r"swept area $S/\lambda_\mathrm{s}^2$")
+    for index, _, colour, _ in _KINDS:
+        chosen = record.area[record.disorder_index == index]
+        law = size_law(record, index)
+        areas = np.geomspace(law.smallest, chosen.max(), 100)
+        axes.plot(
+            areas / unit,
+            law.density(areas) * unit * law.n_value / chosen.size,
+            color=colour,
+            label=rf"$\tau = {law.exponent:.2f}$ ({law.low:.2f} to {law.high:.2f})",
+        )
+    start = record.smallest_area[STRONG] / unit
+    ends = start * np.array([1.0, 40.0])
+    level = 4 * float(size_law(record, STRONG).density(record.smallest_area[STRONG])) * unit
+    axes.plot(
+        ends,
+        level * (ends / start) ** -SIZE_EXPONENT,
+        color="0.35",
+        linewidth=0.7,
+        dashes=(4, 2),
+        label=rf"$\tau = {SIZE_EXPONENT:.2f}$",
+    )
+    _legend_of(axes, "tau")
+
+
+def _draw_extents(axes: Axes, record: AvalancheRecord) -> None:
+    """Extents, with the Larkin lengths below and the length of the circle above."""
+    unit, label = record.short_cutoff, r"extent along the perimeter $/\lambda_\mathrm{s}$"
+    _draw_densities(axes, record, record.extent / unit, label)
+    for index, _, colour, _ in _KINDS:
+        axes.axvline(
+            record.larkin_length[index] / unit,
+            color=colour,
+            linewidth=0.8,
+            linestyle=(0, (1, 1.5)),
+            zorder=0,
+            label=r"Larkin length $\ell$" if index == STRONG else None,
+        )
+    axes.axvline(
+        record.correlation_length / unit,
+        color="0.5",
+        linewidth=0.7,
+        dashes=(4, 2),
+        zorder=0,
+        label=r"correlation length of $w_\mathrm{loc}$",
+    )
+    legend = _legend_of(axes, "length")
+    legend.set_frame_on(True)
+    legend.get_frame().set(facecolor="white", alpha=1.0, edgecolor="none")
+
+
+def _legend_of(axes: Axes, word: str) -> Legend:
+    """Legend of what bears a word in its label."""
+    lines = [
+        (handle, label)
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+        if word in label
+    ]
+    return axes.legend(*zip(*lines, strict=True), loc="lower left")
+
+
+FIGURE = Figure(
+    title="Beyond the paper: avalanches",
+    parameters=AvalancheParameters,
+    record=AvalancheRecord,
+    compute=avalanche_record,
+    checks=avalanche_checks,
+    draw=avalanche_figure,
+    seconds=expected_seconds,
+)

@@ -1,0 +1,441 @@
+"""Whole events of straight fronts: how they are told apart, their laws, checks and panels.
+
+A whole event is all that moves when the load is raised by just enough to set off one instability;
+its patches need not touch each other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.analysis.estimate import with_error
+from crackfront.core.cycle.instabilities import resolved_motion, swept_areas, swept_clusters
+from crackfront.core.variables import variable
+from crackfront.data.section import Positive
+from crackfront.plots.style import BLACK, COLOURS, MARKERS
+from studies.law.power_law import JointPowerLaw, cutoff_scale, joint_power_law
+from studies.paper.figure import Check, Progress, close_to
+from studies.paper.rough import surface_means
+from studies.paper.straight import StraightParameters
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+_SPRING, _EVENT, _PATCH = "spring", "event", "patch"
+
+_AREA, _EXTENT = "Larkin length times correlation length of the force", "Larkin length"
+
+
+class EventParameters(StraightParameters):
+    """Straight fronts whose whole events are told apart, and the range of the fit.
+
+    The unit of their loads is what moves a front by the area of L_kappa times the correlation
+    length of the force, so that about as many events lie between loads whatever the spring.
+
+    Attributes
+    ----------
+    load_step : float
+        Loads that are visited in any case, in the unit of loads.
+    travel : float
+        Largest motion of a site in a smooth step, in correlation lengths of the force.
+    precision : float
+        Load to which an event is located, in the unit of loads; events that are closer come out as
+        one.
+    smallest_area : float
+        Where the power law begins, over the Larkin length times the correlation length of the
+        force.
+    """
+
+    load_step: Positive
+    travel: Positive
+    precision: Positive
+    smallest_area: Positive
+
+
+@dataclass(frozen=True, slots=True)
+class EventRecord:
+    """Whole events of straight fronts."""
+
+    front_length: float = variable("least period of the fronts over L_kappa", "1")
+    sites_per_larkin_length: float = variable("sites on a Larkin length", "1")
+    smallest_event: float = variable("area where the power law begins", _AREA)
+    spring: Array = variable("length of the springs, L_kappa", _EXTENT, _SPRING)
+    swept_area: Array = variable(
+        "area that the fronts sweep, over that of the way of their load", "1", _SPRING
+    )
+    smooth_event_area: Array = variable("share of that left in smooth steps", "1", _SPRING)
+    event_spring: NDArray[np.int64] = variable("which spring", "1", _EVENT)
+    event_area: Array = variable("area that the event sweeps", _AREA, _EVENT)
+    event_extent: Array = variable(
+        "its extent, the square of the mean motion over the mean square, times the period",
+        _EXTENT,
+        _EVENT,
+    )
+    patch_spring: NDArray[np.int64] = variable("which spring", "1", _PATCH)
+    patch_area: Array = variable("area of a connected part of an event", _AREA, _PATCH)
+
+
+@dataclass(frozen=True, slots=True)
+class _Events:
+    """Whole events of one front over one period."""
+
+    areas: list[float]
+    extents: list[float]
+    patches: list[float]
+    swept: float
+    smooth: float
+    sites_per_larkin_length: float
+
+
+def _events(parameters: EventParameters, spring: float, seed: int, tile: int) -> _Events:
+    """Period of one front, resolved."""
+    precision = parameters.precision / parameters.length / 4
+    pulled = parameters.front(spring, seed, tile, precision)
+    field, geometry = pulled.field, pulled.field.geometry
+    unit = pulled.force_length / parameters.length
+    n_load = math.ceil(pulled.period / (parameters.load_step * unit))
+    travel = parameters.travel * pulled.force_length
+    steps = resolved_motion(
+        field,
+        pulled.front,
+        pulled.load,
+        pulled.load + pulled.period * np.arange(1, n_load + 1) / n_load,
+        1,
+        travel=travel,
+        precision=parameters.precision * unit,
+        solver=pulled.solver,
+    )
+    whole = pulled.larkin_length * pulled.force_length
+    sites = geometry.n_site * pulled.larkin_length / geometry.length
+    areas, extents, patches, swept = [], [], [], [0.0, 0.0]
+    for step in steps:
+        each = swept_areas(step.before, step.after, geometry) / whole
+        area = float(np.sum(each))
+        swept[step.unstable] += area
+        if step.unstable:
+            areas.append(area)
+            extents.append(area**2 / float(np.sum(each**2)) / sites)
+            parts = swept_clusters(step.before, step.after, travel, geometry)
+            patches += [part.area / whole for part in parts]
+    loaded = geometry.length * pulled.period / whole
+    return _Events(areas, extents, patches, sum(swept) / loaded, swept[0] / sum(swept), sites)
+
+
+def event_record(
+    parameters: EventParameters,
+    springs: Sequence[float],
+    n_tile: int,
+    seed: int,
+    progress: Progress,
+) -> EventRecord:
+    """Whole events of straight fronts over one period of each tile.
+
+    Parameters
+    ----------
+    parameters : EventParameters
+        Fronts, and how their events are told apart.
+    springs : sequence of float
+        L_kappa of the fronts, over the Larkin length.
+    n_tile, seed : int
+        Tiles of each spring, and their seed.
+    progress : callable
+        As of a figure.
+    """
+    fronts: list[list[_Events]] = []
+    for spring in springs:
+        fronts.append([_events(parameters, spring, seed, tile) for tile in range(n_tile)])
+        count = sum(len(one.areas) for one in fronts[-1])
+        progress(f"spring of {spring:g} Larkin lengths: {count} whole events")
+
+    def each(name: str) -> Array:
+        return np.array([value for one in fronts for tile in one for value in getattr(tile, name)])
+
+    def owners(name: str) -> NDArray[np.int64]:
+        counts = [sum(len(getattr(tile, name)) for tile in one) for one in fronts]
+        return np.repeat(np.arange(len(fronts)), counts)
+
+    return EventRecord(
+        front_length=parameters.length,
+        sites_per_larkin_length=fronts[0][0].sites_per_larkin_length,
+        smallest_event=parameters.smallest_area,
+        spring=np.array(springs),
+        swept_area=surface_means(fronts, "swept"),
+        smooth_event_area=surface_means(fronts, "smooth"),
+        event_spring=owners("areas"),
+        event_area=each("areas"),
+        event_extent=each("extents"),
+        patch_spring=owners("patches"),
+        patch_area=each("patches"),
+    )
+
+
+_ROUGHNESS = 0.388
+"""Roughness exponent zeta of a line with long-range elasticity (Rosso and Krauth, Phys. Rev. E 65,
+025101), from which all others follow."""
+
+SIZE_EXPONENT = 2 - 1 / (1 + _ROUGHNESS)
+"""That of the areas of whole events, tau; their patches have 2 tau - 1 (Laurson, Santucci, Zapperi,
+Phys. Rev. E 81, 046116)."""
+
+_TOLERANCE = 0.03
+"""Largest deviation of an exponent of whole events, if its own interval is not wider."""
+
+
+def event_law(record: EventRecord) -> JointPowerLaw:
+    """Power law of the areas of whole events, all springs together."""
+    return _joint(record, record.event_area, record.event_spring, 2)
+
+
+def patch_law(record: EventRecord) -> JointPowerLaw:
+    """Power law of the areas of the patches of events, all springs together."""
+    return _joint(record, record.patch_area, record.patch_spring, 3)
+
+
+def extent_law(record: EventRecord) -> JointPowerLaw:
+    r"""Power law of :math:`l^{1 + \zeta}`, that of the areas if extents l scale."""
+    return _joint(record, record.event_extent ** (1 + _ROUGHNESS), record.event_spring, 4)
+
+
+def _joint(
+    record: EventRecord, values: Array, springs: NDArray[np.int64], key: int
+) -> JointPowerLaw:
+    """Power law of what was measured on all springs."""
+    rng = np.random.default_rng(np.random.SeedSequence(key))
+    samples = [values[springs == index] for index in range(record.spring.size)]
+    return joint_power_law(samples, record.smallest_event, rng)
+
+
+@dataclass(frozen=True, slots=True)
+class Slope:
+    """Slope of a logarithm over another, and half of its 95% interval."""
+
+    exponent: float
+    reach: float
+    level: float
+
+
+def cutoff_slope(record: EventRecord) -> Slope:
+    """Growth of the cut-off of the areas with the spring."""
+    rng = np.random.default_rng(np.random.SeedSequence(5))
+    samples = [record.event_area[record.event_spring == i] for i in range(record.spring.size)]
+    drawn = [
+        [np.log(cutoff_scale(rng.choice(sample, sample.size))) for _ in range(_N_BOOTSTRAP)]
+        for sample in samples
+    ]
+    scales = np.log([cutoff_scale(sample) for sample in samples])
+    return _slope(np.log(record.spring), scales, np.std(drawn, axis=1))
+
+
+def depth_slope(record: EventRecord) -> Slope:
+    """Growth of the depth of events, area over extent, with their extent, up to L_kappa."""
+    extent, depth = record.event_extent, record.event_area / record.event_extent
+    used = extent >= record.smallest_event ** (1 / (1 + _ROUGHNESS))
+    used &= extent <= record.spring[record.event_spring]
+    return _slope(np.log(extent[used]), np.log(depth[used]))
+
+
+def _slope(abscissa: Array, ordinate: Array, error: Array | None = None) -> Slope:
+    """Line of least squares; without errors they follow from the scatter."""
+    weight = np.ones(abscissa.size) if error is None else 1 / error
+    rows = np.stack([abscissa, np.ones(abscissa.size)], axis=1)
+    covariance = np.linalg.inv((rows * weight[:, None] ** 2).T @ rows)
+    slope, level = covariance @ (rows.T @ (weight**2 * ordinate))
+    left = ordinate - rows @ (slope, level)
+    scale = 1.0 if error is not None else float(np.sum(left**2)) / (abscissa.size - 2)
+    reach = _NORMAL * math.sqrt(scale * covariance[0, 0])
+    return Slope(float(slope), reach, float(level))
+
+
+_N_BOOTSTRAP, _NORMAL = 200, 1.96
+
+
+def event_checks(record: EventRecord) -> Iterator[Check]:
+    """Claims about whole events."""
+    area, extent, patch = event_law(record), extent_law(record), patch_law(record)
+    cutoff, depth = cutoff_slope(record), depth_slope(record)
+    later = event_law(replace(record, smallest_event=2 * record.smallest_event))
+    decades = np.log10(area.scales / area.smallest)
+    told = (
+        f"{area.n_value.sum()} of {record.event_area.size} events above {area.smallest:g}, on "
+        f"{record.spring.size} springs of {record.spring.min():g} to {record.spring.max():g} "
+        f"Larkin lengths; {decades.min():.1f} to {decades.max():.1f} decades up to the cut-off"
+    )
+    shape = f"C = {area.shoulder:.2f}, B = {area.tail:.2f}, delta = {area.steepness:.2f}"
+    whole, growth = "whole events of a straight front: ", 1 + _ROUGHNESS
+    yield _exponent_check(
+        whole + "exponent tau of their areas",
+        area.exponent,
+        (area.high - area.low) / 2,
+        SIZE_EXPONENT,
+        f"{told}; one fit over all springs, {shape}; from twice that area on {later.exponent:.2f} "
+        f"({later.low:.2f} to {later.high:.2f})",
+    )
+    yield _exponent_check(
+        whole + "growth of the cut-off <S^2> / 2 <S> with the length of the springs",
+        cutoff.exponent,
+        cutoff.reach,
+        growth,
+        ", ".join(f"{scale:.3g}" for scale in area.scales) + " on the springs",
+    )
+    yield _exponent_check(
+        whole + "exponent of the density of their extents",
+        1 + growth * (extent.exponent - 1),
+        growth * (extent.high - extent.low) / 2,
+        growth,
+        f"{extent.n_value.sum()} events wider than {extent.smallest ** (1 / growth):.2g}; one fit, "
+        f"as that of the areas, to extents to the power {growth:g}",
+    )
+    yield _exponent_check(
+        whole + "growth of their depth with their extent",
+        depth.exponent,
+        depth.reach,
+        _ROUGHNESS,
+        "least squares of logarithms, up to the length of the spring",
+    )
+    yield _exponent_check(
+        whole + "exponent of the areas of their patches, 2 tau - 1",
+        patch.exponent,
+        (patch.high - patch.low) / 2,
+        2 * SIZE_EXPONENT - 1,
+        f"{patch.n_value.sum()} of {record.patch_area.size} patches above {patch.smallest:g}; "
+        f"{record.patch_area.size / record.event_area.size:.1f} patches an event",
+    )
+    furthest = float(record.swept_area[np.argmax(np.abs(record.swept_area - 1))])
+    yield close_to(
+        "the fronts sweep the area that their load moves over, a whole period",
+        furthest,
+        1.0,
+        1e-3,
+        remark=f"the furthest of the springs; smooth steps sweep up to "
+        f"{record.smooth_event_area.max():.2g} of it",
+    )
+
+
+def _exponent_check(claim: str, found: float, reach: float, expected: float, remark: str) -> Check:
+    """An exponent against that of the theory, within what is asked or its own interval."""
+    tolerance, missing = _TOLERANCE, ""
+    if reach > tolerance:
+        more = math.ceil((reach / tolerance) ** 2)
+        missing = f"; ± {tolerance} would need about {more} times as many events"
+    return Check(
+        claim,
+        with_error(expected, max(reach, tolerance)),
+        with_error(found, reach),
+        abs(found - expected) <= max(reach, tolerance),
+        f"95% interval; {remark}{missing}",
+    )
+
+
+_BINS_A_DECADE = 5
+
+
+def draw_events(axes: Axes, record: EventRecord) -> None:
+    """Areas of whole events with the law that was fitted to all springs."""
+    law = event_law(record)
+    for index, spring in enumerate(record.spring):
+        areas = record.event_area[record.event_spring == index]
+        edges = logarithmic_edges(areas)
+        counts, _ = np.histogram(areas, edges)
+        density, middle = counts / np.diff(edges) / areas.size, np.sqrt(edges[1:] * edges[:-1])
+        colour = COLOURS[index % len(COLOURS)]
+        axes.plot(
+            middle[counts > 0],
+            density[counts > 0],
+            linestyle="none",
+            marker=MARKERS[index % len(MARKERS)],
+            markersize=2.6,
+            color=colour,
+            label=rf"$L_\kappa = {spring:g}\,\ell$, {areas.size} events",
+        )
+        places = np.geomspace(law.smallest, areas.max(), 100)
+        share = law.n_value[index] / areas.size
+        axes.plot(places, law.density(places, index) * share, color=colour, linewidth=0.9)
+    ends = law.smallest * np.array([1.0, 100.0])
+    level = 3 * float(law.density(law.smallest, 0)) * law.n_value[0]
+    level /= np.sum(record.event_spring == 0)
+    theory = level * (ends / ends[0]) ** -SIZE_EXPONENT
+    _draw_theory(axes, ends, theory, rf"\tau = {SIZE_EXPONENT:.2f}", "upper right")
+    _name_fit(axes, rf"$\tau = {law.exponent:.2f}$ ({law.low:.2f} to {law.high:.2f})", 0.06)
+    axes.set_xlabel(r"area of a whole event $S/\ell\xi_u$")
+    axes.set_ylabel("probability density")
+
+
+def draw_cutoffs(axes: Axes, record: EventRecord) -> None:
+    """Cut-off of the areas against the length of the springs."""
+    slope, law = cutoff_slope(record), event_law(record)
+    axes.plot(record.spring, law.scales, "o", color=BLACK, markersize=3.4)
+    ends = record.spring[[0, -1]]
+    axes.plot(ends, np.exp(slope.level) * ends**slope.exponent, color=BLACK, linewidth=0.9)
+    growth = 1 + _ROUGHNESS
+    theory = 0.6 * law.scales[0] * (ends / ends[0]) ** growth
+    _draw_theory(axes, ends, theory, rf"1 + \zeta = {growth:.3f}", "lower right")
+    _name_fit(axes, rf"slope {slope.exponent:.2f} $\pm$ {slope.reach:.2f}", 0.9)
+    axes.set_xlabel(r"length of the springs $L_\kappa/\ell$")
+    axes.set_ylabel(r"cut-off $S_m/\ell\xi_u$")
+
+
+def draw_depths(axes: Axes, record: EventRecord) -> None:
+    """Depth of whole events against their extent, means in logarithmic bins."""
+    slope = depth_slope(record)
+    extent, depth = record.event_extent, record.event_area / record.event_extent
+    for index in range(record.spring.size):
+        chosen = record.event_spring == index
+        edges = logarithmic_edges(extent[chosen])
+        place = np.digitize(extent[chosen], edges)
+        means = [
+            [np.exp(np.mean(np.log(one[chosen][place == bin]))) for one in (extent, depth)]
+            for bin in np.unique(place)
+            if np.sum(place == bin) >= _FEWEST_IN_A_BIN
+        ]
+        axes.plot(
+            *np.transpose(means),
+            linestyle="none",
+            marker=MARKERS[index % len(MARKERS)],
+            markersize=2.6,
+            color=COLOURS[index % len(COLOURS)],
+        )
+    ends = np.array([record.smallest_event ** (1 / (1 + _ROUGHNESS)), record.spring.max()])
+    fit = np.exp(slope.level) * ends**slope.exponent
+    axes.plot(ends, fit, color=BLACK, linewidth=0.9)
+    theory = 0.7 * fit[0] * (ends / ends[0]) ** _ROUGHNESS
+    _draw_theory(axes, ends, theory, rf"\zeta = {_ROUGHNESS}", "lower right")
+    _name_fit(axes, rf"slope {slope.exponent:.3f} $\pm$ {slope.reach:.3f}", 0.9)
+    axes.set_xlabel(r"extent $l/\ell$")
+    axes.set_ylabel(r"depth $S/l\xi_u$")
+
+
+_FEWEST_IN_A_BIN = 10
+
+
+def logarithmic_edges(values: Array) -> Array:
+    """Edges of logarithmic bins that hold all values."""
+    low, high = np.log10(values.min()), np.log10(values.max())
+    edges = np.logspace(low, high, max(int((high - low) * _BINS_A_DECADE), 4) + 1)
+    edges[-1] *= 1 + 1e-9
+    return np.asarray(edges)
+
+
+def _draw_theory(
+    axes: Axes,
+    abscissa: Array,
+    ordinate: Array,
+    name: str,
+    place: Literal["lower right", "upper right"],
+) -> None:
+    """Power law of the theory, named in a legend of its own."""
+    dashes, name = (4, 2), f"${name}$"
+    (line,) = axes.plot(abscissa, ordinate, color="0.35", linewidth=0.8, dashes=dashes, label=name)
+    axes.legend(handles=[line], loc=place)
+
+
+def _name_fit(axes: Axes, text: str, height: float) -> None:
+    """What was fitted, in the panel."""
+    axes.text(0.05, height, text, transform=axes.transAxes, fontsize="small")

@@ -1,0 +1,237 @@
+"""Main Fig. 1d: a smooth sphere whose work of adhesion is larger in retraction than in approach."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from crackfront.core import jkr
+from crackfront.core.cycle.follow import Load, follow
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.fields import RayField, polar_field
+from crackfront.core.outcome import Direction, Status
+from crackfront.core.solver.relax import Newton
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.data.section import Positive, Section, refusal
+from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL, draw_arrow
+from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
+from studies.paper.figure import Check, Figure, Progress, close_to
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+Array = NDArray[np.float64]
+
+_STATE = "state"
+
+INNERMOST = 1e-3
+"""Radius at which contact is made."""
+
+TOLERANCE = 1e-13
+"""Force that may be left on a circle, relative to w_int: next to pull-off it is soft."""
+
+
+class SmoothLoopParameters(Section):
+    """What Fig. 1d shows.
+
+    Attributes
+    ----------
+    approach, retraction : float
+        Works of adhesion of the two branches. (Units: w_int)
+    max_penetration, step : float
+        Penetrations to visit. (Units: reduced vertical length)
+    """
+
+    approach: Positive
+    retraction: Positive
+    max_penetration: Positive
+    step: Positive
+
+    @model_validator(mode="after")
+    def _ordered(self) -> SmoothLoopParameters:
+        if self.approach > self.retraction:
+            raise refusal(
+                f"works of adhesion are {self.approach:g} in approach and {self.retraction:g} in "
+                "retraction; the first must not be above the second"
+            )
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class SmoothLoop:
+    """States of both branches, as the file of the figure holds them."""
+
+    approach: float = variable("work of adhesion in approach", ADHESION)
+    retraction: float = variable("work of adhesion in retraction", ADHESION)
+    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    penetration: Array = variable("rigid body penetration", VERTICAL, _STATE)
+    radius: Array = variable("contact radius", LATERAL, _STATE)
+    force: Array = variable("normal force", FORCE, _STATE)
+
+
+def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothLoop:
+    """Approach with one work of adhesion and retraction with another."""
+    schedule = LoadSchedule(parameters.max_penetration, parameters.step)
+    front = np.array([INNERMOST])
+    states: list[tuple[int, float, float]] = []
+    branches: tuple[tuple[Direction, float, Iterable[float]], ...] = (
+        (1, parameters.approach, schedule.approach()),
+        (-1, parameters.retraction, schedule.retraction()),
+    )
+    for direction, adhesion, penetrations in branches:
+        field = _constant(adhesion, parameters)
+        coming = (Load(penetration, direction) for penetration in penetrations)
+        for step in follow(field, front, coming, Newton(TOLERANCE)):
+            if step.status is Status.CONVERGED:
+                front = step.front
+                states.append((direction, step.load.value, float(front[0])))
+        progress(f"work of adhesion {adhesion:g}: contact radius {front[0]:.4f} at the end")
+    directions, visited, radii = (np.array(column) for column in zip(*states, strict=True))
+    return SmoothLoop(
+        approach=parameters.approach,
+        retraction=parameters.retraction,
+        direction=directions,
+        penetration=visited,
+        radius=radii,
+        force=jkr.force(radii, visited),
+    )
+
+
+def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
+    """The closed forms of JKR, which both branches must follow."""
+    retracting = loop.direction < 0
+    largest = loop.radius[~retracting].max()
+    smooth = [jkr.equilibrium_radius(b, loop.approach) for b in loop.penetration[~retracting]]
+    receding = [jkr.equilibrium_radius(b, loop.retraction) for b in loop.penetration[retracting]]
+    return (
+        close_to(
+            "radii in approach: the stable JKR radius, largest difference",
+            _largest(loop.radius[~retracting] - smooth),
+            0.0,
+            1e-9,
+        ),
+        close_to(
+            "radii in retraction: the JKR radius, or that at the turn while the edge is pinned",
+            _largest(loop.radius[retracting] - np.minimum(receding, largest)),
+            0.0,
+            1e-9,
+        ),
+        close_to(
+            "lowest force: -3/2 w_retr, where the force is controlled",
+            loop.force.min(),
+            jkr.pull_off_force(loop.retraction),
+            2e-3,
+            units="pi w_int R",
+            remark="lowest of the visited states; the load step leaves the difference",
+        ),
+        close_to(
+            "last penetration: that of pull-off, within a load step",
+            loop.penetration[-1],
+            jkr.pull_off_penetration(loop.retraction),
+            float(np.max(np.abs(np.diff(loop.penetration[retracting])))),
+        ),
+    )
+
+
+def _largest(difference: Array) -> float:
+    """Largest magnitude."""
+    return float(np.max(np.abs(difference)))
+
+
+def _constant(adhesion: float, parameters: SmoothLoopParameters) -> RayField:
+    """Field of a smooth sphere, large enough for the whole loop."""
+    largest = jkr.equilibrium_radius(parameters.max_penetration, parameters.retraction)
+    ring = np.full(2, adhesion * WORK_OF_ADHESION)
+    return polar_field(np.array([INNERMOST, 1.1 * largest]), ring)
+
+
+_LEFT = -0.1
+"""Where the abscissa begins (Units: reduced lateral length)."""
+
+
+def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
+    """Both branches, with arrows in the direction of motion."""
+    with house_style():
+        figure = blank_figure(COLUMN, 0.8 * COLUMN)
+        axes = figure.add_subplot()
+        for direction, colour, name, short, adhesion in (
+            (1, BLUE, "approach", "appr", loop.approach),
+            (-1, VERMILION, "retraction", "retr", loop.retraction),
+        ):
+            branch = loop.direction == direction
+            radius, force = loop.radius[branch], loop.force[branch]
+            label = rf"{name}, $w_\mathrm{{{short}}} = {adhesion:g}\,w_\mathrm{{int}}$"
+            axes.plot(radius, force, color=colour, label=label)
+            middle = radius.size // 2
+            draw_arrow(
+                axes, radius[middle - 1 : middle + 1], force[middle - 1 : middle + 1], colour
+            )
+            end = 0 if direction > 0 else -1
+            _draw_jump(axes, direction, float(radius[end]), float(force[end]), colour)
+        _draw_pull_off(axes, loop)
+        axes.set_xlim(left=_LEFT)
+        axes.set_ylim(bottom=1.12 * float(np.min(loop.force)))
+        axes.set_xlabel(RADIUS_LABEL)
+        axes.set_ylabel(FORCE_LABEL)
+        axes.legend(loc="upper left")
+        return figure
+
+
+def _draw_jump(axes: Axes, direction: int, radius: float, force: float, colour: str) -> None:
+    """Thin dashed arrow between no contact and the first or last state."""
+    ends = ((0.0, 0.0), (radius, force))
+    start, end = ends[::direction]
+    axes.annotate(
+        "",
+        xy=end,
+        xytext=start,
+        arrowprops={
+            "arrowstyle": "-|>",
+            "color": colour,
+            "linewidth": 0.7,
+            "linestyle": (0, (4, 2)),
+            "mutation_scale": 6,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
+    )
+    axes.annotate(
+        "jump into contact" if direction > 0 else "jump out\nof contact",
+        (radius / 2, force / 2),
+        xytext=(4 * direction, 4 * direction),
+        textcoords="offset points",
+        ha="left" if direction > 0 else "right",
+        va="bottom" if direction > 0 else "top",
+        color=colour,
+    )
+
+
+def _draw_pull_off(axes: Axes, loop: SmoothLoop) -> None:
+    """Lowest force of all states, the pull-off force where the force is controlled."""
+    lowest = int(np.argmin(loop.force))
+    radius, force = loop.radius[lowest], loop.force[lowest]
+    axes.plot([_LEFT, radius], [force, force], color="0.3", linewidth=0.6, dashes=(1.5, 1.5))
+    axes.plot(radius, force, "o", color=VERMILION, markersize=3.6, zorder=5)
+    axes.annotate(
+        r"pull-off force, $-\frac{3}{2}\,\pi w_\mathrm{retr}R$",
+        (0.0, force),
+        xytext=(0, 2),
+        textcoords="offset points",
+    )
+
+
+FIGURE = Figure(
+    title="Main Fig. 1d: a smooth sphere with two works of adhesion",
+    parameters=SmoothLoopParameters,
+    record=SmoothLoop,
+    compute=smooth_loop,
+    checks=smooth_loop_checks,
+    draw=smooth_loop_figure,
+)

@@ -1,0 +1,527 @@
+"""Main Fig. 2: a sphere whose work of adhesion varies in concentric rings, a scalar problem."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from crackfront.core import jkr
+from crackfront.core.cycle.follow import Load, Step, follow
+from crackfront.core.cycle.schedule import LoadSchedule, loads
+from crackfront.core.field.fields import RayField, polar_field
+from crackfront.core.outcome import Status
+from crackfront.core.solver.relax import Newton
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.data.section import Count, Positive, Section, refusal
+from crackfront.plots.parts import (
+    FORCE_LABEL,
+    HEIGHT_LABEL,
+    LENGTH_LABEL,
+    RADIUS_LABEL,
+    draw_arrow,
+    label_panel,
+)
+from crackfront.plots.style import (
+    BLACK,
+    BLUE,
+    ORANGE,
+    PAGE,
+    SKY,
+    VERMILION,
+    blank_figure,
+    explain,
+    house_style,
+)
+from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.rings import INNERMOST, Rings, first_stops, folds
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+Array = NDArray[np.float64]
+
+_STATE, _LOOP, _CASE = "state", "loop", "case"
+
+_TOLERANCE = 1e-13
+"""Force that may be left on a circle, relative to w_int: next to pull-off it is soft."""
+
+_PATH = 257
+"""Points between two states at which a fold of the equilibria is looked for."""
+
+Amplitude = Annotated[float, Field(gt=0, lt=1)]
+
+
+class RingsParameters(Section):
+    """What Fig. 2 shows.
+
+    Attributes
+    ----------
+    amplitude : float
+        Amplitude delta of w_loc(a) = 1 + delta sin(2 pi a / d). (Units: w_int)
+    wavelengths : tuple of two float
+        The long and the short wavelength d. (Units: reduced lateral length)
+    max_penetration, step : float
+        Penetrations to visit. (Units: reduced vertical length)
+    samples : int
+        Samples of the field a wavelength.
+    case_amplitude : float
+        Amplitude of the cases that are compared with numbers known beforehand. (Units: w_int)
+    case_wavelengths : tuple of float
+        Their wavelengths. (Units: reduced lateral length)
+    case_window : tuple of two float
+        Penetrations between which their hysteresis is averaged. (Units: reduced vertical length)
+    case_step : float
+        Distance of these penetrations. (Units: reduced vertical length)
+    """
+
+    amplitude: Amplitude
+    wavelengths: tuple[Positive, Positive]
+    max_penetration: Positive
+    step: Positive
+    samples: Count
+    case_amplitude: Amplitude
+    case_wavelengths: tuple[Positive, ...]
+    case_window: tuple[Positive, Positive]
+    case_step: Positive
+
+    @model_validator(mode="after")
+    def _usable(self) -> RingsParameters:
+        (long, short), (low, high) = self.wavelengths, self.case_window
+        if not short < long:
+            raise refusal(f"wavelengths are {[long, short]}; they must decrease")
+        if not low < high:
+            raise refusal(f"case_window are {[low, high]}; they must increase")
+        if self.samples < 16:
+            raise refusal(f"samples is {self.samples}; a ring needs at least 16 of them")
+        if self.case_step > high - low:
+            raise refusal(f"case_step {self.case_step:g} is longer than case_window; lower it")
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class RingLoops:
+    """States of the loops, and the mean hysteresis of the cases."""
+
+    amplitude: float = variable("amplitude of the work of adhesion", ADHESION)
+    wavelength: Array = variable("wavelength of the rings", LATERAL, _LOOP)
+    loop: NDArray[np.int64] = variable("index of the loop", "1", _STATE)
+    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    penetration: Array = variable("rigid body penetration", VERTICAL, _STATE)
+    radius: Array = variable("contact radius", LATERAL, _STATE)
+    force: Array = variable("normal force", FORCE, _STATE)
+    adhesion: Array = variable("energy release rate of the front", ADHESION, _STATE)
+    jump: NDArray[np.int64] = variable("1 where an instability led to the state", "1", _STATE)
+    case_amplitude: float = variable("amplitude of the cases", ADHESION)
+    case_lowest: float = variable("lowest penetration of the averages", VERTICAL)
+    case_highest: float = variable("highest penetration of the averages", VERTICAL)
+    case_wavelength: Array = variable("wavelength of a case", LATERAL, _CASE)
+    case_approach: Array = variable("mean work of adhesion in approach", ADHESION, _CASE)
+    case_retraction: Array = variable("mean work of adhesion in retraction", ADHESION, _CASE)
+
+    def rings(self, loop: int) -> Rings:
+        """Rings of a loop."""
+        return Rings(self.amplitude, float(self.wavelength[loop]))
+
+    def branch(self, loop: int, direction: int) -> NDArray[np.bool_]:
+        """States of one branch of a loop."""
+        return (self.loop == loop) & (self.direction == direction)
+
+    def radius_at_zero(self, loop: int, direction: int) -> float:
+        """Radius of a branch at b = 0: state A in approach, B in retraction."""
+        return float(self.radius[self.branch(loop, direction) & (self.penetration == 0)][0])
+
+
+def ring_loops(parameters: RingsParameters, progress: Progress) -> RingLoops:
+    """Approach and retraction on rings of both wavelengths, and the cases."""
+    loops = []
+    for index, wavelength in enumerate(parameters.wavelengths):
+        states = _loop(parameters, Rings(parameters.amplitude, wavelength))
+        loops.append(np.column_stack([np.full(len(states), index), states]))
+        progress(f"rings of {wavelength:g}: {len(states)} states, {states[:, 3].sum():g} jumps")
+    loop, direction, penetration, radius, jump = np.concatenate(loops).T
+    cases = [
+        _mean_adhesion(parameters, Rings(parameters.case_amplitude, wavelength))
+        for wavelength in parameters.case_wavelengths
+    ]
+    progress(f"{len(cases)} cases with an amplitude of {parameters.case_amplitude:g}")
+    means = np.array(cases)
+    return RingLoops(
+        amplitude=parameters.amplitude,
+        wavelength=np.array(parameters.wavelengths),
+        loop=loop.astype(np.int64),
+        direction=direction.astype(np.int64),
+        penetration=penetration,
+        radius=radius,
+        force=jkr.force(radius, penetration),
+        adhesion=jkr.apparent_work_of_adhesion(radius, penetration),
+        jump=jump.astype(np.int64),
+        case_amplitude=parameters.case_amplitude,
+        case_lowest=parameters.case_window[0],
+        case_highest=parameters.case_window[1],
+        case_wavelength=np.array(parameters.case_wavelengths),
+        case_approach=means[:, 0],
+        case_retraction=means[:, 1],
+    )
+
+
+def _loop(parameters: RingsParameters, rings: Rings) -> Array:
+    """Rows of direction, penetration, radius and jump of a whole loop."""
+    schedule = LoadSchedule(parameters.max_penetration, parameters.step)
+    field = _field(rings, parameters.max_penetration, parameters.samples)
+    rows = []
+    for step in _steps(field, loads(schedule)):
+        penetration, direction, _ = step.load
+        passed = rings.penetration(np.linspace(step.before[0], step.front[0], _PATH))
+        jump = np.any(direction * np.diff(passed) < 0)
+        rows.append((direction, penetration, step.front[0], jump))
+    return np.array(rows, dtype=float)
+
+
+def _mean_adhesion(parameters: RingsParameters, rings: Rings) -> tuple[float, float]:
+    """Means over the window of the works of adhesion in approach and retraction."""
+    low, high = parameters.case_window
+    count = round((high - low) / parameters.case_step)
+    window = low + (high - low) * (np.arange(count) + 0.5) / count
+    # From there on every front of the retraction rests on a ring that it had not reached before.
+    turn = float(jkr.equilibrium_penetration(rings.outermost(high), 1 - rings.amplitude))
+    visited = [
+        *(Load(float(b), 1) for b in [*window, turn]),
+        *(Load(float(b), -1) for b in window[::-1]),
+    ]
+    field = _field(rings, turn, parameters.samples)
+    adhesion = rings.adhesion([step.front[0] for step in _steps(field, visited)])
+    return float(adhesion[:count].mean()), float(adhesion[count + 1 :].mean())
+
+
+def _steps(field: RayField, visited: Iterable[Load]) -> Iterator[Step]:
+    """Steps from contact that is just made until it is lost."""
+    for step in follow(field, np.array([INNERMOST]), visited, Newton(_TOLERANCE)):
+        if step.status is Status.LOST_CONTACT:
+            return
+        if step.status is not Status.CONVERGED:
+            raise RuntimeError(f"no state at penetration {step.load.value}: {step.status.value}")
+        yield step
+
+
+def _field(rings: Rings, penetration: float, samples: int) -> RayField:
+    """Rings as far as a front may get at a penetration."""
+    largest = rings.outermost(penetration)
+    count = math.ceil((largest - INNERMOST) / rings.wavelength * samples)
+    radius = np.linspace(INNERMOST, largest, count)
+    return polar_field(radius, WORK_OF_ADHESION * rings.adhesion(radius), "cubic")
+
+
+_KNOWN = {(0.2, 0.3, 0.7, 0.005): (0.3886, 2e-4), (0.2, 0.3, 0.7, 0.1): (0.238, 1e-3)}
+"""Hysteresis with its tolerance, by amplitude, window and wavelength, from a separate program."""
+
+_ROUND_OFF = 1e-9
+
+
+def rings_checks(loops: RingLoops) -> tuple[Check, ...]:
+    """First stopping points, the limit of short wavelengths, the states A and B."""
+    return (*_loop_checks(loops), *_limit_checks(loops), *_case_checks(loops))
+
+
+def _loop_checks(loops: RingLoops) -> Iterator[Check]:
+    """Radii, pull-off, and the states A and B of every loop."""
+    for index, wavelength in enumerate(loops.wavelength):
+        rings, start = loops.rings(index), INNERMOST
+        for direction, name in ((1, "approach"), (-1, "retraction")):
+            branch = loops.branch(index, direction)
+            radius, penetration = loops.radius[branch], loops.penetration[branch]
+            stops = first_stops(rings, penetration, direction, start)
+            start = radius[-1]
+            yield close_to(
+                f"rings of {wavelength:g}, {name}: radii, first points where b_eq(a) reaches b, "
+                "largest difference",
+                float(np.max(np.abs(radius - stops))),
+                0.0,
+                _ROUND_OFF,
+                remark="folds and roots of the closed form of b_eq, without the solver",
+            )
+        yield close_to(
+            f"rings of {wavelength:g}: last penetration, the lowest b_eq, within a load step",
+            penetration[-1],
+            float(rings.penetration(folds(rings, INNERMOST, start)).min()),
+            float(np.max(np.abs(np.diff(penetration)))) * (1 + 1e-9),
+        )
+        inner, outer = (loops.radius_at_zero(index, direction) for direction in (1, -1))
+        yield Check(
+            f"rings of {wavelength:g}: a(A) < a(B) at b = 0",
+            "a(A) < a(B)",
+            f"{inner:.6f}, {outer:.6f}",
+            inner < outer,
+        )
+
+
+def _limit_checks(loops: RingLoops) -> Iterator[Check]:
+    """The short rings of the figure against JKR with the extremes of their work of adhesion."""
+    index = int(np.argmin(loops.wavelength))
+    wavelength = loops.wavelength[index]
+    for direction, name in ((1, "approach"), (-1, "retraction")):
+        # The steady part: between the first and the last instability, whole rings.
+        states = np.flatnonzero(loops.branch(index, direction))
+        jumps = states[loops.jump[states] > 0]
+        steady = slice(jumps[1], jumps[-1]) if direction > 0 else slice(jumps[0], jumps[-1])
+        # In a ring the front goes on from the landing of its jump, S d away, to the extreme.
+        extreme = 1 - direction * loops.amplitude
+        half = float(np.mean(_stiffness(loops.radius[steady], extreme))) * wavelength / 2
+        yield close_to(
+            f"rings of {wavelength:g}, {name}: mean work of adhesion, the extreme of the field "
+            "and half of the fall S d in a jump",
+            float(np.mean(loops.adhesion[steady])),
+            extreme + direction * half,
+            half * math.sqrt(half / loops.amplitude),
+            units="w_int",
+            remark="the tolerance is of the next order, as a rounded extreme holds the front",
+        )
+    states = loops.loop == index
+    lowest = float(loops.force[states].min())
+    limit = jkr.pull_off_force(1 + loops.amplitude)
+    sharpest = float(_stiffness(loops.radius[states].max(), 1 + loops.amplitude))
+    reach = jkr.pull_off_force(sharpest * wavelength)
+    yield close_to(
+        f"rings of {wavelength:g}: pull-off force, -3/2 w_retr or less by the fall S d in a jump",
+        lowest,
+        limit - reach / 2,
+        abs(reach) / 2,
+        units="pi w_int R",
+    )
+
+
+def _case_checks(loops: RingLoops) -> Iterator[Check]:
+    """Mean hysteresis of the cases, known beforehand or in a limit."""
+    delta, low, high = loops.case_amplitude, loops.case_lowest, loops.case_highest
+    radii = [jkr.equilibrium_radius(b) for b in np.linspace(low, high, 21)]
+    stiffness = float(np.mean(_stiffness(np.array(radii))))
+    softest = float(np.min(_stiffness(np.array(radii))))
+    for wavelength, approach, retraction in zip(
+        loops.case_wavelength, loops.case_approach, loops.case_retraction, strict=True
+    ):
+        name = f"amplitude {delta:g}, rings of {wavelength:g}: mean hysteresis"
+        found = retraction - approach
+        known = _KNOWN.get((delta, low, high, float(wavelength)))
+        if known is not None:
+            remark = f"mean over b from {low:g} to {high:g}; from a program of its own"
+            yield close_to(name, found, *known, units="w_int", remark=remark)
+        fall = stiffness * wavelength
+        if wavelength == loops.case_wavelength.min():
+            yield close_to(
+                f"{name}, peak to peak less the fall in the jumps, 2 delta - S d",
+                found,
+                2 * delta - fall,
+                fall * math.sqrt(fall / (2 * delta)),
+                units="w_int",
+                remark=f"the limit d -> 0 is 2 delta = {2 * delta:g}; the tolerance is of the next "
+                "order, S d sqrt(S d / 2 delta), as a rounded extreme holds the front",
+            )
+        critical = 2 * math.pi * delta / softest
+        if wavelength > critical:
+            remark = f"no instability beyond 2 pi delta / S = {critical:.3f}"
+            yield close_to(name, found, 0.0, _ROUND_OFF, units="w_int", remark=remark)
+
+
+def _stiffness(radius: Array, adhesion: float = 1.0) -> Array:
+    """Rise of G at fixed b where it is w, S = sqrt(6 w a) - w / a (Units: w_int / length)."""
+    return np.asarray(np.sqrt(6 * adhesion * radius) - adhesion / radius)
+
+
+_BRANCHES = ((1, "approach", "appr"), (-1, "retraction", "retr"))
+_COLOURS = ({1: BLUE, -1: VERMILION}, {1: SKY, -1: ORANGE})
+"""Of both branches, dark for the long and light for the short rings."""
+
+_REACH = 2.2
+"""Half width of the cross-section (Units: reduced lateral length)."""
+
+
+def rings_figure(loops: RingLoops) -> Drawing:
+    """Contact and rings, sampled works of adhesion for both wavelengths, force against radius."""
+    with house_style():
+        figure = blank_figure(PAGE, 0.8 * PAGE)
+        grid = figure.add_gridspec(2, 2, height_ratios=(1.15, 1))
+        left = grid[0, 0].subgridspec(2, 1, height_ratios=(1, 1.25), hspace=0.02)
+        profile = figure.add_subplot(left[0])
+        top = figure.add_subplot(left[1], sharex=profile)
+        _draw_contact(profile, loops)
+        _draw_rings(top, loops)
+        long, short, force = (figure.add_subplot(grid[place]) for place in ((0, 1), (1, 0), (1, 1)))
+        _draw_release(long, loops, 0, (0.4, 2.15))
+        _draw_release(short, loops, 1, (1.1, 1.8))
+        _draw_forces(force, loops)
+        for name, axes in zip("abcd", (profile, long, short, force), strict=True):
+            label_panel(axes, name)
+        explain(
+            figure,
+            "thick: the edge is pinned; thin: it jumps (b, d with arrows); grey: $w_\\mathrm{loc}$ "
+            "of the rings; A, B: contact at b = 0 in approach and retraction; broken lines: the "
+            "extremes of the rings",
+        )
+        return figure
+
+
+def _draw_contact(axes: Axes, loops: RingLoops) -> None:
+    """Cross-section at b = 0: state A on the left, state B on the right."""
+    distance = np.linspace(0, _REACH, 600)
+    for side in (-1, 1):
+        axes.plot(side * distance, distance**2 / 2, color="0.35")
+    axes.annotate("sphere", (0.0, 1.0), ha="center", color="0.35")
+    for direction, side in ((1, -1), (-1, 1)):
+        contact = loops.radius_at_zero(0, direction)
+        height = -jkr.surface_displacement(distance, contact, 0.0)
+        axes.fill_between(side * distance, height, -1, color="0.88", linewidth=0)
+        axes.plot(side * distance, height, color=_COLOURS[0][direction])
+        _draw_state(axes, direction, (side * contact, contact**2 / 2), (-7 * side, 3))
+    axes.annotate("elastic body", (0.0, -0.4), ha="center")
+    axes.set_ylim(-0.6, 1.7)
+    axes.set_box_aspect(0.4)
+    axes.set_ylabel(HEIGHT_LABEL.format("height").replace(" / ", " /\n"))
+    axes.tick_params(labelbottom=False)
+
+
+def _draw_rings(axes: Axes, loops: RingLoops) -> None:
+    """Work of adhesion from above, half of it, with the contact edges of A and B."""
+    along, across = np.linspace(-_REACH, _REACH, 801), np.linspace(-_REACH, 0, 401)
+    distance = np.hypot(*np.meshgrid(along, across))
+    image = axes.imshow(
+        loops.rings(0).adhesion(distance),
+        extent=(-_REACH, _REACH, -_REACH, 0),
+        cmap="Greys",
+        vmin=1 - 1.5 * loops.amplitude,
+        vmax=1 + 2 * loops.amplitude,
+        interpolation="bilinear",
+        origin="lower",
+    )
+    angle = np.linspace(-np.pi, 0, 361)
+    for direction, colour in _COLOURS[0].items():
+        contact = loops.radius_at_zero(0, direction)
+        axes.plot(contact * np.cos(angle), contact * np.sin(angle), color=colour)
+    bar = axes.inset_axes((1.03, 0.0, 0.03, 1.0))
+    axes.figure.colorbar(image, cax=bar, label=r"$w_\mathrm{loc}/w_\mathrm{int}$")
+    bar.set_ylim(1 - loops.amplitude, 1 + loops.amplitude)
+    axes.set_xlabel(LENGTH_LABEL.format("$x$"))
+    axes.set_ylabel(LENGTH_LABEL.format("$y$").replace(" / ", " /\n"))
+
+
+def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float, float]) -> None:
+    """Work of adhesion of the rings, G at b = 0, and what both branches sample of it."""
+    radius = np.linspace(*limits, 3000)
+    adhesion, label = loops.rings(index).adhesion(radius), r"$w_\mathrm{loc}(a)$"
+    axes.plot(radius, adhesion, color="0.72", label=f"{label}, $d={loops.wavelength[index]:g}$")
+    release = jkr.apparent_work_of_adhesion(radius, 0.0)
+    axes.plot(radius, release, color=BLACK, linewidth=0.8, label=r"$G_\mathrm{JKR}(b=0,a)$")
+    for direction, name, short in _BRANCHES:
+        _draw_branch(axes, loops, index, direction, jkr.apparent_work_of_adhesion, name)
+        level = 1 - direction * loops.amplitude
+        axes.axhline(level, color="0.3", linewidth=0.6, dashes=(4, 2), zorder=1)
+        axes.annotate(
+            rf"$w_\mathrm{{{short}}}$",
+            (limits[1], level),
+            xytext=(-3, -3 * direction),
+            textcoords="offset points",
+            ha="right",
+            va="top" if direction > 0 else "bottom",
+        )
+        if index == 0:
+            contact = loops.radius_at_zero(0, direction)
+            place = contact, float(jkr.apparent_work_of_adhesion(contact, 0.0))
+            _draw_state(axes, direction, place, (8, -3) if direction > 0 else (-6, 4))
+    axes.set_xlim(*limits)
+    axes.set_ylim(0.35, 2.05)
+    axes.set_xlabel(RADIUS_LABEL)
+    axes.set_ylabel(r"energy release rate / $w_\mathrm{int}$")
+    axes.legend(loc="upper left", ncols=2)
+
+
+def _draw_forces(axes: Axes, loops: RingLoops) -> None:
+    """Force against radius of both loops between the JKR curves of the extremes."""
+    radius = np.linspace(0.0, _REACH, 400)
+    for index in (1, 0):
+        for direction, name, _ in _BRANCHES:
+            label = rf"{name}, $d={loops.wavelength[index]:g}$"
+            _draw_branch(axes, loops, index, direction, jkr.force, label)
+            if index == 0:
+                contact = loops.radius_at_zero(0, direction)
+                place = contact, float(jkr.force(contact, 0.0))
+                _draw_state(axes, direction, place, (7, 3) if direction > 0 else (2, -8))
+    for direction, _, short in _BRANCHES:
+        adhesion = 1 - direction * loops.amplitude
+        axes.plot(
+            radius,
+            jkr.equilibrium_force(radius, adhesion),
+            color="0.3",
+            linewidth=0.8,
+            dashes=(4, 2) if direction > 0 else (1.5, 1.5),
+            label=rf"JKR, $w_\mathrm{{{short}}}={adhesion:g}\,w_\mathrm{{int}}$",
+            zorder=1,
+        )
+    axes.plot(radius, jkr.force(radius, 0.0), color=BLACK, linewidth=0.8, label="$b=0$", zorder=1)
+    axes.set_xlim(0, _REACH)
+    axes.set_ylim(-2.7, 2.7)
+    axes.set_xlabel(RADIUS_LABEL)
+    axes.set_ylabel(FORCE_LABEL)
+    axes.legend(loc="upper left", ncols=2, columnspacing=1.0)
+
+
+def _draw_state(
+    axes: Axes, direction: int, place: tuple[float, float], aside: tuple[float, float]
+) -> None:
+    """State at b = 0 of the long rings, with its letter beside it."""
+    colour = _COLOURS[0][direction]
+    axes.plot(*place, "o", color=colour, markersize=3, zorder=5)
+    axes.annotate(
+        "A" if direction > 0 else "B",
+        place,
+        xytext=aside,
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        color=colour,
+        fontweight="bold",
+    )
+
+
+def _draw_branch(
+    axes: Axes,
+    loops: RingLoops,
+    index: int,
+    direction: int,
+    value: Callable[[Array, Array], Array],
+    label: str,
+) -> None:
+    """Quantity of the contact on a branch: heavy where it is pinned, arrows where it jumps."""
+    branch, colour = loops.branch(index, direction), _COLOURS[index][direction]
+    radius, penetration = loops.radius[branch], loops.penetration[branch]
+    starts = np.flatnonzero(loops.jump[branch])
+    name: str | None = label
+    for held, load in zip(np.split(radius, starts), np.split(penetration, starts), strict=True):
+        if held.size:
+            axes.plot(held, value(held, load), color=colour, linewidth=1.4, label=name)
+            name = None
+    jumps = list(zip(np.r_[0.0, radius][starts], radius[starts], penetration[starts], strict=True))
+    if direction < 0:
+        jumps.append((radius[-1], 0.0, penetration[-1]))
+    for before, after, load in jumps:
+        # A radius of zero itself has no energy release rate.
+        path = np.linspace(max(before, 1e-6), max(after, 1e-6), 40)
+        axes.plot(path, value(path, load), color=colour, linewidth=0.7)
+        if index == 0:
+            middle = slice(path.size // 2, path.size // 2 + 2)
+            draw_arrow(axes, path[middle], value(path, load)[middle], colour)
+
+
+FIGURE = Figure(
+    title="Main Fig. 2: rings of high and low work of adhesion",
+    parameters=RingsParameters,
+    record=RingLoops,
+    compute=ring_loops,
+    checks=rings_checks,
+    draw=rings_figure,
+)

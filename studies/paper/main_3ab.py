@@ -1,0 +1,452 @@
+"""Main Fig. 3a, b: a retraction in single instabilities, for strong and for weak disorder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from crackfront.core import jkr
+from crackfront.core.cycle.energy import dissipated_energy
+from crackfront.core.cycle.instabilities import (
+    Motion,
+    measured_instabilities,
+    resolved_motion,
+    shortest_instability,
+)
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.outcome import Direction
+from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
+from crackfront.data.section import Count, Positive, refusal
+from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
+from crackfront.plots.style import BLUE, PAGE, PURPLE, VERMILION, blank_figure, explain, house_style
+from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.rough import (
+    STRONG,
+    WEAK,
+    DisorderParameters,
+    RoughContact,
+    flat_spectrum,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.figure import Figure as Drawing
+
+Array = NDArray[np.float64]
+
+_DISORDER, _EVENT, _ANGLE, _STATE = "disorder", "instability", "angle", "state"
+
+
+class InstabilityParameters(DisorderParameters):
+    """What Fig. 3a and b show.
+
+    Attributes
+    ----------
+    load_step : float
+        Penetrations that are visited in any case. (Units: reduced vertical length)
+    travel : float
+        Largest motion of a site in a smooth step, over the short cutoff.
+    precision : float
+        Penetration to which an instability is located. (Units: reduced vertical length)
+    least_angles : int
+        Fewest sites of the front.
+    """
+
+    load_step: Positive
+    travel: Positive
+    precision: Positive
+    least_angles: Count
+
+    @model_validator(mode="after")
+    def _ordered(self) -> InstabilityParameters:
+        if self.weak >= self.strong:
+            raise refusal(
+                f"e_el is {self.strong:g} for strong and {self.weak:g} for weak disorder; the "
+                "first must be the larger"
+            )
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class InstabilityRecord:
+    """Instabilities of two retractions, and the whole cycle of the stronger disorder."""
+
+    short_cutoff: float = variable("shortest wavelength of the roughness", LATERAL)
+    travel: float = variable("smallest motion that counts as a jump", LATERAL)
+    elastic_energy: Array = variable("requested e_el", ADHESION, _DISORDER)
+    rms: Array = variable("w_rms measured on the tile", ADHESION, _DISORDER)
+    shortest: Array = variable(
+        "length on which disorder is as stiff as the line", LATERAL, _DISORDER
+    )
+    work: Array = variable("work of the load in retraction", ENERGY, _DISORDER)
+    energy_change: Array = variable("change of energy in retraction", ENERGY, _DISORDER)
+    smooth_energy: Array = variable("energy lost in the smooth steps", ENERGY, _DISORDER)
+    disorder_index: NDArray[np.int64] = variable("which disorder", "1", _EVENT)
+    penetration: Array = variable("penetration of the instability", VERTICAL, _EVENT)
+    energy: Array = variable("energy that the instability dissipates", ENERGY, _EVENT)
+    extent: Array = variable("width of its largest patch", LATERAL, _EVENT)
+    before: Array = variable("front before the instability", LATERAL, _EVENT, _ANGLE)
+    after: Array = variable("front after the instability", LATERAL, _EVENT, _ANGLE)
+    state_direction: NDArray[np.int64] = variable("+1 approach, -1 retraction", "1", _STATE)
+    state_penetration: Array = variable("penetration of a state", VERTICAL, _STATE)
+    state_radius: Array = variable("mean radius of a state", LATERAL, _STATE)
+    state_force: Array = variable("normal force of a state", FORCE, _STATE)
+
+
+@dataclass(frozen=True, slots=True)
+class _Branch:
+    """A resolved branch: its steps between metastable fronts."""
+
+    contact: RoughContact
+    steps: list[Motion]
+
+    @property
+    def jumps(self) -> list[Motion]:
+        """Its instabilities."""
+        return [step for step in self.steps if step.unstable]
+
+    @property
+    def smooth_energy(self) -> float:
+        """Energy lost in the other steps, each taken at fixed penetration."""
+        field, smooth = self.contact.field, (step for step in self.steps if not step.unstable)
+        return float(
+            np.sum([dissipated_energy(step.before, step.after, step.end, field) for step in smooth])
+        )
+
+    @property
+    def states(self) -> Array:
+        """Penetration, mean radius and force of all states, (3, n_state)."""
+        first = self.steps[0]
+        fronts = [(first.start, first.before), *((step.end, step.after) for step in self.steps)]
+        return np.array([(b, np.mean(a), np.mean(jkr.force(a, b))) for b, a in fronts]).T
+
+    @property
+    def work(self) -> float:
+        """Work of the load."""
+        penetration, _, force = self.states
+        return float(np.trapezoid(force, penetration))
+
+    @property
+    def energy_change(self) -> float:
+        """By how much the energy of the contact changed, of its first and last front alone."""
+        first, last = self.steps[0], self.steps[-1]
+        held = jkr.stored_energy(first.before, last.end) - jkr.stored_energy(
+            first.before, first.start
+        )
+        fall = dissipated_energy(first.before, last.after, last.end, self.contact.field)
+        return float(np.mean(held)) - fall
+
+
+def instability_record(parameters: InstabilityParameters, progress: Progress) -> InstabilityRecord:
+    """Retraction of both surfaces until contact is lost, and the approach of the stronger one.
+
+    Raises
+    ------
+    ValueError
+        If the two surfaces need different numbers of sites.
+    """
+    contacts = _contacts(parameters)
+    approach = _branch(parameters, contacts[STRONG], 1)
+    progress(f"approach: {len(approach.jumps)} instabilities")
+    retractions = []
+    for contact, name in zip(contacts, ("strong", "weak"), strict=True):
+        retractions.append(_branch(parameters, contact, -1))
+        progress(f"retraction, {name} disorder: {len(retractions[-1].jumps)} instabilities")
+    travel = parameters.travel * parameters.short_cutoff
+    correlation = flat_spectrum(parameters.short_cutoff).correlation_length
+    found = [measured_instabilities(one.jumps, one.contact.field, travel) for one in retractions]
+
+    def both(name: str) -> Array:
+        return np.concatenate([getattr(one, name) for one in found])
+
+    states = [branch.states for branch in (approach, retractions[STRONG])]
+    penetration, radius, force = np.concatenate(states, axis=1)
+    return InstabilityRecord(
+        short_cutoff=parameters.short_cutoff,
+        travel=travel,
+        elastic_energy=np.array([parameters.strong, parameters.weak]),
+        rms=np.array([contact.w_rms for contact in contacts]),
+        shortest=np.array([shortest_instability(correlation, one.w_rms) for one in contacts]),
+        work=np.array([branch.work for branch in retractions]),
+        energy_change=np.array([branch.energy_change for branch in retractions]),
+        smooth_energy=np.array([branch.smooth_energy for branch in retractions]),
+        disorder_index=np.repeat([STRONG, WEAK], [one.penetration.size for one in found]),
+        penetration=both("penetration"),
+        energy=both("dissipated_energy"),
+        extent=both("extent"),
+        before=both("before"),
+        after=both("after"),
+        state_direction=np.repeat([1, -1], [one.shape[1] for one in states]),
+        state_penetration=penetration,
+        state_radius=radius,
+        state_force=force,
+    )
+
+
+def expected_seconds(parameters: InstabilityParameters) -> float:
+    """Processor time that was measured with 480 and 1440 sites, for any number (Units: s)."""
+    return 8e-5 * parameters.least_angles**2
+
+
+def _contacts(parameters: InstabilityParameters) -> list[RoughContact]:
+    """The two contacts, of one surface and as many sites each."""
+    tolerance, sites = parameters.precision / 10, parameters.least_angles
+    while True:
+        contacts = [
+            parameters.contact(energy, tolerance, least_angles=sites)
+            for energy in (parameters.strong, parameters.weak)
+        ]
+        least, sites = sorted(contact.field.geometry.n_site for contact in contacts)
+        if least == sites:
+            return contacts
+
+
+def _branch(
+    parameters: InstabilityParameters, contact: RoughContact, direction: Direction
+) -> _Branch:
+    """One branch from the front that an approach to its first penetration has."""
+    schedule = LoadSchedule(parameters.max_penetration, parameters.load_step)
+    start = 0.0 if direction > 0 else parameters.max_penetration
+    steps = resolved_motion(
+        contact.field,
+        contact.touched(start),
+        start,
+        schedule.approach() if direction > 0 else schedule.retraction(),
+        direction,
+        travel=parameters.travel * parameters.short_cutoff,
+        precision=parameters.precision,
+        solver=contact.solver,
+    )
+    return _Branch(contact, list(steps))
+
+
+def instability_checks(record: InstabilityRecord) -> tuple[Check, ...]:
+    """What the instabilities dissipate, how wide they are, and the radii at b = 0."""
+    inner, outer = _radii_at_zero(record)
+    smallest = [_smallest_extent(record, index) for index in (STRONG, WEAK)]
+    expected = record.shortest[WEAK] / record.shortest[STRONG]
+    return (
+        *_disorder_checks(record, STRONG, "strong"),
+        *_disorder_checks(record, WEAK, "weak"),
+        Check(
+            "the smallest extent grows for weaker disorder",
+            "> 1",
+            f"{smallest[WEAK] / smallest[STRONG]:.3g} times",
+            smallest[WEAK] > smallest[STRONG],
+            f"lengths on which disorder is as stiff as the line: {expected:.3g} times",
+        ),
+        Check(
+            "b = 0: the radius in approach (A) is below that in retraction (B)",
+            "a(A) < a(B)",
+            f"{inner:.4f} < {outer:.4f}",
+            inner < outer,
+            "strong disorder; reduced lateral length",
+        ),
+    )
+
+
+def _smallest_extent(record: InstabilityRecord, index: int) -> float:
+    """Extent that a tenth of the instabilities of one disorder stay below."""
+    return float(np.quantile(record.extent[record.disorder_index == index], 0.1))
+
+
+def _radii_at_zero(record: InstabilityRecord) -> tuple[float, float]:
+    """Mean radii of the states A and B at b = 0, in approach and in retraction."""
+    zero = record.state_penetration == 0
+    radii = [record.state_radius[zero & (record.state_direction == sign)] for sign in (1, -1)]
+    return float(radii[0][0]), float(radii[1][-1])
+
+
+def _disorder_checks(record: InstabilityRecord, index: int, name: str) -> Iterator[Check]:
+    """Signs and sum of the energies that one retraction dissipates, and its smallest extent."""
+    energy = record.energy[record.disorder_index == index]
+    yield Check(
+        f"{name} disorder: every instability dissipates energy",
+        "> 0",
+        f"{energy.size} from {energy.min():.2g} to {energy.max():.2g}",
+        bool(np.all(energy > 0)),
+        "reduced energy",
+    )
+    lost = record.work[index] - record.energy_change[index]
+    yield close_to(
+        f"{name} disorder: the instabilities dissipate the work that is not stored",
+        float(np.sum(energy)) / lost,
+        1.0,
+        0.02,
+        remark=f"smooth steps add {record.smooth_energy[index] / lost:.2g} where each is taken at "
+        "fixed penetration, in proportion to its size; integral of F db by trapezia over all "
+        "steps, from the turn to the last state, pull-off not included",
+    )
+    shortest, found = float(record.shortest[index]), _smallest_extent(record, index)
+    correlation = flat_spectrum(record.short_cutoff).correlation_length
+    expected = max(shortest, correlation)
+    yield Check(
+        f"{name} disorder: smallest extent, the length on which disorder is as stiff as the line "
+        "or, if that is shorter, the correlation length of w_loc",
+        f"{expected:.3g}, within a factor of 2",
+        f"{found:.3g}",
+        expected / 2 < found < expected * 2,
+        f"tenth percentile of area over depth; disorder is as stiff as the line on {shortest:.3g}, "
+        f"whose factor is a convention; correlation length {correlation:.3g}",
+    )
+
+
+_FINER = 4
+"""Points of a drawn front per site; the front is smooth between its sites."""
+
+_GAP = 0.05
+"""Distance of the two quarters from the middle between them."""
+
+_ARROW = {
+    "arrowstyle": "-|>",
+    "color": PURPLE,
+    "linewidth": 0.9,
+    "mutation_scale": 7,
+    "shrinkA": 0,
+    "shrinkB": 0,
+}
+"""Of a jump in or out of contact."""
+
+
+def instability_figure(record: InstabilityRecord) -> Drawing:
+    """Patches of both retractions, and force against radius of the cycle."""
+    from crackfront.plots.instabilities import ENERGY_LABEL, energy_shades
+
+    with house_style():
+        figure = blank_figure(PAGE, 0.45 * PAGE)
+        left, right = figure.subplots(1, 2, width_ratios=(1.6, 1))
+        shades = energy_shades(record.energy)
+        for index in (STRONG, WEAK):
+            _draw_quarter(left, record, index, shades)
+            _draw_shortest(left, record, index)
+        _finish_quarters(left, record)
+        bar = figure.colorbar(
+            shades,
+            cax=left.inset_axes((0.42, 0.155, 0.5, 0.028)),
+            orientation="horizontal",
+            extend="min",
+        )
+        bar.set_label(ENERGY_LABEL, labelpad=1)
+        _draw_cycle(right, record)
+        left.set_title("a", loc="left", fontweight="bold")
+        right.set_title("b", loc="left", fontweight="bold")
+        explain(
+            figure,
+            "a: areas swept by single instabilities, outlined by the fronts before and after; "
+            "white: swept smoothly; orange bars: length on which disorder is as stiff as the line; "
+            "b: strong disorder; A, B: contact at b = 0 in approach and retraction",
+        )
+        return figure
+
+
+def _draw_quarter(
+    axes: Axes, record: InstabilityRecord, index: int, shades: ScalarMappable
+) -> None:
+    """Patches of one disorder on its quarter of the contact, outlined by the pinned fronts."""
+    from crackfront.plots.instabilities import draw_patches
+
+    chosen, apex = record.disorder_index == index, _GAP if index == WEAK else -_GAP
+    fronts = [_quarter(values[chosen], index) for values in (record.before, record.after)]
+    angle = np.pi / 2 * np.linspace(0, 1, fronts[0].shape[1]) + (
+        np.pi / 2 if index == STRONG else 0
+    )
+    angle = np.broadcast_to(angle, fronts[0].shape)
+    draw_patches(axes, angle, fronts, record.energy[chosen], record.travel, shades, apex)
+
+
+def _quarter(fronts: Array, index: int) -> Array:
+    """Finely drawn part of fronts that lies in the quarter of a disorder."""
+    from scipy.signal import resample
+
+    count = fronts.shape[1] * _FINER
+    first = count // 4 if index == STRONG else 0
+    return np.asarray(resample(fronts, count, axis=1)[:, first : first + count // 4 + 1])
+
+
+def _draw_shortest(axes: Axes, record: InstabilityRecord, index: int) -> None:
+    """Bar of the length on which disorder is as stiff as the line, outside the perimeter."""
+    length, side = float(record.shortest[index]), 1 if index == WEAK else -1
+    radius = 1.06 * record.before.max()
+    middle = np.pi / 2 - side * 0.3 * np.pi
+    angle = middle + np.linspace(-0.5, 0.5, 20) * length / radius
+    axes.plot(
+        side * _GAP + radius * np.cos(angle),
+        radius * np.sin(angle),
+        color=VERMILION,
+        linewidth=2.5,
+        solid_capstyle="butt",
+    )
+    axes.annotate(
+        r"$\ell_0$",
+        (side * _GAP + radius * np.cos(middle), radius * np.sin(middle)),
+        xytext=(6 * side, 4),
+        textcoords="offset points",
+        ha="center",
+        color=VERMILION,
+    )
+
+
+def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
+    """Limits, names and a scale."""
+    reach = 1.04 * record.before.max() + _GAP
+    axes.set_xlim(-reach, reach)
+    axes.set_ylim(-0.6, 1.28 * reach)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    for index, name, side in ((STRONG, "strong", -1), (WEAK, "weak", 1)):
+        axes.annotate(
+            f"{name} disorder\n"
+            rf"$w_\mathrm{{rms}} = {record.rms[index]:.2f}\,w_\mathrm{{int}}$" + "\n"
+            rf"shortest jump $\ell_0 = {record.shortest[index]:.3f}$",
+            (side * reach, 1.28 * reach),
+            ha="left" if side < 0 else "right",
+            va="top",
+        )
+    axes.plot(
+        [-reach, 0.5 - reach], [-0.12, -0.12], color="black", linewidth=1.2, solid_capstyle="butt"
+    )
+    axes.annotate(r"$0.5\,(3\pi w_\mathrm{int}R^2/4E')^{1/3}$", (-reach, -0.17), va="top")
+
+
+def _draw_cycle(axes: Axes, record: InstabilityRecord) -> None:
+    """Force against radius of the stronger disorder."""
+    for direction, colour, name in ((1, BLUE, "approach"), (-1, VERMILION, "retraction")):
+        branch = record.state_direction == direction
+        radius, force = record.state_radius[branch], record.state_force[branch]
+        axes.plot(radius, force, color=colour, linewidth=0.8, label=name)
+        end = 0 if direction > 0 else -1
+        start, stop = ((0.0, 0.0), (radius[end], force[end]))[::direction]
+        axes.annotate("", xy=stop, xytext=start, arrowprops=_ARROW)
+    axes.plot([], [], color=PURPLE, linewidth=0.9, label="jumps in and out")
+    radius = np.linspace(0.0, 1.6, 200)
+    axes.plot(
+        radius, jkr.force(radius, 0.0), color="black", linewidth=0.7, label="$b = 0$", zorder=1
+    )
+    for letter, place, aside in zip("AB", _radii_at_zero(record), ((-9, -7), (4, 1)), strict=True):
+        force = float(jkr.force(place, 0.0))
+        axes.plot(place, force, "o", color="black", markersize=2.8, zorder=5)
+        axes.annotate(
+            letter, (place, force), xytext=aside, textcoords="offset points", fontweight="bold"
+        )
+    axes.set_xlim(0.0, 1.08 * record.state_radius.max())
+    axes.set_ylim(1.25 * record.state_force.min(), 0.1)
+    axes.legend(loc="lower left")
+    axes.set_xlabel(RADIUS_LABEL)
+    axes.set_ylabel(FORCE_LABEL)
+
+
+FIGURE = Figure(
+    title="Main Fig. 3a, b: a retraction in single elastic instabilities",
+    parameters=InstabilityParameters,
+    record=InstabilityRecord,
+    compute=instability_record,
+    checks=instability_checks,
+    draw=instability_figure,
+    seconds=expected_seconds,
+)

@@ -1,0 +1,319 @@
+"""Main Fig. 3c, d: the smooth loop of a finely rough sphere, and its two fronts at b = 0."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from crackfront.analysis.estimate import REACH, with_error
+from crackfront.analysis.finding import PAPER_FACTOR
+from crackfront.analysis.law_spheres import sphere_factors
+from crackfront.analysis.steady import steady_adhesion
+from crackfront.core import jkr
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.cycle.schedule import loads
+from crackfront.core.field.rays import front_adhesion
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.data.section import Positive
+from crackfront.plots.parts import ADHESION_LABEL, field_colours
+from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
+from crackfront.simulate.contact import simulation_adhesion, simulation_field
+from crackfront.simulate.simulation import stated_error
+from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.rough import (
+    ONE_DIGIT,
+    RoughCycleParameters,
+    expected_seconds,
+    patch_of,
+    recorded,
+    rough_spectrum,
+    whole_cycle,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+Array = NDArray[np.float64]
+
+_STATE, _ANGLE, _FRONT, _X, _Y = "state", "angle", "front", "x", "y"
+
+FRONTS = ("approach", "retraction", "rigid circle")
+"""Order of the fronts at b = 0."""
+
+_N_ARC = 32
+"""Arcs of a front whose means count as independent."""
+
+_PATCH_POINTS = 600
+"""Points along a side of the patch of the field."""
+
+
+class PinnedLoopParameters(RoughCycleParameters):
+    """What Fig. 3c and 3d show.
+
+    Attributes
+    ----------
+    roll_off : float
+        Roll-off wavelength of the spectrum. (Units: reduced lateral length)
+    hurst : float
+        Its Hurst exponent.
+    patch_side : float
+        Side of the part of the field that is shown. (Units: reduced lateral length)
+    """
+
+    roll_off: Positive
+    hurst: Annotated[float, Field(gt=0, le=1)]
+    patch_side: Positive
+
+    @property
+    def spectrum(self) -> SelfAffineSpectrum:
+        """Shape of the spectrum."""
+        return rough_spectrum(self.short_cutoff, self.roll_off, self.hurst)
+
+
+@dataclass(frozen=True, slots=True)
+class PinnedLoop:
+    """States of the cycle, its fronts at b = 0 and the field around them."""
+
+    status: str = variable("what ended the cycle", "1")
+    short_cutoff: float = variable("shortest wavelength lambda_s", LATERAL)
+    roll_off: float = variable("roll-off wavelength lambda_r", LATERAL)
+    hurst: float = variable("Hurst exponent", "1")
+    elastic_energy: float = variable("energy of full conformity on the tile", ADHESION)
+    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    penetration: Array = variable("rigid body penetration", VERTICAL, _STATE)
+    mean_radius: Array = variable("mean contact radius", LATERAL, _STATE)
+    force: Array = variable("normal force", FORCE, _STATE)
+    approach: float = variable("w_appr in the window", ADHESION)
+    retraction: float = variable("w_retr in the window", ADHESION)
+    approach_error: float = variable("standard error of w_appr", ADHESION)
+    retraction_error: float = variable("standard error of w_retr", ADHESION)
+    lowest_radius: float = variable("smallest mean radius of the window", LATERAL)
+    highest_radius: float = variable("largest mean radius of the window", LATERAL)
+    angle: Array = variable("angle of a site", "rad", _ANGLE)
+    front: Array = variable(f"at b = 0: {', '.join(FRONTS)}", LATERAL, _FRONT, _ANGLE)
+    front_adhesion: Array = variable("w_loc under the fronts", ADHESION, _FRONT, _ANGLE)
+    front_release: Array = variable("G_JKR at the fronts", ADHESION, _FRONT, _ANGLE)
+    x: Array = variable("abscissa of the patch, along the first ray", LATERAL, _X)
+    y: Array = variable("ordinate of the patch", LATERAL, _Y)
+    patch: NDArray[np.float32] = variable("local work of adhesion", ADHESION, _X, _Y)
+
+
+def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedLoop:
+    """One full cycle of a finely rough sphere.
+
+    Raises
+    ------
+    ValueError
+        If the cycle ends before both fronts at b = 0 were found, or has no steady branches.
+    """
+    simulation = parameters.simulation()
+    adhesion = simulation_adhesion(simulation)
+    progress(f"surface: e_el {adhesion.e_el:.4f}, w_rms {adhesion.w_rms:.4f} w_int")
+    field = simulation_field(simulation, adhesion)
+    fronts: list[Array] = []
+
+    def observe(recorder: Recorder) -> None:
+        if recorder.states[-1].penetration == 0:
+            fronts.append(recorder.front)
+            progress(f"{FRONTS[len(fronts) - 1]}: mean radius {fronts[-1].mean():.4f} at b = 0")
+
+    record = recorded(simulation, field, loads(parameters.schedule), Recorder(observers=[observe]))
+    if len(fronts) < 2:
+        raise ValueError(f"the cycle ended before its two fronts at b = 0: {record.status.value}")
+    correlation_length = simulation.spectrum.correlation_length
+    steady = steady_adhesion(record, correlation_length)
+    if steady.sentence:
+        raise ValueError(steady.sentence)
+    numerical = stated_error(simulation, steady, correlation_length)
+    circle = jkr.equilibrium_radius(0.0, 1 - adhesion.e_el)
+    front = np.stack([*fronts, np.full(fronts[0].size, circle)])
+    across = (np.arange(_PATCH_POINTS) / (_PATCH_POINTS - 1) - 0.5) * parameters.patch_side
+    x = across + np.mean([front[0, 0], front[1, 0]])
+    return PinnedLoop(
+        status=record.status.value,
+        short_cutoff=parameters.short_cutoff,
+        roll_off=parameters.roll_off,
+        hurst=parameters.hurst,
+        elastic_energy=adhesion.e_el,
+        direction=record.states.direction,
+        penetration=record.states.penetration,
+        mean_radius=record.states.mean_radius,
+        force=record.states.force,
+        approach=steady.w_appr,
+        retraction=steady.w_retr,
+        approach_error=math.hypot(steady.w_appr_error, numerical[0]),
+        retraction_error=math.hypot(steady.w_retr_error, numerical[1]),
+        lowest_radius=steady.lowest_radius,
+        highest_radius=steady.highest_radius,
+        angle=2 * np.pi * np.arange(front.shape[1]) / front.shape[1],
+        front=front,
+        front_adhesion=np.stack([front_adhesion(line, field) for line in front]) / WORK_OF_ADHESION,
+        front_release=jkr.apparent_work_of_adhesion(front, 0.0),
+        x=x,
+        y=across,
+        patch=patch_of(field, x, across),
+    )
+
+
+def pinned_loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
+    """The works of adhesion of the paper's k = 3, and what the fronts sample."""
+    return (*_loop_checks(loop), *_front_checks(loop))
+
+
+def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
+    """Works of adhesion of both branches (main Fig. 3c)."""
+    energy = loop.elastic_energy
+    factor = (loop.retraction - loop.approach) / (2 * energy)
+    factor_error = math.hypot(loop.approach_error, loop.retraction_error) / (2 * energy)
+    spread = 3 * math.hypot(loop.approach_error, loop.retraction_error) / 2
+    spectrum = SelfAffineSpectrum(loop.short_cutoff, loop.roll_off, loop.hurst)
+    law = sphere_factors(
+        "roughness", spectrum, energy, (loop.lowest_radius + loop.highest_radius) / 2
+    )
+    numbers = (
+        f"k of this loop is {with_error(factor, factor_error)}, by the law at its size "
+        f"{law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f}); tolerance: "
+        f"what one digit of k leaves, {ONE_DIGIT:g} e_el, with {energy:.4f} w_int on the tile"
+    )
+    return (
+        whole_cycle(loop.status),
+        *(
+            close_to(
+                f"{name} = w_int - e_el {sign} 3 e_el (main text)",
+                found,
+                1 - energy + side * PAPER_FACTOR * energy,
+                ONE_DIGIT * energy,
+                units=ADHESION,
+                remark=numbers,
+                law=(
+                    1 - energy + side * branch.factor.value * energy,
+                    REACH * math.hypot(branch.factor.standard_error * energy, error),
+                ),
+            )
+            for name, sign, side, found, error, branch in (
+                ("w_appr", "-", -1, loop.approach, loop.approach_error, law.approach),
+                ("w_retr", "+", 1, loop.retraction, loop.retraction_error, law.retraction),
+            )
+        ),
+        close_to(
+            "the branches lie symmetrically about w_int - e_el",
+            (loop.approach + loop.retraction) / 2,
+            1 - energy,
+            spread,
+            units=ADHESION,
+            remark="tolerance: three standard errors, of the states and of the numerics",
+        ),
+    )
+
+
+def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
+    """What the fronts at b = 0 sample of the field (main Fig. 3d)."""
+    mean = 1 - loop.elastic_energy
+    balance = np.mean(loop.front * (loop.front_adhesion - loop.front_release), axis=1)
+    imbalance = np.max(np.abs(balance[:2] / np.mean(loop.front[:2], axis=1)))
+    checks = []
+    for name, word, sampled in zip(
+        FRONTS, ("below", "above", "at"), loop.front_adhesion, strict=True
+    ):
+        arcs = np.array([arc.mean() for arc in np.array_split(sampled, _N_ARC)])
+        found, reach = float(sampled.mean()), float(3 * arcs.std(ddof=1) / math.sqrt(_N_ARC))
+        expected, passed = {
+            "below": (f"below {mean - reach:.4f}", found < mean - reach),
+            "above": (f"above {mean + reach:.4f}", found > mean + reach),
+            "at": (with_error(mean, reach), abs(found - mean) <= reach),
+        }[word]
+        checks.append(
+            Check(
+                f"w_loc under the front at b = 0, {name}: {word} the mean of the field",
+                f"{expected} {ADHESION}",
+                f"{found:.4f} {ADHESION}",
+                passed,
+                f"the mean is {mean:.4f}; three standard errors, from the means of {_N_ARC} arcs",
+            )
+        )
+    return (
+        *checks,
+        close_to(
+            "<a w_loc> = <a G> on both fronts: the line's elasticity cancels in the mean",
+            float(imbalance),
+            0.0,
+            1e-3,
+            units=ADHESION,
+            remark="tolerance: the largest force that the numerics may leave",
+        ),
+    )
+
+
+def pinned_loop_figure(loop: PinnedLoop) -> Drawing:
+    """The loop beside the fronts of both branches at b = 0."""
+    from crackfront.plots.loop import draw_loop
+
+    with house_style():
+        figure = blank_figure(PAGE, 0.46 * PAGE)
+        left, right = figure.subplots(1, 2, width_ratios=[1, 1])
+        works, window = (loop.approach, loop.retraction), (loop.lowest_radius, loop.highest_radius)
+        draw_loop(left, loop, works, window, elastic_energy=loop.elastic_energy)
+        _draw_fronts(right, loop)
+        for axes, letter in ((left, "c"), (right, "d")):
+            axes.set_title(letter, loc="left", fontweight="bold")
+        explain(figure, "arrows: the direction of motion; d: the fronts at b = 0")
+        return figure
+
+
+def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
+    """The part of the fronts that crosses the patch of the field."""
+    from crackfront.plots.fronts import label_plane
+
+    mean, reach = 1 - loop.elastic_energy, 4 * np.sqrt(loop.elastic_energy)
+    image = axes.imshow(
+        loop.patch.T,
+        origin="lower",
+        extent=(loop.x[0], loop.x[-1], loop.y[0], loop.y[-1]),
+        cmap=field_colours(),
+        vmin=mean - reach,
+        vmax=mean + reach,
+        interpolation="antialiased",
+    )
+    bar = axes.figure.colorbar(image, ax=axes, extend="both", pad=0.02)
+    bar.set_label(rf"local {ADHESION_LABEL}")
+    # From -pi to pi, so that the part about the first ray is one line.
+    half = loop.angle.size // 2
+    angle = np.roll(np.where(loop.angle < np.pi, loop.angle, loop.angle - 2 * np.pi), half)
+    for line, colour, style, label in (
+        (0, BLUE, "-", "approach"),
+        (1, VERMILION, "-", "retraction"),
+        (2, BLACK, (0, (4, 2)), "rigid circle"),
+    ):
+        radius = np.roll(loop.front[line], half)
+        near = np.abs(angle) < 2 * loop.y[-1] / loop.x[0]
+        axes.plot(
+            (radius * np.cos(angle))[near],
+            (radius * np.sin(angle))[near],
+            color=colour,
+            linestyle=style,
+            linewidth=1.0,
+            label=label,
+        )
+    axes.set_xlim(loop.x[0], loop.x[-1])
+    axes.set_ylim(loop.y[0], loop.y[-1])
+    label_plane(axes)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.55, 1.0), ncols=3, columnspacing=1.0)
+
+
+FIGURE = Figure(
+    title="Main Fig. 3c, d: the smooth loop of a finely rough sphere, and its fronts at b = 0",
+    parameters=PinnedLoopParameters,
+    record=PinnedLoop,
+    compute=pinned_loop,
+    checks=pinned_loop_checks,
+    draw=pinned_loop_figure,
+    seconds=expected_seconds,
+)

@@ -1,0 +1,351 @@
+"""Main Fig. 4: roughness, and the local work of adhesion that it is equivalent to."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+from scipy.fft import fft2, fftfreq
+from scipy.ndimage import maximum_filter
+
+from crackfront.core.adhesion import AdhesionMap, rough_adhesion
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field, tile_mean_square
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, LATERAL, VERTICAL, variable
+from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
+from crackfront.plots.parts import HEIGHT_LABEL, LENGTH_LABEL, label_panel
+from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain, house_style
+from studies.paper.figure import Check, Figure, Progress, close_to
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+Array = NDArray[np.float64]
+
+_X, _Y, _BAND, _PLACE = "x", "y", "band", "coordinate"
+
+_ALIGNMENT = 2 * math.sqrt(2) / math.pi
+"""Correlation of w_loc with heights of one scale: mean of Re sqrt(i q_x + |q_y|) / sqrt(q)."""
+
+_FEWEST_MODES = 100
+"""Modes of a band that is compared."""
+
+
+class MappingParameters(Section):
+    """What Fig. 4 shows.
+
+    Attributes
+    ----------
+    seed : int
+        Seed of the surface.
+    short_cutoff, roll_off, hurst : float
+        Spectrum of the heights. (Units: reduced lateral length, the last 1)
+    elastic_energy : float
+        Energy of full conformity. (Units: w_int)
+    side : float
+        Side of the periodic tile. (Units: reduced lateral length)
+    patch : float
+        Side of the part that is shown. (Units: reduced lateral length)
+    n_point : int
+        Points along a side of the tile.
+    """
+
+    seed: Seed
+    short_cutoff: Positive
+    roll_off: Positive
+    hurst: Annotated[float, Field(gt=0, le=1)]
+    elastic_energy: Energy
+    side: Positive
+    patch: Positive
+    n_point: Count
+
+    @model_validator(mode="after")
+    def _usable(self) -> MappingParameters:
+        if self.roll_off < self.short_cutoff:
+            raise refusal(
+                f"roll_off {self.roll_off:g} is shorter than short_cutoff {self.short_cutoff:g}; "
+                "lower the cutoff or raise the roll-off"
+            )
+        if not 4 * self.short_cutoff <= self.patch <= self.side:
+            raise refusal(
+                f"patch is {self.patch:g}; it must have at least four short cutoffs "
+                f"({4 * self.short_cutoff:g}) and fit into the side of the tile ({self.side:g})"
+            )
+        if self.short_cutoff < 2 * self.side / self.n_point * (1 - 1e-12):
+            raise refusal(
+                f"n_point is {self.n_point}; the short cutoff {self.short_cutoff:g} needs two "
+                f"points, so {math.ceil(2 * self.side / self.short_cutoff)} or more"
+            )
+        return self
+
+    @property
+    def spectrum(self) -> SelfAffineSpectrum:
+        """Spectrum of the heights, in reduced units."""
+        shape = SelfAffineSpectrum(self.short_cutoff, self.roll_off, self.hurst)
+        return shape.with_elastic_energy(self.elastic_energy)
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """Heights and works of adhesion on a patch, and measures of the whole tile."""
+
+    position: Array = variable("distance from a corner of the patch", LATERAL, _X)
+    heights: Array = variable("height, positive at peaks", VERTICAL, _X, _Y)
+    adhesion: Array = variable("local work of adhesion", ADHESION, _X, _Y)
+    peak: NDArray[np.int64] = variable("indices of the highest point shown", "1", _PLACE)
+    valley: NDArray[np.int64] = variable("indices of the lowest point shown", "1", _PLACE)
+    asked_energy: float = variable("energy of full conformity of the spectrum", ADHESION)
+    mode_energy: float = variable("expected energy of the modes of the tile", ADHESION)
+    energy_error: float = variable("standard deviation of the energy of a tile", ADHESION)
+    energy: float = variable("energy of full conformity of the tile", ADHESION)
+    rms: float = variable("rms of the local work of adhesion on the tile", ADHESION)
+    mean: float = variable("mean of the local work of adhesion on the tile", ADHESION)
+    peak_mean: float = variable("mean work of adhesion at all maxima of the heights", ADHESION)
+    valley_mean: float = variable("mean work of adhesion at all minima of the heights", ADHESION)
+    band_wavelength: Array = variable("middle of a band of wavelengths", LATERAL, _BAND)
+    band_modes: NDArray[np.int64] = variable("modes of the band", "1", _BAND)
+    band_correlation: Array = variable(
+        "correlation of the heights' half-derivative and the work of adhesion in the band",
+        "1",
+        _BAND,
+    )
+
+
+def mapping(parameters: MappingParameters, progress: Progress) -> Mapping:
+    """Synthesise a surface and map it."""
+    spectrum, pixel = parameters.spectrum, parameters.side / parameters.n_point
+    rng = np.random.default_rng(np.random.SeedSequence(parameters.seed))
+    heights = gaussian_field(spectrum, parameters.n_point, parameters.side, rng)
+    tile = rough_adhesion(heights, pixel)
+    adhesion = tile.work_of_adhesion / WORK_OF_ADHESION
+    progress(f"tile of {parameters.n_point} points a side: w_rms = {tile.w_rms:.4f} w_int")
+    shown = slice(0, min(round(parameters.patch / pixel) + 1, parameters.n_point))
+    patch = heights[shown, shown]
+    # From a mean square half-derivative to an energy of full conformity.
+    stiffness = spectrum.elastic_energy / spectrum.mean_square(0.5)
+    expected, deviation = tile_mean_square(spectrum, parameters.side, 0.5)
+    wavelength, modes, correlation = _band_correlations(heights, tile, spectrum)
+    return Mapping(
+        position=np.asarray(pixel * np.arange(len(patch)), dtype=float),
+        heights=patch,
+        adhesion=adhesion[shown, shown],
+        peak=_highest(patch),
+        valley=_highest(-patch),
+        asked_energy=parameters.elastic_energy,
+        mode_energy=stiffness * expected,
+        energy_error=stiffness * deviation,
+        energy=tile.e_el,
+        rms=tile.w_rms,
+        mean=float(adhesion.mean()),
+        peak_mean=float(adhesion[_maxima(heights)].mean()),
+        valley_mean=float(adhesion[_maxima(-heights)].mean()),
+        band_wavelength=wavelength,
+        band_modes=modes,
+        band_correlation=correlation,
+    )
+
+
+def _band_correlations(
+    heights: Array, tile: AdhesionMap, spectrum: SelfAffineSpectrum
+) -> tuple[Array, NDArray[np.int64], Array]:
+    """Middle wavelength, modes and correlation of the octaves below the short cutoff's."""
+    n_point = len(heights)
+    along = 2 * np.pi * fftfreq(n_point, tile.pixel)
+    wavevector = np.hypot(along[:, None], along)
+    # On one scale the half-derivative is the heights; an octave is not quite one scale.
+    one, other = np.sqrt(wavevector) * fft2(heights), fft2(tile.work_of_adhesion)
+    longest = tile.pixel * n_point
+    n_band = max(1, math.floor(math.log2(longest / spectrum.short_cutoff)))
+    edges = 2 * np.pi / spectrum.short_cutoff * 2.0 ** -np.arange(n_band + 1)
+    rows = []
+    for high, low in pairwise(edges):
+        band = (wavevector > low) & (wavevector <= high * (1 + 1e-12))
+        shared = np.sum((one[band] * np.conj(other[band])).real)
+        norms = np.sum(np.abs(one[band]) ** 2) * np.sum(np.abs(other[band]) ** 2)
+        rows.append(
+            (2 * np.pi / math.sqrt(low * high), np.count_nonzero(band), shared / norms**0.5)
+        )
+    middle, modes, correlation = np.array(rows).T
+    return middle, modes.astype(np.int64), correlation
+
+
+def _maxima(heights: Array) -> NDArray[np.bool_]:
+    """Points of a periodic map that no neighbour exceeds."""
+    return np.asarray(heights == maximum_filter(heights, size=3, mode="wrap"))
+
+
+def _highest(patch: Array) -> NDArray[np.int64]:
+    """Indices of the highest point away from the rim, where a profile along x has room."""
+    margins = len(patch) // 5, len(patch) // 20
+    inner = patch[tuple(slice(margin, len(patch) - margin) for margin in margins)]
+    return np.array(np.unravel_index(np.argmax(inner), inner.shape)) + margins
+
+
+def mapping_checks(record: Mapping) -> tuple[Check, ...]:
+    """Parseval, the mean, and that peaks raise the work of adhesion."""
+    many = record.band_modes >= _FEWEST_MODES
+    valley, peak = record.adhesion[tuple(record.valley)], record.adhesion[tuple(record.peak)]
+    furthest = np.argmax(np.abs(record.band_correlation[many] - _ALIGNMENT))
+    return (
+        close_to(
+            "Parseval: w_rms / sqrt(e_el w_int), both of the tile",
+            record.rms / math.sqrt(record.energy),
+            2.0,
+            1e-9,
+            remark="SI Eq. (Wrms); the main text prints sqrt(2) for it",
+        ),
+        close_to(
+            "mean of w_loc: w_int - e_el of the tile",
+            record.mean,
+            1 - record.energy,
+            1e-9,
+            units="w_int",
+        ),
+        close_to(
+            "e_el of the tile: that of the spectrum at its modes, within 3 standard deviations",
+            record.energy,
+            record.mode_energy,
+            3 * record.energy_error,
+            units="w_int",
+            remark=f"the integral over all wavevectors is {record.asked_energy:g}",
+        ),
+        close_to(
+            "peaks raise w_loc: correlation with the half-derivative of the heights in octaves of "
+            "wavelength, the furthest from 2 sqrt(2) / pi",
+            float(record.band_correlation[many][furthest]),
+            _ALIGNMENT,
+            0.015,
+            remark="mean of Re sqrt(i q_x + abs(q_y)) / sqrt(q) over the directions of q; "
+            f"{np.count_nonzero(many)} octaves of {_FEWEST_MODES} modes or more",
+        ),
+        Check(
+            "w_loc at valleys, on average, and at peaks",
+            "increasing",
+            f"{record.valley_mean:.4f}, {record.mean:.4f}, {record.peak_mean:.4f} w_int",
+            record.valley_mean < record.mean < record.peak_mean,
+            "means over all minima, all points and all maxima of the heights of the tile",
+        ),
+        Check(
+            "w_loc at the valley and at the peak that are shown",
+            "increasing",
+            f"{valley:.4f}, {peak:.4f} w_int",
+            bool(valley < peak),
+        ),
+    )
+
+
+_ADHESION_LABEL = r"$w_\mathrm{loc}/w_\mathrm{int}$"
+_PLACES = (("peak", "^", VERMILION), ("valley", "v", BLUE))
+
+
+def mapping_figure(record: Mapping) -> Drawing:
+    """Heights and work of adhesion on a patch, and profiles across a peak and a valley."""
+    with house_style():
+        figure = blank_figure(PAGE, 0.86 * PAGE)
+        grid = figure.add_gridspec(2, 2, height_ratios=(1.3, 1))
+        maps = [figure.add_subplot(grid[0, column]) for column in (0, 1)]
+        _draw_map(maps[0], record, record.heights, "cividis", HEIGHT_LABEL.format("height $h$"))
+        _draw_map(maps[1], record, record.adhesion, "viridis", _ADHESION_LABEL)
+        for axes, name in zip(maps, "ab", strict=True):
+            label_panel(axes, name)
+            axes.set_title("front along $y$, contact at smaller $x$")
+        for column, (place, _, colour) in enumerate(_PLACES):
+            parts = grid[1, column].subgridspec(2, 1, hspace=0.0)
+            upper = figure.add_subplot(parts[0])
+            lower = figure.add_subplot(parts[1], sharex=upper)
+            _draw_profile(upper, lower, record, place, colour)
+            label_panel(upper, "cd"[column])
+        explain(
+            figure,
+            "c, d: height and work of adhesion along the white lines of a and b; dotted: the place "
+            "of peak and valley; broken: the mean of $w_\\mathrm{loc}$",
+        )
+        return figure
+
+
+def _draw_map(axes: Axes, record: Mapping, values: Array, colours: str, label: str) -> None:
+    """Map with the places of the two profiles."""
+    from matplotlib.ticker import MaxNLocator
+
+    side = float(record.position[-1])
+    image = axes.imshow(
+        values.T,
+        extent=(0, side, 0, side),
+        origin="lower",
+        cmap=colours,
+        interpolation="bilinear",
+    )
+    reach = _reach(record)
+    for place, marker, _ in _PLACES:
+        x, y = record.position[getattr(record, place)]
+        axes.plot([x - reach, x + reach], [y, y], color="white", linewidth=0.8)
+        axes.plot(x, y, marker, color="white", markeredgecolor="black", markersize=5)
+        axes.annotate(
+            place,
+            (x, y),
+            xytext=(0, 6),
+            textcoords="offset points",
+            ha="center",
+            color="black",
+            bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0, "alpha": 0.8},
+        )
+    axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(4))
+    axes.set_xlabel(LENGTH_LABEL.format("$x$"))
+    axes.set_ylabel(LENGTH_LABEL.format("$y$"))
+
+
+def _draw_profile(upper: Axes, lower: Axes, record: Mapping, place: str, colour: str) -> None:
+    """Heights and work of adhesion along x through a peak or a valley."""
+    from matplotlib.ticker import MaxNLocator
+
+    index = getattr(record, place)
+    distance = record.position - record.position[index[0]]
+    heights, adhesion = record.heights[:, index[1]], record.adhesion[:, index[1]]
+    upper.fill_between(distance, heights, heights.min() - 1, color="0.88", linewidth=0)
+    upper.plot(distance, heights, color="0.2")
+    lower.plot(distance, adhesion, color=colour)
+    lower.axhline(record.mean, color="0.2", linewidth=0.6, dashes=(4, 2), zorder=1)
+    for axes in (upper, lower):
+        axes.axvline(0.0, color=colour, linewidth=0.6, dashes=(1.5, 1.5), zorder=1)
+    reach = _reach(record)
+    upper.set_xlim(-reach, reach)
+    for axes, every, room in ((upper, record.heights, 0.1), (lower, record.adhesion, 0.05)):
+        low, high = float(every.min()), float(every.max())
+        axes.set_ylim(low - room * (high - low), high + room * (high - low))
+    lower.annotate(
+        r"$w_\mathrm{int}-e_\mathrm{el}$",
+        (reach, record.mean),
+        xytext=(3, 0),
+        textcoords="offset points",
+        va="center",
+        annotation_clip=False,
+    )
+    lower.xaxis.set_major_locator(MaxNLocator(5))
+    upper.tick_params(labelbottom=False)
+    upper.set_ylabel(HEIGHT_LABEL.format("$h$").replace(" / ", " /\n"))
+    lower.set_ylabel(_ADHESION_LABEL)
+    lower.set_xlabel(LENGTH_LABEL.format(f"distance from the {place} along $x$"))
+
+
+def _reach(record: Mapping) -> float:
+    """Half the length of a profile (Units: reduced lateral length)."""
+    return float(record.position[-1]) / 5
+
+
+FIGURE = Figure(
+    title="Main Fig. 4: roughness, and the work of adhesion that it is equivalent to",
+    parameters=MappingParameters,
+    record=Mapping,
+    compute=mapping,
+    checks=mapping_checks,
+    draw=mapping_figure,
+)

@@ -1,0 +1,230 @@
+"""Main Fig. 5a: spectrum of nanodiamond, and the scales that dominate its rms measures."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from crackfront.core.variables import variable
+from crackfront.data.section import Positive, refusal
+from crackfront.plots.densities import (
+    CONVERTED_LABEL,
+    ISOTROPIC_LABEL,
+    PROFILE_LABEL,
+    WAVEVECTOR_LABEL,
+    add_wavelengths,
+    draw_dominant_scales,
+    set_density_scales,
+)
+from crackfront.plots.style import (
+    BLACK,
+    BLUE,
+    COLUMN,
+    VERMILION,
+    blank_figure,
+    explain,
+    house_style,
+)
+from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.film import FilmParameters, conformity_energy, shown_wavevectors
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+Array = NDArray[np.float64]
+
+_WAVE, _ORDER, _POINT = "wavevector", "order", "point"
+
+_ORDERS = (0.0, 0.5, 1.0)
+
+_SHARE = 0.8
+"""Part of a mean square that the bar of a figure stands for."""
+
+_NO_DATA = "ideal spectrum of the paper's fit; the measured one is not part of this repository"
+
+
+class FilmScalesParameters(FilmParameters):
+    """What Fig. 5a shows.
+
+    Attributes
+    ----------
+    work_of_adhesion : float
+        w_int. (Units: J / m^2)
+    longest : float
+        Longest wavelength that is shown. (Units: m)
+    """
+
+    work_of_adhesion: Positive
+    longest: Positive
+
+    @model_validator(mode="after")
+    def _long_enough(self) -> FilmScalesParameters:
+        if self.longest < 10 * self.roll_off:
+            raise refusal(
+                f"longest is {self.longest:g}; show ten roll-off wavelengths "
+                f"({10 * self.roll_off:g}) or more"
+            )
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class FilmScales:
+    """Densities of the film, and the wavelengths that dominate its rms measures."""
+
+    contact_modulus: float = variable("contact modulus E'", "Pa")
+    work_of_adhesion: float = variable("intrinsic work of adhesion", "J m-2")
+    roll_off: float = variable("roll-off wavelength", "m")
+    wavevector: Array = variable("wavevector", "m-1", _WAVE)
+    isotropic: Array = variable("isotropic spectral density C", "m4", _WAVE)
+    profile: Array = variable("spectral density of profiles C_1D", "m3", _WAVE)
+    converted: Array = variable("paper's C_1D = q C / pi", "m3", _WAVE)
+    order: Array = variable("order of a derivative", "1", _ORDER)
+    mean_square: Array = variable("mean square of the derivative", "m^(2 - 2 order)", _ORDER)
+    shortest: Array = variable("wavelength below which a tenth of it lies", "m", _ORDER)
+    longest: Array = variable("wavelength above which a tenth of it lies", "m", _ORDER)
+    measured_wavevector: Array = variable("measured wavevector", "m-1", _POINT)
+    measured_profile: Array = variable("measured spectral density of profiles", "m3", _POINT)
+
+
+def film_scales(parameters: FilmScalesParameters, progress: Progress) -> FilmScales:
+    """Densities of the film from its spectrum."""
+    spectrum, points = parameters.spectrum, parameters.points()
+    wavevector = shown_wavevectors(parameters.longest, parameters.short_cutoff)
+    isotropic = spectrum.density(wavevector)
+    ranges = np.array([spectrum.dominant_wavelengths(order, _SHARE) for order in _ORDERS])
+    progress(f"{wavevector.size} wavevectors, {points.wavevector.size} measured points")
+    return FilmScales(
+        contact_modulus=parameters.contact_modulus,
+        work_of_adhesion=parameters.work_of_adhesion,
+        roll_off=parameters.roll_off,
+        wavevector=wavevector,
+        isotropic=isotropic,
+        profile=spectrum.profile_density(wavevector),
+        converted=wavevector / np.pi * isotropic,
+        order=np.array(_ORDERS),
+        mean_square=np.array([spectrum.mean_square(order) for order in _ORDERS]),
+        shortest=ranges[:, 0],
+        longest=ranges[:, 1],
+        measured_wavevector=points.wavevector,
+        measured_profile=points.density,
+    )
+
+
+def film_scales_checks(record: FilmScales) -> tuple[Check, ...]:
+    """The paper's numbers, the ranges, and its conversion of profiles."""
+    energy = record.contact_modulus / 4 * record.mean_square[1]
+    relative = energy / record.work_of_adhesion
+    middles = 1e6 * np.sqrt(record.shortest * record.longest)
+    checks = [
+        close_to("e_el", 1e3 * energy, 11.1, 0.05, units="mJ/m2", remark=_NO_DATA),
+        close_to("e_el / w_int", relative, 0.177, 5e-4),
+        close_to("w_rms / w_int = 2 sqrt(e_el / w_int)", 2 * math.sqrt(relative), 0.84, 5e-3),
+        close_to("h_rms", 1e9 * math.sqrt(record.mean_square[0]), 109, 1, units="nm"),
+        Check(
+            "the half-derivative is dominated near the roll-off: its range holds it",
+            f"{1e6 * record.roll_off:.3g} um within",
+            f"{1e6 * record.shortest[1]:.3g} to {1e6 * record.longest[1]:.3g} um",
+            bool(record.shortest[1] < record.roll_off < record.longest[1]),
+        ),
+        Check(
+            "the ranges move to shorter wavelengths with the order of the derivative",
+            "decreasing middles",
+            ", ".join(f"{middle:.3g}" for middle in middles) + " um",
+            bool(np.all(np.diff(middles) < 0)),
+        ),
+        *(_range_check(record, index) for index in range(record.order.size)),
+        close_to(
+            "e_el from the exact profile density by the paper's conversion, over e_el",
+            conformity_energy(record.wavevector, record.profile, record.contact_modulus) / energy,
+            1.0,
+            2e-3,
+            remark="exact for the half-derivative of any isotropic surface; heights and slopes "
+            "come out pi/2 too large and pi/4 too small in the mean square",
+        ),
+    ]
+    if record.measured_wavevector.size:
+        found = conformity_energy(
+            record.measured_wavevector, record.measured_profile, record.contact_modulus
+        )
+        name = "e_el of the measured profiles, over their wavevectors"
+        checks.append(close_to(name, 1e3 * found, 1e3 * energy, 1.0, units="mJ/m2"))
+    return tuple(checks)
+
+
+def _range_check(record: FilmScales, index: int) -> Check:
+    """Share of a mean square in its range, from the density that is drawn."""
+    order, q = record.order[index], record.wavevector
+    shown = q ** (2 + 2 * order) * record.isotropic / (2 * np.pi)
+    steps = np.diff(np.log(q)) * (shown[1:] + shown[:-1]) / 2
+    until = np.r_[0.0, np.cumsum(steps)]
+    low, high = np.interp(
+        np.log(2 * np.pi / np.array([record.longest[index], record.shortest[index]])),
+        np.log(q),
+        until,
+    )
+    return close_to(
+        f"share of the mean square of order {order:g} in its range, by quadrature",
+        float((high - low) / record.mean_square[index]),
+        _SHARE,
+        2e-3,
+    )
+
+
+def film_scales_figure(record: FilmScales) -> Drawing:
+    """Isotropic density with the dominating scales, and density of profiles below."""
+    with house_style():
+        figure, q = blank_figure(COLUMN, 1.35 * COLUMN), record.wavevector
+        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.25, 1))
+        for axes in (upper, lower):
+            set_density_scales(axes, q)
+        upper.plot(q, record.isotropic, color=BLACK)
+        draw_dominant_scales(upper, record.mean_square, record.shortest, record.longest)
+        _draw_roll_off(upper, record)
+        lower.plot(q, record.profile, color=BLACK, label="exact projection")
+        lower.plot(q, record.converted, color=BLUE, dashes=(4, 2), label=CONVERTED_LABEL)
+        if record.measured_wavevector.size:
+            points, density = record.measured_wavevector, record.measured_profile
+            upper.plot(points, np.pi / points * density, ".", color=VERMILION, markersize=2)
+            lower.plot(points, density, ".", color=VERMILION, markersize=2, label="measured")
+        lower.axvline(2 * np.pi / record.roll_off, color="0.6", linewidth=0.6, zorder=1)
+        lower.legend(loc="upper right")
+        upper.set_ylabel(ISOTROPIC_LABEL)
+        lower.set_ylabel(PROFILE_LABEL)
+        add_wavelengths(upper)
+        lower.set_xlabel(WAVEVECTOR_LABEL)
+        explain(figure, "bars: scales of 80% of a mean square; grey: the roll-off")
+        return figure
+
+
+def _draw_roll_off(axes: Axes, record: FilmScales) -> None:
+    """Line at the roll-off with its wavelength."""
+    place = 2 * np.pi / record.roll_off
+    # Up to the density, so that it crosses no bar and no name.
+    axes.vlines(
+        place, axes.get_ylim()[0], record.isotropic[0], color="0.6", linewidth=0.6, zorder=1
+    )
+    axes.annotate(
+        f"roll-off {1e6 * record.roll_off:.3g} µm",
+        (place, 0.03),
+        xycoords=axes.get_xaxis_transform(),
+        xytext=(-3, 0),
+        textcoords="offset points",
+        ha="right",
+        color="0.35",
+    )
+
+
+FIGURE = Figure(
+    title="Main Fig. 5a: spectrum of nanodiamond, and the scales that dominate its measures",
+    parameters=FilmScalesParameters,
+    record=FilmScales,
+    compute=film_scales,
+    checks=film_scales_checks,
+    draw=film_scales_figure,
+)

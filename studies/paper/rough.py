@@ -1,0 +1,330 @@
+"""Rough contacts of figures: their parameters, the surface, the numerics, fronts on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydantic import Field, model_validator
+from scipy.ndimage import map_coordinates
+
+from crackfront.core import jkr
+from crackfront.core.adhesion import larkin_length
+from crackfront.core.cycle.follow import Load, front_at
+from crackfront.core.cycle.period import LineSchedule
+from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.cycle.run import first_touch, refuse_outgrown
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.fields import TileField
+from crackfront.core.outcome import Direction, Status
+from crackfront.core.solver.relax import Newton, Solver
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
+from crackfront.simulate.contact import simulation_adhesion, simulation_field
+from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.run import compile_solver
+from crackfront.simulate.simulation import Numerics, Simulation, missed_error, simulation_of
+from studies.paper.figure import Check
+
+Array = NDArray[np.float64]
+
+ONE_DIGIT = 0.5
+"""How far k may be from a value that is given with one digit."""
+
+STRONG, WEAK = 0, 1
+"""Places of the two amplitudes that figures of single fronts compare."""
+
+_SIDE = 2.4
+"""Side of their tiles over the radius of the smooth contact, so that no place is met twice."""
+
+
+class RoughParameters(Section):
+    """What the rough contact of a figure of whole cycles needs.
+
+    Attributes
+    ----------
+    seed : int
+        Seed of the surface.
+    error : float
+        Standard error of k that the numerics may leave.
+    tile_roll_offs : float
+        Side of the periodic tile in roll-off wavelengths; it has at least 200 short cutoffs.
+    """
+
+    seed: Seed
+    error: Annotated[float, Field(gt=0, lt=1)]
+    tile_roll_offs: Positive
+
+    def simulation_of(
+        self, spectrum: SelfAffineSpectrum, elastic_energy: float, schedule: LoadSchedule
+    ) -> Simulation:
+        """Simulation of the first surface of the seed.
+
+        Raises
+        ------
+        PydanticCustomError
+            If the finest numerics leave more than the asked error.
+        """
+        numerics = Numerics(self.error, self.tile_roll_offs)
+        simulation = simulation_of(
+            "roughness", spectrum, elastic_energy, schedule, numerics, seed=self.seed
+        )
+        if left := missed_error(simulation, self.error):
+            raise refusal(
+                f"error is {self.error:g}, but the finest numerics leave {left:.2g}; ask for that"
+            )
+        return simulation
+
+
+class SimulatedParameters(Protocol):
+    """Parameters of a figure of one simulation."""
+
+    def simulation(self) -> Simulation:
+        """The simulation."""
+        ...
+
+
+class RoughCycleParameters(RoughParameters):
+    """What a figure of one cycle needs beside the shape of its spectrum.
+
+    Attributes
+    ----------
+    short_cutoff : float
+        Shortest wavelength. (Units: reduced lateral length)
+    elastic_energy : float
+        Energy of full conformity. (Units: w_int)
+    max_penetration, step : float
+        Penetrations to visit. (Units: reduced vertical length)
+    """
+
+    short_cutoff: Positive
+    elastic_energy: Energy
+    max_penetration: Positive
+    step: Positive
+
+    @model_validator(mode="after")
+    def _possible(self) -> RoughCycleParameters:
+        self.simulation()
+        return self
+
+    @property
+    def spectrum(self) -> SelfAffineSpectrum:
+        """Shape of the spectrum, flat where nothing else is said."""
+        return flat_spectrum(self.short_cutoff)
+
+    @property
+    def schedule(self) -> LoadSchedule:
+        """Penetrations to visit."""
+        return LoadSchedule(self.max_penetration, self.step)
+
+    def simulation(self) -> Simulation:
+        """The simulation."""
+        return self.simulation_of(self.spectrum, self.elastic_energy, self.schedule)
+
+
+class DisorderParameters(Section):
+    """What a figure needs that follows single fronts in strong and in weak disorder.
+
+    Attributes
+    ----------
+    short_cutoff : float
+        Shortest wavelength of the flat spectrum. (Units: reduced lateral length)
+    strong, weak : float
+        e_el of the two kinds of surfaces. (Units: w_int)
+    max_penetration : float
+        Where a retraction begins. (Units: reduced vertical length)
+    error : float
+        Error of the factor k that the resolution may leave.
+    seed : int
+        Seed of the surfaces; both kinds have the same.
+    """
+
+    short_cutoff: Positive
+    strong: Energy
+    weak: Energy
+    max_penetration: Positive
+    error: Positive
+    seed: Count
+
+    def contact(
+        self, elastic_energy: float, tolerance: float, realisation: int = 0, least_angles: int = 4
+    ) -> RoughContact:
+        """Contact with one surface: e_el in units of w_int, `least_angles` sites or more."""
+        spectrum = flat_spectrum(self.short_cutoff)
+        side = _SIDE * jkr.equilibrium_radius(self.max_penetration)
+        simulation = simulation_of(
+            "roughness",
+            spectrum,
+            elastic_energy,
+            LoadSchedule(self.max_penetration, max(self.max_penetration, 1.0)),
+            Numerics(self.error, side / self.short_cutoff, tile_cutoffs=1.0, max_sweeps=10_000_000),
+            seed=self.seed,
+            realisation=realisation,
+            name="flat",
+        )
+        sizes = simulation.resolution
+        simulation = replace(
+            simulation, resolution=replace(sizes, n_angle=max(sizes.n_angle, least_angles))
+        )
+        compile_solver(simulation.solver.name)
+        adhesion = simulation_adhesion(simulation)
+        return RoughContact(
+            field=simulation_field(simulation, adhesion),
+            solver=Newton(min(tolerance, simulation.solver.tolerance)),
+            w_rms=adhesion.w_rms,
+            larkin_length=larkin_length("roughness", spectrum, adhesion.w_rms),
+        )
+
+
+class RetractionParameters(DisorderParameters):
+    """What a figure needs that measures a part of the retraction on several surfaces.
+
+    Attributes
+    ----------
+    n_surface : int
+        Surfaces of each kind.
+    first_penetration, last_penetration : float
+        Between them the retraction is measured. (Units: reduced vertical length)
+    """
+
+    n_surface: Count
+    first_penetration: float
+    last_penetration: float
+
+    @model_validator(mode="after")
+    def _falling(self) -> RetractionParameters:
+        largest, first, last = self.max_penetration, self.first_penetration, self.last_penetration
+        if not last < first < largest:
+            raise refusal(
+                "penetrations must fall from max_penetration over first_penetration to "
+                f"last_penetration; they are {largest:g}, {first:g} and {last:g}"
+            )
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class RoughContact:
+    """A sphere whose roughness has a flat spectrum.
+
+    Attributes
+    ----------
+    field : TileField
+        Work of adhesion along the rays.
+    solver : Solver
+        How its fronts are found.
+    w_rms : float
+        Measured on the tile. (Units: w_int)
+    larkin_length : float
+        Larkin length. (Units: reduced lateral length)
+    """
+
+    field: TileField
+    solver: Solver
+    w_rms: float
+    larkin_length: float
+
+    def touched(self, penetration: float) -> Array:
+        """Front of an approach from first contact to a penetration."""
+        return self.moved(first_touch(self.field), penetration, 1)
+
+    def moved(self, front: Array, penetration: float, direction: Direction) -> Array:
+        """Next metastable front; a ValueError says why there is none."""
+        return front_at(self.field, front, Load(penetration, direction), self.solver)
+
+
+def surface_means(kinds: Sequence[Sequence[object]], name: str) -> Array:
+    """Means over the surfaces of each kind of what was measured on each surface."""
+    return np.array([np.mean([getattr(one, name) for one in kind]) for kind in kinds])
+
+
+def circle_stiffness(radius: ArrayLike, penetration: ArrayLike) -> Array:
+    """Stiffness of a contact's circle at fixed penetration, a dG/da; mode n of the line adds n.
+
+    Parameters
+    ----------
+    radius : array_like
+        Mean radius of a front. (Units: reduced lateral length)
+    penetration : array_like
+        Rigid body penetration, below radius^2. (Units: reduced vertical length)
+
+    Returns
+    -------
+    array
+        Stiffness. (Units: w_int)
+
+    Examples
+    --------
+    It vanishes where a smooth contact is pulled off:
+
+    >>> from crackfront.core.jkr import pull_off_penetration, pull_off_radius
+    >>> abs(float(circle_stiffness(pull_off_radius(), pull_off_penetration()))) < 1e-9
+    True
+    """
+    square = np.square(radius)
+    release = jkr.energy_release_rate(radius, penetration) / WORK_OF_ADHESION
+    return np.asarray(release * (4 * square / (square - penetration) - 1))
+
+
+def flat_spectrum(short_cutoff: float) -> SelfAffineSpectrum:
+    """Spectrum of the same power at all wavelengths down to the shortest."""
+    return SelfAffineSpectrum(short_cutoff, short_cutoff, hurst=1.0)
+
+
+def rough_spectrum(
+    short_cutoff: float, roll_off: float, hurst: float, plateau: float = 1.0
+) -> SelfAffineSpectrum:
+    """Spectrum of the parameters of a figure; a refusal says why there is none.
+
+    Parameters
+    ----------
+    short_cutoff, roll_off, hurst, plateau
+        As of :class:`crackfront.core.spectrum.SelfAffineSpectrum`.
+    """
+    try:
+        return SelfAffineSpectrum(short_cutoff, roll_off, hurst, plateau)
+    except ValueError as error:
+        raise refusal(str(error)) from error
+
+
+def expected_seconds(parameters: SimulatedParameters) -> float:
+    """Processor time that the one simulation of a figure is expected to take (Units: s)."""
+    return expected_cost(parameters.simulation()).seconds
+
+
+def recorded(
+    simulation: Simulation, field: TileField, loads: Iterable[Load], recorder: Recorder
+) -> CycleRecord:
+    """States of a front that begins in contact that is just made and follows loads.
+
+    Raises
+    ------
+    ValueError
+        If a smooth sphere would outgrow the field at the largest penetration.
+    """
+    assert not isinstance(simulation.schedule, LineSchedule), "loads are penetrations"
+    refuse_outgrown(field, simulation.schedule.max_penetration)
+    compile_solver(simulation.solver.name)
+    recorder.run(field, first_touch(field), loads, simulation.solver)
+    return recorder.record()
+
+
+def whole_cycle(status: str) -> Check:
+    """Check of what ended a cycle."""
+    lost = Status.LOST_CONTACT.value
+    return Check("the cycle is whole: it ends by losing contact", lost, status, status == lost)
+
+
+def patch_of(field: TileField, x: Array, y: Array) -> NDArray[np.float32]:
+    """Work of adhesion in units of w_int around the apex, as the front feels it, (n_x, n_y)."""
+    coefficients = field.coefficients[:-3, :-3]
+    places = [
+        axis * field.inverse_pixel + n_point / 2
+        for axis, n_point in zip((x, y), coefficients.shape, strict=True)
+    ]
+    grid = np.meshgrid(*places, indexing="ij")
+    patch = map_coordinates(coefficients, grid, order=3, mode="grid-wrap", prefilter=False)
+    return (patch / WORK_OF_ADHESION).astype(np.float32)

@@ -1,0 +1,276 @@
+"""SI Fig. S-5: hysteresis against disorder for several spectra, from the table of a sweep."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.analysis.estimate import REACH, Estimate, slope, with_error
+from crackfront.analysis.finding import PAPER_FACTOR
+from crackfront.analysis.report import pooled_limits
+from crackfront.analysis.result import SweepFit
+from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.table import SweepTable
+from crackfront.core.variables import ADHESION, LATERAL, variable
+from crackfront.data.section import Section
+from crackfront.plots.style import PAGE, blank_figure, explain, house_style
+from studies.paper.figure import Check, Figure, Progress
+from studies.paper.rough import ONE_DIGIT
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
+
+Array = NDArray[np.float64]
+
+_SAME = 0.25
+"""Relative spread of k among spectra that a plot over three decades shows as one line."""
+
+_spectrum, _amplitude = "spectrum", "amplitude"
+_cell = (_spectrum, _amplitude, "realisation")
+
+
+class ParametricStudyParameters(Section):
+    """Which sweep the figure shows.
+
+    Attributes
+    ----------
+    sweep : str
+        Its configuration; the results must stand in `results/`.
+    """
+
+    sweep: str
+
+
+@dataclass(frozen=True, slots=True)
+class ParametricStudy:
+    """Works of adhesion of a sweep and the range of its fit; the fit follows from them."""
+
+    spectrum: NDArray[np.str_] = variable("name of the spectrum", "1", _spectrum)
+    short_cutoff: Array = variable("shortest wavelength lambda_s", LATERAL, _spectrum)
+    roll_off: Array = variable("roll-off wavelength lambda_r", LATERAL, _spectrum)
+    hurst: Array = variable("Hurst exponent", "1", _spectrum)
+    correlation_length: Array = variable("that of w_loc", LATERAL, _spectrum)
+    e_el_requested: Array = variable("requested e_el", ADHESION, _amplitude)
+    e_el: Array = variable("energy of full conformity of the tile", ADHESION, *_cell)
+    w_rms: Array = variable("rms of w_loc on the tile", ADHESION, *_cell)
+    w_appr: Array = variable("apparent work of adhesion in approach", ADHESION, *_cell)
+    w_retr: Array = variable("apparent work of adhesion in retraction", ADHESION, *_cell)
+    w_appr_from_force: Array = variable("w_appr of a JKR fit", ADHESION, *_cell)
+    w_retr_from_force: Array = variable("w_retr of a JKR fit", ADHESION, *_cell)
+    w_appr_numerical_error: Array = variable("numerical error of w_appr", ADHESION, *_cell)
+    w_retr_numerical_error: Array = variable("numerical error of w_retr", ADHESION, *_cell)
+    kind: str = variable("roughness or chemical", "1")
+    lowest_elastic_energy: float = variable("lowest e_el of the fit", ADHESION)
+    highest_elastic_energy: float = variable("highest e_el of the fit", ADHESION)
+    n_bootstrap: int = variable("bootstrap samples of the fit", "1")
+    seed: int = variable("seed of the bootstrap", "1")
+    contact_radius: Array | None = variable(
+        "middle of the steady window", LATERAL, *_cell, default=None
+    )
+
+    @property
+    def table(self) -> SweepTable:
+        """The table of the sweep; without contact radii there is no k by the law."""
+        columns = _shared(self)
+        columns["spectrum"] = self.spectrum.astype(np.str_)
+        if self.contact_radius is None:
+            columns["contact_radius"] = np.full(self.e_el.shape, np.nan)
+        return SweepTable(**columns, spring=np.full(self.e_el.shape[:2], np.nan))
+
+
+def _shared(record: ParametricStudy | SweepTable) -> dict[str, Any]:
+    """What the data of the figure and the table of a sweep have in common, by name."""
+    names = {item.name for item in fields(SweepTable)}
+    return {
+        item.name: getattr(record, item.name)
+        for item in fields(ParametricStudy)
+        if item.name in names
+    }
+
+
+def parametric_study(
+    parameters: ParametricStudyParameters, progress: Progress, fit: SweepFit
+) -> ParametricStudy:
+    """Data of the figure from the fit of a sweep."""
+    progress(f"{parameters.sweep}: {fit.table.finite.sum()} simulations with a value")
+    return ParametricStudy(
+        **_shared(fit.table),
+        kind=fit.kind,
+        lowest_elastic_energy=fit.lowest_elastic_energy,
+        highest_elastic_energy=fit.highest_elastic_energy,
+        n_bootstrap=fit.n_bootstrap,
+        seed=fit.seed,
+    )
+
+
+def study_fit(study: ParametricStudy) -> SweepFit:
+    """The fit of a sweep once more, from the data of the figure."""
+    return fit_sweep(
+        study.table,
+        lowest_elastic_energy=study.lowest_elastic_energy,
+        highest_elastic_energy=study.highest_elastic_energy,
+        n_bootstrap=study.n_bootstrap,
+        seed=study.seed,
+        kind="roughness" if study.kind == "roughness" else "chemical",
+    )
+
+
+def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
+    """What the paper reads off the figure: k, the square law, one line, the onset."""
+    from scipy.stats import spearmanr
+
+    fit = study_fit(study)
+    factor, exponent = fit.pooled.factor, fit.pooled.exponent
+    factors = fit.spectra.factor.value
+    spread = float(np.ptp(factors) / np.mean(factors))
+    onset = _onsets(fit)
+    order = float(spearmanr(study.correlation_length, onset).statistic)
+    text = ", ".join(
+        f"{name} {length:.3g}: {energy:.2g}"
+        for name, length, energy in zip(
+            study.spectrum, study.correlation_length, onset, strict=True
+        )
+    )
+    law = _by_law(fit)
+    return (
+        Check(
+            f"k of all spectra, e_el from {study.lowest_elastic_energy:g} to "
+            f"{study.highest_elastic_energy:g} w_int: about 3",
+            with_error(PAPER_FACTOR, ONE_DIGIT),
+            _interval(factor),
+            bool(abs(factor.value - PAPER_FACTOR) <= ONE_DIGIT),
+            f"{', '.join(['95% interval', *pooled_limits(fit, fit.spectra.factor)])}; k grows with "
+            "the size of the contact, and falls with disorder beyond the onset: panels b and c",
+            law=_said(float(factor.value), *law.factor),
+        ),
+        Check(
+            "hysteresis in proportion to w_rms^2: exponent 2",
+            "2 in the 95% interval",
+            _interval(exponent),
+            bool(exponent.low <= 2 <= exponent.high),
+            "over the range of the fit, where k falls with disorder",
+            law=_said(float(exponent.value), *law.exponent),
+        ),
+        Check(
+            "independent of the shape of the spectrum: spread of k among the spectra",
+            f"at most {100 * _SAME:.0f}%",
+            f"{100 * spread:.0f}%",
+            spread <= _SAME,
+            ", ".join(
+                f"{name} {value:.2f}" for name, value in zip(study.spectrum, factors, strict=True)
+            ),
+            law=_said(100 * spread, *law.spread, units="%"),
+        ),
+        Check(
+            "onset of hysteresis at larger e_el for a longer correlation length",
+            "rank correlation above 0",
+            f"{order:.2f}",
+            order > 0,
+            f"correlation length: e_el / w_int at which k is half that of the fit ({text})",
+        ),
+    )
+
+
+class _ByLaw(NamedTuple):
+    """What the law gives for what the paper reads off, with half of its interval; spread in %."""
+
+    factor: tuple[float, float]
+    exponent: tuple[float, float]
+    spread: tuple[float, float]
+
+
+def _by_law(fit: SweepFit) -> _ByLaw:
+    """Pooled k, exponent of the hysteresis and spread among spectra of the law's k in the range.
+
+    Its errors are those of one amplitude of one spectrum, which count as independent where
+    amplitudes or spectra are compared. Nothing where the law does not know every k.
+    """
+    k, error = (
+        values[:, fit.in_range]
+        for values in (fit.cells.law_factor.value, fit.cells.law_factor.standard_error)
+    )
+    if not np.all(np.isfinite(k)):
+        return _ByLaw(*[(math.nan, math.nan)] * 3)
+    strength = np.log(fit.cells.w_rms[:, fit.in_range])
+    along, weight = slope(strength, np.log(k))
+    relative = float(np.mean(error / k))
+    mean = np.mean(k, axis=1)
+    return _ByLaw(
+        (float(np.mean(k)), REACH * float(np.mean(error))),
+        (2 + float(np.mean(along)), REACH * relative / math.sqrt(float(np.mean(weight)))),
+        (float(100 * np.ptp(mean) / np.mean(mean)), 100 * REACH * relative * math.sqrt(2)),
+    )
+
+
+def _said(found: float, value: float, reach: float, units: str = "") -> str:
+    """The law's number where what was found agrees with it, else nothing."""
+    return f"{with_error(value, reach)}{units}" if abs(found - value) <= reach else ""
+
+
+def _interval(estimate: Estimate) -> str:
+    """An estimate with its interval."""
+    return f"{estimate.value:.2f} ({estimate.low:.2f} to {estimate.high:.2f})"
+
+
+def _onsets(fit: SweepFit) -> Array:
+    """e_el at which k rises to half of its mean over the range, or the least that was simulated."""
+    found = []
+    for energies, factors, mean in zip(
+        fit.cells.e_el, fit.cells.factor.value, fit.spectra.factor.value, strict=True
+    ):
+        below = np.flatnonzero(factors < mean / 2)
+        if below.size == 0:
+            found.append(energies[0])
+            continue
+        near = slice(below[-1], below[-1] + 2)
+        found.append(np.exp(np.interp(mean / 2, factors[near], np.log(energies[near]))))
+    return np.array(found)
+
+
+def parametric_study_figure(study: ParametricStudy) -> Drawing:
+    """Hysteresis against disorder with the spectra, k against disorder, k against size."""
+    from crackfront.plots.parts import legend_entries
+    from crackfront.plots.sweep import (
+        POINTS_EXPLAINED,
+        SHAPES_EXPLAINED,
+        SHIFTS_EXPLAINED,
+        draw_factor_by_disorder,
+        draw_factor_by_length,
+        draw_hysteresis,
+        draw_spectra,
+        set_factor_limits,
+    )
+
+    fit = study_fit(study)
+    with house_style():
+        figure = blank_figure(PAGE, 0.68 * PAGE)
+        panels = figure.subplot_mosaic([["a", "b"], ["a", "c"]], width_ratios=(1.2, 1))
+        draw_hysteresis(panels["a"], fit.table, fit)
+        draw_spectra(panels["a"].inset_axes((0.7, 0.12, 0.28, 0.26)), fit.table, fit.kind)
+        draw_factor_by_disorder(panels["b"], fit.table, fit)
+        draw_factor_by_length(panels["c"], fit.table, fit)
+        for name in ("b", "c"):
+            set_factor_limits(panels[name], fit)
+        panels["c"].set_ylabel("mean $k$")
+        # One legend for all panels: that of b has the pooled k besides.
+        if legend := panels["a"].get_legend():
+            legend.remove()
+        figure.legend(*legend_entries(panels["b"]), loc="outside upper center", ncols=3)
+        explain(figure, f"{POINTS_EXPLAINED}; {SHIFTS_EXPLAINED} (b); {SHAPES_EXPLAINED} (c)")
+        for name, axes in panels.items():
+            axes.set_title(name, loc="left", fontweight="bold")
+        return figure
+
+
+FIGURE = Figure(
+    title="SI Fig. S-5: hysteresis against disorder, and k against disorder and size",
+    parameters=ParametricStudyParameters,
+    record=ParametricStudy,
+    compute=parametric_study,
+    checks=parametric_study_checks,
+    draw=parametric_study_figure,
+)

@@ -1,0 +1,281 @@
+"""SI Fig. S-6: profile densities of nanodiamond and of the surfaces of a simulation."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from crackfront.core.adhesion import half_derivative_mean_square
+from crackfront.core.synthesis import gaussian_field, tile_mean_square
+from crackfront.core.variables import variable
+from crackfront.data.section import Count, Positive, Seed, refusal
+from crackfront.plots.densities import (
+    CONVERTED_LABEL,
+    PROFILE_LABEL,
+    WAVEVECTOR_LABEL,
+    add_wavelengths,
+    set_density_scales,
+)
+from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
+from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.film import POINTS_PER_DECADE, FilmParameters, shown_wavevectors
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+Array = NDArray[np.float64]
+
+_WAVE, _MODE, _POINT = "wavevector", "mode", "point"
+
+_PIXELS = 4
+"""Points of a tile in its shortest wavelength."""
+
+_ROOM = 20
+"""How far below the shortest wavelength of the surfaces the film is shown."""
+
+
+class SyntheticFilmParameters(FilmParameters):
+    """What Fig. S-6 shows.
+
+    Attributes
+    ----------
+    shortest : float
+        Shortest wavelength of the synthetic surfaces. (Units: m)
+    tile_roll_offs : float
+        Side of their tile in roll-off wavelengths.
+    longest : float
+        Longest wavelength that is shown. (Units: m)
+    realisations, seed : int
+        Number of surfaces that are averaged, and the seed of all.
+    """
+
+    shortest: Positive
+    tile_roll_offs: Annotated[float, Field(ge=2, allow_inf_nan=False)]
+    longest: Positive
+    realisations: Count
+    seed: Seed
+
+    @model_validator(mode="after")
+    def _inside(self) -> SyntheticFilmParameters:
+        if not self.short_cutoff <= self.shortest <= self.roll_off:
+            raise refusal(
+                f"shortest is {self.shortest:g}; it must lie between short_cutoff "
+                f"({self.short_cutoff:g}) and roll_off ({self.roll_off:g})"
+            )
+        if self.longest < self.side:
+            raise refusal(
+                f"longest is {self.longest:g}; it must not be below the side of the tile "
+                f"({self.side:g})"
+            )
+        return self
+
+    @property
+    def side(self) -> float:
+        """Side of a tile (Units: m)."""
+        return self.tile_roll_offs * self.roll_off
+
+
+@dataclass(frozen=True, slots=True)
+class SyntheticFilm:
+    """Profile densities of the film's spectrum and of synthetic surfaces."""
+
+    contact_modulus: float = variable("contact modulus E'", "Pa")
+    shortest: float = variable("shortest wavelength of the surfaces", "m")
+    side: float = variable("side of the tiles, their longest wavelength", "m")
+    realisations: int = variable("number of surfaces", "1")
+    wavevector: Array = variable("wavevector", "m-1", _WAVE)
+    profile: Array = variable("profile density of the film's spectrum", "m3", _WAVE)
+    converted: Array = variable("paper's q C / pi of the film's spectrum", "m3", _WAVE)
+    mode: Array = variable("wavevector of a mode of the tiles", "m-1", _MODE)
+    synthetic: Array = variable("profile density of the surfaces, mean over all lines", "m3", _MODE)
+    included: Array = variable("profile density of the included scales", "m3", _MODE)
+    film_energy: float = variable("energy of full conformity of the film", "J m-2")
+    tile_energy: float = variable("that of the surfaces, measured from their maps", "J m-2")
+    mode_energy: float = variable("expected energy of the modes of a tile", "J m-2")
+    energy_error: float = variable("standard error of the mean of all surfaces", "J m-2")
+    height_square: float = variable("mean square height of the lines about their means", "m2")
+    dominant_shortest: float = variable("wavelength below which a tenth of e_el lies", "m")
+    dominant_longest: float = variable("wavelength above which a tenth of e_el lies", "m")
+    measured_wavevector: Array = variable("measured wavevector", "m-1", _POINT)
+    measured_profile: Array = variable("measured spectral density of profiles", "m3", _POINT)
+
+
+def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> SyntheticFilm:
+    """Synthesise surfaces of the film's spectrum and average the periodograms of their lines."""
+    film, side, points = parameters.spectrum, parameters.side, parameters.points()
+    included, stiffness = film.longer_than(parameters.shortest), parameters.contact_modulus / 4
+    n_point = 2 * math.ceil(_PIXELS * side / parameters.shortest / 2)
+    densities, halves, squares = [], [], []
+    for surface, seed in enumerate(
+        np.random.SeedSequence(parameters.seed).spawn(parameters.realisations), start=1
+    ):
+        heights = gaussian_field(included, n_point, side, np.random.default_rng(seed))
+        densities.append(profile_periodogram(heights, side / n_point))
+        halves.append(half_derivative_mean_square(heights, side / n_point))
+        squares.append(float(np.mean(np.var(heights, axis=0))))
+        progress(f"surface {surface} of {parameters.realisations}: {n_point} points a side")
+    mode = np.asarray(2 * np.pi / side * np.arange(1, n_point // 2), dtype=float)
+    # A mode on the cutoff itself belongs to the surfaces, as in the spectrum.
+    kept = mode <= 2 * np.pi / parameters.shortest * (1 + 1e-12)
+    finest = max(parameters.short_cutoff, parameters.shortest / _ROOM)
+    wavevector = shown_wavevectors(parameters.longest, finest)
+    expected, deviation = tile_mean_square(included, side, 0.5)
+    dominant = film.dominant_wavelengths(0.5)
+    return SyntheticFilm(
+        contact_modulus=parameters.contact_modulus,
+        shortest=parameters.shortest,
+        side=side,
+        realisations=parameters.realisations,
+        wavevector=wavevector,
+        profile=film.profile_density(wavevector),
+        converted=wavevector / np.pi * film.density(wavevector),
+        mode=mode[kept],
+        synthetic=np.mean(densities, axis=0)[kept],
+        included=included.profile_density(mode[kept]),
+        film_energy=stiffness * film.mean_square(0.5),
+        tile_energy=stiffness * float(np.mean(halves)),
+        mode_energy=stiffness * expected,
+        energy_error=stiffness * deviation / math.sqrt(parameters.realisations),
+        height_square=float(np.mean(squares)),
+        dominant_shortest=dominant[0],
+        dominant_longest=dominant[1],
+        measured_wavevector=points.wavevector,
+        measured_profile=points.density,
+    )
+
+
+def profile_periodogram(heights: Array, pixel: float) -> Array:
+    """Density of the lines along x of a periodic map, averaged over all of them.
+
+    The map is (n_x, n_y) with even n_x. C_1D stands at the wavevectors 2 pi m / (n_x pixel),
+    m = 1, 2, ..., below the Nyquist one; its sum times the spacing, divided by pi, is the mean
+    square height about the mean of a line.
+    """
+    from scipy.signal import periodogram
+
+    _, density = periodogram(heights, fs=1 / pixel, axis=0, detrend=False)
+    # One-sided in the frequency q / 2 pi; C_1D is one half of it.
+    return np.asarray(density.mean(axis=1)[1 : len(heights) // 2] / 2)
+
+
+def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
+    """Whether the surfaces have the densities of their spectrum, and enough of its scales."""
+    spacing = 2 * math.pi / record.side
+    contributions = record.mode * record.synthetic
+    converted = record.contact_modulus / 8 * spacing * float(np.sum(contributions))
+    wavelength = 2 * np.pi / record.mode
+    dominant = (wavelength > record.dominant_shortest) & (wavelength < record.dominant_longest)
+    carried = float(np.sum(contributions[dominant]))
+    projected = float(np.sum((record.mode * record.included)[dominant]))
+    ends = 2 * np.pi / record.dominant_longest, 2 * np.pi / record.dominant_shortest
+    q = np.geomspace(*ends, POINTS_PER_DECADE)
+    film = np.exp(np.interp(np.log(q), np.log(record.wavevector), np.log(record.profile)))
+    scatter = 3 * record.energy_error / record.mode_energy
+    share = record.mode_energy / record.film_energy
+    return (
+        close_to(
+            "Parseval: sum of the density of the lines, over their mean square height",
+            spacing / math.pi * float(np.sum(record.synthetic)) / record.height_square,
+            1.0,
+            1e-9,
+        ),
+        close_to(
+            "e_el of the surfaces: that of their modes, within 3 standard errors",
+            1e3 * record.tile_energy,
+            1e3 * record.mode_energy,
+            3e3 * record.energy_error,
+            units="mJ/m2",
+            remark=f"{record.realisations} surfaces",
+        ),
+        close_to(
+            "e_el from the density of the lines by the paper's conversion, over that of the maps",
+            converted / record.tile_energy,
+            1.0,
+            scatter,
+            remark="exact on average; tolerance of 3 standard errors of e_el",
+        ),
+        close_to(
+            "density of the lines over the projection of the included scales, in the range that "
+            "carries 80% of e_el",
+            carried / projected,
+            1.0,
+            scatter,
+            remark="weighted by q, as e_el is; tolerance of 3 standard errors of e_el",
+        ),
+        close_to(
+            "density of the lines over that of the film's spectrum, in the same range",
+            carried * spacing / float(np.trapezoid(q**2 * film, np.log(q))),
+            1.0,
+            0.1,
+            remark="waves shorter than the cutoff are missing in long profiles too; the measured "
+            "density of the film is not part of this repository",
+        ),
+        Check(
+            "the included scales hold those that carry 80% of e_el",
+            f"{_micrometres(record.dominant_shortest, record.dominant_longest)}",
+            f"within {_micrometres(record.shortest, record.side)}",
+            record.shortest < record.dominant_shortest and record.dominant_longest < record.side,
+            f"they carry {share:.3f} of e_el; the paper does not print its cutoff",
+        ),
+    )
+
+
+def _micrometres(low: float, high: float) -> str:
+    """A range of wavelengths."""
+    return f"{1e6 * low:.3g} to {1e6 * high:.3g} um"
+
+
+def synthetic_film_figure(record: SyntheticFilm) -> Drawing:
+    """Profile densities of the film and of the synthetic surfaces, with the included scales."""
+    with house_style():
+        figure, q = blank_figure(COLUMN, 0.9 * COLUMN), record.wavevector
+        axes = figure.add_subplot()
+        set_density_scales(axes, q)
+        axes.plot(q, record.profile, color=VERMILION, label="nanodiamond, ideal spectrum")
+        axes.plot(q, record.converted, color="0.5", dashes=(4, 2), label=CONVERTED_LABEL)
+        if record.measured_wavevector.size:
+            points, density = record.measured_wavevector, record.measured_profile
+            axes.plot(
+                points, density, ".", color=BLACK, markersize=2, label="nanodiamond, measured"
+            )
+        label = f"synthetic surfaces, mean of {record.realisations}"
+        axes.plot(record.mode, record.synthetic, color=BLUE, linewidth=0.8, label=label)
+        _draw_end(axes, f"tile {1e6 * record.side:.3g} µm", record.side, "left")
+        _draw_end(axes, f"cutoff {1e6 * record.shortest:.3g} µm", record.shortest, "right")
+        axes.set_ylabel(PROFILE_LABEL)
+        axes.set_xlabel(WAVEVECTOR_LABEL)
+        axes.set_ylim(top=20 * float(record.profile.max()))
+        add_wavelengths(axes)
+        axes.legend(loc="lower left", bbox_to_anchor=(0.07, 0.0))
+        return figure
+
+
+def _draw_end(axes: Axes, name: str, length: float, alignment: Literal["left", "right"]) -> None:
+    """Line at an end of the included scales, with a text inside them."""
+    axes.axvline(2 * np.pi / length, color=BLUE, linewidth=0.6, dashes=(1.5, 1.5))
+    axes.annotate(
+        name,
+        (2 * np.pi / length, 0.97),
+        xycoords=axes.get_xaxis_transform(),
+        xytext=(3 if alignment == "left" else -3, 0),
+        textcoords="offset points",
+        ha=alignment,
+        va="top",
+        color=BLUE,
+    )
+
+
+FIGURE = Figure(
+    title="SI Fig. S-6: profile densities of nanodiamond and of synthetic surfaces",
+    parameters=SyntheticFilmParameters,
+    record=SyntheticFilm,
+    compute=synthetic_film,
+    checks=synthetic_film_checks,
+    draw=synthetic_film_figure,
+)

@@ -1,0 +1,139 @@
+"""Straight fronts of figures, on springs and in the limit of weak disorder."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
+from crackfront.core.cycle.follow import Load, follow
+from crackfront.core.field.fields import TileField
+from crackfront.core.geometry.line import straight_front
+from crackfront.core.outcome import Status
+from crackfront.core.solver.relax import Solver
+from crackfront.data.section import Positive, Section
+from crackfront.simulate.contact import simulation_adhesion, simulation_field
+from crackfront.simulate.laws import Knobs
+from crackfront.simulate.lines import LineLoad
+from crackfront.simulate.simulation import Numerics, simulation_of
+from studies.paper.rough import flat_spectrum
+
+Array = NDArray[np.float64]
+
+_KIND: FieldKind = "roughness"
+
+_SPECTRUM = flat_spectrum(1.0)
+"""A flat one, whose short cutoff is the unit of length."""
+
+_PERIOD, _TRANSIENT, _STEP = 25.0, 6.0, 0.5
+"""Period of a tile and travel before it, over the expected rms of the front, and largest load step
+until then, in correlation lengths: those of config/line-weak.yaml."""
+
+_TILE_CUTOFFS = 60.0
+"""Least sides of a tile."""
+
+
+Springs = Annotated[tuple[Positive, ...], Field(min_length=2, strict=False)]
+"""Lengths of springs over the Larkin length."""
+
+
+class StraightParameters(Section):
+    """Straight fronts whose sites know nothing of each other.
+
+    Attributes
+    ----------
+    elastic_energy : float
+        e_el, which decides how many sites are as long as the Larkin length. (Units: w_int)
+    pixels_per_cutoff : float
+        Points of the tile and sites of the front per short cutoff.
+    length : float
+        Period of a front over L_kappa.
+    """
+
+    elastic_energy: Positive
+    pixels_per_cutoff: Annotated[float, Field(ge=2, allow_inf_nan=False)]
+    length: Positive
+
+    def front(self, spring: float, seed: int, realisation: int, precision: float) -> StraightFront:
+        """Front that has forgotten its start, on one tile.
+
+        Parameters
+        ----------
+        spring : float
+            L_kappa over the Larkin length.
+        seed, realisation : int
+            Seed of the tiles, and number of this one.
+        precision : float
+            Load that the tolerance of the solver may cost, in correlation lengths of the force.
+        """
+        energy, pixels = self.elastic_energy, self.pixels_per_cutoff
+        depth = force_correlation_length(_KIND, _SPECTRUM)
+        larkin = larkin_length(_KIND, _SPECTRUM, 2 * math.sqrt(energy))
+        tolerance = precision * depth / (spring * larkin)
+        knobs = Knobs(None, pixels, 2 * pixels, "cubic", pixels, tolerance)
+        numerics = Numerics(knobs, tile_roll_offs=1.0, tile_cutoffs=_TILE_CUTOFFS)
+        load = LineLoad("larkin_length", self.length, _PERIOD, _TRANSIENT, _STEP, uncorrelated=True)
+        schedule = load.schedule(_KIND, _SPECTRUM, energy, spring, numerics)
+        simulation = simulation_of(
+            _KIND, _SPECTRUM, energy, schedule, numerics, seed=seed, realisation=realisation
+        )
+        adhesion = simulation_adhesion(simulation)
+        field = simulation_field(simulation, adhesion)
+        begun = StraightFront(
+            field=field,
+            solver=simulation.solver,
+            front=straight_front(field, adhesion, 0.0),
+            load=schedule.lead_in,
+            period=schedule.period,
+            spring=schedule.spring,
+            larkin_length=larkin,
+            force_length=depth,
+        )
+        loads = np.linspace(0.0, schedule.lead_in, math.ceil(schedule.lead_in / depth) + 1)
+        *_, front = begun.moved(loads)
+        return replace(begun, front=front)
+
+
+@dataclass(frozen=True, slots=True)
+class StraightFront:
+    """A straight front at rest.
+
+    Attributes
+    ----------
+    field : TileField
+        Work of adhesion along the rays.
+    solver : Solver
+        How its fronts are found.
+    front : (n_site,) array
+        The front. (Units: short cutoff)
+    load : float
+        Its load. (Units: short cutoff)
+    period : float
+        Period of the tile along the motion: the front at the load further on by it is the same
+        again. (Units: short cutoff)
+    spring, larkin_length, force_length : float
+        L_kappa, Larkin length and correlation length of the force. (Units: short cutoff)
+    """
+
+    field: TileField
+    solver: Solver
+    front: Array
+    load: float
+    period: float
+    spring: float
+    larkin_length: float
+    force_length: float
+
+    def moved(self, loads: Iterable[float]) -> Iterator[Array]:
+        """Fronts at rest, one a load; a ValueError says why there is none."""
+        steps = (Load(float(load), 1) for load in loads)
+        for step in follow(self.field, self.front, steps, self.solver):
+            if step.status is not Status.CONVERGED:
+                raise ValueError(f"at load {step.load.value:.6g}: {step.status.value}")
+            yield step.front

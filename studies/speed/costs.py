@@ -1,0 +1,163 @@
+"""Measure what simulations cost: the runs that the cost model is fitted to and held against.
+
+python -m studies.speed.costs --output results/benchmark
+
+Every row of `costs.csv` is one simulation, run several times unless that takes long: the least
+counts, since the speed of a processor varies by a quarter over minutes. Copied to
+`crackfront/simulate/costs.csv`, it is what `crackfront plan` predicts from.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+from collections.abc import Iterator
+from dataclasses import fields, replace
+from pathlib import Path
+
+import click
+import numpy as np
+
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.data.files import write_text
+from crackfront.simulate.costs import Features, Measured, features, measured_runs, predicted_seconds
+from crackfront.simulate.laws import Knobs
+from crackfront.simulate.run import compile_solver, run_simulation
+from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
+from studies.speed.machine import described_machine
+
+KNOBS = Knobs(None, 2.4, 4, "cubic", 4, 1e-4)
+ENERGIES = (0.002, 0.01, 0.05, 0.15)
+STEADY = SteadySchedule(start=1.0, max_penetration=1.5, travel=1.5, standard_error=0.1)
+CYCLE = LoadSchedule(1.0, 0.1)
+
+_PASSES, _LONG = 4, 20.0
+"""Times that a simulation is run, and seconds from which once is enough."""
+
+
+def _simulation(
+    name: str,
+    shape: tuple[float, float, float],
+    energy: float,
+    schedule: LoadSchedule | SteadySchedule,
+    knobs: Knobs = KNOBS,
+) -> Simulation:
+    """One simulation of a roughness spectrum (short cutoff, roll-off, Hurst exponent)."""
+    spectrum = SelfAffineSpectrum(*shape)
+    return simulation_of(
+        "roughness", spectrum, energy, schedule, Numerics(knobs), seed=7, name=name
+    )
+
+
+def fitted_to() -> Iterator[Simulation]:
+    """Simulations that the model is fitted to."""
+    for cutoff in (0.04, 0.01, 0.005):
+        for energy in ENERGIES:
+            yield _simulation("flat", (cutoff, cutoff, 1.0), energy, STEADY)
+            yield _simulation("h08", (cutoff, 16 * cutoff, 0.8), energy, STEADY)
+    for cutoff in (0.04, 0.01):
+        for energy in ENERGIES:
+            yield _simulation("flat", (cutoff, cutoff, 1.0), energy, CYCLE)
+            yield _simulation("h03", (cutoff, 20 * cutoff, 0.3), energy, CYCLE)
+    for energy in ENERGIES:
+        yield _simulation("h08", (0.0025, 0.04, 0.8), energy, STEADY)
+    for energy in (0.01, 0.05):
+        yield _simulation("flat", (0.00125, 0.00125, 1.0), energy, STEADY)
+        yield _simulation("h08", (0.000625, 0.01, 0.8), energy, STEADY)
+    for energy in (0.003, 0.15):
+        yield _simulation("h03", (0.000625, 0.1, 0.3), energy, STEADY)
+    for tolerance in (1e-3, 1e-6):
+        knobs = replace(KNOBS, tolerance=tolerance)
+        for energy in ENERGIES:
+            yield _simulation("flat", (0.02, 0.02, 1.0), energy, STEADY, knobs)
+
+
+def held_out() -> Iterator[Simulation]:
+    """Simulations of other spectra, amplitudes, loads and numerics, to hold the model against."""
+    finer = replace(KNOBS, angles_per_cutoff=3.2, tolerance=1e-5)
+    longer = replace(STEADY, max_penetration=2.0, travel=2.0)
+    for energy in (0.005, 0.03, 0.1):
+        yield _simulation("flat", (0.0125, 0.0125, 1.0), energy, STEADY)
+        yield _simulation("h03", (0.008, 0.16, 0.3), energy, STEADY)
+        yield _simulation("h08", (0.025, 0.2, 0.8), energy, longer, finer)
+        yield _simulation("h08", (0.02, 0.32, 0.8), energy, LoadSchedule(1.0, 0.05))
+        yield _simulation("flat", (0.015, 0.015, 1.0), energy, LoadSchedule(0.5, 0.05), finer)
+    for energy in (0.02, 0.1):
+        yield _simulation("h08", (0.0008, 0.0128, 0.8), energy, STEADY)
+
+
+def measured(simulation: Simulation, held: bool) -> Measured:
+    """What one simulation costs on this machine."""
+    result = run_simulation(simulation)
+    return Measured(
+        name=simulation.label,
+        held_out=held,
+        features=features(simulation),
+        n_state=result.record.states.penetration.size,
+        cpu_seconds=result.measures.cpu_seconds,
+    )
+
+
+def least_of_passes(simulations: list[Simulation], held: bool) -> list[Measured]:
+    """What simulations cost on this machine, each the least of the passes through all."""
+    least: dict[int, Measured] = {}
+    for _ in range(_PASSES):
+        for place, simulation in enumerate(simulations):
+            known = least.get(place)
+            if known is not None and known.cpu_seconds > _LONG:
+                continue
+            run = measured(simulation, held)
+            click.echo(f"{run.name}: {run.cpu_seconds:.3g} s, {run.n_state} states")
+            if known is None or run.cpu_seconds < known.cpu_seconds:
+                least[place] = run
+    return list(least.values())
+
+
+def worst_factor(held_out: bool) -> float:
+    """Largest factor between times that the law in use gives and those of its table.
+
+    Parameters
+    ----------
+    held_out : bool
+        Whether of the runs that the fit does without, or of the others.
+    """
+    runs = [run for run in measured_runs() if run.held_out == held_out]
+    ratios = predicted_seconds(runs) / [run.cpu_seconds for run in runs]
+    return float(np.max(np.maximum(ratios, 1 / ratios)))
+
+
+def table(runs: list[Measured]) -> str:
+    """Runs as comma-separated values."""
+    names = [item.name for item in fields(Features)]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    expected = ["expected_n_state" if name == "n_state" else name for name in names]
+    writer.writerow(["name", "held_out", *expected, "n_state", "cpu_seconds"])
+    for run in runs:
+        values = [f"{float(getattr(run.features, name)):.6g}" for name in names]
+        last = [run.n_state, f"{run.cpu_seconds:.4g}"]
+        writer.writerow([run.name, int(run.held_out), *values, *last])
+    return text.getvalue()
+
+
+def main() -> None:
+    """Measure all runs, one after the other."""
+    parser = argparse.ArgumentParser(description="what simulations cost")
+    parser.add_argument("--output", type=Path, default=Path("results/benchmark"))
+    chosen = parser.parse_args()
+    compile_solver("newton")
+    click.echo(described_machine())
+    runs = least_of_passes([*fitted_to()], held=False) + least_of_passes([*held_out()], held=True)
+    write_text(chosen.output / "costs.csv", table(runs))
+    click.echo(f"Results: {chosen.output / 'costs.csv'}")
+    click.echo(
+        f"The law in use meets its fitted runs within a factor {worst_factor(False):.2f}, "
+        f"its held-out ones within {worst_factor(True):.2f}"
+    )
+
+
+if __name__ == "__main__":
+    main()

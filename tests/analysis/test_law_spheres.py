@@ -1,0 +1,84 @@
+"""The law of k held to simulated spheres, to which none of its numbers is adjusted."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crackfront.core.adhesion import correlation_length
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.sweep.configuration import load_configuration
+from studies.law.measure import is_covered, law_of, read_spheres, sphere_table, text_of
+
+ROOT = Path(__file__).parents[2]
+REFERENCE = ROOT / "docs/reference/spheres.csv"
+HELD_OUT = ROOT / "docs/reference/held-out.csv"
+
+
+@pytest.fixture(scope="module")
+def spheres():
+    return read_spheres(REFERENCE)
+
+
+def test_the_reference_holds_the_sweeps_that_it_is_made_from(spheres):
+    sweep = load_configuration(ROOT / "config/spheres.yaml")
+    assert len(spheres) == len(sweep.spectra) * len(sweep.elastic_energies)
+    for item in sweep.spectra:
+        shape = item.spectrum
+        for energy in sweep.elastic_energies:
+            [row] = [
+                row
+                for row in spheres
+                if row.spectrum == item.name
+                and row.elastic_energy == pytest.approx(energy, rel=0.03)
+            ]
+            found = SelfAffineSpectrum(row.short_cutoff, row.roll_off, row.hurst)
+            expected = correlation_length(sweep.kind, shape)
+            assert correlation_length(sweep.kind, found) == pytest.approx(expected, rel=1e-4)
+            assert row.kind == sweep.kind
+            assert 0.8 * sweep.n_realisation < row.realisations <= sweep.n_realisation
+
+
+def test_a_table_of_spheres_is_read_as_it_was_written(spheres, tmp_path):
+    path = tmp_path / "spheres.csv"
+    path.write_text(text_of(spheres))
+    assert read_spheres(path) == spheres
+    assert path.read_text() == REFERENCE.read_text()
+
+
+def test_a_sphere_is_covered_where_its_errors_and_those_of_the_law_allow(spheres):
+    row = replace(spheres[4], both_error=0.0, numerical_error=0.0)
+    law = law_of(row)
+    for end, inside, outside in ((law.both.high, 0.999, 1.001), (law.both.low, 1.001, 0.999)):
+        assert is_covered(replace(row, both=inside * end), law)
+        assert not is_covered(replace(row, both=outside * end), law)
+        assert is_covered(replace(row, both=outside * end, both_error=0.1), law)
+
+
+def test_the_table_has_a_line_for_every_sphere_and_says_how_many_are_covered(spheres):
+    lines = sphere_table(spheres).splitlines()
+    assert len(lines) == 2 + len(spheres) + 2
+    laws = [law_of(row) for row in spheres]
+    large = [(row, law) for row, law in zip(spheres, laws, strict=True) if law.size > 1]
+    covered = sum(is_covered(row, law) for row, law in large)
+    assert lines[-1].startswith(f"For g above 1, {len(large)} rows: ")
+    assert lines[-1].endswith(f"cover {covered}.")
+
+
+def test_the_line_alone_predicts_spheres_with_intervals_that_cover_and_are_narrow(spheres):
+    """A twentieth may lie outside of 95% intervals."""
+    rows = [*spheres, *read_spheres(HELD_OUT)]
+    held = [(row, law) for row in rows if (law := law_of(row)).size > 1]
+    assert len(held) >= 60
+    half = [(law.both.high - law.both.low) / 2 / law.both.value for _, law in held]
+    assert np.median(half) < 0.05
+    apart = np.array([law.both.value / row.both - 1 for row, law in held])
+    assert np.sqrt(np.mean(apart**2)) < 0.03
+    assert np.max(np.abs(apart)) < 0.06
+    outside = [
+        f"{row.spectrum} {row.elastic_energy:.3g}: {row.both:.3f}, law {law.both.value:.3f}"
+        for row, law in held
+        if not is_covered(row, law)
+    ]
+    assert len(outside) <= len(held) / 20, outside

@@ -1,0 +1,846 @@
+"""The command: one cycle on any field, the steps of a sweep, exit codes and sentences."""
+
+import errno
+import json
+import os
+import re
+import shlex
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+from matplotlib.figure import Figure
+
+import crackfront as cf
+from crackfront import __version__
+from crackfront.cli import main
+from crackfront.cli.report import StoppedError
+from crackfront.core import jkr
+from crackfront.core.outcome import Status
+from crackfront.core.solver.monotone import relax_together
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.data.files import write_text
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.journal import Entry, Journal
+from crackfront.sweep.table import failed_row, row_fingerprint
+
+TEST = Path(__file__).parents[2] / "config/test.yaml"
+
+
+def run(*arguments):
+    """Result of a command."""
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+def refused(*arguments):
+    """Sentence of a command that is refused."""
+    result = run(*arguments)
+    assert result.exit_code == 2, result.output
+    assert "Traceback" not in result.output
+    [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
+    return sentence
+
+
+@pytest.fixture
+def smooth_tile(tmp_path):
+    """File of a tile of w_int everywhere."""
+    positions = np.linspace(0, 2, 8, endpoint=False)
+    xr.Dataset(
+        {"work_of_adhesion": (("x", "y"), np.full((8, 8), WORK_OF_ADHESION))},
+        coords={"x": positions, "y": positions},
+    ).to_netcdf(tmp_path / "F.nc")
+    return tmp_path / "F.nc"
+
+
+@pytest.fixture
+def rough_rays(tmp_path, rng):
+    """File of random samples on eight rays, angles first."""
+    radii = 0.05 * np.arange(1, 61)
+    values = WORK_OF_ADHESION * (1 + 0.3 * rng.uniform(-1, 1, (8, 60)))
+    xr.Dataset(
+        {"work_of_adhesion": (("angle", "radius"), values)},
+        coords={"radius": radii, "angle": -np.pi + 2 * np.pi * np.arange(8) / 8},
+    ).to_netcdf(tmp_path / "F.nc")
+    return tmp_path / "F.nc"
+
+
+@pytest.fixture(scope="module")
+def rough_surface(tmp_path_factory):
+    """File of a coarse rough surface of the library."""
+    path = tmp_path_factory.mktemp("surface") / "surface.nc"
+    cf.random_surface(0.1, 0.05, side=4, error=0.1, seed=3).to_netcdf(path)
+    return path
+
+
+def cycle(field, tmp_path, *more, penetration=1, step=0.25):
+    """Result of a cycle on the field of a file."""
+    return run(
+        *("cycle", "--field", field, "--max-penetration", penetration, "--step", step),
+        *("--output", tmp_path / "out.nc", *more),
+    )
+
+
+def test_a_cycle_on_a_smooth_tile_is_that_of_jkr(smooth_tile, tmp_path):
+    result = cycle(smooth_tile, tmp_path, "--tolerance", "1e-10")
+    assert result.exit_code == 0, result.output
+    dataset = xr.load_dataset(tmp_path / "out.nc")
+    expected = [0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0, -0.25, -0.5, -0.75]
+    assert np.array_equal(dataset["penetration"], expected)
+    assert np.array_equal(dataset["direction"], [1] * 5 + [-1] * 7)
+    assert dataset["penetration"].dims == ("step",)
+    assert dataset.attrs["status"] == "lost_contact"
+    radii = [jkr.equilibrium_radius(penetration) for penetration in expected]
+    assert dataset["mean_radius"].values == pytest.approx(radii, rel=1e-8)
+    assert dataset["force"].values == pytest.approx(
+        jkr.equilibrium_force(np.array(radii)), abs=1e-8
+    )
+    assert np.all(dataset["residual"] <= 1e-10)
+    assert "radius" not in dataset
+
+
+def test_a_cycle_on_rays_has_one_site_an_angle_and_records_what_is_asked_for(rough_rays, tmp_path):
+    result = cycle(rough_rays, tmp_path, "--record", "fronts", "--record", "energy")
+    assert result.exit_code == 0, result.output
+    dataset = xr.load_dataset(tmp_path / "out.nc")
+    assert dataset["radius"].dims == ("step", "angle")
+    assert dataset.sizes["angle"] == 8
+    assert dataset["angle"].values[0] == pytest.approx(-np.pi)
+    assert np.array_equal(dataset["radius"].mean("angle"), dataset["mean_radius"])
+    assert np.all(dataset["dissipated_energy"] > -1e-12)
+
+
+@pytest.fixture
+def ring_file(tmp_path):
+    """File of rings, without an angle."""
+    radii = 0.01 * np.arange(1, 220)
+    values = WORK_OF_ADHESION * (1 + 0.2 * np.sin(2 * np.pi * radii / 0.1))
+    xr.Dataset({"work_of_adhesion": ("radius", values)}, coords={"radius": radii}).to_netcdf(
+        tmp_path / "F.nc"
+    )
+    return tmp_path / "F.nc"
+
+
+def test_a_cycle_on_rings_is_a_scalar_one_without_angles(ring_file, tmp_path):
+    result = cycle(ring_file, tmp_path, "--record", "energy")
+    assert result.exit_code == 0, result.output
+    dataset = xr.load_dataset(tmp_path / "out.nc")
+    assert set(dataset.dims) == {"step"}
+    assert np.all(dataset["rms_radius"] == 0)
+    assert dataset["dissipated_energy"].max() > 0.01
+    up, down = (dataset.isel(step=dataset["penetration"] == 0.5)["mean_radius"].values[:2]).tolist()
+    assert down > up + 0.01
+
+
+def test_fronts_of_rings_are_refused_as_they_are_circles(ring_file, tmp_path):
+    result = cycle(ring_file, tmp_path, "--record", "fronts")
+    assert result.exit_code == 2
+    assert "whose radius every record holds as mean_radius; leave it out" in result.stderr
+    assert not (tmp_path / "out.nc").exists()
+
+
+def test_the_command_of_the_issue_works_as_it_stands(rough_rays, tmp_path):
+    command = (
+        "cycle --field F.nc --max-penetration 1 --step 0.05 --tolerance 1e-8 --solver reference "
+        "--record fronts --output out.nc"
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "crackfront", *command.split()],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "out.nc" in done.stdout
+    dataset = xr.load_dataset(tmp_path / "out.nc")
+    assert dataset["penetration"].max() == 1
+    assert dataset.attrs["command"].endswith("--output out.nc")
+
+
+def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(rough_rays, tmp_path):
+    result = cycle(rough_rays, tmp_path, "--max-sweeps", 3)
+    assert result.exit_code == 1
+    assert "the solver reached its limit of sweeps" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+    assert xr.load_dataset(tmp_path / "out.nc").attrs["status"] == "step_limit"
+
+
+def test_a_front_that_leaves_its_field_is_told_with_exit_code_one(tmp_path):
+    radii = np.linspace(0.1, 1.9, 40)
+    sticky = np.where(radii > 1.5, 3.0, 1.0)[:, None] * np.full((1, 8), WORK_OF_ADHESION)
+    xr.Dataset(
+        {"work_of_adhesion": (("radius", "angle"), sticky)}, coords={"radius": radii}
+    ).to_netcdf(tmp_path / "F.nc")
+    result = cycle(tmp_path / "F.nc", tmp_path)
+    assert result.exit_code == 1
+    assert "left the sampled field outward; enlarge the field" in result.stderr
+    assert xr.load_dataset(tmp_path / "out.nc").attrs["status"] == "left_field_outward"
+
+
+def test_a_contact_that_outgrows_its_field_is_refused_before_it_starts(rough_rays, tmp_path):
+    result = cycle(rough_rays, tmp_path, penetration=50)
+    assert result.exit_code == 2
+    assert "contact outgrows the field" in result.stderr
+    assert not (tmp_path / "out.nc").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--max-penetration", -1), "max penetration -1.0 never makes contact"),
+        (("--step", 0), "load step is 0.0; it must be positive"),
+        (("--step", "nan"), "'--step': nan is no number"),
+        (("--solver", "none"), "solver"),
+        (("--field", "none.nc"), "none.nc does not exist"),
+        (("--angles", 16), "--angles and --samples-per-pixel are for tiles"),
+    ],
+    ids=lambda value: str(value[0]) if isinstance(value, tuple) else "",
+)
+def test_bad_options_of_a_cycle_are_refused(rough_rays, tmp_path, options, sentence):
+    result = cycle(rough_rays, tmp_path, *options)
+    assert result.exit_code == 2
+    assert sentence in result.stderr
+    assert not (tmp_path / "out.nc").exists()
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_a_tile_with_a_value_that_is_not_finite_is_refused_with_its_place(
+    smooth_tile, tmp_path, value
+):
+    tile = xr.load_dataset(smooth_tile)
+    tile.work_of_adhesion[3, 5] = value
+    tile.to_netcdf(tmp_path / "bad.nc")
+    sentence = refused(
+        "cycle", "--field", tmp_path / "bad.nc", "--max-penetration", 1, "--step", 0.5,
+        "--output", tmp_path / "out.nc",
+    )  # fmt: skip
+    assert f"work of adhesion is {value} at x index 3, y index 5 (1 such values)" in sentence
+
+
+def test_the_resolution_of_a_tile_can_be_chosen(smooth_tile, tmp_path):
+    options = ("--angles", 12, "--samples-per-pixel", 2, "--record", "fronts")
+    assert cycle(smooth_tile, tmp_path, *options).exit_code == 0
+    assert xr.load_dataset(tmp_path / "out.nc").sizes["angle"] == 12
+
+
+def test_a_sweep_runs_from_its_plan_to_its_figures_and_tells_what_a_missing_loop_costs(
+    tmp_path, monkeypatch
+):
+    output = ("--output", tmp_path / "out")
+    plan = run("plan", TEST, *output)
+    assert "8 simulations" in plan.output
+    assert "0/4" in plan.output
+    simulate = run("simulate", TEST, *output)
+    assert "[8/8]" in simulate.output
+    assert "4/4" in run("plan", TEST, *output).output
+    again = run("simulate", TEST, *output)
+    assert "8 of 8 simulations are stored" in again.output
+    assert "[1/" not in again.output
+    monkeypatch.setattr("crackfront.cli.report._MOMENT", 0.0)
+    for command in ("aggregate", "fit", "figures"):
+        result = run(command, TEST, *output)
+        assert result.exit_code == 0, result.output
+        assert str(tmp_path / "out") in result.output
+        assert ("of processor time" in result.stderr) == (command == "figures")
+        shutil.rmtree(tmp_path / "out/curves", ignore_errors=True)
+    made = {path.name for path in (tmp_path / "out/figures").iterdir()}
+    assert made == {
+        f"{name}.{suffix}" for name in ("hysteresis", "loop", "factor") for suffix in ("pdf", "png")
+    }
+    assert (tmp_path / "out/fit.md").read_text(encoding="utf-8").startswith("# ")
+
+
+LINES = """seed: 3
+field: roughness
+spectra: [{name: flat, short_cutoff: 1.0, hurst: 1.0}]
+amplitudes: {work_of_adhesion_rms: [0.6, 0.84]}
+realisations: 1
+numerics:
+  angles_per_cutoff: 2
+  samples_per_cutoff: 4
+  interpolation: cubic
+  pixels_per_cutoff: 4
+  tolerance: 1.0e-4
+  tile: {roll_offs: 4, cutoffs: 10}
+  max_sweeps: 1000000
+  solver: newton
+load:
+  line: {springs: [1, 2], length: 8, period: 20, transient: 3, step: 1}
+fit: {lowest_elastic_energy: 0.08, highest_elastic_energy: 0.2, bootstrap: 200}
+"""
+
+
+def test_a_sweep_of_straight_fronts_is_fitted_and_drawn(tmp_path):
+    configuration, output = tmp_path / "lines.yaml", ("--output", tmp_path / "out")
+    configuration.write_text(LINES)
+    for command in ("simulate", "aggregate", "fit", "figures"):
+        result = run(command, configuration, *output)
+        assert result.exit_code == 0, result.output
+    found = xr.load_dataset(tmp_path / "out/fit.nc")
+    assert found.cell_size.attrs == {"units": "1", "long_name": found.cell_size.long_name}
+    # The tiles have an rms of their own.
+    np.testing.assert_allclose(found.cell_size[1], 2 * found.cell_size[0], rtol=0.3)
+    assert np.all(found.cell_law_factor_low <= found.cell_law_factor)
+    assert found.k_0_low < found.k_0 < found.k_0_high
+    assert (tmp_path / "out/figures/loop.png").stat().st_size > 10_000
+    assert "## k by the law of docs/law.md" in (tmp_path / "out/fit.md").read_text("utf-8")
+
+
+def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path):
+    run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
+    result = run("plan", TEST, "--output", tmp_path, "--block", "1")
+    assert result.exit_code == 0, result.output
+    [flat, rough, everything] = result.output.split("to run")[1].splitlines()[1:4]
+    assert flat.split()[:3] == ["flat", "2", "4"]
+    assert rough.split()[:3] == ["rough", "2", "0"]
+    assert everything.split()[:3] == ["all", "4", "4"]
+    assert float(everything.split()[3]) > 0
+    assert float(rough.split()[3]) == 0
+
+
+def test_a_plan_tells_what_is_stale_and_why(tmp_path):
+    run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
+    finer = tmp_path / "finer.yaml"
+    finer.write_text(TEST.read_text().replace("tolerance: 1e-6", "tolerance: 1e-7"))
+    result = run("plan", finer, "--output", tmp_path)
+    assert "4 stored simulations are stale: 4 as numerics changed" in result.output
+    result = run("simulate", finer, "--spectrum", "flat", "--output", tmp_path)
+    assert "4 stored simulations are stale: 4 as numerics changed\n[1/4]" in result.output
+
+
+def test_the_status_counts_what_is_done_failed_running_and_waiting(tmp_path):
+    sweep = load_configuration(TEST)
+    run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
+    flat = sweep.shard(sweep.spectra[0])
+    journal = Journal(tmp_path / "journals")
+    refused_row = failed_row(flat[0], "refused", "too rough")
+    parts = (flat[0].key, flat[0].label, flat[0].parts)
+    journal.append(Entry(*parts, definition=row_fingerprint(), row=refused_row))
+    journal.append(Entry(flat[1].key, flat[1].label, flat[1].parts))
+    result = run("status", tmp_path)
+    assert result.exit_code == 0, result.output
+    [_, first, second, process, sentence] = result.output.splitlines()
+    who = f"process {os.getpid()} on {socket.gethostname()}: {flat[1].label}, last sign of life "
+    assert process.startswith(who)
+    assert first.split()[:5] == ["flat", "0", "1", "1", "2"]
+    assert float(first.split()[5]) > 0
+    assert second.split() == ["rough", "4", "0", "0", "0", "0"]
+    assert sentence.startswith("5 of 8 simulations have ended; about ")
+    assert sentence.endswith("minutes are left on 1 rank(s)")
+
+
+@pytest.fixture
+def begun(tmp_path):
+    """Folder of a sweep, and the journal in it of a process that has begun a simulation."""
+    sweep = load_configuration(TEST)
+    write_text(tmp_path / "configuration.yaml", TEST.read_text())
+    one = sweep.shard(sweep.spectra[0])[0]
+    journal = Journal(tmp_path / "journals")
+    journal.append(Entry(one.key, one.label, one.parts))
+    return tmp_path, journal
+
+
+def last_line_of_status(folder):
+    """What the status says at its end."""
+    return run("status", folder).output.splitlines()[-1]
+
+
+def test_a_process_runs_as_long_as_it_lives_and_not_until_its_journal_is_old(begun):
+    folder, journal = begun
+    for path in (folder / "journals").iterdir():
+        os.utime(path, (1e9, 1e9))
+    assert last_line_of_status(folder).endswith("left on 1 rank(s)")
+    journal.let_go()
+    for path in (folder / "journals").iterdir():
+        os.utime(path)
+    assert last_line_of_status(folder).endswith("have ended; nothing runs")
+
+
+def test_a_process_elsewhere_runs_as_long_as_it_shows_signs_of_life(begun):
+    folder, journal = begun
+    journal.let_go()
+    [path] = (folder / "journals").iterdir()
+    path = path.rename(path.with_name("another-host-12-abcd.jsonl"))
+    told = json.loads(run("status", folder, "--json").output)["processes"]
+    assert [(one["host"], one["process"]) for one in told] == [("another-host", "12")]
+    os.utime(path, (1e9, 1e9))
+    assert last_line_of_status(folder).endswith("have ended; nothing runs")
+
+
+def test_the_status_of_a_folder_without_a_sweep_is_refused(tmp_path):
+    assert "holds no sweep that was begun" in refused("status", tmp_path)
+
+
+def test_one_spectrum_can_be_run_alone(tmp_path):
+    result = run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
+    assert result.exit_code == 0
+    assert {path.name.split("-")[0] for path in (tmp_path / "curves").iterdir()} == {"rough"}
+    assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.json"]
+
+
+def test_a_block_of_realisations_can_be_run_alone(tmp_path):
+    options = ("--spectrum", "rough", "--realisations", "1-1", "--output", tmp_path)
+    assert run("simulate", TEST, *options).exit_code == 0
+    assert {"-r1-" in path.name for path in (tmp_path / "curves").iterdir()} == {True}
+    assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.1-1.json"]
+
+
+@pytest.mark.parametrize("block", ["1", "1-", "2-1", "a-b", "0-9"])
+def test_a_block_that_is_none_is_refused(tmp_path, block):
+    result = run("simulate", TEST, "--realisations", block, "--output", tmp_path / "out")
+    assert result.exit_code == 2
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["a; rm -rf b", "$(touch x)", "..", "-e", "a b", "a'b"])
+def test_a_configuration_whose_name_is_no_name_for_results_is_refused(tmp_path, name):
+    bad = tmp_path / f"{name}.yaml"
+    bad.write_text(TEST.read_text())
+    assert "the results are named after" in refused("plan", bad)
+
+
+def test_a_truncated_result_is_named_and_replaced(tmp_path):
+    run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
+    broken = min((tmp_path / "curves").iterdir())
+    broken.write_bytes(broken.read_bytes()[:5000])
+    result = run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
+    assert result.exit_code == 0
+    [warning] = result.stderr.splitlines()
+    assert str(broken) in warning
+    assert "computed anew" in warning
+    assert "[1/1]" in result.output
+
+
+@pytest.mark.parametrize(("allowed", "code"), [("", 1), ("failed_fraction: 1.0\n", 0)])
+def test_simulations_without_a_value_are_counted_and_too_many_fail(tmp_path, allowed, code):
+    limited = tmp_path / "limited.yaml"
+    text = TEST.read_text().replace("max_sweeps: 100000", "max_sweeps: 2")
+    limited.write_text(text + allowed)
+    assert run("simulate", limited, "--output", tmp_path).exit_code == 0
+    result = run("aggregate", limited, "--output", tmp_path)
+    assert result.exit_code == code
+    assert "8 of 8 simulations have no value: 8 step_limit" in result.stderr
+    assert ("failed_fraction of the configuration allows 0.1" in result.stderr) == bool(code)
+    table = xr.load_dataset(tmp_path / "hysteresis.nc")
+    assert set(table["status_sentence"].values.flat) == {Status.STEP_LIMIT.value}
+    assert "has a value" in refused("fit", limited, "--output", tmp_path)
+
+
+def test_a_simulation_that_cannot_be_stored_ends_the_run_with_exit_code_one(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr("crackfront.sweep.tasks.write_simulation", full)
+    result = run("simulate", TEST, "--output", tmp_path)
+    assert result.exit_code == 1
+    assert "nothing can be stored (no space left on device); make room" in result.stderr
+    assert "0 of 8 simulations were stored" in result.stderr
+    assert "[2/8]" not in result.output
+    assert not (tmp_path / "shards").exists()
+
+
+def test_missing_input_of_the_later_steps_is_refused(tmp_path):
+    output = ("--output", tmp_path)
+    assert "8 of 8 simulations are missing or unreadable" in refused("aggregate", TEST, *output)
+    assert "hysteresis.nc does not exist" in refused("fit", TEST, *output)
+    assert "hysteresis.nc does not exist" in refused("figures", TEST, *output)
+
+
+@pytest.mark.parametrize("command", ["plan", "simulate", "aggregate", "fit", "figures"])
+def test_a_bad_configuration_is_refused_by_every_command(tmp_path, command):
+    bad = tmp_path / "bad.yaml"
+    bad.write_text(TEST.read_text().replace("hurst: 0.8", "hurst: 1.8"))
+    assert "spectra[1].hurst is 1.8" in refused(command, bad, "--output", tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_misspelt_spectrum_is_refused(tmp_path):
+    sentence = refused("simulate", TEST, "--spectrum", "flatt", "--output", tmp_path / "out")
+    assert "did you mean flat?" in sentence
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("ranks", [0, -1, "two"])
+def test_bad_numbers_of_ranks_are_refused(tmp_path, ranks):
+    result = run("simulate", TEST, "--ranks", ranks, "--output", tmp_path / "out")
+    assert result.exit_code == 2
+
+
+def test_the_version_is_that_of_the_package():
+    assert __version__ in run("--version").output
+
+
+@pytest.mark.parametrize("kind", ["roughness", "chemical"])
+def test_a_surface_of_the_library_is_a_field_of_a_cycle(kind, tmp_path):
+    surface = cf.random_surface(0.4, 0.05, kind=kind, side=4, error=0.05, seed=3)
+    surface.to_netcdf(tmp_path / "surface.nc")
+    assert cycle(tmp_path / "surface.nc", tmp_path, "--record", "fronts").exit_code == 0
+    bare = surface.drop_attrs(deep=False).assign_attrs(units=surface.attrs["units"])
+    found = cf.run_loop(bare, step=0.25)
+    np.testing.assert_allclose(xr.load_dataset(tmp_path / "out.nc").radius, found.radius, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("roughness", "surface.nc: x has the units 'm'; the attribute units must be"),
+        ("chemical", "surface.nc: work_of_adhesion is in J / m^2; convert it to reduced units"),
+    ],
+)
+def test_a_surface_in_si_units_is_refused_as_a_field(kind, words, tmp_path):
+    surface = cf.random_surface(0.4, 0.05, kind=kind, side=4, error=0.05)
+    cf.in_si_units(surface, cf.Scales(1e-3, 50e-3, 1e6)).to_netcdf(tmp_path / "surface.nc")
+    output = ("--max-penetration", 1, "--output", tmp_path / "out.nc")
+    assert words in refused("cycle", "--field", tmp_path / "surface.nc", *output)
+
+
+def commands_of_help():
+    """Every example in the help of a command, continued lines joined, with the command's name."""
+    for name, command in main.commands.items():
+        text = (command.epilog or "").split("Examples:\n")[-1].replace("\\\n", " ")
+        for line in text.splitlines():
+            yield name, line.split("#")[0].strip()
+
+
+def test_every_command_is_listed_and_shows_examples_of_itself():
+    text = run("--help").output
+    shown = list(commands_of_help())
+    for name in main.commands:
+        assert f"\n  {name} " in text
+        assert "Examples:" in run(name, "--help").output
+        assert any(
+            f"crackfront {name} " in f"{line} " for command, line in shown if command == name
+        )
+
+
+@pytest.mark.parametrize(("name", "line"), list(commands_of_help()))
+def test_the_examples_of_the_help_name_options_that_exist(name, line):
+    words = shlex.split(line.replace("$(", " ").replace(")", " "))
+    given = {word for word in words if word.startswith("--")}
+    known = {option for item in main.commands[name].params for option in item.opts}
+    assert given <= known
+
+
+def test_the_exit_codes_of_the_help_are_those_of_the_commands():
+    text = run("--help").output
+    for code in (0, 1, 2, StoppedError.exit_code):
+        assert re.search(rf"^ +{code} +\w", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_script_of_completion_calls_the_command(shell):
+    result = run("completion", shell)
+    assert result.exit_code == 0
+    assert "_CRACKFRONT_COMPLETE" in result.output
+    assert "crackfront" in result.output
+
+
+def test_a_shell_completes_commands():
+    told = subprocess.run(
+        [sys.executable, "-c", "from crackfront.cli import main; main(prog_name='crackfront')"],
+        env=os.environ
+        | {
+            "_CRACKFRONT_COMPLETE": "bash_complete",
+            "COMP_WORDS": "crackfront check",
+            "COMP_CWORD": "1",
+        },
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    assert told.stdout.split() == ["plain,check-figures"]
+
+
+def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path):
+    output = ("--output", tmp_path, "--json")
+    before = json.loads(run("plan", TEST, *output).output)
+    assert (before["simulations"], before["missing"], before["shards"]) == (8, 8, ["flat", "rough"])
+    assert before["core_seconds"] > before["longest_seconds"] > 0
+    for command in ("simulate", "aggregate"):
+        assert run(command, TEST, *output[:2]).exit_code == 0
+    after = json.loads(run("plan", TEST, *output).output)
+    assert (after["missing"], after["core_seconds"]) == (0, 0)
+    (tmp_path / "configuration.yaml").write_text(TEST.read_text())
+    spectra = json.loads(run("status", tmp_path, "--json").output)["spectra"]
+    assert [(one["name"], one["done"], one["waiting"]) for one in spectra] == [
+        ("flat", 4, 0),
+        ("rough", 4, 0),
+    ]
+    told = json.loads(run("fit", TEST, *output).output)
+    assert told == json.loads((tmp_path / "fit.json").read_text())
+
+
+def test_machines_read_how_a_cycle_ended(smooth_tile, tmp_path):
+    told = json.loads(cycle(smooth_tile, tmp_path, "--json").stdout)
+    dataset = xr.load_dataset(tmp_path / "out.nc")
+    assert told == {
+        "output": str(tmp_path / "out.nc"),
+        "states": dataset.sizes["step"],
+        "status": "lost_contact",
+        "end_penetration": dataset.attrs["end_penetration"],
+        "lowest_force": float(dataset["force"].min()),
+        "jump_in_force": float(dataset["force"][0]),
+        **dict.fromkeys(("w_appr", "w_retr", "hysteresis")),
+    }
+
+
+def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_path):
+    result = cycle(rough_surface, tmp_path, "--figure", tmp_path / "pictures/loop", step=0.02)
+    assert result.exit_code == 0, result.output
+    found = xr.load_dataset(tmp_path / "out.nc")
+    count, pdf, png, told, lost = result.stdout.splitlines()
+    assert count == f"{found.sizes['step']} states: {tmp_path / 'out.nc'}"
+    assert [pdf, png] == [f"figure: {tmp_path / 'pictures/loop'}.{kind}" for kind in ("pdf", "png")]
+    assert (tmp_path / "pictures/loop.png").stat().st_size > 10_000
+    numbers = re.fullmatch(
+        r"w_appr (\S+) ± \S+, w_retr (\S+) ± \S+, hysteresis (\S+) ± \S+ \(w_int\); "
+        r"jump-in force (\S+), pull-off force (\S+) \(pi w_int R\)",
+        told,
+    )
+    measures = [float(found[name]) for name in ("w_appr", "w_retr", "hysteresis")]
+    measures += [float(found.force[0]), float(found.force.min())]
+    assert list(map(float, numbers.groups())) == pytest.approx(measures, rel=0.02)
+    assert found.attrs["result"] == told
+    assert lost.startswith("contact was lost at penetration")
+    assert float(found.e_el) == pytest.approx(0.05, rel=0.3)
+
+
+def test_the_plots_draw_what_a_cycle_wrote_on_a_tile_and_on_rays(
+    rough_surface, rough_rays, tmp_path
+):
+    for field, step in ((rough_surface, 0.1), (rough_rays, 0.25)):
+        assert cycle(field, tmp_path, "--record", "fronts", step=step).exit_code == 0
+        found = xr.load_dataset(tmp_path / "out.nc")
+        loop, fronts = (
+            draw(found, axes=Figure().add_subplot()) for draw in (cf.plot_loop, cf.plot_fronts)
+        )
+        approach = next(one for one in loop.get_lines() if one.get_label() == "approach")
+        drawn = found.mean_radius[found.direction == 1]
+        np.testing.assert_array_equal(approach.get_xdata(), drawn)
+        assert len(fronts.get_lines()) > 1
+
+
+def test_a_field_of_heights_that_jump_at_the_edge_is_refused(rough_surface, tmp_path):
+    tilted = xr.load_dataarray(rough_surface)
+    tilted = (tilted + 0.5 * tilted.x).rename("height").assign_attrs(tilted.attrs)
+    tilted.to_netcdf(tmp_path / "tilted.nc")
+    result = cycle(tmp_path / "tilted.nc", tmp_path)
+    assert result.exit_code == 2
+    assert "the tile is not periodic. Level the map and mirror or window it" in result.stderr
+
+
+def stopped_cycle(monkeypatch, signal_number, *arguments):
+    """Result of a cycle that is told to end at its seventh state."""
+
+    def interrupted(self, recorder):
+        if len(recorder.states) == 7:
+            signal.raise_signal(signal_number)
+
+    with monkeypatch.context() as patched:
+        patched.setattr("crackfront.cli.watch.Progress.__call__", interrupted)
+        return cycle(*arguments)
+
+
+@pytest.mark.usefixtures("_heeded_signals")
+@pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
+    rough_surface, tmp_path, monkeypatch, signal_number
+):
+    options = ("--record", "fronts", "--record", "energy")
+    whole = cycle(rough_surface, tmp_path, *options)
+    assert whole.exit_code == 0
+    undisturbed = xr.load_dataset(tmp_path / "out.nc")
+
+    stopped = stopped_cycle(monkeypatch, signal_number, rough_surface, tmp_path, *options)
+    assert stopped.exit_code == StoppedError.exit_code
+    kept = tmp_path / "out.checkpoint.nc"
+    assert stopped.stderr == (
+        f"Stopped as told: 7 states are kept in {kept}; the same command goes on from there\n"
+    )
+    again = cycle(rough_surface, tmp_path, *options)
+    assert again.exit_code == 0
+    assert f"going on from {kept}, after state 7" in again.stderr
+    assert again.stdout == whole.stdout
+    assert not kept.exists()
+    xr.testing.assert_equal(xr.load_dataset(tmp_path / "out.nc"), undisturbed)
+
+
+@pytest.fixture
+def kept_states(rough_surface, tmp_path, monkeypatch, _heeded_signals):
+    """States that a cycle has kept."""
+    stopped_cycle(monkeypatch, signal.SIGTERM, rough_surface, tmp_path)
+    return tmp_path / "out.checkpoint.nc"
+
+
+def test_what_another_cycle_kept_is_told_and_begins_anew(rough_surface, kept_states, tmp_path):
+    result = cycle(rough_surface, tmp_path, step=0.2)
+    assert result.exit_code == 0
+    assert result.stderr == f"{kept_states} is of another cycle; this one begins anew\n"
+    assert not kept_states.exists()
+
+
+@pytest.mark.parametrize("harm", ["a flipped bit", "cut off", "something else"])
+def test_damaged_states_of_a_cycle_are_told_and_set_aside(
+    rough_surface, kept_states, tmp_path, harm
+):
+    content = kept_states.read_bytes()
+    middle = len(content) // 2
+    harmed = {
+        "a flipped bit": content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :],
+        "cut off": content[:middle],
+        "something else": b"something else",
+    }[harm]
+    kept_states.write_bytes(harmed)
+    result = cycle(rough_surface, tmp_path)
+    assert result.exit_code == 0
+    assert result.stderr == (
+        f"{kept_states} is damaged; it is set aside as out.checkpoint.nc.damaged, and the cycle "
+        "begins anew\n"
+    )
+    assert not kept_states.exists()
+    assert (tmp_path / "out.checkpoint.nc.damaged").read_bytes() == harmed
+
+
+@pytest.mark.usefixtures("_heeded_signals")
+@pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM])
+def test_any_command_that_is_told_to_end_says_so_with_the_same_exit_code(
+    monkeypatch, signal_number
+):
+    def interrupted(**options):
+        signal.raise_signal(signal_number)
+
+    monkeypatch.setattr(main.commands["law"], "callback", interrupted)
+    result = run("law")
+    assert result.exit_code == StoppedError.exit_code
+    assert result.stderr.startswith("Stopped as told: nothing is half-written; the same command")
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+
+
+LIGHT = "mpi4py.MPI pint snakemake tqdm numba xarray pandas netCDF4 matplotlib pydantic yaml"
+SCAN = TEST.parents[1] / "examples/scans/nanodiamond-detail.al3d"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "unused"),
+    [
+        ("--help", f"{LIGHT} numpy scipy"),
+        ("law --w-rms 0.4 --g inf", f"{LIGHT} scipy.optimize numpy.f2py numpy.testing"),
+        ("law --spectrum 0.02,0.1,0.8 --elastic-energy 0.05 --contact-radius 1.9", LIGHT),
+        (
+            f"predict {SCAN} --no-figure --modulus 0.7MPa --poisson 0.5 --radius 1.25mm "
+            "--work-of-adhesion 63mJ/m2",
+            "numba xarray pandas pint matplotlib scipy.stats scipy.signal scipy.ndimage "
+            "scipy.interpolate openpyxl requests mpi4py h5py yaml",
+        ),
+        (
+            "cycle --field {folder}/tile.nc --max-penetration 0.5 --step 0.25 --output "
+            "{folder}/cycle.nc",
+            "mpi4py.MPI snakemake matplotlib pydantic pint yaml asyncio scipy.stats scipy.signal "
+            "scipy.interpolate numpy.f2py xarray.groupers xarray.tutorial xarray.ufuncs",
+        ),
+    ],
+    ids=["help", "law of a front", "law of a sphere", "predict", "cycle"],
+)
+def test_a_command_imports_only_what_it_uses(arguments, unused, tmp_path):
+    # A module that waits for its use stands among the modules already.
+    cf.random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, seed=1).to_netcdf(
+        tmp_path / "tile.nc"
+    )
+    code = (
+        "import gc, importlib.util, sys\n"
+        "from crackfront.cli import main\n"
+        f"sys.argv[1:] = {arguments.format(folder=tmp_path)!r}.split()\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert end.code in (0, 3), end.code\n"
+        "used = {name for name, module in sys.modules.items()\n"
+        "        if module and not issubclass(type(module), importlib.util._LazyModule)}\n"
+        f"assert not {set(unused.split())} & used, {set(unused.split())} & used\n"
+        "assert len(gc.get_objects()) < gc.get_freeze_count(), 'looks for garbage at its end'\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=100)
+
+
+def test_a_scan_becomes_a_field_in_a_process_of_its_own(tmp_path):
+    arguments = (
+        f"surface {SCAN} --modulus 0.7N/mm2 --poisson 0.5 --radius 20um --work-of-adhesion 63mJ/m2"
+    ).split()
+    alone, within = tmp_path / "alone.nc", tmp_path / "within.nc"
+    command = [sys.executable, "-m", "crackfront", *arguments, "--field", str(alone)]
+    subprocess.run(command, check=True, timeout=100)
+    assert run(*arguments, "--field", within).exit_code == 0
+    assert xr.load_dataset(alone).equals(xr.load_dataset(within))
+
+
+def test_an_output_that_cannot_be_written_is_refused_with_its_path(tmp_path):
+    obstacle = tmp_path / "file"
+    obstacle.write_text("no folder")
+    sentence = refused("simulate", TEST, "--output", obstacle / "results")
+    assert str(obstacle) in sentence
+    assert "cannot be used: Not a directory; check the path and its permissions" in sentence
+
+
+@pytest.mark.parametrize(
+    ("output", "reason"),
+    [
+        ("/dev/null", "it is a device or pipe, which is not replaced"),
+        ("/proc/none/cycle.nc", "No such file or directory"),
+        (".", "Is a directory"),
+    ],
+)
+def test_a_cycle_that_could_not_be_written_is_not_computed(
+    smooth_tile, monkeypatch, output, reason
+):
+    monkeypatch.setattr("crackfront.simulate.fields.read_field", None)
+    options = ("--field", smooth_tile, "--max-penetration", "0.5")
+    assert f"cannot be used: {reason}" in refused("cycle", *options, "--output", output)
+
+
+def test_a_full_disk_is_told_as_that_whatever_netcdf_says(smooth_tile, tmp_path, monkeypatch):
+    def write(*_, **__):
+        raise AttributeError("'NoneType' object has no attribute 'pos'")
+
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", write)
+    module = sys.modules["crackfront.cli.cycle"]
+    monkeypatch.setattr(module, "refuse_unwritable", lambda folder: None)
+    monkeypatch.setattr("crackfront.data.files.tempfile.TemporaryFile", full)
+    options = ("--field", smooth_tile, "--max-penetration", "0.1", "--step", "0.1")
+    sentence = refused("cycle", *options, "--output", tmp_path / "cycle.nc")
+    told = f"{tmp_path / 'cycle.nc'} cannot be written: No space left on device; make room and rep"
+    assert told in sentence
+
+
+def test_the_status_of_a_damaged_configuration_is_refused(tmp_path):
+    path = tmp_path / "configuration.yaml"
+    write_text(path, TEST.read_text(encoding="utf-8"), sealed=True)
+    assert run("status", tmp_path).exit_code == 0
+    path.write_text(path.read_text().replace("realisations: 2", "realisations: 3"))
+    assert f"{path} is damaged" in refused("status", tmp_path)
+
+
+def test_an_archive_has_the_whole_name_of_its_folder_and_an_empty_one_is_refused(tmp_path):
+    folder = tmp_path / "of.2026"
+    folder.mkdir()
+    sentence = refused("archive", folder)
+    assert "holds no hysteresis.nc; run the sweep before it is archived" in sentence
+    (folder / "hysteresis.nc").write_bytes(b"data")
+    assert "1 files of" in refused("archive", folder)
+    xr.Dataset().to_netcdf(folder / "hysteresis.nc")
+    assert run("archive", folder).exit_code == 0
+    assert [path.name for path in tmp_path.glob("*.zip")] == ["of.2026.zip"]
+
+
+def test_the_solver_is_compiled_ahead_for_spheres_and_straight_fronts():
+    result = run("compile")
+    assert result.exit_code == 0, result.output
+    assert len(relax_together.signatures) >= 1

@@ -1,0 +1,81 @@
+"""A simulation that ends at any state and goes on later is the undisturbed one, bit for bit."""
+
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.solver.relax import SOLVERS
+from crackfront.data.files import UnreadableFileError
+from crackfront.data.provenance import provenance
+from crackfront.simulate.files import read_checkpoint, write_checkpoint
+from crackfront.simulate.run import run_simulation
+from crackfront.sweep.configuration import load_configuration
+
+TEST = Path(__file__).parents[3] / "config/test.yaml"
+SWEEP = load_configuration(TEST)
+CYCLE = replace(
+    SWEEP.simulation(SWEEP.spectra[1], 0.1, 0),
+    schedule=LoadSchedule(0.5, 0.125),
+    record_fronts=True,
+    record_energy=True,
+)
+STEADY = replace(CYCLE, schedule=SteadySchedule(0.4, 1.2, travel=0.5, standard_error=1e-6))
+
+
+def checkpoints(simulation):
+    """Undisturbed result of a simulation, and its checkpoint at every state."""
+    found = []
+    result = run_simulation(simulation, keep=lambda make: found.append(make()))
+    assert len(found) == result.record.states.penetration.size
+    return result, found
+
+
+@pytest.mark.parametrize("simulation", [CYCLE, STEADY], ids=["cycle", "steady"])
+@pytest.mark.parametrize("solver", ["newton", pytest.param("reference", marks=pytest.mark.slow)])
+def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation, solver):
+    simulation = replace(simulation, solver=SOLVERS[solver](simulation.solver.tolerance))
+    undisturbed, found = checkpoints(simulation)
+    directions = undisturbed.record.states.direction
+    assert {1, -1} == set(directions.tolist())
+    for partial in found:
+        write_checkpoint(tmp_path / "checkpoint.nc", partial, provenance())
+        resumed = read_checkpoint(tmp_path / "checkpoint.nc", simulation)
+        computed = []
+        result = run_simulation(simulation, resume=resumed, keep=computed.append)
+        np.testing.assert_equal(asdict(result.record), asdict(undisturbed.record))
+        n_known = partial.checkpoint.record.states.penetration.size
+        assert len(computed) == directions.size - n_known
+        assert result.measures.cpu_seconds > partial.cpu_seconds
+
+
+def test_a_record_without_fronts_and_energies_goes_on_too(tmp_path):
+    simulation = replace(CYCLE, record_fronts=False, record_energy=False)
+    undisturbed, found = checkpoints(simulation)
+    write_checkpoint(tmp_path / "checkpoint.nc", found[5], provenance())
+    resumed = read_checkpoint(tmp_path / "checkpoint.nc", simulation)
+    record = run_simulation(simulation, resume=resumed).record
+    assert record.fronts is None
+    assert record.dissipated_energy is None
+    assert np.array_equal(record.states.force, undisturbed.record.states.force)
+    assert np.array_equal(record.states.iterations, undisturbed.record.states.iterations)
+
+
+def test_a_checkpoint_of_another_load_is_refused():
+    _, found = checkpoints(CYCLE)
+    with pytest.raises(ValueError, match="it is that of another load"):
+        run_simulation(replace(CYCLE, schedule=LoadSchedule(0.5, 0.25)), resume=found[5])
+
+
+def test_a_truncated_checkpoint_and_that_of_another_simulation_are_refused(tmp_path):
+    _, found = checkpoints(CYCLE)
+    path = tmp_path / "checkpoint.nc"
+    write_checkpoint(path, found[2], provenance())
+    with pytest.raises(UnreadableFileError, match="is no checkpoint of"):
+        read_checkpoint(path, STEADY)
+    path.write_bytes(path.read_bytes()[:3000])
+    with pytest.raises(UnreadableFileError, match="is no complete netCDF file"):
+        read_checkpoint(path, CYCLE)

@@ -1,0 +1,233 @@
+"""Straight fronts of a sweep: exact averages over a tile, symmetry, sizes, bad input."""
+
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from crackfront.analysis.steady import period_adhesion
+from crackfront.cli import main
+from crackfront.core.adhesion import AdhesionMap, correlation_length, larkin_length
+from crackfront.core.cycle.period import LineSchedule, run_period
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.geometry.line import line_field
+from crackfront.core.outcome import Status
+from crackfront.core.solver.relax import SOLVERS
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.data.provenance import provenance
+from crackfront.simulate.contact import simulation_adhesion, simulation_field
+from crackfront.simulate.files import read_checkpoint, read_simulation, write_checkpoint
+from crackfront.simulate.run import run_simulation
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.table import read_table
+
+CONFIG = Path(__file__).parents[3] / "config"
+TEXT = (CONFIG / "line-test.yaml").read_text(encoding="utf-8")
+SWEEP = load_configuration(CONFIG / "line-test.yaml")
+ONE = SWEEP.simulation(SWEEP.spectra[1], 0.04, 0)
+SHAPES = {
+    "flat": ("roughness", SelfAffineSpectrum(1.0, 1.0, 1.0)),
+    "h08": ("roughness", SelfAffineSpectrum(1.0, 6.0, 0.8)),
+    "h03": ("roughness", SelfAffineSpectrum(1.0, 6.0, 0.3)),
+    "chemical": ("chemical", SelfAffineSpectrum(1.0, 3.0, 0.5)),
+}
+
+
+def longer(simulation, periods):
+    """A simulation that is pulled over several periods of its tile before the last."""
+    schedule = simulation.schedule
+    lead_in = schedule.lead_in + periods * schedule.period
+    return replace(simulation, schedule=replace(schedule, lead_in=lead_in))
+
+
+def run(simulation, adhesion=None):
+    """Record with its fronts, of a tile that may be another than the simulation's own."""
+    adhesion = simulation_adhesion(simulation) if adhesion is None else adhesion
+    return run_period(
+        simulation_field(simulation, adhesion),
+        simulation.schedule,
+        elastic_energy=simulation.elastic_energy,
+        solver=SOLVERS["newton"](1e-10),
+        recorder=Recorder(fronts=True),
+    )
+
+
+@pytest.mark.parametrize("energy", [0.04, 0.16])
+def test_after_the_lead_in_a_period_later_the_front_is_the_same_further_on(energy):
+    simulation = longer(SWEEP.simulation(SWEEP.spectra[1], energy, 0), 1)
+    record, schedule = run(simulation), simulation.schedule
+    for direction in (1, -1):
+        fronts = record.fronts[direction * record.states.direction > 0]
+        last, before = (
+            fronts[-schedule.n_period :],
+            fronts[-2 * schedule.n_period : -schedule.n_period],
+        )
+        assert len(before) == schedule.n_period
+        # The first of two periods may begin anywhere within the tolerance, and soft sites differ by
+        # more than that.
+        assert np.max(np.abs(last - before - direction * schedule.period)) < 2e-9
+
+
+def test_a_start_twice_as_far_behind_is_forgotten():
+    near, schedule = run(ONE), ONE.schedule
+    far = run_period(
+        simulation_field(ONE),
+        schedule,
+        elastic_energy=2 * ONE.elastic_energy,
+        solver=SOLVERS["newton"](1e-9),
+        recorder=Recorder(fronts=True),
+    )
+    for record in (near, far):
+        assert record.status is Status.STEADY
+    for direction in (1, -1):
+        ends = [
+            record.fronts[direction * record.states.direction > 0][-schedule.n_period :]
+            for record in (near, far)
+        ]
+        assert np.max(np.abs(ends[0] - ends[1])) < 1e-5
+
+
+def test_the_mirrored_surface_with_the_opposite_sign_swaps_the_branches():
+    adhesion, sizes = simulation_adhesion(ONE), ONE.resolution
+    values, pixel = adhesion.work_of_adhesion, adhesion.pixel
+    # Loads, samples and their mirror images are multiples of half a pixel.
+    plain = replace(ONE, resolution=replace(sizes, spacing=pixel / 2))
+    last = float(plain.schedule.loads[-1]) / pixel
+    assert last == pytest.approx(round(last), abs=1e-9)
+    places = (round(last) - np.arange(len(values))) % len(values)
+    mirrored = replace(adhesion, work_of_adhesion=(2 * values.mean() - values)[places])
+    one, other = (
+        period_adhesion(run(plain, item), plain.schedule.n_period, 1.0, 1.0)
+        for item in (adhesion, mirrored)
+    )
+    assert one.w_appr - 1 == pytest.approx(1 - other.w_retr, rel=1e-9)
+    assert one.w_retr - 1 == pytest.approx(1 - other.w_appr, rel=1e-9)
+
+
+def test_without_disorder_no_force_is_needed():
+    schedule = LineSchedule(spring=4.0, length=16.0, period=12.0, lead_in=3.0, step=0.5)
+    tile = AdhesionMap(WORK_OF_ADHESION * np.ones((24, 32)), 0.5, 0.0, 0.0)
+    field = line_field(tile, 4.0, (0.0, float(schedule.loads[-1])))
+    record = run_period(field, schedule, elastic_energy=0.0, solver=SOLVERS["newton"](1e-12))
+    found = period_adhesion(record, schedule.n_period, 1.0, 1.0)
+    assert (found.w_appr, found.w_retr) == pytest.approx((1.0, 1.0), abs=1e-11)
+    assert found.front_rms < 1e-11
+
+
+@pytest.mark.parametrize("shape", sorted(SHAPES))
+def test_second_order_of_the_tile_is_that_of_the_spectrum(shape):
+    # f_2 = (1 / 2 pi w_int) int q C_w(q) dq = w_rms^2 / w_int, of a large tile.
+    kind, spectrum = SHAPES[shape]
+    line = LineSchedule(spring=4.0, length=240.0, period=120.0, lead_in=3.0, step=0.5)
+    knobs = replace(SWEEP.numerics.knobs, pixels_per_cutoff=3.0)
+    wanted = replace(
+        ONE,
+        kind=kind,
+        spectrum=spectrum,
+        schedule=line,
+        resolution=replace(ONE.resolution, tile_side=240.0, n_point=720),
+    )
+    adhesion = simulation_adhesion(wanted)
+    assert adhesion.work_of_adhesion.shape == (360, 720)
+    assert knobs.pixels_per_cutoff == pytest.approx(1 / adhesion.pixel)
+    assert adhesion.w_rms**2 == pytest.approx(4 * wanted.elastic_energy, rel=0.06)
+
+
+@pytest.mark.parametrize("shape", sorted(SHAPES))
+def test_uncorrelated_rows_have_the_second_order_of_the_spectrum(shape):
+    kind, spectrum = SHAPES[shape]
+    schedule = LineSchedule(4.0, 480.0, 160.0, 3.0, 0.5, uncorrelated=True)
+    wanted = replace(
+        ONE,
+        kind=kind,
+        spectrum=spectrum,
+        schedule=schedule,
+        resolution=replace(ONE.resolution, tile_side=480.0, n_point=1440, n_angle=1440),
+    )
+    adhesion = simulation_adhesion(wanted)
+    fluctuation = adhesion.work_of_adhesion / WORK_OF_ADHESION
+    # All modes across have the density of the sum along the front: of each row, times a pixel.
+    power = np.abs(np.fft.rfft(fluctuation, axis=0)) ** 2 * adhesion.pixel / 480
+    wavevector = 2 * np.pi * np.fft.rfftfreq(480, adhesion.pixel)
+    density = adhesion.pixel * power.mean(axis=1)[1:]
+    second = float(np.sum(wavevector[1:] * density)) * wavevector[1] / (2 * np.pi)
+    assert second == pytest.approx(4 * wanted.elastic_energy, rel=0.05)
+    assert abs(np.corrcoef(fluctuation[:, 0], fluctuation[:, 1])[0, 1]) < 0.5
+    assert wanted.resolution.n_angle == wanted.resolution.n_point
+
+
+def test_springs_are_multiples_of_the_length_that_is_named():
+    for unit, length in (("correlation_length", correlation_length), ("larkin_length", None)):
+        load = replace(SWEEP.schedule, spring_unit=unit)
+        sweep = replace(SWEEP, schedule=load)
+        simulation = sweep.simulation(SWEEP.spectra[1], 0.04, 0)
+        kind, spectrum = simulation.kind, simulation.spectrum
+        expected = length(kind, spectrum) if length else larkin_length(kind, spectrum, 0.4)
+        assert simulation.spring == pytest.approx(8 * expected)
+        assert simulation.schedule.length >= 7.999 * simulation.spring
+        points, sides = simulation.tile
+        assert sides[0] / points[0] == pytest.approx(sides[1] / points[1], rel=1e-12)
+
+
+def test_a_line_goes_on_from_any_state_to_the_same_bits(tmp_path):
+    found = []
+    simulation = replace(SWEEP.simulation(SWEEP.spectra[0], 0.16, 1), record_fronts=True)
+    undisturbed = run_simulation(simulation, keep=lambda make: found.append(make()))
+    for partial in found[:: len(found) // 5]:
+        write_checkpoint(tmp_path / "checkpoint.nc", partial, provenance())
+        resumed = read_checkpoint(tmp_path / "checkpoint.nc", simulation)
+        result = run_simulation(simulation, resume=resumed)
+        np.testing.assert_equal(asdict(result.record), asdict(undisturbed.record))
+
+
+def test_a_sweep_of_lines_is_run_aggregated_and_fitted_as_one_of_spheres(tmp_path):
+    path = CONFIG / "line-test.yaml"
+    for command in ("simulate", "aggregate", "fit"):
+        done = CliRunner().invoke(main, [command, str(path), "--output", str(tmp_path)])
+        assert done.exit_code == 0, done.output
+    table = read_table(tmp_path / "hysteresis.nc")
+    assert table.spectrum.tolist() == ["flat-L2", "flat-L8"]
+    factor = (table.w_retr - table.w_appr) / (2 * table.e_el)
+    assert np.all(factor > 0.2)
+    # A longer spring holds less.
+    assert np.all(factor[1].mean(axis=-1) > factor[0].mean(axis=-1))
+    simulation = SWEEP.simulation(SWEEP.spectra[0], SWEEP.elastic_energies[0], 0)
+    result = read_simulation(tmp_path / f"curves/{simulation.stem}.nc", simulation)
+    assert result.record.status is Status.STEADY
+    assert np.isfinite(result.record.end_load)
+
+
+REFUSED = {
+    "short front": ("length: 8,", "length: 7,", "load.line.length is 7; it must be greater"),
+    "short tile": ("period: 20", "period: 19", "load.line.period is 19; it must be greater"),
+    "no transient": ("transient: 6", "transient: 1", "load.line.transient is 1; it must be gre"),
+    "no spring": ("springs: [2, 8]", "springs: [0]", "load.line.springs[0] is 0; it must be gre"),
+    "negative": ("springs: [2, 8]", "springs: [-1]", "load.line.springs[0] is -1; it must be"),
+    "twice": ("springs: [2, 8]", "springs: [2, 2]", "spring 2.0 stands twice"),
+    "unit": ("step: 0.5", "step: 0.5, spring_unit: metre", "load.line.spring_unit is 'metre'"),
+    "sphere too": ("load:", "load:\n  max_penetration: 1", "line already decides max_penetration"),
+    "few sites": (
+        "angles_per_cutoff: 2",
+        "angles_per_cutoff: 0.5",
+        "is 2.21, below two sites (3.56)",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_bad_lines_are_refused_with_a_sentence(tmp_path, case):
+    old, new, sentence = REFUSED[case]
+    assert old in TEXT
+    path = tmp_path / "line.yaml"
+    path.write_text(TEXT.replace(old, new), encoding="utf-8")
+    done = CliRunner().invoke(main, ["simulate", str(path), "--output", str(tmp_path)])
+    assert done.exit_code == 2
+    assert sentence in done.output
+
+
+def test_a_schedule_without_extent_is_refused():
+    with pytest.raises(ValueError, match=r"lead-in is 0\.0; it must be positive and finite"):
+        replace(ONE.schedule, lead_in=0.0)

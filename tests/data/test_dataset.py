@@ -1,0 +1,428 @@
+"""Files: what is written is read back, what is broken is refused, nothing is written by half."""
+
+import json
+import math
+import os
+import re
+import time
+from dataclasses import asdict, fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from crackfront.analysis.steady import STEADY_DEFINITION
+from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.outcome import Status
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import variables
+from crackfront.data.files import UnreadableFileError, date_back, write_dataset, write_text
+from crackfront.data.provenance import Provenance, provenance
+from crackfront.simulate.fields import PolarSamples, read_field, write_field
+from crackfront.simulate.files import (
+    cycle_dataset,
+    read_cycle,
+    read_simulation,
+    write_simulation,
+)
+from crackfront.simulate.run import SimulationResult, run_simulation
+from crackfront.simulate.simulation import numerical_error
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.fit_files import write_fit
+from crackfront.sweep.table import read_table, sweep_row, write_hysteresis
+
+SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
+ORIGIN = Provenance("1.2.3", "abc", "f00", "crackfront test", "nowhere", "seed: 1\n")
+
+
+@pytest.fixture(scope="module")
+def result():
+    """Result of one small simulation with everything recorded."""
+    simulation = SWEEP.simulation(SWEEP.spectra[0], 0.1, 0)
+    small = replace(simulation.resolution, n_angle=32)
+    return run_simulation(
+        replace(simulation, resolution=small, record_fronts=True, record_energy=True)
+    )
+
+
+def assert_same(one: CycleRecord, other: CycleRecord):
+    """Two records agree in every bit."""
+    np.testing.assert_equal(asdict(one), asdict(other))
+
+
+def without_states(record: CycleRecord, status: Status):
+    """A record that ended before its first state."""
+    empty = {name: values[:0] for name, values in asdict(record.states).items()}
+    return CycleRecord(
+        status=status,
+        end_load=0.0,
+        states=ContactState(**empty),
+        dissipated_energy=None if record.fronts is None else record.dissipated_energy[:0],
+        fronts=None if record.fronts is None else record.fronts[:0],
+    )
+
+
+def test_a_cycle_is_read_back_in_every_bit(tmp_path, result):
+    path = tmp_path / "new" / "cycle.nc"
+    write_dataset(path, cycle_dataset(result.record), ORIGIN)
+    assert_same(read_cycle(path), result.record)
+
+
+def test_a_cycle_without_fronts_and_energy_is_read_back(tmp_path, result):
+    record = replace(result.record, fronts=None, dissipated_energy=None)
+    write_dataset(tmp_path / "cycle.nc", cycle_dataset(record), ORIGIN)
+    assert_same(read_cycle(tmp_path / "cycle.nc"), record)
+
+
+def test_a_cycle_without_states_is_read_back(tmp_path, result):
+    record = without_states(result.record, Status.STEP_LIMIT)
+    write_dataset(tmp_path / "cycle.nc", cycle_dataset(record), ORIGIN)
+    assert_same(read_cycle(tmp_path / "cycle.nc"), record)
+
+
+def test_the_columns_of_a_cycle_are_those_of_its_states():
+    assert len(variables(ContactState)) == len(fields(ContactState)) == 13
+    assert [item.name for item in variables(CycleRecord)] == ["dissipated_energy"]
+
+
+def test_every_variable_says_what_it_is_and_in_which_units(tmp_path, result):
+    write_simulation(tmp_path / "one.nc", result, ORIGIN)
+    dataset = xr.load_dataset(tmp_path / "one.nc")
+    for name, values in dataset.variables.items():
+        assert values.attrs["units"], name
+        assert values.attrs["long_name"], name
+    assert dataset["radius"].dims == ("step", "angle")
+    assert dataset["angle"].values == pytest.approx(2 * np.pi * np.arange(32) / 32)
+
+
+def test_every_file_says_where_it_comes_from(tmp_path, result):
+    write_dataset(tmp_path / "cycle.nc", cycle_dataset(result.record), ORIGIN)
+    attributes = xr.load_dataset(tmp_path / "cycle.nc").attrs
+    for item in fields(Provenance):
+        assert attributes[item.name] == getattr(ORIGIN, item.name)
+    assert attributes["date"].endswith("+00:00")
+    assert attributes["status"] == "lost_contact"
+    assert attributes["status_sentence"] == Status.LOST_CONTACT.value
+
+
+def test_the_origin_of_this_process_is_known():
+    origin = provenance("text")
+    assert origin.configuration == "text"
+    assert all(getattr(origin, item.name) for item in fields(Provenance))
+
+
+def test_a_simulation_is_read_back_with_its_cost(tmp_path, result):
+    path = tmp_path / "one.nc"
+    write_simulation(path, result, ORIGIN)
+    again = read_simulation(path, result.simulation)
+    assert_same(again.record, result.record)
+    for item in fields(SimulationResult)[2:]:
+        assert getattr(again, item.name) == getattr(result, item.name)
+    assert xr.load_dataset(path).attrs["seed"] == result.simulation.seed
+
+
+def test_the_file_of_another_simulation_is_refused(tmp_path, result):
+    write_simulation(tmp_path / "one.nc", result, ORIGIN)
+    other = replace(result.simulation, realisation=7)
+    with pytest.raises(UnreadableFileError, match=r"one.nc is not the result of flat .* r=7"):
+        read_simulation(tmp_path / "one.nc", other)
+
+
+@pytest.mark.parametrize("kept", [0.0, 0.02, 0.5, 0.9, 0.999])
+def test_a_truncated_file_is_refused_with_its_name(tmp_path, result, kept):
+    path = tmp_path / "one.nc"
+    write_simulation(path, result, ORIGIN)
+    content = path.read_bytes()
+    path.write_bytes(content[: int(kept * len(content))])
+    with pytest.raises(UnreadableFileError, match=r"one.nc is (no complete netCDF|damaged)"):
+        read_simulation(path, result.simulation)
+
+
+def test_a_file_of_something_else_is_refused(tmp_path):
+    xr.Dataset({"a": ("x", [1.0])}).to_netcdf(tmp_path / "a.nc")
+    with pytest.raises(UnreadableFileError, match=r"a.nc holds no cycle: it lacks penetration"):
+        read_cycle(tmp_path / "a.nc")
+    with pytest.raises(UnreadableFileError, match=r"a.nc lacks .*spectrum"):
+        read_table(tmp_path / "a.nc")
+    with pytest.raises(UnreadableFileError, match=r"none.nc does not exist"):
+        read_table(tmp_path / "none.nc")
+
+
+def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, result, monkeypatch):
+    path = tmp_path / "cycle.nc"
+    write_dataset(path, cycle_dataset(result.record), ORIGIN)
+    before = path.read_bytes()
+
+    def fail(*args, **options):
+        Path(args[1]).write_bytes(b"half")
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
+    with pytest.raises(OSError, match="no space"):
+        write_dataset(path, cycle_dataset(result.record), ORIGIN)
+    assert path.read_bytes() == before
+    assert [item.name for item in tmp_path.iterdir()] == ["cycle.nc"]
+
+
+def test_files_of_the_future_get_one_date_of_now_and_others_keep_theirs(tmp_path):
+    for name, moment in (("a.nc", 4e9), ("b.nc", 4e9 + 5), ("old.nc", 1e9), ("run.jsonl", 4e9)):
+        (tmp_path / name).write_text("text")
+        os.utime(tmp_path / name, (moment, moment))
+    before = time.time()
+    date_back(tmp_path)
+    found = {path.name: path.stat().st_mtime for path in tmp_path.iterdir()}
+    assert before <= found["a.nc"] == found["b.nc"] <= time.time()
+    assert (found["old.nc"], found["run.jsonl"]) == (1e9, 4e9)
+
+
+def test_a_text_is_replaced_as_a_whole(tmp_path):
+    write_text(tmp_path / "a.txt", "long text\n")
+    write_text(tmp_path / "a.txt", "é\n")
+    assert (tmp_path / "a.txt").read_text(encoding="utf-8") == "é\n"
+    assert [item.name for item in tmp_path.iterdir()] == ["a.txt"]
+
+
+# Fields
+
+
+def tile(n_x=4, n_y=6, spacing=0.5):
+    """A tile whose values tell their place."""
+    values = 10.0 * np.arange(n_x)[:, None] + np.arange(n_y)[None, :] + 1
+    return xr.DataArray(
+        values,
+        dims=("x", "y"),
+        coords={"x": 2.0 + spacing * np.arange(n_x), "y": spacing * np.arange(n_y)},
+        name="work_of_adhesion",
+    )
+
+
+def rays(n_radius=3, n_angle=8, start=0.0):
+    """Samples on rays whose values tell their place."""
+    return xr.DataArray(
+        10.0 * np.arange(1, n_radius + 1)[:, None] + np.arange(n_angle)[None, :],
+        dims=("radius", "angle"),
+        coords={
+            "radius": 0.5 * np.arange(1, n_radius + 1),
+            "angle": start + 2 * np.pi * np.arange(n_angle) / n_angle,
+        },
+        name="work_of_adhesion",
+    )
+
+
+def read_back(tmp_path, array):
+    """Field that is read from the file of an array."""
+    array.to_dataset().to_netcdf(tmp_path / "F.nc")
+    return read_field(tmp_path / "F.nc")
+
+
+@pytest.mark.parametrize("order", [("x", "y"), ("y", "x")])
+def test_a_tile_is_read_by_the_names_of_its_dimensions(tmp_path, order):
+    field = read_back(tmp_path, tile().transpose(*order))
+    assert isinstance(field, AdhesionMap)
+    assert np.array_equal(field.work_of_adhesion, tile().values)
+    assert field.pixel == 0.5
+    assert field.w_rms == pytest.approx(np.std(tile().values) / WORK_OF_ADHESION)
+
+
+def test_a_tile_that_was_written_is_read_back(tmp_path, rng):
+    adhesion = AdhesionMap(rng.uniform(0.1, 0.5, (6, 8)), 0.3, e_el=0.1, w_rms=0.6)
+    write_field(tmp_path / "F.nc", adhesion, ORIGIN, source="scan.x3p")
+    field = read_field(tmp_path / "F.nc")
+    np.testing.assert_allclose(field.work_of_adhesion, adhesion.work_of_adhesion, rtol=4e-16)
+    assert field.pixel == pytest.approx(0.3)
+    attributes = xr.load_dataset(tmp_path / "F.nc").attrs
+    assert (attributes["e_el"], attributes["source"]) == (0.1, "scan.x3p")
+    assert attributes["git_commit"] == ORIGIN.git_commit
+
+
+@pytest.mark.parametrize("order", [("radius", "angle"), ("angle", "radius")])
+@pytest.mark.parametrize("start", [0.0, -np.pi, 0.3])
+def test_rays_are_read_by_the_names_of_their_dimensions(tmp_path, order, start):
+    samples = read_back(tmp_path, rays(start=start).transpose(*order))
+    assert isinstance(samples, PolarSamples)
+    expected = (rays().radius.values[:, None] * rays().values).T
+    assert np.array_equal(samples.field.products, expected)
+    assert samples.angles == pytest.approx(start + 2 * np.pi * np.arange(8) / 8)
+
+
+def test_rays_without_angles_are_taken_as_equally_spaced(tmp_path):
+    samples = read_back(tmp_path, rays().drop_vars("angle"))
+    assert samples.angles == pytest.approx(2 * np.pi * np.arange(8) / 8)
+
+
+@pytest.mark.parametrize("angles", ["none", "a position", "one"])
+def test_rings_are_read_as_one_ray(tmp_path, angles):
+    one = rays().isel(angle=slice(1) if angles == "one" else 0)
+    samples = read_back(tmp_path, one.drop_vars("angle") if angles == "none" else one)
+    assert np.array_equal(samples.field.places, rays().radius)
+    assert np.array_equal(samples.field.products, (rays().radius * rays()[:, :1]).values.T)
+    assert np.array_equal(samples.angles, [0.0])
+
+
+UNUSABLE = {
+    "other name": (tile().rename("w"), "has no variable work_of_adhesion (it has: w); name"),
+    "other dims": (
+        tile().rename(y="z"),
+        "of (x, z); it must be real numbers of (x, y) or of",
+    ),
+    "one dim": (tile()[0], "float64 of (y); it must be"),
+    "text": (tile().astype(str), "it must be real numbers of (x, y)"),
+    "no positions": (tile().drop_vars("x"), "4 point(s) along x and no coordinate x"),
+    "one row": (tile(n_x=1), "1 point(s) along x and a coordinate x"),
+    "oblong pixels": (
+        tile().assign_coords(y=0.4 * np.arange(6)),
+        "the spacing is 0.5 in x and 0.4 in y; they must be equal",
+    ),
+    "uneven": (tile().assign_coords(x=[0, 1, 2, 4.0]), "x advances by 1 to 2; it must increase"),
+    "falling": (tile()[::-1], "x advances by -0.5 to -0.5; it must increase in equal steps"),
+    "no radii": (rays().drop_vars("radius"), "has no coordinate radius; give the radii"),
+    "degrees": (
+        rays().assign_coords(angle=45.0 * np.arange(8)),
+        "8 angles lie between 0 and 315; they must be equally spaced over the whole circle",
+    ),
+    "closed circle": (
+        rays().assign_coords(angle=np.linspace(0, 2 * np.pi, 8)),
+        "they must be equally spaced over the whole circle, in rad",
+    ),
+    "radii fall": (rays()[::-1], "radii must be finite, not negative and strictly increasing"),
+    "not a number": (rays().where(rays() < 12), "work of adhesion is nan at radius index"),
+}
+
+
+@pytest.mark.parametrize("case", UNUSABLE)
+def test_an_unusable_field_is_refused_with_a_sentence(tmp_path, case):
+    array, sentence = UNUSABLE[case]
+    with pytest.raises(ValueError, match=re.escape(sentence)):
+        read_back(tmp_path, array)
+
+
+def test_a_file_that_is_no_netcdf_is_refused(tmp_path):
+    (tmp_path / "F.nc").write_text("text")
+    with pytest.raises(UnreadableFileError, match=r"F.nc is no complete netCDF file"):
+        read_field(tmp_path / "F.nc")
+
+
+# The file of a sweep
+
+
+@pytest.fixture(scope="module")
+def results():
+    """Results of the whole sweep; one of them failed, and one has no steady part."""
+    found = {}
+    for item in SWEEP.spectra:
+        for simulation in SWEEP.shard(item):
+            place = item.name, simulation.elastic_energy, simulation.realisation
+            found[place] = run_simulation(simulation)
+    failed = found["flat", 0.02, 1]
+    found["flat", 0.02, 1] = replace(
+        failed, record=without_states(failed.record, Status.STEP_LIMIT)
+    )
+    still = found["rough", 0.1, 0]
+    travel = np.zeros_like(still.record.states.least_travel)
+    found["rough", 0.1, 0] = replace(
+        still,
+        record=replace(still.record, states=replace(still.record.states, least_travel=travel)),
+    )
+    return found
+
+
+@pytest.fixture
+def hysteresis(tmp_path, results):
+    """File of the sweep, and the numbers of its statuses."""
+    path = tmp_path / "hysteresis.nc"
+    simulations = [one for item in SWEEP.spectra for one in SWEEP.shard(item)]
+    places = [(one.spectrum_name, one.elastic_energy, one.realisation) for one in simulations]
+    rows = [sweep_row(results[place]) for place in places]
+    statuses = write_hysteresis(path, SWEEP, rows, ORIGIN)
+    return path, statuses
+
+
+def test_the_file_of_a_sweep_has_everything_under_its_labels(hysteresis, results):
+    path, statuses = hysteresis
+    dataset = xr.load_dataset(path)
+    assert statuses == {"lost_contact": 6, "step_limit": 1, "no_steady_part": 1}
+    assert dataset["hysteresis"].dims == ("spectrum", "amplitude", "realisation")
+    assert dataset.attrs["definition"] == STEADY_DEFINITION
+    for place, result in results.items():
+        cell = dataset.sel(spectrum=place[0], amplitude=place[1], realisation=place[2])
+        assert cell["e_el"] == result.measures.e_el
+        assert cell["w_rms"] == result.measures.w_rms
+        assert cell["seed"] == result.simulation.seed
+        assert cell["curve"] == f"{result.simulation.stem}.nc"
+        assert cell["iterations"] == np.sum(result.record.states.iterations)
+    assert np.array_equal(dataset["hurst"], [1.0, 0.8])
+    assert dataset["w_rms_requested"].values == pytest.approx(2 * np.sqrt(SWEEP.elastic_energies))
+    expected = {item.name for kind in (SweepAxes, SweepRow) for item in variables(kind)}
+    assert set(dataset.variables) == expected - {"table_wavelength", "table_density"}
+    assert all(values.attrs["units"] for values in dataset.variables.values())
+
+
+def test_the_hysteresis_is_the_difference_of_the_branches(hysteresis):
+    dataset = xr.load_dataset(hysteresis[0])
+    assert np.array_equal(
+        dataset["hysteresis"], dataset["w_retr"] - dataset["w_appr"], equal_nan=True
+    )
+    complete = dataset["status"] == "lost_contact"
+    assert np.all(dataset["hysteresis"].values[complete.values] > 0)
+
+
+def test_every_value_states_its_statistical_and_its_numerical_error(hysteresis, results):
+    dataset = xr.load_dataset(hysteresis[0])
+    known = np.isfinite(dataset["w_appr"].values)
+    for branch in ("w_appr", "w_retr"):
+        for name in (f"{branch}_error", f"{branch}_numerical_error"):
+            assert np.array_equal(np.isfinite(dataset[name].values), known)
+            assert np.all(dataset[name].values[known] > 0)
+    cell = dataset.sel(spectrum="flat", amplitude=0.1, realisation=0)
+    simulation = results["flat", 0.1, 0].simulation
+    # Nearer states count as one: the error lies between those of one and of all states.
+    cutoffs = math.pi * float(cell["lowest_radius"] + cell["highest_radius"]) / 0.1
+    few, many = (
+        numerical_error(simulation, count * cutoffs, 2 * math.pi * float(cell["highest_radius"]))
+        for count in (1, int(cell["n_approach"]))
+    )
+    assert many[0] <= cell["w_appr_numerical_error"] <= few[0]
+
+
+def test_a_failed_simulation_has_a_status_and_a_sentence_but_no_values(hysteresis):
+    dataset = xr.load_dataset(hysteresis[0])
+    failed = dataset.sel(spectrum="flat", amplitude=0.02, realisation=1)
+    still = dataset.sel(spectrum="rough", amplitude=0.1, realisation=0)
+    assert (failed["status"], still["status"]) == ("step_limit", "no_steady_part")
+    assert failed["status_sentence"] == Status.STEP_LIMIT.value
+    assert "steady states in approach" in str(still["status_sentence"].values)
+    for name in ("w_appr", "w_retr", "hysteresis", "w_appr_from_force", "pull_off_force"):
+        assert np.isnan(failed[name])
+    assert np.isnan(still["hysteresis"])
+
+
+def test_the_table_of_a_fit_is_what_the_file_holds(hysteresis):
+    table = read_table(hysteresis[0])
+    dataset = xr.load_dataset(hysteresis[0])
+    assert list(table.spectrum) == ["flat", "rough"]
+    assert np.array_equal(table.e_el_requested, dataset["amplitude"])
+    assert np.array_equal(table.w_appr, dataset["w_appr"], equal_nan=True)
+    assert table.correlation_length[0] == pytest.approx(0.1 * 4 / 3)
+
+
+def test_a_fit_is_written_for_machines_and_for_people(tmp_path, hysteresis):
+    fit = fit_sweep(
+        read_table(hysteresis[0]),
+        lowest_elastic_energy=0.02,
+        highest_elastic_energy=0.1,
+        n_bootstrap=200,
+    )
+    netcdf, plain, text = write_fit(tmp_path / "fit", fit, ORIGIN)
+    dataset = xr.load_dataset(netcdf)
+    content = json.loads(plain.read_text(encoding="utf-8"))
+    assert np.array_equal(dataset["factor"], fit.spectra.factor.value)
+    assert content["columns"]["factor"]["values"] == list(fit.spectra.factor.value)
+    assert content["about"]["lowest_elastic_energy"] == 0.02
+    assert set(content["columns"]) == set(dataset.variables)
+    assert "pooled" in text.read_text(encoding="utf-8")
+    assert dataset.attrs["git_commit"] == content["origin"]["git_commit"] == "abc"

@@ -1,0 +1,222 @@
+"""Digests: whatever bit of a file is flipped, no reader believes it, and none ends otherwise."""
+
+import hashlib
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+import crackfront as cf
+from crackfront.analysis.sweep import fit_sweep
+from crackfront.cli import main
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.solver.relax import SOLVERS
+from crackfront.data.digests import Integrity, integrity, seal
+from crackfront.data.files import (
+    UnreadableFileError,
+    read_attributes,
+    read_dataset,
+    refuse_damaged,
+    write_dataset,
+)
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.plots.style import blank_figure, save_figure
+from crackfront.simulate.contact import tile_contact
+from crackfront.simulate.fields import read_field, write_field
+from crackfront.simulate.files import (
+    cycle_dataset,
+    read_checkpoint,
+    read_cycle,
+    read_simulation,
+    write_checkpoint,
+)
+from crackfront.simulate.run import run_simulation
+from crackfront.simulate.surfaces import surface_adhesion
+from crackfront.sweep import tasks
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.fit_files import write_fit
+from crackfront.sweep.journal import journal_paths, read_journal
+from crackfront.sweep.store import Store
+from crackfront.sweep.table import read_table, row_fingerprint
+from studies.paper.figure import load_figure
+from studies.paper.main_1d import FIGURE
+
+ROOT = Path(__file__).parents[2]
+SWEEP = load_configuration(ROOT / "config/test.yaml")
+ONE = SWEEP.simulation(SWEEP.spectra[0], SWEEP.elastic_energies[0], 0)
+
+ENDINGS = (".nc", ".json", ".md", ".html", ".yaml", ".pdf", ".png")
+
+
+@contextmanager
+def flipped(path, bit):
+    """A file of which one bit is the other for a while."""
+    with path.open("rb+", buffering=0) as file:
+        file.seek(bit // 8)
+        [byte] = file.read(1)
+        for value in (byte ^ 1 << bit % 8, byte):
+            file.seek(bit // 8)
+            file.write(bytes([value]))
+            if value != byte:
+                yield
+
+
+@pytest.mark.parametrize("stride", [7, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_every_single_bit_of_a_file_counts(tmp_path, ending, stride):
+    path = tmp_path / f"file{ending}"
+    path.write_text('{\n "a": 1\n}\n')
+    digest = seal(path, ending)
+    assert integrity(path) == (Integrity.WHOLE, digest)
+    for bit in range(0, 8 * path.stat().st_size, stride):
+        with flipped(path, bit):
+            assert integrity(path)[0] is Integrity.DAMAGED, f"bit {bit}"
+    assert integrity(path)[0] is Integrity.WHOLE
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_what_is_cut_off_or_added_is_noticed_unless_the_whole_digest_is_gone(tmp_path, ending):
+    path = tmp_path / f"file{ending}"
+    path.write_text('{\n "a": 1\n}\n')
+    seal(path, ending)
+    content = path.read_bytes()
+    found = []
+    for length in range(len(content) - 1, 0, -1):
+        path.write_bytes(content[:length])
+        found.append(integrity(path)[0])
+    assert set(found[:70]) == {Integrity.DAMAGED}
+    assert set(found[100:]) <= {Integrity.UNKNOWN}
+    path.write_bytes(content + b" ")
+    assert integrity(path)[0] is Integrity.DAMAGED
+
+
+def test_the_digest_is_the_checksum_of_everything_else(tmp_path):
+    path = tmp_path / "file.md"
+    path.write_text("# Title\n")
+    digest = seal(path, ".md")
+    text = path.read_text()
+    assert text == f"# Title\n<!-- crackfront digest sha256 {digest} -->\n"
+    assert hashlib.sha256(text.replace(digest, "").encode()).hexdigest() == digest
+
+
+def test_a_file_with_a_digest_is_plain_netcdf(tmp_path):
+    surface = cf.random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, seed=1)
+    cf.save_result(surface, tmp_path / "surface.nc")
+    assert xr.open_dataset(tmp_path / "surface.nc")["height"].identical(surface)
+    assert cf.load_result(tmp_path / "surface.nc").identical(surface)
+    surface.to_netcdf(tmp_path / "plain.nc")
+    assert cf.load_result(tmp_path / "plain.nc").identical(surface)
+    with pytest.raises(ValueError, match="the array has no name; give it one"):
+        cf.save_result(surface.rename(None), tmp_path / "nameless.nc")
+
+
+@pytest.fixture(scope="module")
+def kinds(tmp_path_factory):
+    """A file of every kind that is written and read later, each with its reader."""
+    folder = tmp_path_factory.mktemp("kinds")
+    store = Store(folder / "sweep")
+    origin = provenance("text")
+    [shard, *_] = SWEEP.shards()
+    list(tasks.fill(store, list(SWEEP.simulations()), origin))
+    store.write_manifest(shard, SWEEP.shard(shard.item))
+    store.aggregate(SWEEP, origin)
+    fitted = fit_sweep(
+        read_table(store.hysteresis),
+        lowest_elastic_energy=SWEEP.fit.lowest_elastic_energy,
+        highest_elastic_energy=SWEEP.fit.highest_elastic_energy,
+        n_bootstrap=100,
+        seed=1,
+        kind=SWEEP.kind,
+    )
+    fits = write_fit(store.folder, fitted, origin)
+    kept = []
+    run_simulation(ONE, keep=lambda make: kept.append(make()))
+    write_checkpoint(folder / "checkpoint.nc", kept[4], origin)
+    surface = cf.random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, seed=1)
+    cf.save_result(surface, folder / "surface.nc")
+    cf.save_result(cf.run_loop(surface, step=0.25), folder / "loop.nc")
+    adhesion = surface_adhesion(surface)
+    write_field(folder / "field.nc", adhesion, origin)
+    record = run_cycle(tile_contact(adhesion, 0.2), LoadSchedule(0.2, 0.1), SOLVERS["newton"](1e-6))
+    write_dataset(folder / "cycle.nc", cycle_dataset(record), origin)
+    parameters = load_figure(ROOT / "config/figures/main-1d.yaml", "quick")
+    smooth = FIGURE.compute(parameters, lambda line: None)
+    write_record(folder / "main-1d.nc", smooth, origin)
+    pictures = save_figure(blank_figure(1, 1), folder / "picture")
+    return {
+        "curve": (store.path(ONE), lambda path: read_simulation(path, ONE)),
+        "table": (store.hysteresis, read_table),
+        "list of a shard": (folder / "sweep/shards/flat.json", refuse_damaged),
+        "configuration": (store.configuration, refuse_damaged),
+        "fit": (fits[0], read_dataset),
+        "fit as JSON": (fits[1], refuse_damaged),
+        "fit to read": (fits[2], refuse_damaged),
+        "checkpoint": (folder / "checkpoint.nc", lambda path: read_checkpoint(path, ONE)),
+        "surface": (folder / "surface.nc", cf.load_result),
+        "loop": (folder / "loop.nc", cf.load_result),
+        "field": (folder / "field.nc", read_field),
+        "cycle": (folder / "cycle.nc", read_cycle),
+        "figure": (folder / "main-1d.nc", lambda path: read_record(path, FIGURE.record)),
+        "provenance": (folder / "main-1d.nc", read_attributes),
+        "PDF": (pictures[0], refuse_damaged),
+        "PNG": (pictures[1], refuse_damaged),
+    }
+
+
+def believed(path, read, bits):
+    """Bits of a file that may be the other without its reader refusing it by its name."""
+    read(path)
+    found = []
+    for bit in bits:
+        with flipped(path, bit):
+            try:
+                read(path)
+            except UnreadableFileError as error:
+                found += [] if str(path) in str(error) else [bit]
+            else:
+                found.append(bit)
+    return found
+
+
+@pytest.mark.parametrize("count", [50, pytest.param(500, marks=pytest.mark.slow)])
+def test_no_flipped_bit_of_any_kind_of_file_is_believed(kinds, rng, count):
+    for path, read in kinds.values():
+        bits = rng.integers(8 * path.stat().st_size, size=count)
+        assert believed(path, read, bits.tolist()) == []
+
+
+@pytest.mark.parametrize("count", [50, pytest.param(500, marks=pytest.mark.slow)])
+def test_no_flipped_bit_of_a_journal_is_believed(kinds, rng, count):
+    folder = kinds["curve"][0].parents[1] / "journals"
+    [path] = journal_paths(folder)
+    expected = {repr(entry) for _, entry in read_journal(path, row_fingerprint())}
+    for bit in rng.integers(8 * path.stat().st_size, size=count).tolist():
+        with flipped(path, bit):
+            found = {repr(entry) for _, entry in read_journal(path, row_fingerprint())}
+        assert found < expected
+
+
+def test_a_damaged_result_that_a_person_keeps_is_refused_with_one_sentence(kinds, tmp_path):
+    path, _ = kinds["surface"]
+    options = ["--max-penetration", "0.1", "--output", str(tmp_path / "cycle.nc")]
+    with flipped(path, 40000):
+        result = CliRunner().invoke(main, ["cycle", "--field", str(path), *options])
+    assert result.exit_code == 2
+    assert result.output.splitlines() == [
+        f"Error: {path} is damaged, its content does not have the digest that it states; restore "
+        "it or write it again"
+    ]
+
+
+def test_the_digests_cost_less_than_a_millisecond_a_file(kinds):
+    path, _ = kinds["curve"]
+    integrity(path)
+    started = time.process_time()
+    for _ in range(100):
+        integrity(path)
+    assert (time.process_time() - started) / 100 < 1e-3

@@ -1,0 +1,644 @@
+"""What `import crackfront` offers: surfaces, loops, units and plots, all of them xarray."""
+
+import ast
+import subprocess
+import sys
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib import pyplot
+from matplotlib.figure import Figure
+
+import crackfront as cf
+from crackfront.analysis.steady import steady_adhesion
+from crackfront.core import jkr
+from crackfront.core.cycle.energy import dissipated_energy
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL
+from crackfront.simulate.contact import simulation_adhesion, simulation_field
+from crackfront.simulate.files import cycle_record
+from crackfront.simulate.run import run_simulation
+from crackfront.simulate.surfaces import chosen_simulation, surface_adhesion
+from crackfront.simulate.tiles import measured_correlation_length
+from crackfront.topography.bands import scan
+from crackfront.topography.measures import measured_surface
+from crackfront.topography.prediction import predicted, prediction_notes
+from crackfront.topography.reading import Treatment, read_measurements
+from crackfront.topography.report import prediction_text, surface_text
+from crackfront.topography.tile import measured_adhesion
+
+ROOT = Path(__file__).parents[2]
+TEST = ROOT / "config/test.yaml"
+SCAN = ROOT / "examples/scans/nanodiamond-detail.al3d"
+SPHERE = cf.Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
+FLAT = cf.SelfAffineSpectrum(0.4, 0.4, hurst=1.0)
+COARSE = {"short_cutoff": 0.4, "elastic_energy": 0.05, "side": 4.0, "error": 0.05, "seed": 3}
+
+
+@pytest.fixture(autouse=True)
+def _no_figures():
+    """No figure of pyplot from before, as that of the docstring of the package."""
+    pyplot.close("all")
+
+
+@pytest.fixture(scope="module")
+def surface():
+    """A coarse rough surface."""
+    return cf.random_surface(**COARSE)
+
+
+@pytest.fixture(scope="module")
+def loop(surface):
+    """Its loop."""
+    return cf.run_loop(surface, step=0.05, error=0.05, energy=True)
+
+
+@pytest.fixture(scope="module")
+def jumps(surface):
+    """The instabilities of its retraction."""
+    return cf.find_instabilities(surface, error=0.05, step=0.1)
+
+
+def tile(values, name="height", units=VERTICAL, spacing=0.1):
+    """A surface of a user's own."""
+    axes = {
+        axis: (axis, spacing * np.arange(count), {"units": LATERAL})
+        for axis, count in zip("xy", values.shape, strict=True)
+    }
+    return xr.DataArray(values, axes, ("x", "y"), name, {"units": units})
+
+
+def axes_of_a_figure():
+    """Axes that pyplot knows nothing of."""
+    return Figure().add_subplot()
+
+
+def test_importing_the_package_is_light():
+    heavy = "{'xarray', 'matplotlib', 'numba', 'scipy', 'mpi4py'}"
+    code = f"import crackfront, sys; assert not {heavy} & sys.modules.keys()"
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_the_package_offers_the_library_and_its_version():
+    typed = ast.parse(Path(cf.__file__).read_text(encoding="utf-8"))
+    stated = {alias.asname for node in ast.walk(typed) for alias in getattr(node, "names", ())}
+    assert set(cf.__all__) == stated - {None}
+    assert set(cf.__all__) <= set(dir(cf))
+    for name in cf.__all__:
+        assert getattr(cf, name) is not None
+
+
+def test_a_name_that_the_package_has_not_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="has no attribute 'run_lop'"):
+        cf.run_lop  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    "smooth",
+    [tile(np.zeros((8, 8))), tile(np.ones((8, 8)), "work_of_adhesion", ADHESION)],
+    ids=["heights", "adhesion"],
+)
+def test_the_loop_of_a_smooth_surface_is_that_of_jkr(smooth):
+    found = cf.run_loop(smooth, step=0.25)
+    radii = [jkr.equilibrium_radius(penetration) for penetration in found.penetration.values]
+    np.testing.assert_allclose(found.mean_radius, radii, rtol=1e-7)
+    np.testing.assert_allclose(found.force, jkr.equilibrium_force(np.array(radii)), atol=1e-7)
+    assert found.attrs["status"] == "lost_contact"
+    assert (float(found.e_el), float(found.w_rms)) == (0, 0)
+
+
+def test_the_loop_of_a_simulation_is_that_of_the_library_to_round_off(surface, loop):
+    load, given = LoadSchedule(1.0, 0.05), {"error": 0.05, "side": 4.0, "seed": 3}
+    requested = chosen_simulation("roughness", FLAT, 0.05, load, **given)
+    # Sites, samples and tolerance follow from what was measured on the tile.
+    measured = chosen_simulation("roughness", FLAT, float(loop.e_el), load, **given)
+    tile = {"n_point": surface.sizes["x"], "tile_side": 4.0}
+    record = run_simulation(
+        replace(
+            requested,
+            resolution=replace(measured.resolution, **tile),
+            solver=measured.solver,
+            record_fronts=True,
+        )
+    ).record
+    # Only the pixel differs, by round-off that fronts enlarge where they are about to jump: the
+    # library takes it from the coordinates.
+    np.testing.assert_allclose(loop.radius, record.fronts, rtol=1e-7)
+    np.testing.assert_allclose(loop.force, record.states.force, rtol=1e-7, atol=1e-7)
+
+
+@pytest.mark.parametrize("kind", ["roughness", "chemical"])
+def test_a_random_surface_is_that_of_the_sweep_of_its_seed(kind):
+    found = cf.random_surface(**COARSE, kind=kind, realisation=2)
+    simulation = chosen_simulation(
+        kind, FLAT, 0.05, LoadSchedule(1, 1), error=0.05, side=4.0, seed=3, realisation=2
+    )
+    adhesion = simulation_adhesion(simulation)
+    if kind == "chemical":
+        np.testing.assert_allclose(found * WORK_OF_ADHESION, adhesion.work_of_adhesion, rtol=1e-15)
+    else:
+        measured = cf.run_loop(found, step=0.5, error=0.05)
+        assert float(measured.e_el) == pytest.approx(adhesion.e_el, rel=1e-12)
+        assert float(measured.w_rms) == pytest.approx(adhesion.w_rms, rel=1e-12)
+
+
+def test_another_seed_or_realisation_is_another_surface():
+    surfaces = [
+        cf.random_surface(0.4, 0.05, side=4, seed=seed, realisation=number)
+        for seed, number in ((1, 0), (2, 0), (1, 1))
+    ]
+    for one, other in ((0, 1), (0, 2), (1, 2)):
+        assert abs(np.corrcoef(surfaces[one].values.flat, surfaces[other].values.flat)[0, 1]) < 0.5
+
+
+def test_the_measures_of_a_loop_are_those_of_its_curves(loop):
+    steady = steady_adhesion(cycle_record(loop), float(loop.correlation_length))
+    names = ("w_appr", "w_retr", "hysteresis")
+    assert {name: float(loop[name]) for name in names} == pytest.approx(
+        {name: getattr(steady, name) for name in names}, nan_ok=True
+    )
+    assert loop.attrs["steady_sentence"] == steady.sentence
+
+
+def test_the_expected_numerical_errors_are_within_the_asked_one():
+    fine = cf.random_surface(0.1, 0.02, seed=1)
+    found = cf.run_loop(fine, step=0.05, error=0.1, fronts=False)
+    size = float(found.w_retr_numerical_error)
+    assert 0 < size < 0.1
+    assert "radius" not in found
+
+
+def test_the_energies_of_a_loop_sum_up_to_its_work(loop):
+    pull_off = loop.attrs["pull_off_energy"]
+    b = np.append(loop.penetration, loop.attrs["end_penetration"])
+    radius = np.vstack([loop.radius, loop.radius[-1:]])
+    # While the penetration changes the front is held.
+    held = [
+        jkr.force(front, (one + other) / 2).mean()
+        for front, one, other in zip(radius, b, b[1:], strict=False)
+    ]
+    work = float(np.sum(held * np.diff(b)))
+    assert float(loop.dissipated_energy.sum()) + pull_off == pytest.approx(work, abs=1e-3)
+
+
+def test_a_loop_without_a_steady_part_says_so_where_it_is_shown(surface):
+    found = cf.run_loop(surface, step=0.5, error=0.05, fronts=False)
+    assert np.isnan(found.w_retr)
+    assert "no steady part: w_appr and w_retr are unknown" in repr(found)
+    assert "states" in found.attrs["steady_sentence"]
+
+
+def test_a_loop_with_a_steady_part_tells_its_works_of_adhesion():
+    found = cf.run_loop(cf.random_surface(0.1, 0.02, seed=1), step=0.05, error=0.1, fronts=False)
+    error = float(found.w_retr_error)
+    digits = 1 - int(np.floor(np.log10(error)))
+    assert f"w_retr {float(found.w_retr):.{digits}f} ± {error:.{digits}f}" in found.attrs["result"]
+
+
+def test_si_units_and_back_change_nothing(surface, loop, jumps):
+    for data in (surface, loop, jumps):
+        back = cf.in_reduced_units(cf.in_si_units(data, SPHERE), SPHERE)
+        xr.testing.assert_allclose(back, data, rtol=1e-13)
+        assert set(back.attrs) == set(data.attrs)
+        for name, value in data.attrs.items():
+            same = value if isinstance(value, str) else pytest.approx(value, rel=1e-13)
+            assert back.attrs[name] == same
+        assert {name: part.attrs for name, part in back.coords.items()} == {
+            name: part.attrs for name, part in data.coords.items()
+        }
+
+
+def test_a_loop_in_si_units_has_forces_in_newtons(loop):
+    found = cf.in_si_units(loop, SPHERE)
+    assert found.force.attrs["units"] == "N"
+    np.testing.assert_allclose(found.force, loop.force * SPHERE.force)
+    np.testing.assert_allclose(found.contact_area, loop.contact_area * SPHERE.lateral**2)
+    np.testing.assert_allclose(found.w_rms, loop.w_rms * 63e-3)
+    assert found.attrs["end_penetration"] == loop.attrs["end_penetration"] * SPHERE.vertical
+    assert found.direction.dtype == loop.direction.dtype
+
+
+def test_heights_in_nanometres_give_the_loop_of_reduced_ones(surface, loop):
+    measured = cf.in_si_units(surface, SPHERE)
+    measured = measured.assign_coords(
+        {axis: (axis, 1e6 * measured[axis].values, {"units": "um"}) for axis in "xy"}
+    )
+    measured = (1e9 * measured).assign_attrs(units="nm")
+    found = cf.run_loop(cf.in_reduced_units(measured, SPHERE), step=0.05, error=0.05)
+    assert float(found.e_el) == pytest.approx(float(loop.e_el), rel=1e-12)
+    np.testing.assert_allclose(found.force, loop.force, atol=1e-3)
+
+
+def test_a_surface_may_come_with_its_dimensions_in_any_order(surface):
+    one, other = (
+        cf.run_loop(given, step=0.5, error=0.05) for given in (surface, surface.transpose("y", "x"))
+    )
+    np.testing.assert_array_equal(one.radius, other.radius)
+
+
+def test_without_the_spectrum_the_pixels_decide(surface, loop):
+    names = ("short_cutoff", "roll_off", "hurst")
+    bare = surface.drop_attrs()
+    bare = bare.assign_attrs(units=VERTICAL).assign_coords(
+        {axis: (axis, surface[axis].values, {"units": LATERAL}) for axis in "xy"}
+    )
+    assert not set(names) & bare.attrs.keys()
+    found = cf.run_loop(bare, step=0.05)
+    assert found.sizes["angle"] >= 2 * np.pi * jkr.equilibrium_radius(1.0) / float(
+        np.diff(bare.x)[0]
+    )
+    assert np.isnan(found.w_appr_numerical_error)
+    lost = [float(item.force.min()) for item in (found, loop)]
+    assert lost[0] == pytest.approx(lost[1], abs=0.05)
+
+
+def test_the_correlation_length_is_that_of_the_spectrum():
+    fine = cf.random_surface(0.05, 0.05, seed=2)
+    found = measured_correlation_length(fine.values, float(fine.x[1] - fine.x[0]))
+    # Heights of a flat spectrum: the mean of q over 0 to q_s is 2/3 of it.
+    assert found == pytest.approx(1.5 * 0.05, rel=0.02)
+
+
+def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jumps):
+    assert jumps.sizes["instability"] > 3
+    assert np.all(jumps.dissipated_energy > 0)
+    assert np.all(jumps.after <= jumps.before + 1e-12)
+    assert np.all(np.diff(jumps.penetration) < 0)
+    swept = 0.5 * (jumps.before**2 - jumps.after**2).sum("angle") * 2 * np.pi / jumps.sizes["angle"]
+    assert np.all(jumps.area <= swept + 1e-12)
+    simulation = chosen_simulation(
+        "roughness", FLAT, 0.05, LoadSchedule(1.0, 0.1), error=0.05, side=4.0, seed=3
+    )
+    if simulation.resolution.n_angle == jumps.sizes["angle"]:
+        field, last = simulation_field(simulation), jumps.isel(instability=-1)
+        expected = dissipated_energy(
+            last.before.values, last.after.values, float(last.penetration), field
+        )
+        assert float(last.dissipated_energy) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"short_cutoff": -1.0}, "short_cutoff is -1.0; it must be positive"),
+        ({"elastic_energy": 1.5}, "elastic_energy is 1.5; it must lie between 0 and 1"),
+        ({"error": 0.0}, "error is 0.0; it must lie between 0 and 1"),
+        ({"roll_off": 0.1}, "roll_off 0.1 is shorter than short_cutoff 0.4"),
+        ({"hurst": 0.0}, "hurst is 0.0; it must lie in"),
+        ({"side": 0.1}, "side is 0.1; the tile must hold the short cutoff, 0.4"),
+        ({"kind": "rough"}, "kind is 'rough'; choose one of roughness, chemical"),
+        ({"seed": -1}, "seed is -1; it must lie between 0 and"),
+        ({"realisation": -2}, "realisation is -2; it must lie between 0 and"),
+    ],
+)
+def test_a_surface_that_cannot_be_is_refused(given, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.random_surface(**(COARSE | given))
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda one: one.rename("z"), "named 'z'; say what its values are by the name height or"),
+        (lambda one: one.rename(None), "named None; say what its values are"),
+        (
+            lambda one: one.assign_attrs(units="nm"),
+            "height has the units 'nm'; .* in_reduced_units",
+        ),
+        (lambda one: one.assign_attrs(units=FORCE), "height has the units 'pi w_int R'"),
+        (lambda one: one.drop_attrs(), "has the units None"),
+        (lambda one: one.rename(x="u"), r"dimensions \(u, y\); a tile must have x and y"),
+        (lambda one: one.drop_vars("x"), "no coordinate x"),
+        (lambda one: one.where(one.x > one.x[0]), "height is nan at x index 0, y index 0"),
+        (lambda one: one.assign_attrs(short_cutoff=0.8, roll_off=0.8), "waves shorter than its"),
+        (lambda one: 6 * one, "energy of full conformity is"),
+        (lambda one: one[::4, ::4], "but the finest numerics on"),
+    ],
+)
+def test_a_surface_that_cannot_be_used_is_refused(surface, change, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.run_loop(change(surface), error=0.05)
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda: cf.Scales(None, 1, 1), "radius is None; give a number of m, or a text"),
+        (lambda: cf.Scales(1, [1], 1), "work_of_adhesion is a list; give a number of J/m"),
+        (lambda: cf.run_loop(np.zeros((4, 4))), "surface is a numpy.ndarray; give an xarray"),
+        (lambda: cf.run_loop("scan.ibw"), "surface is 'scan.ibw'; give an xarray.DataArray"),
+        (lambda: cf.run_loop(tile(np.zeros((4, 4))), step="1"), "step is '1'; give a number"),
+        (lambda: cf.run_loop(tile(np.zeros((4, 4))), fronts="no"), "fronts is 'no'; give True or"),
+        (lambda: cf.run_loop(tile(np.zeros((4, 4))), progress=3), "progress is 3; give a function"),
+        (lambda: cf.save_result(3, "three.nc"), "result is 3; give a surface or a loop"),
+        (lambda: cf.find_instabilities(3.0), "surface is 3.0; give an xarray.DataArray"),
+        (lambda: cf.random_surface("1mm", 0.1), "short_cutoff is '1mm'; give a number"),
+        (lambda: cf.random_surface(0.1, None), "elastic_energy is None; give a number"),
+        (lambda: cf.random_surface(0.1, 0.1, seed=1.5), "seed is 1.5; give a whole number"),
+        (lambda: cf.in_si_units(tile(np.zeros((4, 4))), 1e-3), "sphere is 0.001; give crackf"),
+        (lambda: cf.in_si_units([1], SPHERE), "data is a list; give an xarray.DataArray or"),
+        (lambda: cf.plot_loop(tile(np.zeros((4, 4)))), "loop is a xarray.DataArray; give an"),
+        (lambda: cf.plot_instabilities(None), "jumps is None; give what find_instabilities"),
+        (lambda: cf.read_scan(7, SPHERE), "scan is 7; give the path of a file"),
+        (lambda: cf.predict(7, SPHERE), "scans is 7; give the path of a file, or a list"),
+        (lambda: cf.predict([SCAN], "1mm"), "sphere is '1mm'; give crackfront.Scales"),
+        (lambda: cf.sweep(7), "configuration is 7; give the path"),
+    ],
+)
+def test_an_argument_of_another_type_is_refused_with_what_is_wanted(call, sentence):
+    with pytest.raises(TypeError, match=sentence):
+        call()
+
+
+def test_scales_take_texts_with_units():
+    given = cf.Scales("1.25mm", "63mJ/m2", contact_modulus="0.9333333333333333 MPa")
+    assert asdict(given) == pytest.approx(asdict(SPHERE), rel=1e-12)
+    with pytest.raises(ValueError, match="radius is '1kg', which is no length; write a number"):
+        cf.Scales("1kg", 1, 1)
+    with pytest.raises(ValueError, match=r"radius is -1\.0; it must be positive and finite"):
+        cf.Scales(-1, 1, 1)
+
+
+def test_heights_that_do_not_go_on_across_the_edge_are_refused_unless_that_is_meant(surface):
+    tilted = (surface + 0.3 * surface.y).rename("height").assign_attrs(surface.attrs)
+    with pytest.raises(ValueError, match=r"from one end of y to the other, .* is not periodic"):
+        cf.run_loop(tilted)
+    bare = tilted.drop_attrs(deep=False).assign_attrs(units=VERTICAL, periodic=1)
+    # A tilt has an energy of its own, which would be computed in silence.
+    assert float(cf.run_loop(bare, step=0.5).e_el) > 1.5 * 0.05
+
+
+def test_a_part_of_a_larger_map_is_refused_as_a_tile(rng):
+    whole = gaussian_field(FLAT.with_elastic_energy(0.05), 160, 8.0, rng)
+    assert cf.plot_surface(tile(whole, spacing=0.05), axes_of_a_figure())
+    with pytest.raises(ValueError, match="the tile is not periodic"):
+        cf.plot_surface(tile(whole[:80, :80], spacing=0.05))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_surface_that_is_periodic_is_never_refused_for_its_edge(seed):
+    noise = np.random.default_rng(seed).standard_normal((8, 8))
+    assert cf.plot_surface(tile(1e-3 * noise), axes_of_a_figure())
+
+
+def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
+    small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
+    found = cf.read_scan(SCAN, small, shortest="0.4um")
+    measurement = replace(read_measurements([SCAN])[0], shortest=0.4e-6)
+    adhesion = measured_adhesion(measurement, small)
+    np.testing.assert_allclose(
+        surface_adhesion(found).work_of_adhesion, adhesion.work_of_adhesion, rtol=1e-9
+    )
+    assert found.sizes == {"x": 288, "y": 288}
+    assert float(found.x[144]) == 0
+    told = found.attrs
+    assert told["source"].startswith(f"{SCAN}, al3d, checksum ")
+    assert told["levelling"].startswith("the paraboloid was taken off")
+    assert told["tile"].startswith("mirrored at its edges, where a scan does not go on")
+    assert told["waves"].startswith("those shorter than 400 nm were taken away")
+    assert "larger than the scan of 7.2 um" in told["contact"]
+
+
+WORDS = {"channel": 0, "crop": "1um:6um,1.5um:6.5um", "detrend": 3, "mask": ["2um:3um,2um:3um"]}
+
+
+def test_scans_are_read_in_the_words_of_the_commands():
+    small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
+    region = ((1e-6, 6e-6), (1.5e-6, 6.5e-6))
+    treatment = Treatment(3, channel="0", crop=region, mask=(((2e-6, 3e-6), (2e-6, 3e-6)),))
+    [measurement] = read_measurements([SCAN], treatment)
+    found = cf.read_scan(SCAN, small, **WORDS)
+    assert found.attrs["levelling"].startswith(f"{measurement.levelling} was taken off")
+    adhesion = measured_adhesion(scan(measurement).trusted_measurement, small)
+    np.testing.assert_allclose(
+        surface_adhesion(found).work_of_adhesion, adhesion.work_of_adhesion, rtol=1e-9
+    )
+    expected = measured_surface([measurement]).conformity_energy(SPHERE.contact_modulus)
+    assert cf.predict(SCAN, SPHERE, **WORDS).e_el == expected
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ({"channel": "Phase"}, "has no channel 'Phase'"),
+        ({"crop": "1um"}, "^crop is '1um'; write both ends"),
+        ({"mask": "1um:2um"}, "has 2 dimension"),
+        ({"detrend": "spline"}, "^detrend is 'spline'; choose one"),
+        ({"detrend": 10}, "^detrend is 10; choose one"),
+        ({"size": "5x5"}, "^size is '5x5'; write one number"),
+        ({"shortest": -1.0}, "^shortest is -1 m; it must lie between"),
+        ({"shortest": "4"}, "^shortest is '4', without a unit"),
+    ],
+)
+def test_words_that_cannot_be_used_are_refused_by_their_names(words, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.read_scan(SCAN, SPHERE, **words)
+
+
+@pytest.mark.parametrize("words", [{"crop": 3}, {"mask": 3}, {"longest": [1]}])
+def test_words_of_another_type_say_what_they_expect(words):
+    with pytest.raises(TypeError, match=f"^{next(iter(words))} is .*; give a"):
+        cf.predict(SCAN, SPHERE, **words)
+
+
+def test_a_prediction_shows_itself_with_intervals_limits_and_notes():
+    found = cf.predict(SCAN, SPHERE)
+    surface = measured_surface(read_measurements([SCAN]))
+    expected = predicted(surface, SPHERE)
+    assert found.w_retr == expected.w_retr
+    assert found.surface.checksum == surface.checksum
+    shown = repr(found)
+    assert prediction_text(expected) in shown
+    assert "\nThe theory applies" in shown
+    assert surface_text(surface) in shown
+    for note in prediction_notes(surface, expected):
+        assert note in shown
+    assert repr(cf.predict([str(SCAN)], SPHERE)) == shown
+
+
+def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
+    asked = []
+
+    def notice():
+        asked.append(1)
+        return len(asked) > 150
+
+    with monkeypatch.context() as patched:
+        patched.setattr("crackfront.sweep.parallel.notice_is_given", notice)
+        with pytest.raises(KeyboardInterrupt, match="what ran is kept; the same call goes on"):
+            cf.sweep(TEST, tmp_path, progress=False)
+    assert 0 < len(list((tmp_path / "curves").iterdir())) < 8
+    found = cf.sweep(TEST, tmp_path, progress=False)
+    assert found.w_retr.dims == ("spectrum", "amplitude", "realisation")
+    assert bool((found.w_retr > found.w_appr).all())
+    xr.testing.assert_identical(found, xr.load_dataset(tmp_path / "hysteresis.nc"))
+    assert (tmp_path / "shards/flat.json").is_file()
+
+    def run_again(*arguments):
+        raise AssertionError("nothing is missing")
+
+    monkeypatch.setattr("crackfront.sweep.tasks.run_simulation", run_again)
+    xr.testing.assert_equal(cf.sweep(str(TEST), str(tmp_path)), found)
+
+
+def test_simulations_without_a_value_are_warned_of(tmp_path):
+    limited = tmp_path / "limited.yaml"
+    limited.write_text(TEST.read_text().replace("max_sweeps: 100000", "max_sweeps: 2"))
+    with pytest.warns(UserWarning, match="8 of 8 simulations have no value: 8 step_limit"):
+        found = cf.sweep(limited, tmp_path / "out", progress=False)
+    assert bool(np.isnan(found.w_retr).all())
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"solver": "magic"}, "solver is 'magic'; choose one of newton, reference"),
+        ({"step": 0.0}, "load step is 0.0; it must be positive"),
+        ({"max_penetration": -1.0}, "max penetration -1.0 never makes contact"),
+        ({"error": 1e-6}, "error is 1e-06, but the finest numerics"),
+    ],
+)
+def test_a_loop_that_cannot_be_run_is_refused(surface, given, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.run_loop(surface, **({"error": 0.05} | given))
+
+
+def test_an_error_that_is_none_is_refused_even_where_the_pixels_decide():
+    with pytest.raises(ValueError, match="error is 2; it must lie between 0 and 1"):
+        cf.run_loop(tile(np.zeros((8, 8))), error=2)
+
+
+def test_a_direction_that_is_none_is_refused(surface):
+    with pytest.raises(ValueError, match="direction is 0; give 1 for approach or -1"):
+        cf.find_instabilities(surface, direction=0)
+
+
+@pytest.mark.parametrize(
+    ("units", "sentence"),
+    [
+        ("kg", "'kg', which cannot be converted to m"),
+        ("furlongz", "'furlongz', which cannot"),
+        (None, "the units None, which cannot"),
+    ],
+)
+def test_units_of_another_quantity_are_refused(surface, units, sentence):
+    given = cf.in_si_units(surface, SPHERE).assign_attrs(units=units)
+    with pytest.raises(ValueError, match=sentence):
+        cf.in_reduced_units(given, SPHERE)
+
+
+def test_unknown_variables_have_no_units_to_convert(loop):
+    with pytest.raises(ValueError, match="extra is no variable of a surface or of a cycle; drop"):
+        cf.in_si_units(loop.assign(extra=loop.force), SPHERE)
+    with pytest.raises(ValueError, match="the array has no name"):
+        cf.in_si_units(loop.force.rename(None), SPHERE)
+
+
+def test_plots_draw_on_given_axes_and_leave_nothing_behind(surface, loop, jumps):
+    given = axes_of_a_figure()
+    assert cf.plot_loop(loop, given) is given
+    branch = loop.direction.values == 1
+    markers = next(line for line in given.get_lines() if line.get_label() == "approach")
+    np.testing.assert_array_equal(markers.get_xdata(), loop.mean_radius[branch])
+    for drawn in (
+        cf.plot_fronts(loop, surface, axes_of_a_figure()),
+        cf.plot_surface(surface, axes_of_a_figure()),
+        cf.plot_spectrum(surface, axes_of_a_figure()),
+        cf.plot_instabilities(jumps, axes_of_a_figure()),
+    ):
+        assert drawn.get_xlabel()
+        drawn.figure.canvas.draw()
+    assert pyplot.get_fignums() == []
+
+
+def test_what_is_in_si_units_is_drawn_in_them(surface, loop, jumps):
+    surface_si, loop_si, jumps_si = (cf.in_si_units(one, SPHERE) for one in (surface, loop, jumps))
+    drawn = cf.plot_loop(loop_si, axes_of_a_figure())
+    approach = next(line for line in drawn.get_lines() if line.get_label() == "approach")
+    branch = loop_si.isel(step=loop_si.direction.values == 1)
+    np.testing.assert_allclose(approach.get_xdata(), branch.mean_radius, rtol=1e-12)
+    np.testing.assert_allclose(approach.get_ydata(), branch.force, rtol=1e-12)
+    assert drawn.xaxis.get_major_formatter()(50e-6) == "50 µm"
+    assert drawn.yaxis.get_major_formatter()(-2e-4) == "−200 µN"
+    image = cf.plot_surface(surface_si, axes_of_a_figure()).get_images()[0]
+    np.testing.assert_allclose(image.get_array(), surface_si.values.T, rtol=1e-12)
+    density = cf.plot_spectrum(surface_si, axes_of_a_figure()).get_lines()[0].get_data()
+    reduced = cf.plot_spectrum(surface, axes_of_a_figure()).get_lines()[0].get_data()
+    np.testing.assert_allclose(density[0], reduced[0] / SPHERE.lateral, rtol=1e-9)
+    square = (SPHERE.lateral * SPHERE.vertical) ** 2
+    np.testing.assert_allclose(density[1], reduced[1] * square, rtol=1e-9)
+    for one in (surface, surface_si):
+        fronts = cf.plot_fronts(loop_si, one, axes_of_a_figure()).get_lines()
+        assert np.max(np.hypot(*fronts[0].get_data())) <= float(loop_si.radius.max())
+    [patches] = cf.plot_instabilities(jumps_si, axes_of_a_figure()).collections
+    assert patches.get_array().max() == pytest.approx(float(jumps_si.dissipated_energy.max()))
+
+
+def test_a_loop_in_si_units_is_drawn_from_its_file_as_well(loop, tmp_path):
+    cf.in_si_units(loop, SPHERE).to_netcdf(tmp_path / "loop.nc")
+    with xr.open_dataset(tmp_path / "loop.nc") as found:
+        labels = cf.plot_loop(found, axes_of_a_figure()).get_legend_handles_labels()[1]
+    assert "approach" in labels
+
+
+def test_without_axes_a_plot_makes_a_figure_of_pyplot(loop):
+    axes = cf.plot_loop(loop)
+    assert pyplot.get_fignums() == [axes.figure.number]
+
+
+def test_the_drawn_fronts_are_closed_and_the_last_of_a_branch_is_one_of_them(loop):
+    axes = cf.plot_fronts(loop, axes=axes_of_a_figure(), most=3)
+    lines = axes.get_lines()
+    assert len(lines) <= 6
+    for line in lines:
+        x, y = line.get_data()
+        assert (x[0], y[0]) == (x[-1], y[-1])
+    retraction = [line for line in lines if line.get_label() == "retraction"]
+    np.testing.assert_allclose(np.hypot(*retraction[0].get_data())[:-1], loop.radius[-1])
+
+
+def test_the_patches_of_the_instabilities_have_the_swept_area(jumps):
+    [patches] = cf.plot_instabilities(jumps, axes_of_a_figure()).collections
+    area = 0.0
+    for path in patches.get_paths():
+        x, y = path.vertices.T
+        area += abs(np.dot(x[:-1], y[1:]) - np.dot(x[1:], y[:-1])) / 2
+    assert area == pytest.approx(float(jumps.area.sum()), rel=0.05)
+
+
+def test_the_rms_values_of_a_spectrum_are_those_of_the_surface():
+    x = 0.1 * np.arange(20)
+    wave = tile(0.03 * np.cos(2 * np.pi * x)[:, None] * np.ones(20))
+    labels = [text.get_text() for text in cf.plot_spectrum(wave, axes_of_a_figure()).texts]
+    height = 0.03 / np.sqrt(2)
+    for label, order in zip(labels, (0, 0.5, 1), strict=True):
+        assert f"{height * (2 * np.pi) ** order:.3g}" in label
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda surface, loop, jumps: cf.plot_loop(loop.drop_vars("force")), "it lacks force"),
+        (lambda surface, loop, jumps: cf.plot_fronts(loop.drop_vars("radius")), "fronts=True"),
+        (lambda surface, loop, jumps: cf.plot_fronts(loop, most=0), "most is 0"),
+        (lambda surface, loop, jumps: cf.plot_spectrum(0 * surface), "the surface is flat"),
+        (lambda surface, loop, jumps: cf.plot_instabilities(jumps[{"instability": []}]), "none"),
+        (
+            lambda surface, loop, jumps: cf.plot_spectrum(
+                (1 + surface).rename("work_of_adhesion").assign_attrs(units=ADHESION)
+            ),
+            "work_of_adhesion has no height spectrum",
+        ),
+    ],
+)
+def test_what_cannot_be_plotted_is_refused_and_leaves_no_figure(
+    surface, loop, jumps, call, sentence
+):
+    with pytest.raises(ValueError, match=sentence):
+        call(surface, loop, jumps)
+    assert pyplot.get_fignums() == []

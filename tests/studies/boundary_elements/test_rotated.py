@@ -1,0 +1,108 @@
+"""The mapping whose crack turns with the angle: against brute force and the mapping of a tile."""
+
+import itertools
+import sys
+
+import numpy as np
+import pytest
+
+from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.field.fields import polar_field
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
+from studies.boundary_elements.rotated import adhesion_on_rays, rotated_field
+
+PIXEL = 0.3
+
+
+def signs(number, count):
+    """A wavenumber, or both signs of the Nyquist one."""
+    return (number, -number) if 2 * number == -count else (number,)
+
+
+def brute_force(heights, angle, radius):
+    """SI Eq. (KR-from-h-Fourier) in coordinates that turn with the front, mode by mode."""
+    n_x, n_y = heights.shape
+    modes = np.fft.fft2(heights) / heights.size
+    along, across = (
+        np.array([np.cos(angle), np.sin(angle)]),
+        np.array([-np.sin(angle), np.cos(angle)]),
+    )
+    place = radius * along + PIXEL * np.array([n_x, n_y]) / 2
+    stress = 0.0
+    for k, m in itertools.product(
+        range(-(n_x // 2), (n_x + 1) // 2), range(-(n_y // 2), (n_y + 1) // 2)
+    ):
+        pairs = list(itertools.product(signs(k, n_x), signs(m, n_y)))
+        for pair in pairs:
+            q = 2 * np.pi * np.array(pair) / (PIXEL * np.array([n_x, n_y]))
+            kernel = -CONTACT_MODULUS / np.sqrt(2) * np.sqrt(1j * (q @ along) + abs(q @ across))
+            stress += (kernel * modes[k, m] * np.exp(1j * (q @ place))).real / len(pairs)
+    energy = rough_adhesion(heights, PIXEL).e_el * WORK_OF_ADHESION
+    return WORK_OF_ADHESION - energy - np.sqrt(2 * WORK_OF_ADHESION / CONTACT_MODULUS) * stress
+
+
+@pytest.mark.parametrize("shape", [(12, 12), (9, 9), (8, 11)])
+def test_every_angle_has_the_kernel_of_its_own_crack_to_round_off(rng, shape):
+    heights = 1e-3 * rng.standard_normal(shape)
+    angles = np.array([0.0, 0.3, 2.2, 4.0])
+    found = adhesion_on_rays(heights, PIXEL, angles, 0.1, 7)
+    expected = np.array(
+        [[brute_force(heights, a, 0.1 * (m + 1)) for a in angles] for m in range(7)]
+    )
+    np.testing.assert_allclose(found, expected, atol=1e-13)
+    assert np.std(expected) > 1e-4
+
+
+def test_a_crack_that_does_not_turn_has_the_field_of_the_tile(rng):
+    heights = 1e-3 * rng.standard_normal((16, 16))
+    tile = rough_adhesion(heights, PIXEL).work_of_adhesion
+    found = adhesion_on_rays(heights, PIXEL, np.array([0, np.pi / 2]), PIXEL, 7, rotated=False)
+    np.testing.assert_allclose(found[:, 0], tile[9:, 8], atol=1e-13)
+    np.testing.assert_allclose(found[:, 1], tile[8, 9:], atol=1e-13)
+
+
+def test_turning_the_surface_turns_the_field_of_cracks_that_turn(rng):
+    heights = 1e-3 * rng.standard_normal((15, 15))
+    angles = np.array([0.4, 1.9])
+    # The first point is the corner of the tile: turn about the middle of the periodic tile.
+    turned = np.roll(np.rot90(heights), 1, axis=0)
+    before = adhesion_on_rays(heights, PIXEL, angles, 0.1, 9)
+    after = adhesion_on_rays(turned, PIXEL, angles + np.pi / 2, 0.1, 9)
+    assert not np.allclose(before, adhesion_on_rays(heights, PIXEL, angles + np.pi / 2, 0.1, 9))
+    np.testing.assert_allclose(after, before, atol=1e-13)
+
+
+def test_turning_the_crack_changes_single_places_and_no_statistics():
+    spectrum = SelfAffineSpectrum(0.1, 0.1, hurst=1.0).with_elastic_energy(0.03)
+    heights = gaussian_field(spectrum, 128, 5.12, np.random.default_rng(3))
+    angles = 2 * np.pi * np.arange(512) / 512
+    one, other = (
+        adhesion_on_rays(heights, 0.04, angles, 0.02, 128, rotated=rotated)
+        for rotated in (True, False)
+    )
+    assert np.corrcoef(one.ravel(), other.ravel())[0, 1] < 0.95
+    assert one.std() == pytest.approx(other.std(), rel=0.02)
+    assert one.mean() == pytest.approx(other.mean(), rel=0.01)
+
+
+def test_a_front_is_given_the_samples_of_its_rays(rng):
+    heights = 1e-3 * rng.standard_normal((16, 16))
+    field = rotated_field(heights, PIXEL, 8, 0.1, 1.0)
+    angles = 2 * np.pi * np.arange(8) / 8
+    values = adhesion_on_rays(heights, PIXEL, angles, 0.1, 10)
+    expected = polar_field(0.1 * np.arange(1, 11), values, "cubic")
+    for mine, theirs in zip(field, expected, strict=True):
+        np.testing.assert_allclose(mine, theirs, rtol=1e-12)
+
+
+def test_a_spacing_that_gives_no_samples_is_refused():
+    with pytest.raises(ValueError, match=r"sample spacing 0.6 must be positive and below half"):
+        rotated_field(np.ones((8, 8)), PIXEL, 8, 0.6, 1.0)
+
+
+def test_a_missing_transform_is_refused_with_the_command_that_installs_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "finufft", None)
+    with pytest.raises(ValueError, match=r"need finufft, .* pip install '.\[bem\]'"):
+        adhesion_on_rays(np.ones((8, 8)), PIXEL, np.zeros(1), 0.1, 4)

@@ -1,0 +1,108 @@
+"""Truncated power laws: recovery of what was drawn, normalisation, refusal."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from studies.law.power_law import (
+    JointPowerLaw,
+    PowerLaw,
+    cutoff_scale,
+    joint_power_law,
+    truncated_power_law,
+)
+
+
+def drawn(rng, exponent, cutoff, count):
+    """Values from the law above 1, by rejection of a bare power law."""
+    values = rng.uniform(size=40 * count) ** (-1 / (exponent - 1))
+    return values[rng.uniform(size=values.size) < np.exp(-(values - 1) / cutoff)][:count]
+
+
+@pytest.mark.parametrize(("exponent", "cutoff"), [(1.28, 100.0), (1.6, 30.0), (2.0, 1e5)])
+def test_it_recovers_the_law_of_its_values(rng, exponent, cutoff):
+    values = drawn(rng, exponent, cutoff, 3000)
+    law = truncated_power_law(3 * values, 3.0, rng)
+    assert law.low - 0.03 < exponent < law.high + 0.03
+    assert law.high - law.low < 0.3
+    assert law.n_value == 3000
+    if cutoff < 1e4:
+        assert law.cutoff == pytest.approx(3 * cutoff, rel=0.3)
+
+
+def test_its_interval_covers_the_exponent_about_as_often_as_it_says(rng):
+    laws = [truncated_power_law(drawn(rng, 1.28, 50.0, 150), 1.0, rng) for _ in range(8)]
+    assert sum(law.low <= 1.28 <= law.high for law in laws) >= 6
+
+
+def test_values_below_the_smallest_have_no_part(rng):
+    values = drawn(rng, 1.5, 50.0, 500)
+    more = np.concatenate([values, np.full(300, 0.5)])
+    one = truncated_power_law(values, 1.0, np.random.default_rng(1))
+    other = truncated_power_law(more, 1.0, np.random.default_rng(1))
+    assert one.exponent == pytest.approx(other.exponent, abs=1e-12)
+
+
+def test_its_density_is_normalised():
+    law = PowerLaw(1.28, 1.2, 1.4, cutoff=80.0, smallest=2.0, n_value=100)
+    integral = sum(
+        quad(law.density, *ends, limit=200)[0] for ends in [(2.0, 20.0), (20.0, 200.0), (200, 8000)]
+    )
+    assert integral == pytest.approx(1.0, abs=1e-7)
+
+
+def test_too_few_values_are_refused(rng):
+    with pytest.raises(ValueError, match="3 values lie above 1; a power law needs 20"):
+        truncated_power_law(np.array([0.5, 1.0, 2.0, 3.0]), 1.0, rng)
+
+
+SCALES = (600.0, 3000.0, 15000.0)
+
+
+def scaling(rng, exponent, count, shoulder=0.6, tail=1.6, steepness=1.3):
+    """Samples from 3 on of a joint law, by inversion of its distribution."""
+    samples = []
+    for scale in SCALES:
+        grid = np.geomspace(3.0, 100 * scale, 20001)
+        scaled = grid / scale
+        log = shoulder * np.sqrt(scaled) - tail / 4 * scaled**steepness
+        mass = np.cumsum(grid ** (1 - exponent) * np.exp(log))
+        samples.append(np.interp(rng.uniform(size=count), mass / mass[-1], grid))
+    return samples
+
+
+@pytest.mark.parametrize("exponent", [1.28, 1.56])
+def test_a_joint_law_recovers_the_exponent_of_samples_with_a_shoulder(rng, exponent):
+    law = joint_power_law(scaling(rng, exponent, 5000), 30.0, rng)
+    assert law.low - 0.02 < exponent < law.high + 0.02
+    assert law.high - law.low < 0.2
+    assert law.exponent == pytest.approx(exponent, abs=0.08)
+
+
+def test_an_exponential_cutoff_would_take_a_shoulder_for_a_smaller_exponent(rng):
+    samples = scaling(rng, 1.28, 5000, shoulder=1.5, tail=3.0)
+    bare = [truncated_power_law(sample, 30.0, rng).exponent for sample in samples]
+    assert np.mean(bare) < 1.2
+    assert joint_power_law(samples, 30.0, rng).high > 1.28
+
+
+def test_the_scales_of_a_joint_law_are_those_of_its_samples(rng):
+    samples = scaling(rng, 1.28, 3000)
+    law = joint_power_law(samples, 30.0, rng)
+    expected = [np.mean(sample**2) / np.mean(sample) / 2 for sample in samples]
+    assert law.scales == pytest.approx(expected, rel=0.01)
+    assert [cutoff_scale(sample) for sample in samples] == pytest.approx(expected)
+    assert law.n_value.tolist() == [np.sum(sample >= 30.0) for sample in samples]
+
+
+def test_the_density_of_a_joint_law_is_normalised_for_every_sample():
+    scales = np.array(SCALES)
+    law = JointPowerLaw(1.28, 1.2, 1.4, 0.6, 1.6, 1.3, scales, 30.0, np.array([9, 9, 9]))
+    for sample, scale in enumerate(SCALES):
+        grid = np.geomspace(30.0, 100 * scale, 40001)
+        assert np.trapezoid(law.density(grid, sample), grid) == pytest.approx(1.0, abs=1e-5)
+
+
+def test_a_joint_law_needs_values_of_every_sample(rng):
+    with pytest.raises(ValueError, match="2 values of a sample lie above 30; a power law needs 20"):
+        joint_power_law([np.full(50, 40.0), np.array([1.0, 35.0, 50.0])], 30.0, rng)

@@ -1,0 +1,189 @@
+"""Main Fig. 5a and SI Fig. S-6: spectral densities of the nanodiamond film."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+from pydantic_core import PydanticCustomError
+
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.data.section import ConfigurationError
+from studies.paper.figure import figure, load_figure
+from studies.paper.film import conformity_energy
+from studies.paper.main_5a import FilmScalesParameters, film_scales
+from studies.paper.measured import read_profile_density
+from studies.paper.si_6 import (
+    SyntheticFilmParameters,
+    profile_periodogram,
+    synthetic_film,
+)
+
+FILM = {
+    "young_modulus": 0.7e6,
+    "poisson_ratio": 0.5,
+    "hurst": 1.0,
+    "roll_off": 2.1e-6,
+    "plateau": 8.4e-27,
+    "short_cutoff": 4e-10,
+    "longest": 1e-4,
+}
+SCALES = FILM | {"work_of_adhesion": 63e-3}
+SYNTHETIC = FILM | {"shortest": 0.5e-6, "tile_roll_offs": 10.0, "realisations": 4, "seed": 3}
+
+
+def ignore(line):
+    """No progress."""
+
+
+@pytest.fixture(scope="module")
+def scales():
+    return film_scales(FilmScalesParameters(**SCALES), ignore)
+
+
+@pytest.fixture(scope="module")
+def synthetic():
+    return synthetic_film(SyntheticFilmParameters(**SYNTHETIC), ignore)
+
+
+def failed(name, record):
+    return [check.claim for check in figure(name).checks(record) if not check.passed]
+
+
+def table(tmp_path, text):
+    path = tmp_path / "measured.csv"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_the_film_has_the_numbers_of_the_paper(scales):
+    assert failed("main-5a", scales) == []
+
+
+def test_a_film_of_half_the_plateau_fails_the_numbers_of_the_paper(scales):
+    thinner = FilmScalesParameters(**SCALES | {"plateau": 4.2e-27})
+    assert len(failed("main-5a", film_scales(thinner, ignore))) == 4
+
+
+def test_a_range_that_is_too_narrow_fails_its_check(scales):
+    claims = failed("main-5a", replace(scales, longest=scales.longest * 0.9))
+    assert len([claim for claim in claims if "share" in claim]) == 3
+
+
+def test_synthetic_surfaces_have_the_density_of_their_spectrum(synthetic):
+    # The cutoff is longer here than the scales that carry e_el, and that is said.
+    assert failed("si-6", synthetic) == [
+        "density of the lines over that of the film's spectrum, in the same range",
+        "the included scales hold those that carry 80% of e_el",
+    ]
+
+
+def test_a_density_of_the_wrong_convention_fails_its_checks(synthetic):
+    claims = failed("si-6", replace(synthetic, synthetic=2 * synthetic.synthetic))
+    assert len(claims) == 5
+
+
+def test_the_density_of_lines_is_that_of_a_single_wave():
+    n_point, pixel, amplitude = 32, 0.5, 3.0
+    side = n_point * pixel
+    wave = amplitude * np.cos(2 * np.pi * 5 * np.arange(n_point) / n_point)
+    density = profile_periodogram(np.tile(wave[:, None], 4), pixel)
+    assert density[4] == pytest.approx(amplitude**2 / 4 * side)
+    assert np.delete(density, 4) == pytest.approx(0.0, abs=1e-25)
+
+
+def test_the_density_of_lines_is_the_same_in_both_directions_on_average():
+    spectrum = SelfAffineSpectrum(0.05, 0.25, 0.8)
+    along, across = np.zeros(31), np.zeros(31)
+    for seed in range(200):
+        heights = gaussian_field(spectrum, 64, 1.0, np.random.default_rng(seed))
+        along += profile_periodogram(heights, 1 / 64)
+        across += profile_periodogram(heights.T, 1 / 64)
+    assert np.sum(along[3:15]) == pytest.approx(np.sum(across[3:15]), rel=0.05)
+
+
+@pytest.mark.parametrize("name", ["main-5a", "si-6"])
+def test_data_without_measured_points_come_back_from_their_file(name, request, tmp_path):
+    record = request.getfixturevalue({"main-5a": "scales", "si-6": "synthetic"}[name])
+    write_record(tmp_path / f"{name}.nc", record, provenance(), title="film")
+    again = read_record(tmp_path / f"{name}.nc", figure(name).record)
+    assert again.measured_profile.size == 0
+    assert failed(name, again) == failed(name, record)
+
+
+@pytest.mark.parametrize("name", ["main-5a", "si-6"])
+def test_figures_of_densities_have_units_in_si(name, request):
+    record = request.getfixturevalue({"main-5a": "scales", "si-6": "synthetic"}[name])
+    drawn = figure(name).draw(record)
+    assert all("(m$^" in axes.get_ylabel() for axes in drawn.axes)
+    assert "m$^{-1}$" in drawn.axes[-1].get_xlabel()
+
+
+def measured_film(tmp_path):
+    """A file with the exact profile density of the film, in other units."""
+    q = np.geomspace(1e4, 1e9, 400)
+    density = FilmScalesParameters(**SCALES).spectrum.profile_density(q)
+    rows = (f"{a / 1e6:.12g},{b * 1e18:.12g}\n" for a, b in zip(q, density, strict=True))
+    return table(tmp_path, "q (1/um),C1D (um^3)\n" + "".join(rows))
+
+
+def test_measured_profiles_are_drawn_and_give_their_own_energy(tmp_path):
+    path = measured_film(tmp_path)
+    record = film_scales(FilmScalesParameters(**SCALES, measured=str(path)), ignore)
+    assert failed("main-5a", record) == []
+    assert len(figure("main-5a").checks(record)) == 11
+    found = conformity_energy(
+        record.measured_wavevector, record.measured_profile, record.contact_modulus
+    )
+    assert found == pytest.approx(11.14e-3, abs=0.05e-3)
+    labels = figure("main-5a").draw(record).axes[1].get_legend_handles_labels()[1]
+    assert "measured" in labels
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("q (1/m),C2D (m^4)\n1,1\n2,1\n", "line 1: column C1D is missing"),
+        ("q (1/m),C1D (m^4)\n1,1\n2,1\n", r"line 1: C1D is in m\^4; write C1D .unit. with one"),
+        ("q,C1D (m^3)\n1,1\n2,1\n", "line 1: q has no unit"),
+        ("q (1/m),C1D (m^3)\n1,1\n# note\n2,nan\n", "line 4: C1D is 'nan'; it must be a positive"),
+        ("q (1/m),C1D (m^3)\n1,1\n2,-1\n", "line 3: C1D is '-1'; it must be a positive number"),
+        ("q (1/m),C1D (m^3)\n1,1\n3,1\n2,1\n", "line 4: q is 2 1/m after 3 1/m; wavevectors must"),
+        ("q (1/m),C1D (m^3)\n1,1\n2\n", "line 3 has 1 values for 2 columns"),
+        ("q (1/m),C1D (m^3)\n1,1\n", "line 2 is the only row"),
+        ("q (1/m),C1D (m^3)\n", "has a header but no rows"),
+        ("", "is empty"),
+    ],
+)
+def test_a_wrong_file_of_profiles_is_refused_with_its_line(tmp_path, text, sentence):
+    with pytest.raises(PydanticCustomError, match=sentence):
+        read_profile_density(table(tmp_path, text))
+
+
+def test_a_configuration_with_a_wrong_file_is_refused_before_any_work(tmp_path):
+    wrong = table(tmp_path, "q (1/m),C1D (m^3)\n1,1\n1,1\n")
+    given = "".join(f"  {key}: {value!r}\n" for key, value in SCALES.items())
+    path = tmp_path / "main-5a.yaml"
+    path.write_text(f"parameters:\n{given}  measured: {wrong}\nquick: {{}}\npaper: {{}}\n")
+    with pytest.raises(ConfigurationError, match=r"measured\.csv, line 3: q is 1 1/m after 1 1/m"):
+        load_figure(path, "quick")
+    path.write_text(path.read_text().replace("measured.csv", "none.csv"))
+    with pytest.raises(ConfigurationError, match=r"none\.csv cannot be read: No such file"):
+        load_figure(path, "quick")
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "sentence"),
+    [
+        (FilmScalesParameters, SCALES | {"longest": 1e-6}, "longest is 1e-06; show ten roll-off"),
+        (FilmScalesParameters, SCALES | {"roll_off": 1e-10}, "roll_off 1e-10 is shorter than"),
+        (SyntheticFilmParameters, SYNTHETIC | {"shortest": 1e-5}, "it must lie between"),
+        (SyntheticFilmParameters, SYNTHETIC | {"longest": 1e-5}, "must not be below the side"),
+    ],
+)
+def test_films_that_cannot_be_shown_are_refused(kind, given, sentence):
+    with pytest.raises(ValidationError, match=sentence):
+        kind(**given)

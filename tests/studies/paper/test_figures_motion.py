@@ -1,0 +1,62 @@
+"""The animation of a cycle: what it shows, and how it is written."""
+
+from dataclasses import replace
+
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+
+from crackfront.cli import main
+from crackfront.data.provenance import provenance
+from crackfront.data.records import write_record
+from crackfront.plots.animation import save_animation
+from studies.paper.figure import FIGURES, figure
+from studies.paper.rough import RoughCycleParameters
+
+
+def ignore(line):
+    """No progress."""
+
+
+def failing(record):
+    """Claims that fail."""
+    return [check.claim for check in figure("beyond-animation").checks(record) if not check.passed]
+
+
+@pytest.fixture(scope="module")
+def shown():
+    parameters = RoughCycleParameters(
+        seed=1,
+        error=0.5,
+        tile_roll_offs=10.0,
+        short_cutoff=0.3,
+        elastic_energy=0.1,
+        max_penetration=0.6,
+        step=0.2,
+    )
+    return figure("beyond-animation").compute(parameters, ignore)
+
+
+def test_the_animation_shows_a_cycle_whose_energies_close(shown):
+    assert failing(shown) == []
+    wrong = replace(shown, dissipated_energy=shown.dissipated_energy - 0.1, front=shown.front[::-1])
+    assert len(failing(wrong)) == 4
+
+
+def test_an_animation_has_a_frame_for_every_state(shown, tmp_path):
+    path = save_animation(figure("beyond-animation").animate(shown), tmp_path / "cycle")
+    with Image.open(path) as image:
+        assert image.n_frames >= shown.direction.size
+    assert path.stat().st_size < 3_000_000
+
+
+def test_animated_figures_are_those_that_have_an_animation():
+    assert [name for name in FIGURES if figure(name).animate] == ["beyond-animation"]
+
+
+def test_drawing_an_animated_figure_writes_its_gif(shown, tmp_path):
+    path = tmp_path / "beyond-animation.nc"
+    write_record(path, shown, provenance(), title="animation")
+    result = CliRunner().invoke(main, ["draw-figure", str(path)])
+    assert result.exit_code == 0, result.output
+    assert {item.suffix for item in tmp_path.iterdir()} == {".nc", ".pdf", ".png", ".gif"}

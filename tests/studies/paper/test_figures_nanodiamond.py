@@ -1,0 +1,179 @@
+"""Main Fig. 5b, c: the contact on nanodiamond in SI units, its instabilities and fits."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.data.section import ConfigurationError
+from studies.paper.advances import Perimeters, advances
+from studies.paper.figure import figure, load_figure, settings_fingerprint
+from studies.paper.main_5bc import NanodiamondParameters
+
+CONFIGURATION = Path(__file__).parents[3] / "config" / "figures" / "main-5bc.yaml"
+
+
+def ignore(line):
+    """No progress."""
+
+
+def failing(record):
+    """Claims that fail."""
+    return [check.claim for check in figure("main-5bc").checks(record) if not check.passed]
+
+
+def film_parameters(**others):
+    film = {
+        "seed": 1,
+        "error": 0.5,
+        "tile_roll_offs": 10.0,
+        "young_modulus": 0.7e6,
+        "poisson_ratio": 0.5,
+        "radius": 1.25e-3,
+        "work_of_adhesion": 63e-3,
+        "hurst": 1.0,
+        "roll_off": 2.1e-6,
+        "short_cutoff": 1.05e-6,
+        "plateau": 8.4e-27,
+        "largest_force": 1e-3,
+        "shown_force": 0.64e-3,
+        "step": 240e-9,
+        "retraction_step": 480e-9,
+        "line_step": 480e-9,
+    }
+    return NanodiamondParameters(**film | others)
+
+
+@pytest.fixture(scope="module")
+def contact():
+    return figure("main-5bc").compute(film_parameters(), ignore)
+
+
+def test_nanodiamond_has_the_numbers_of_the_paper(contact):
+    failed = failing(contact)
+    assert not [claim for claim in failed if "k = 3 predicts" in claim or "wavelengths" in claim]
+    assert contact.force.max() >= 1e-3
+    assert np.all(np.diff(contact.line, axis=0) >= 0)
+    assert np.all(contact.line_force <= 0.64e-3)
+    # Half a decade of wavelengths holds three quarters of the energy of all.
+    np.testing.assert_allclose(contact.elastic_energy / 11.14e-3, 0.625, rtol=0.1)
+
+
+def test_a_wrong_nanodiamond_contact_fails_its_checks(contact):
+    k3 = {
+        "approach": np.array([63e-3 - 4 * contact.elastic_energy, 1e-4]),
+        "retraction": np.array([63e-3 + 2 * contact.elastic_energy, 1e-4]),
+    }
+    claims = failing(replace(contact, **k3))
+    assert not [claim for claim in claims if "hysteresis of" in claim]
+    wrong = replace(
+        contact,
+        status="the cycle ended early",
+        whole_elastic_energy=2 * contact.whole_elastic_energy,
+        retraction=contact.approach * 1.01,
+        extent=contact.extent / 100,
+        synthetic_fit=contact.synthetic_fit * 1.1,
+        simulated_fit=contact.simulated_fit * 2,
+    )
+    assert len(failing(wrong)) == 11
+
+
+def test_an_advance_goes_on_across_the_first_ray():
+    before = np.ones(64)
+    after = before.copy()
+    after[[62, 63, 0, 1, 2]] = 1.5
+    after[10:13] = 1.5
+    inner, outer = sorted(advances(before, after, 0.1), key=lambda part: part.extent)
+    assert inner.angle.size == 3
+    assert outer.extent == pytest.approx(5 * 2 * np.pi / 64 * 1.25)
+    np.testing.assert_allclose(outer.outer, 1.5)
+    assert advances(before, after, 0.6) == []
+    (whole,) = advances(before, before + 1, 0.1)
+    assert whole.extent == pytest.approx(2 * np.pi * 1.5)
+
+
+def test_longer_load_steps_see_wider_advances():
+    perimeters = Perimeters(0.1, highest=1.0, every=1, strides=(1, 2))
+    front = np.ones(32)
+    for sites in ([], [3, 4], [5, 6, 7], [20], []):
+        front = front.copy()
+        front[sites] += 0.5
+        perimeters.follow(front)
+    assert [advance.angle.size for advance in perimeters.widest.values()] == [3, 5]
+    assert [len(extents) for extents in perimeters.extents.values()] == [3, 2]
+
+
+def test_the_drawing_of_its_file_has_labelled_axes(contact, tmp_path):
+    path = tmp_path / "main-5bc.nc"
+    write_record(path, contact, provenance(), title="test")
+    drawn = figure("main-5bc").draw(read_record(path, figure("main-5bc").record))
+    for axes in drawn.axes[:2]:
+        assert axes.get_xlabel()
+        assert axes.get_ylabel()
+
+
+MEASURED = """force (mN),radius (um),branch
+-0.15,70,approach
+0.05,90,approach
+0.5,110,approach
+0.1,112,retraction
+"""
+
+
+def test_measured_points_are_fitted_checked_and_drawn(tmp_path):
+    path = tmp_path / "measured.csv"
+    path.write_text(MEASURED)
+    record = figure("main-5bc").compute(film_parameters(measured=str(path), step=960e-9), ignore)
+    value, low, high = record.measured_fit
+    assert 0.02 < low < value < high
+    assert "w_int from the measured approach with k = 3" in [
+        check.claim for check in figure("main-5bc").checks(record)
+    ]
+    labels = [line.get_label() for line in figure("main-5bc").draw(record).axes[1].get_lines()]
+    assert {"measured, approach", "measured, retraction"} <= set(labels)
+
+
+def with_measured(folder, text):
+    """The configuration of the figure with measured points."""
+    (folder / "measured.csv").write_text(text)
+    path = folder / CONFIGURATION.name
+    line = f"parameters:\n  measured: {folder / 'measured.csv'}\n"
+    path.write_text(CONFIGURATION.read_text().replace("parameters:\n", line))
+    return path
+
+
+def test_a_configuration_with_a_wrong_csv_is_refused_before_any_work(tmp_path):
+    path = with_measured(tmp_path, MEASURED.replace("0.5,110", "nan,110"))
+    with pytest.raises(ConfigurationError, match=r"measured.csv, line 4: force is 'nan'"):
+        load_figure(path, "quick")
+
+
+def test_a_measured_file_decides_what_a_figure_is_made_of_and_a_comment_does_not(tmp_path):
+    configuration = with_measured(tmp_path, MEASURED)
+    before = settings_fingerprint(configuration, "paper")
+    configuration.write_text(f"# a remark\n{configuration.read_text()}")
+    assert settings_fingerprint(configuration, "paper") == before
+    with_measured(tmp_path, MEASURED.replace("0.5,110", "0.5,111"))
+    assert settings_fingerprint(configuration, "paper") != before
+
+
+@pytest.mark.parametrize(
+    ("others", "sentence"),
+    [
+        ({"short_cutoff": 3e-6}, "roll_off 2.1e-06 is shorter than short_cutoff 3e-06"),
+        ({"shown_force": 2e-3}, "shown_force 0.002 is above largest_force 0.001"),
+        ({"plateau": 8.4e-26}, "energy of full conformity is 0.111 J/m.2, not below"),
+    ],
+)
+def test_a_contact_that_cannot_be_computed_is_refused(others, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        film_parameters(**others)
+
+
+def test_a_force_below_that_of_jump_in_shows_no_perimeter():
+    parameters = film_parameters().model_copy(update={"shown_force": -1.0})
+    with pytest.raises(ValueError, match="no state between jump-in and shown_force"):
+        figure("main-5bc").compute(parameters, ignore)

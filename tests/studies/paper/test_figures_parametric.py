@@ -1,0 +1,81 @@
+"""SI Fig. S-5: the figure of a sweep and what the paper reads off it."""
+
+import numpy as np
+import pytest
+
+from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.table import SweepTable
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from studies.paper.figure import figure
+from studies.paper.si_5 import ParametricStudy, ParametricStudyParameters, study_fit
+
+SCENE = figure("si-5")
+AMPLITUDES = np.array([0.002, 0.01, 0.05, 0.15])
+LENGTHS = np.array([0.01, 0.04])
+
+
+def study(factor, onset=(0.001, 0.004), exponent=2.0):
+    """Two spectra whose k rises from 0 at their onset to a factor."""
+    energy = np.broadcast_to(AMPLITUDES[:, None], (2, 4, 3))
+    rise = 1 - np.exp(-((energy / np.array(onset)[:, None, None]) ** 4))
+    scatter = 0.02 * np.random.default_rng(1).standard_normal(energy.shape)
+    reach = energy * factor * (energy / 0.05) ** (exponent / 2 - 1) * rise * (1 + scatter)
+    zero = np.zeros_like(energy)
+    table = SweepTable(
+        spectrum=np.array(["short", "long"]),
+        short_cutoff=LENGTHS / 2,
+        roll_off=LENGTHS,
+        hurst=np.array([0.8, 0.8]),
+        correlation_length=LENGTHS,
+        e_el_requested=AMPLITUDES,
+        e_el=energy,
+        w_rms=2 * np.sqrt(energy),
+        w_appr=1 - energy - reach,
+        w_retr=1 - energy + reach,
+        w_appr_from_force=1 - energy - reach,
+        w_retr_from_force=1 - energy + reach,
+        w_appr_numerical_error=zero,
+        w_retr_numerical_error=zero,
+        contact_radius=zero + 1.9,
+        spring=np.full(zero.shape[:2], np.nan),
+    )
+    fit = fit_sweep(table, lowest_elastic_energy=0.01, highest_elastic_energy=0.15)
+    parameters = ParametricStudyParameters(sweep="config/test.yaml")
+    return SCENE.compute(parameters, lambda line: None, fit), fit
+
+
+def verdicts(found):
+    return [check.passed for check in SCENE.checks(found)]
+
+
+def test_a_sweep_that_follows_the_law_passes_every_check():
+    assert verdicts(study(3.0)[0]) == [True] * 4
+
+
+@pytest.mark.parametrize(
+    ("options", "failing"),
+    [
+        ({"factor": 2.0}, 0),
+        ({"factor": 3.0, "exponent": 2.5}, 1),
+        ({"factor": np.array([2.4, 3.6])[:, None, None]}, 2),
+        ({"factor": 3.0, "onset": (0.004, 0.001)}, 3),
+    ],
+)
+def test_each_deviation_from_the_law_fails_its_check(options, failing):
+    assert not verdicts(study(**options)[0])[failing]
+
+
+def test_the_fit_from_the_data_of_the_figure_is_that_of_the_sweep(tmp_path):
+    found, fit = study(3.0)
+    path = tmp_path / "si-5.nc"
+    write_record(path, found, provenance(), title=SCENE.title)
+    again = study_fit(read_record(path, ParametricStudy))
+    assert again.pooled.factor == fit.pooled.factor
+    assert np.array_equal(again.cells.factor.low, fit.cells.factor.low)
+
+
+def test_the_page_shows_the_law_and_k_against_disorder_and_size():
+    drawn = SCENE.draw(study(3.0)[0])
+    assert [axes.get_title(loc="left") for axes in drawn.axes][:3] == ["a", "b", "c"]
+    assert drawn.axes[1].get_xscale() == drawn.axes[2].get_xscale() == "log"

@@ -1,0 +1,100 @@
+"""Main Fig. 3c, d: the loop between its JKR curves, and the fronts on the field."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crackfront.core.field.rays import front_adhesion
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.simulate.contact import simulation_field
+from studies.paper.figure import figure
+from studies.paper.main_3cd import PinnedLoopParameters
+from studies.paper.rough import patch_of
+
+
+def ignore(line):
+    """No progress."""
+
+
+def failing(record):
+    """Claims that fail."""
+    return [check.claim for check in figure("main-3cd").checks(record) if not check.passed]
+
+
+def coarse(**others):
+    parameters = {
+        "seed": 1,
+        "error": 0.5,
+        "tile_roll_offs": 20.0,
+        "short_cutoff": 0.02,
+        "roll_off": 0.04,
+        "hurst": 0.8,
+        "elastic_energy": 0.1,
+        "max_penetration": 1.0,
+        "step": 0.1,
+        "patch_side": 0.4,
+    }
+    return PinnedLoopParameters(**parameters | others)
+
+
+@pytest.fixture(scope="module")
+def loop():
+    return figure("main-3cd").compute(coarse(), ignore)
+
+
+def test_a_coarse_loop_fails_no_check_but_those_of_the_paper(loop):
+    assert [claim for claim in failing(loop) if "main text" not in claim] == []
+
+
+def test_the_loop_of_k_3_passes_the_checks_of_the_paper(loop):
+    e_el = loop.elastic_energy
+    right = replace(loop, approach=1 - 4 * e_el, retraction=1 + 2 * e_el)
+    assert failing(right) == []
+    wrong = replace(loop, approach=1 - 2 * e_el, retraction=1 + 1.2 * e_el)
+    assert len(failing(wrong)) == 3
+
+
+def test_fronts_that_sample_the_wrong_places_fail_their_checks(loop):
+    swapped = replace(loop, front_adhesion=loop.front_adhesion[[1, 0, 2]])
+    claims = " ".join(failing(swapped))
+    for words in ("approach: below", "retraction: above", "<a G>"):
+        assert words in claims
+    rigid = replace(loop, front_adhesion=loop.front_adhesion[[0, 1, 0]])
+    assert "rigid circle: at" in " ".join(failing(rigid))
+
+
+def test_a_patch_is_the_field_that_the_front_feels():
+    simulation = coarse().simulation()
+    field = simulation_field(simulation)
+    along = front_adhesion(np.full(field.geometry.n_site, 1.2), field) * np.pi
+    for ray in (0, field.geometry.n_site // 3):
+        place = (1.2 * way[ray : ray + 1] for way in field.geometry)
+        np.testing.assert_allclose(patch_of(field, *place)[0, 0], along[ray], atol=1e-3)
+
+
+def test_the_drawing_of_its_file_has_labelled_axes(loop, tmp_path):
+    path = tmp_path / "main-3cd.nc"
+    write_record(path, loop, provenance(), title="test")
+    drawn = figure("main-3cd").draw(read_record(path, figure("main-3cd").record))
+    for axes in drawn.axes[:2]:
+        assert axes.get_xlabel()
+        assert axes.get_ylabel()
+
+
+@pytest.mark.parametrize(
+    ("others", "sentence"),
+    [
+        ({"short_cutoff": 0.05}, "roll_off 0.04 is shorter than short_cutoff 0.05"),
+        ({"error": 1e-6}, "error is 1e-06, but the finest numerics leave"),
+    ],
+)
+def test_a_loop_that_cannot_be_computed_is_refused(others, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        coarse(**others)
+
+
+def test_a_cycle_without_steady_branches_is_refused():
+    with pytest.raises(ValueError, match="steady states in approach"):
+        figure("main-3cd").compute(coarse(max_penetration=0.1), ignore)

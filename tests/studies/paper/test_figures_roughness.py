@@ -1,0 +1,147 @@
+"""Roughness of fronts: the fit recovers what was put in, and a small contact is measured."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from pydantic import ValidationError
+
+from studies.paper.beyond_roughness import (
+    RoughnessRecord,
+    fitted_roughness,
+    stiffness_wavevector,
+)
+from studies.paper.figure import figure, load_figure
+from studies.paper.rough import STRONG, WEAK
+
+CONFIGURATION = Path(__file__).parents[3] / "config" / "figures" / "beyond-roughness.yaml"
+SCENE = figure("beyond-roughness")
+
+
+def parameters(**changes):
+    return load_figure(CONFIGURATION, "quick").model_copy(update=changes)
+
+
+def synthetic(exponents, rng, n_surface=8):
+    """Spectra that are powers of the stiffness, with the scatter of 20 fronts."""
+    mode = np.arange(1, 400)
+    empty = RoughnessRecord(
+        short_cutoff=0.02,
+        elastic_energy=np.tile([0.05, 0.001], 2),
+        rms=np.tile([0.45, 0.06], 2),
+        larkin_length=np.tile([0.01, 0.6], 2),
+        radius=np.full(4, 1.6),
+        ring_stiffness=np.full(4, 4.0),
+        longest=np.full(4, 0.8),
+        shortest=np.full(4, 0.08),
+        mode=mode,
+        power=np.ones((4, n_surface, mode.size)),
+        lag=np.geomspace(0.01, 3, 20),
+        difference=np.ones((4, 20)),
+    )
+    scatter = rng.gamma(20, 1 / 20, empty.power.shape)
+    laws = [
+        stiffness_wavevector(empty, index) ** -(1 + 2 * exponent)
+        for index, exponent in enumerate((*exponents, *exponents))
+    ]
+    return replace(empty, power=np.array(laws)[:, None] * scatter)
+
+
+@pytest.fixture(scope="module")
+def record():
+    small = parameters(
+        short_cutoff=0.06,
+        max_penetration=0.6,
+        first_penetration=0.4,
+        last_penetration=0.1,
+        n_surface=2,
+        n_front=4,
+    )
+    lines = {
+        "strong_line": small.strong_line.model_copy(update={"spring": 12.0}),
+        "weak_line": small.weak_line.model_copy(update={"elastic_energy": 0.09, "spring": 1.2}),
+    }
+    small = small.model_copy(update=lines)
+    return SCENE.compute(small, lambda line: None)
+
+
+def test_the_fit_recovers_exponents_within_its_intervals(rng):
+    data = synthetic((0.388, 0.5), rng)
+    for index, exponent in ((STRONG, 0.388), (WEAK, 0.5)):
+        fit = fitted_roughness(data, index)
+        assert abs(fit.exponent - exponent) < 2 * fit.reach < 0.06
+    assert all(check.passed for check in SCENE.checks(data))
+
+
+def test_other_exponents_fail_the_checks(rng):
+    assert [check.passed for check in SCENE.checks(synthetic((0.5, 0.388), rng))] == [False] * 5
+    assert [check.passed for check in SCENE.checks(synthetic((0.388, 0.388), rng))] == [
+        True,
+        False,
+        True,
+        False,
+        False,
+    ]
+
+
+def test_without_the_stiffness_of_the_circle_the_exponent_is_lower(rng):
+    data = synthetic((0.388, 0.5), rng)
+    bare = fitted_roughness(replace(data, ring_stiffness=np.zeros(4)), WEAK)
+    assert bare.exponent < fitted_roughness(data, WEAK).exponent - 0.03
+
+
+def test_differences_follow_from_the_spectrum(record):
+    for index in (STRONG, WEAK):
+        variance = np.sum(2 * record.power[index].mean(axis=0)) / (2 * np.pi * record.radius[index])
+        plateau = record.difference[index, -1] ** 2
+        assert 0.3 * 2 * variance < plateau < 3 * 2 * variance
+        assert np.all(record.difference[index, :10] < record.difference[index, 20])
+
+
+def test_straight_fronts_count_as_circles_as_stiff_as_their_springs(record):
+    springs = np.array([12.0, 1.2]) * record.larkin_length[2:]
+    assert record.ring_stiffness[2:] == pytest.approx(record.radius[2:] / springs, rel=1e-9)
+    assert record.larkin_length[3] == pytest.approx(10 * record.larkin_length[2])
+    # Of the same springs the front with more disorder is the rougher one.
+    strong, weak = record.power[2:].mean(axis=1)
+    assert strong.sum() > 3 * weak.sum()
+
+
+def test_weak_disorder_roughens_less(record):
+    assert np.all(record.difference[WEAK] < 0.5 * record.difference[STRONG])
+    assert record.larkin_length[WEAK] > 50 * record.larkin_length[STRONG]
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"first_penetration": 2.0}, "penetrations must fall from max_penetration"),
+        ({"weak_from": 90.0}, "weak_from is 90; it must be below weak_to, 50"),
+        ({"n_surface": 1}, "an interval needs 2 surfaces"),
+    ],
+)
+def test_parameters_that_cannot_be_fitted_are_refused(changes, sentence):
+    with pytest.raises(ValidationError, match=sentence):
+        SCENE.parameters.model_validate(parameters().model_dump() | changes)
+
+
+def test_a_range_of_a_straight_front_that_holds_no_wavelength_is_refused():
+    line = parameters().weak_line.model_dump() | {"fit_from": 1.0}
+    with pytest.raises(ValidationError, match=r"fit_from is 1; it must be below fit_to, 0\.07"):
+        SCENE.parameters.model_validate(parameters().model_dump() | {"weak_line": line})
+
+
+def test_its_drawing_has_four_labelled_panels(record):
+    wide = replace(record, longest=np.full(4, 1.0), shortest=np.full(4, 0.2))
+    drawn = figure("beyond-roughness").draw(wide)
+    assert isinstance(drawn, Figure)
+    assert len(drawn.axes) == 4
+    assert all(axes.get_xlabel() and axes.get_ylabel() for axes in drawn.axes)
+
+
+def test_data_of_fewer_kinds_of_fronts_are_refused(rng):
+    known = synthetic((0.4, 0.5), rng)
+    with pytest.raises(ValueError, match="hold 2 kinds of fronts, not 4; an earlier version made"):
+        SCENE.checks(replace(known, radius=known.radius[:2]))

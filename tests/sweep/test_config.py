@@ -1,0 +1,630 @@
+"""Configurations: what is accepted, and one clear sentence for everything that is not."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from crackfront.analysis.law import slope_breadth
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.units import Scales
+from crackfront.data.provenance import provenance
+from crackfront.data.section import ConfigurationError
+from crackfront.simulate.laws import Knobs
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.table import failed_row, read_table, write_hysteresis
+from crackfront.topography.measures import measured_surface
+from crackfront.topography.reading import Treatment, read_measurements
+
+ROOT = Path(__file__).parents[2]
+
+GOOD = """
+seed: 1
+field: roughness
+spectra:
+  - {name: flat, short_cutoff: 0.1, hurst: 1.0}
+  - {name: rough, short_cutoff: 0.1, roll_off: 0.2, hurst: 0.8}
+amplitudes: {elastic_energy: [0.02, 0.1]}
+realisations: 2
+numerics:
+  angles_per_cutoff: 2
+  samples_per_cutoff: 4
+  interpolation: cubic
+  pixels_per_cutoff: 4
+  tile: {roll_offs: 10, cutoffs: 20}
+  tolerance: 1e-6
+  max_sweeps: 100000
+  solver: reference
+load: {max_penetration: 1.0, step: 0.1}
+fit: {lowest_elastic_energy: 0.01, highest_elastic_energy: 0.1, bootstrap: 500}
+"""
+
+
+def written(tmp_path, text):
+    """File with a text."""
+    path = tmp_path / "sweep.yaml"
+    path.write_text(text)
+    return path
+
+
+def changed(old, new):
+    """The good text with a change that does happen."""
+    assert GOOD.count(old) == 1
+    return GOOD.replace(old, new)
+
+
+def refusal(tmp_path, text):
+    """What a text is refused for, without the name of the file."""
+    path = written(tmp_path, text)
+    with pytest.raises(ConfigurationError) as caught:
+        load_configuration(path)
+    message = str(caught.value)
+    assert all(line.startswith(str(path)) for line in message.splitlines())
+    return message.replace(str(path), "").lstrip(": ")
+
+
+@pytest.mark.parametrize("name", ["test", "default", "paper", "fig3c", "spheres"])
+def test_the_configurations_of_the_project_are_valid(name):
+    sweep = load_configuration(ROOT / "config" / f"{name}.yaml")
+    assert len({item.name for item in sweep.spectra}) == len(sweep.spectra)
+
+
+def test_the_paper_configuration_has_the_spectra_of_the_paper():
+    sweep = load_configuration(ROOT / "config/paper.yaml")
+    shapes = [
+        (item.spectrum.short_cutoff, item.spectrum.roll_off, item.spectrum.hurst)
+        for item in sweep.spectra
+    ]
+    assert shapes[0][:2] == (0.005, 0.005)
+    assert shapes[1:] == [(0.000625, 0.01, 0.8), (0.000625, 0.1, 0.3), (0.005, 0.1, 0.3)]
+
+
+def test_the_default_configuration_does_what_the_issue_asks_for():
+    sweep = load_configuration(ROOT / "config/default.yaml")
+    assert sweep.elastic_energies[0] == 0.002
+    assert sweep.elastic_energies[-1] == 0.15
+    assert len(sweep.elastic_energies) >= 6
+    assert sweep.n_realisation >= 4
+    assert {0.8, 0.3} <= {item.spectrum.hurst for item in sweep.spectra}
+
+
+def test_a_roll_off_that_is_not_given_makes_a_flat_spectrum(tmp_path):
+    flat = load_configuration(written(tmp_path, GOOD)).named("flat").spectrum
+    assert flat.roll_off == flat.short_cutoff == 0.1
+
+
+def test_numbers_with_an_exponent_but_no_point_are_numbers(tmp_path):
+    assert load_configuration(written(tmp_path, GOOD)).numerics.knobs.tolerance == 1e-6
+
+
+def test_an_rms_is_converted_to_the_energy_of_full_conformity(tmp_path):
+    text = changed("elastic_energy: [0.02, 0.1]", "work_of_adhesion_rms: [0.2, 0.6]")
+    energies = load_configuration(written(tmp_path, text)).elastic_energies
+    assert energies == pytest.approx((0.01, 0.09), rel=1e-15)
+
+
+def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
+    scales = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.93e6)
+    content = yaml.safe_load(GOOD)
+    content["numerics"]["tolerance"] = 1e-6
+    content["scales"] = {"radius": 1.25e-3, "work_of_adhesion": 63e-3, "contact_modulus": 0.93e6}
+    for spectrum in content["spectra"]:
+        for name in {"short_cutoff", "roll_off"} & set(spectrum):
+            spectrum[name] *= scales.lateral
+    for name in ("max_penetration", "step"):
+        content["load"][name] *= scales.vertical
+    reduced = load_configuration(written(tmp_path, GOOD))
+    metres = load_configuration(written(tmp_path, yaml.safe_dump(content)))
+    for one, other in zip(reduced.spectra, metres.spectra, strict=True):
+        assert other.spectrum.short_cutoff == pytest.approx(one.spectrum.short_cutoff, rel=1e-14)
+        assert other.spectrum.roll_off == pytest.approx(one.spectrum.roll_off, rel=1e-14)
+        # The same surface, although the lengths differ by round-off.
+        assert metres.simulation(other, 0.1, 0).seed == reduced.simulation(one, 0.1, 0).seed
+    assert metres.schedule.max_penetration == pytest.approx(1.0, rel=1e-14)
+    assert metres.scales == scales
+
+
+def asking(error):
+    """The good text with an error in the place of all that it decides."""
+    start, end = GOOD.index("  angles_per_cutoff"), GOOD.index("  tile:")
+    text = GOOD[:start] + f"  error: {error}\n" + GOOD[end:]
+    return text.replace("  tolerance: 1e-6\n", "")
+
+
+def knobs_of(sweep, item, energy):
+    return sweep.numerics.knobs_of(sweep.kind, item.spectrum, energy)
+
+
+def test_an_error_chooses_the_numerics_of_every_spectrum_and_amplitude(tmp_path):
+    sweep = load_configuration(written(tmp_path, asking(0.03)))
+    given = sweep.numerics
+    assert (given.knobs, given.tile_cutoffs, given.max_sweeps) == (0.03, 20, 100000)
+    flat = sweep.named("flat")
+    weak, strong = (knobs_of(sweep, flat, energy) for energy in sweep.elastic_energies)
+    assert strong.angles_per_cutoff > weak.angles_per_cutoff
+    finer = knobs_of(load_configuration(written(tmp_path, asking(0.01))), flat, 0.1)
+    assert finer.angles_per_cutoff > strong.angles_per_cutoff
+    simulation = sweep.simulation(flat, 0.1, 0)
+    assert simulation.solver.tolerance == strong.tolerance
+    assert simulation.resolution.spacing == pytest.approx(0.1 / strong.samples_per_cutoff)
+
+
+def test_an_error_below_that_of_the_finest_numerics_is_refused(tmp_path):
+    sentence = refusal(tmp_path, asking(1e-5))
+    assert "numerics: error is 1e-05, but the finest numerics leave" in sentence
+    assert "for flat at e_el 0.02; ask for that, or give the knobs" in sentence
+
+
+def test_given_numerics_serve_every_amplitude(tmp_path):
+    sweep = load_configuration(written(tmp_path, GOOD))
+    assert isinstance(sweep.numerics.knobs, Knobs)
+    assert knobs_of(sweep, sweep.named("rough"), 0.1) is sweep.numerics.knobs
+
+
+def test_an_error_beside_what_it_decides_is_refused(tmp_path):
+    text = asking(0.03).replace("  error:", "  tolerance: 1e-6\n  angles: 64\n  error:")
+    assert "numerics: error already decides angles, tolerance; remove one" in refusal(
+        tmp_path, text
+    )
+
+
+def test_knobs_that_are_missing_without_an_error_are_named(tmp_path):
+    text = asking(0.03).replace("  error: 0.03\n", "  angles: 64\n  interpolation: cubic\n")
+    assert (
+        "numerics: samples_per_cutoff, pixels_per_cutoff, tolerance missing; add what is missing "
+        "or ask for an error" in refusal(tmp_path, text)
+    )
+
+
+@pytest.mark.parametrize("error", ["0.0", "1.0", "-0.1", ".nan", "small"])
+def test_an_error_that_no_numerics_have_is_refused(tmp_path, error):
+    assert "numerics.error is" in refusal(tmp_path, asking(error))
+
+
+def test_steady_loads_are_read_in_both_units(tmp_path):
+    text = GOOD.replace("step: 0.1", "steady: {start: 0.25, travel: 2.0, error: 0.1}")
+    assert load_configuration(written(tmp_path, text)).schedule == SteadySchedule(
+        0.25, 1.0, 2.0, 0.1
+    )
+    scales = Scales(radius=1e-3, work_of_adhesion=0.05, contact_modulus=1e6)
+    content = yaml.safe_load(text)
+    content["scales"] = {"radius": 1e-3, "work_of_adhesion": 0.05, "contact_modulus": 1e6}
+    content["load"]["max_penetration"] *= scales.vertical
+    content["load"]["steady"]["start"] *= scales.vertical
+    metres = load_configuration(written(tmp_path, yaml.safe_dump(content))).schedule
+    assert metres.start == pytest.approx(0.25, rel=1e-14)
+    assert (metres.travel, metres.standard_error) == (2.0, 0.1)
+
+
+BAD = {
+    "seed beyond what a file holds": (
+        ("seed: 1", "seed: 18446744073709551616"),
+        "seed is 18446744073709551616; it must lie between 0 and 9.22337e+18",
+    ),
+    "bootstrap of one sample": (
+        ("bootstrap: 500", "bootstrap: 1"),
+        "fit.bootstrap is 1; it must lie between 100 and 1e+07",
+    ),
+    "realisations without end": (
+        ("realisations: 2", "realisations: 1000000000"),
+        "realisations: 4e+09 simulations would need 2 TB of memory; here are",
+    ),
+    "cutoff of nothing": (
+        ("{name: flat, short_cutoff: 0.1", "{name: flat, short_cutoff: 1e-300"),
+        "spectra[0].short_cutoff is 1e-300; it must lie between 1e-15 and 1e+15",
+    ),
+    "cutoff below an atom": (
+        ("{name: flat, short_cutoff: 0.1", "{name: flat, short_cutoff: 1e-12"),
+        "short_cutoff is 1e-12 reduced lateral lengths; it must lie between 1e-09 and 1e+09",
+    ),
+    "tile larger than any machine": (
+        ("roll_offs: 10", "roll_offs: 1e+12"),
+        "tiles of 4e+12 x 4e+12 points would need 5.12e+08 EB of memory; here are",
+    ),
+    "front larger than any machine": (
+        ("angles_per_cutoff: 2", "angles: 1000000000000"),
+        "fronts of 1e+12 sites would need 512 TB of memory; here are",
+    ),
+    "load without end": (
+        ("step: 0.1", "step: 1e-14"),
+        "of memory; here are",
+    ),
+    "years": (
+        ("angles_per_cutoff: 2", "angles: 1000000000"),
+        "years of processor time; ask for fewer, coarser or larger load steps",
+    ),
+    "unknown key": (
+        ("realisations: 2", "realisation: 2\nrealisations: 2"),
+        "unknown key realisation; did you mean realisations?",
+    ),
+    "unknown key in a list": (
+        ("roll_off: 0.2", "rolloff: 0.2"),
+        "unknown key spectra[1].rolloff; did you mean roll_off?",
+    ),
+    "unknown key deep down": (
+        ("cutoffs: 20", "cutoffs: 20, sides: 3"),
+        "unknown key numerics.tile.sides; the keys here are roll_offs, cutoffs",
+    ),
+    "missing key": (("seed: 1\n", ""), "key seed is missing; add it"),
+    "key twice": (("seed: 1", "seed: 1\nseed: 2"), "is no valid YAML in line 3: key 'seed' stands"),
+    "hurst above one": (
+        ("hurst: 0.8", "hurst: 1.2"),
+        "spectra[1].hurst is 1.2; it must be less than or equal to 1",
+    ),
+    "hurst zero": (("hurst: 0.8", "hurst: 0"), "spectra[1].hurst is 0; it must be greater than 0"),
+    "roll-off below the cutoff": (
+        ("roll_off: 0.2", "roll_off: 0.05"),
+        "spectra[1]: roll_off 0.05 is shorter than short_cutoff 0.1; lower the cutoff",
+    ),
+    "cutoff below two pixels": (
+        ("pixels_per_cutoff: 4", "pixels_per_cutoff: 1.5"),
+        "pixels_per_cutoff is 1.5, so that short_cutoff is below two pixels; it must be 2 or more",
+    ),
+    "no full conformity": (
+        ("[0.02, 0.1]", "[0.02, 1.0]"),
+        "amplitudes.elastic_energy[1] is 1.0; it must be less than 1",
+    ),
+    "rms of no full conformity": (
+        ("elastic_energy: [0.02, 0.1]", "work_of_adhesion_rms: [2.5]"),
+        "amplitudes.work_of_adhesion_rms[0] is 2.5; it must be less than 2",
+    ),
+    "negative amplitude": (
+        ("[0.02, 0.1]", "[-0.02]"),
+        "amplitudes.elastic_energy[0] is -0.02; it must be greater than 0",
+    ),
+    "no amplitude": (
+        ("[0.02, 0.1]", "[]"),
+        "amplitudes.elastic_energy is []; it must have at least one entry",
+    ),
+    "amplitude twice": (("[0.02, 0.1]", "[0.1, 0.1]"), "amplitude 0.1 stands twice"),
+    "no measure of amplitude": (
+        ("amplitudes: {elastic_energy: [0.02, 0.1]}", "amplitudes: {}"),
+        "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms; give one",
+    ),
+    "two measures of amplitude": (
+        ("[0.02, 0.1]", "[0.02, 0.1], work_of_adhesion_rms: [0.2]"),
+        "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms; remove one",
+    ),
+    "energy of a chemical field": (
+        ("field: roughness", "field: chemical"),
+        "amplitudes.elastic_energy has no meaning for a chemical field; give",
+    ),
+    "unknown field": (
+        ("field: roughness", "field: rough"),
+        "field is 'rough'; it must be 'roughness' or 'chemical'",
+    ),
+    "no realisation": (
+        ("realisations: 2", "realisations: 0"),
+        "realisations is 0; it must be greater than or equal to 1",
+    ),
+    "part of a realisation": (
+        ("realisations: 2", "realisations: 2.5"),
+        "realisations is 2.5; it must be a valid integer",
+    ),
+    "negative sweeps": (
+        ("max_sweeps: 100000", "max_sweeps: -1"),
+        "numerics.max_sweeps is -1; it must be greater than or equal to 1",
+    ),
+    "text for a number": (
+        ("short_cutoff: 0.1, hurst", "short_cutoff: small, hurst"),
+        "spectra[0].short_cutoff is 'small'; it must be a valid number",
+    ),
+    "truth for a number": (("seed: 1", "seed: true"), "seed is True; it must be a valid integer"),
+    "not a number": (("step: 0.1", "step: .nan"), "load.step is nan; it must be"),
+    "infinity": (
+        ("max_penetration: 1.0", "max_penetration: .inf"),
+        "load.max_penetration is inf; it must be finite",
+    ),
+    "no contact": (
+        ("max_penetration: 1.0", "max_penetration: -0.5"),
+        "load: max_penetration is -0.5, which never makes contact; the sphere touches at 0",
+    ),
+    "steady beside step": (
+        ("step: 0.1}", "step: 0.1, steady: {start: 0.5, travel: 2, error: 0.1}}"),
+        "exactly one of step (full cycles) and steady (parts of them); remove one",
+    ),
+    "no load": (("step: 0.1}", "}"), "and steady (parts of them); give one"),
+    "steady start too deep": (
+        ("step: 0.1}", "steady: {start: 1.0, travel: 2, error: 0.1}}"),
+        "load: steady.start 1 is not below max_penetration 1; lower it or penetrate deeper",
+    ),
+    "steady states that are all alike": (
+        ("step: 0.1}", "steady: {start: 0.5, travel: 1e-6, error: 0.1}}"),
+        "load.steady.travel is 1e-06; it must be greater than or equal to 0.01",
+    ),
+    "steady without error": (
+        ("step: 0.1}", "steady: {start: 0.5, travel: 2}}"),
+        "key load.steady.error is missing; add it",
+    ),
+    "step zero": (("step: 0.1", "step: 0"), "load.step is 0; it must be greater than 0"),
+    "name twice": (("name: rough", "name: flat"), "spectrum name 'flat' stands twice"),
+    "name of a path": (
+        ("name: rough", "name: a/b"),
+        "spectra[1].name is 'a/b'; it must consist of letters, digits, _ and -",
+    ),
+    "no spectra": (
+        (GOOD[GOOD.index("spectra:") : GOOD.index("amplitudes:")], "spectra: []\n"),
+        "spectra is []; it must have at least one entry",
+    ),
+    "list for a mapping": (
+        ("load: {max_penetration: 1.0, step: 0.1}", "load: [1.0, 0.1]"),
+        "load is [1.0, 0.1]; it must be a mapping of keys",
+    ),
+    "unknown solver": (
+        ("solver: reference", "solver: none-such"),
+        "numerics: solver 'none-such' is unknown; choose one of",
+    ),
+    "angles twice": (
+        ("angles_per_cutoff: 2", "angles_per_cutoff: 2\n  angles: 128"),
+        "numerics need exactly one of angles and angles_per_cutoff; remove one",
+    ),
+    "three angles": (
+        ("angles_per_cutoff: 2", "angles: 3"),
+        "numerics.angles is 3; it must be greater than or equal to 4",
+    ),
+    "unknown record": (
+        ("realisations: 2", "realisations: 2\nrecord: [front]"),
+        "record[0] is 'front'; it must be 'fronts' or 'energy'",
+    ),
+    "fit upside down": (
+        ("lowest_elastic_energy: 0.01", "lowest_elastic_energy: 0.5"),
+        "fit: lowest_elastic_energy 0.5 is above highest_elastic_energy 0.1; swap them",
+    ),
+    "no YAML": (("seed: 1", "seed: [1"), "is no valid YAML in line"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_is_refused_with_a_sentence(tmp_path, case):
+    (old, new), sentence = BAD[case]
+    message = refusal(tmp_path, changed(old, new))
+    assert sentence in message
+    assert len(message.splitlines()) == 1
+    assert "Value error" not in message
+
+
+def test_a_fit_range_without_amplitude_is_refused(tmp_path):
+    text = changed("highest_elastic_energy: 0.1", "highest_elastic_energy: 0.015")
+    assert "no amplitude lies in the range of the fit, e_el from 0.01 to 0.015" in refusal(
+        tmp_path, text
+    )
+
+
+def test_every_error_has_its_own_sentence(tmp_path):
+    text = changed("seed: 1", "seed: -1").replace("step: 0.1", "step: -1")
+    assert len(refusal(tmp_path, text).splitlines()) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("", "is empty; write a configuration like config/test.yaml"),
+        ("- 1\n- 2\n", "holds a list; the top level must be a mapping of keys"),
+        ("just text", "holds a str; the top level must be a mapping of keys"),
+        ("!!python/object/apply:os.getcwd []", "is no valid YAML in line 1"),
+    ],
+)
+def test_a_file_that_is_no_mapping_is_refused(tmp_path, text, sentence):
+    assert sentence in refusal(tmp_path, text)
+
+
+def test_a_file_that_is_no_text_is_refused(tmp_path):
+    path = tmp_path / "sweep.yaml"
+    path.write_bytes(b"\xff\xfe\x00seed")
+    with pytest.raises(ConfigurationError, match="is no UTF-8 text"):
+        load_configuration(path)
+
+
+def test_a_file_that_does_not_exist_is_refused(tmp_path):
+    with pytest.raises(ConfigurationError, match=r"none.yaml cannot be read: No such file"):
+        load_configuration(tmp_path / "none.yaml")
+
+
+def test_a_tolerance_below_round_off_is_refused_before_anything_runs(tmp_path):
+    path = written(tmp_path, GOOD.replace("tolerance: 1e-6", "tolerance: 1e-20"))
+    with pytest.raises(ConfigurationError, match="below the round-off of the 240 sites of flat"):
+        load_configuration(path)
+
+
+SCANS = ROOT / "examples/scans"
+SCENE = "scales: {radius: 1.25e-3, work_of_adhesion: 63e-3, contact_modulus: 0.9333e6}\n"
+MEASURED = f"""
+spectra:
+  - name: film
+    surface: {{file: [{SCANS}/nanodiamond-detail.al3d, {SCANS}/nanodiamond-overview.al3d]}}
+"""
+
+
+def with_surface(spectra=MEASURED, scales=SCENE, **changes):
+    """The good text with the spectra of surfaces, in metres."""
+    start, end = GOOD.index("spectra:"), GOOD.index("amplitudes:")
+    text = GOOD[:start] + scales + spectra.lstrip() + GOOD[end:]
+    text = text.replace("{max_penetration: 1.0, step: 0.1}", "{max_penetration: 1e-6, step: 1e-7}")
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+def test_a_spectrum_may_be_that_of_measurements(tmp_path):
+    sweep = load_configuration(written(tmp_path, with_surface()))
+    [item] = sweep.spectra
+    surface = measured_surface(read_measurements(sorted(SCANS.glob("*.al3d"))))
+    found = surface.joint.spectrum
+    assert item.name == f"film-{surface.checksum}"
+    lengths = np.array(item.spectrum.wavelengths) * sweep.scales.lateral
+    assert lengths == pytest.approx(np.array(found.wavelengths), rel=1e-4)
+    ratios = np.array(item.spectrum.densities) / np.array(found.densities)
+    assert ratios == pytest.approx(np.full(ratios.size, ratios[0]), rel=1e-4)
+    first, *_ = sweep.shard(item)
+    assert first.seed != replace(first, spectrum=item.spectrum.in_units(2.0)).seed
+    assert first.key == replace(first, spectrum=item.spectrum.amplified(2.0)).key
+
+
+def test_a_surface_is_read_in_the_words_of_the_commands(tmp_path):
+    words = "channel: 0, crop: '1um:6um,1um:6um', detrend: 3, mask: '2um:3um,2um:3um'"
+    file = SCANS / "nanodiamond-detail.al3d"
+    spectra = f"spectra:\n  - {{name: film, surface: {{file: {file}, shortest: 0.3um, {words}}}}}\n"
+    sweep = load_configuration(written(tmp_path, with_surface(spectra)))
+    square = ((2e-6, 3e-6), (2e-6, 3e-6))
+    treatment = Treatment(3, channel="0", crop=((1e-6, 6e-6), (1e-6, 6e-6)), mask=(square,))
+    found = measured_surface(read_measurements([file], treatment), 0.3e-6).joint.spectrum
+    lengths = np.array(sweep.spectra[0].spectrum.wavelengths) * sweep.scales.lateral
+    assert lengths == pytest.approx(np.array(found.wavelengths), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("channel: Phase", "has no channel 'Phase'"),
+        ("crop: 1um", "crop is '1um'; write both ends"),
+        ("shortest: -1", "shortest is -1 m; it must lie"),
+        ("detrend: 12", "detrend is 12; choose one of center"),
+    ],
+)
+def test_words_of_a_surface_that_cannot_be_used_are_refused(tmp_path, words, sentence):
+    file = SCANS / "nanodiamond-detail.al3d"
+    spectra = f"spectra:\n  - {{name: film, surface: {{file: {file}, {words}}}}}\n"
+    with pytest.raises(ConfigurationError, match=sentence) as refusal:
+        load_configuration(written(tmp_path, with_surface(spectra)))
+    assert "spectra[0].surface" in str(refusal.value)
+
+
+def test_the_table_of_a_sweep_keeps_measured_spectra(tmp_path):
+    spectra = MEASURED + "  - {name: flat, short_cutoff: 2e-6, hurst: 0.8}\n"
+    sweep = load_configuration(written(tmp_path, with_surface(spectra)))
+    rows = [failed_row(one, "failed", "a test") for one in sweep.simulations()]
+    write_hysteresis(tmp_path / "hysteresis.nc", sweep, rows, provenance("text"))
+    table = read_table(tmp_path / "hysteresis.nc")
+    measured, flat = (item.spectrum for item in sweep.spectra)
+    assert table.shape_of(0).wavelengths == measured.wavelengths
+    assert table.shape_of(0).densities == pytest.approx(measured.identity[1], rel=1e-12)
+    assert table.shape_of(1) == flat
+    breadth = slope_breadth("roughness", measured)
+    assert slope_breadth("roughness", table.shape_of(0)) == pytest.approx(breadth)
+    assert np.isnan(table.hurst[0])
+
+
+def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
+    scan = tmp_path / "scan.al3d"
+    spectra = f"spectra:\n  - {{name: film, surface: {{file: {scan}}}}}\n"
+    content = (SCANS / "nanodiamond-overview.al3d").read_bytes()
+    stems = []
+    for comment in (b"SYNTHETIC", b"Synthetic"):
+        scan.write_bytes(content.replace(b"SYNTHETIC", comment))
+        sweep = load_configuration(written(tmp_path, with_surface(spectra)))
+        stems.append([one.stem for one in sweep.shard(sweep.spectra[0])])
+    assert not set(stems[0]) & set(stems[1])
+    scan.write_bytes(content)
+    again = load_configuration(written(tmp_path, with_surface(spectra)))
+    assert [one.stem for one in again.shard(again.spectra[0])] == stems[0]
+
+
+def test_no_scan_is_read_for_spectra_that_are_given(tmp_path):
+    code = (
+        "import sys; from pathlib import Path; "
+        "from crackfront.sweep.configuration import load_configuration; "
+        f"load_configuration(Path({str(written(tmp_path, GOOD))!r})); "
+        "assert 'SurfaceTopography' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=100)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (
+            with_surface(scales=""),
+            "spectrum 'film' is that of a surface in metres; give the section scales",
+        ),
+        (
+            with_surface(
+                **{
+                    "field: roughness": "field: chemical",
+                    "{elastic_energy": "{work_of_adhesion_rms",
+                }
+            ),
+            "spectrum 'film' is that of heights; field must be roughness",
+        ),
+        (
+            with_surface(MEASURED.rstrip() + "\n    hurst: 0.8\n"),
+            "spectra[0]: surface already decides hurst; remove one or the other",
+        ),
+        (
+            with_surface("spectra:\n  - {name: film, surface: {file: nowhere.al3d}}\n"),
+            "spectra[0].surface: nowhere.al3d cannot be read: No such file or directory",
+        ),
+        (
+            with_surface(f"spectra:\n  - {{name: film, surface: {{file: {ROOT}/README.md}}}}\n"),
+            f"spectra[0].surface: {ROOT}/README.md is in no format that SurfaceTopography reads",
+        ),
+        (
+            with_surface("spectra:\n  - {name: film, surface: {file: a.al3d, detrend: all}}\n"),
+            "spectra[0].surface: detrend is 'all'; choose one of center, height, slope,",
+        ),
+        (
+            with_surface("spectra:\n  - {name: film, surface: {file: []}}\n"),
+            "spectra[0].surface.file is []; it must have at least one entry",
+        ),
+        (
+            with_surface("spectra:\n  - {name: film, surface: {file: [a.al3d, 3]}}\n"),
+            "spectra[0].surface.file[1] is 3; it must be the name of a file",
+        ),
+        (
+            with_surface("spectra:\n  - {name: film, surface: {file: 3}}\n"),
+            "spectra[0].surface.file[0] is 3; it must be the name of a file",
+        ),
+        (
+            changed("{name: flat, short_cutoff: 0.1, hurst: 1.0}", "{name: flat, hurst: 1.0}"),
+            "spectra[0]: key short_cutoff is missing; add it, or name a surface",
+        ),
+    ],
+)
+def test_a_spectrum_that_is_no_measured_one_is_refused(tmp_path, text, sentence):
+    assert refusal(tmp_path, text).startswith(sentence)
+
+
+HARSH = {
+    "an anchor that refers to itself": ("x: &a [*a]\n", "line 1: anchor a refers to itself"),
+    "one within a mapping": ("x: &a {b: {c: *a}}\n", "line 1: anchor a refers to itself"),
+    "a billion laughs": (
+        "l0: &l0 [lol, lol]\n"
+        + "".join(f"l{k}: &l{k} [{', '.join([f'*l{k - 1}'] * 9)}]\n" for k in range(1, 12)),
+        "with what its anchors repeat it has over 200000 values",
+    ),
+    "depth": ("x: " + "[" * 10**5 + "]" * 10**5, "more than 30 lists and mappings are nested"),
+    "size": ("#" * 10**6, "has 1 MB; more than 0.5 MB are not read"),
+    "a date": ("x: 2026-99-99\n", "is no valid YAML: month must be in 1..12"),
+    "digits": ("x: " + "9" * 5000 + "\n", "is no valid YAML: Exceeds the limit"),
+    "a tag that is not met": ("x: !!bool maybe\n", "is no valid YAML: 'maybe'"),
+    "a key twice as number and text": ("1: a\n'1': b\n", "line 2: key '1' stands twice"),
+    "unknown keys": (
+        "".join(f"key_{k}: {k}\n" for k in range(20_000)),
+        "more such keys and values",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", HARSH)
+def test_yaml_that_grows_without_end_is_refused_with_a_sentence(tmp_path, case):
+    text, sentence = HARSH[case]
+    message = refusal(tmp_path, text)
+    assert sentence in message
+    assert len(message) < 5000
+
+
+def test_an_anchor_may_be_used_as_often_as_it_is_useful(tmp_path):
+    text = changed("angles_per_cutoff: 2", "angles_per_cutoff: &two 2").replace(
+        "realisations: 2", "realisations: 3"
+    )
+    text = text.replace("samples_per_cutoff: 4", "samples_per_cutoff: *two")
+    assert load_configuration(written(tmp_path, text)).numerics.knobs.samples_per_cutoff == 2
+
+
+def test_many_realisations_are_no_reason_to_refuse(tmp_path):
+    text = changed("realisations: 2", "realisations: 100000")
+    assert load_configuration(written(tmp_path, text)).n_simulation == 400_000

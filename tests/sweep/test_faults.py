@@ -1,0 +1,300 @@
+"""Faults that really happen to a sweep: nothing is lost, and the dataset is the undisturbed one."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+from crackfront.cli import main
+from crackfront.data.provenance import provenance
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.store import Store
+
+ROOT = Path(__file__).parents[2]
+COSTS = {"seconds", "cpu_seconds", "peak_memory"}
+N_SIMULATION = 12
+
+
+def dataset(configuration, folder):
+    """The aggregated file, without costs and origin."""
+    path, _ = Store(folder).aggregate(load_configuration(configuration), provenance())
+    found = xr.load_dataset(path).drop_vars(COSTS)
+    found.attrs = {}
+    return found
+
+
+def command(configuration, folder, *more):
+    """The command that fills a folder."""
+    start = [sys.executable, "-m", "crackfront", "simulate", str(configuration)]
+    return [*start, "--output", str(folder), *more]
+
+
+def run(*arguments):
+    """Result of a command."""
+    environment = os.environ | {"OMP_NUM_THREADS": "1"}
+    return subprocess.run(
+        arguments, capture_output=True, text=True, timeout=120, check=False, env=environment
+    )
+
+
+def stored(folder):
+    """Names and moments of the stored simulations."""
+    return {path.name: path.stat().st_mtime_ns for path in (folder / "curves").glob("[!.]*.nc")}
+
+
+def rerun(configuration, folder, *more):
+    """Run again what is missing; the number of simulations that were run."""
+    before = stored(folder)
+    arguments = ["simulate", str(configuration), "--output", str(folder), *more]
+    done = CliRunner().invoke(main, arguments)
+    assert done.exit_code == 0, done.output
+    after = stored(folder)
+    assert len(after) == N_SIMULATION
+    return sum(before.get(name) != moment for name, moment in after.items())
+
+
+@contextmanager
+def running(configuration, folder, *more, until=3):
+    """A run in a process of its own that has stored some simulations."""
+    with subprocess.Popen(
+        command(configuration, folder, *more),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        process_group=0,
+    ) as process:
+        for line in process.stdout:
+            if line.startswith(f"[{until}/"):
+                break
+        yield process
+
+
+def children(process):
+    """Identifiers and command lines of the descendants of a process."""
+    listing = ["ps", "-ww", "-eo", "pid=,ppid=,args="]
+    listed = subprocess.run(listing, capture_output=True, text=True, check=True).stdout
+    rows = [line.split(maxsplit=2) for line in listed.splitlines()]
+    found = {process}
+    for _ in rows:
+        found |= {int(child) for child, parent, _ in rows if int(parent) in found}
+    names = {int(child): name for child, _, name in rows}
+    return {child: names[child] for child in found - {process}}
+
+
+def gone(processes, seconds=20):
+    """Whether processes end in time."""
+    for _ in range(10 * seconds):
+        if not any(Path(f"/proc/{one}").exists() for one in processes):
+            return True
+        time.sleep(0.1)
+    return False
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    """A configuration, and the folder of its undisturbed run."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
+    text = text.replace("angles: 128", "angles: 512").replace("realisations: 2", "realisations: 3")
+    configuration = folder / "sweep.yaml"
+    configuration.write_text(text.replace("step: 0.1", "step: 0.05"))
+    assert run(*command(configuration, folder / "alone")).returncode == 0
+    return configuration, folder / "alone"
+
+
+@pytest.fixture
+def configuration(undisturbed):
+    """The configuration that all faults happen to."""
+    return undisturbed[0]
+
+
+@pytest.fixture
+def same(undisturbed):
+    """Whether a folder holds the undisturbed dataset."""
+    expected = dataset(*undisturbed)
+    return lambda folder: dataset(undisturbed[0], folder).identical(expected)
+
+
+@pytest.fixture
+def copied(undisturbed, tmp_path):
+    """A copy of the undisturbed folder."""
+    return shutil.copytree(undisturbed[1], tmp_path / "copy")
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(
+    ("victim", "again"), [("rank", "1"), pytest.param("launcher", "2", marks=pytest.mark.slow)]
+)
+def test_a_killed_rank_or_launcher_ends_the_job_and_costs_what_was_running(
+    configuration, same, tmp_path, victim, again
+):
+    with running(configuration, tmp_path, "--ranks", "2") as process:
+        found = children(process.pid)
+        ranks = {one for one, name in found.items() if name.startswith(sys.executable)}
+        launchers = {one for one, name in found.items() if "mpiexec" in name.split()[0]}
+        assert len(ranks) == 3
+        os.kill(max(ranks) if victim == "rank" else min(launchers), signal.SIGKILL)
+        output = process.stdout.read()
+    assert process.returncode != 0
+    assert "the same command continues with the others" in output
+    assert gone(found)
+    kept = len(stored(tmp_path))
+    assert 3 <= kept < N_SIMULATION
+    assert rerun(configuration, tmp_path, "--ranks", again) == N_SIMULATION - kept
+    assert same(tmp_path)
+
+
+@pytest.mark.mpi
+def test_a_killed_command_leaves_ranks_beside_which_the_next_one_may_run(
+    configuration, same, tmp_path
+):
+    with running(configuration, tmp_path, "--ranks", "2") as process:
+        found = children(process.pid)
+        process.kill()
+    # The orphans go on: two controllers are at the same shard.
+    done = run(*command(configuration, tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert gone(found, 60)
+    assert len(stored(tmp_path)) == N_SIMULATION
+    assert rerun(configuration, tmp_path) == 0
+    assert same(tmp_path)
+
+
+@pytest.mark.slow
+def test_two_controllers_at_the_same_shard_do_no_harm(configuration, same, tmp_path):
+    with (
+        running(configuration, tmp_path, until=1) as one,
+        running(configuration, tmp_path, until=1) as other,
+    ):
+        for process in (one, other):
+            process.stdout.read()
+    assert one.returncode == other.returncode == 0
+    assert len(list((tmp_path / "journals").iterdir())) == 2
+    assert rerun(configuration, tmp_path) == 0
+    assert same(tmp_path)
+
+
+@pytest.mark.usefixtures("_heeded_signals")
+@pytest.mark.parametrize(
+    ("ranks", "told"),
+    [
+        pytest.param(1, signal.SIGTERM, marks=pytest.mark.slow),
+        (1, signal.SIGINT),
+        pytest.param(2, signal.SIGTERM, marks=pytest.mark.mpi),
+        pytest.param(2, signal.SIGINT, marks=[pytest.mark.mpi, pytest.mark.slow]),
+        pytest.param(2, signal.SIGHUP, marks=[pytest.mark.mpi, pytest.mark.slow]),
+    ],
+)
+def test_notice_keeps_what_runs_and_ends_cleanly(configuration, same, tmp_path, ranks, told):
+    with running(configuration, tmp_path, "--ranks", str(ranks)) as process:
+        found = children(process.pid)
+        # As a terminal does it, which knows the group alone and not the ranks.
+        os.killpg(process.pid, told)
+        output = process.stdout.read()
+    assert process.returncode == 75
+    assert output.count("Stopped as told: ") == 1
+    assert not any(word in output for word in ("Error", "Traceback", "Abort"))
+    assert gone(found)
+    kept = len(stored(tmp_path))
+    assert 3 <= kept < N_SIMULATION
+    # A simulation that has not come to its first state, or just ends, leaves none.
+    assert len(list((tmp_path / "checkpoints").iterdir())) <= ranks
+    assert not list(tmp_path.glob(".notice-*"))
+    assert rerun(configuration, tmp_path) == N_SIMULATION - kept
+    assert not any((tmp_path / "checkpoints").iterdir())
+    assert same(tmp_path)
+
+
+def test_a_killed_process_goes_on_from_its_last_checkpoint(configuration, same, tmp_path):
+    status = ["status", str(tmp_path)]
+    with running(configuration, tmp_path, "--checkpoint", "0") as process:
+        while not any((tmp_path / "checkpoints").glob("[!.]*.nc")):
+            time.sleep(0.01)
+        os.kill(process.pid, signal.SIGSTOP)
+        assert f"process {process.pid} on " in CliRunner().invoke(main, status).stdout
+        process.kill()
+    assert CliRunner().invoke(main, status).stdout.endswith("have ended; nothing runs\n")
+    [checkpoint] = (tmp_path / "checkpoints").glob("[!.]*.nc")
+    known = xr.load_dataset(checkpoint)["force"]
+    kept = len(stored(tmp_path))
+    assert rerun(configuration, tmp_path) == N_SIMULATION - kept
+    ended = xr.load_dataset(tmp_path / "curves" / checkpoint.name)["force"]
+    assert known.size < ended.size
+    assert ended.values[: known.size].tobytes() == known.values.tobytes()
+    assert same(tmp_path)
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A file system of its own that holds some of the simulations only."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=192k", "tmpfs", str(folder)]
+    if os.getuid() != 0 or subprocess.run(mount, capture_output=True, check=False).returncode != 0:
+        pytest.skip("only root can mount a file system of a chosen size, and not everywhere")
+    yield folder
+    subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+def test_a_full_disk_ends_the_run_and_room_lets_it_go_on(configuration, same, small_disk):
+    done = run(*command(configuration, small_disk / "out"))
+    assert done.returncode == 1
+    assert "nothing can be stored" in done.stderr
+    assert "No space left on device" in done.stderr
+    assert "Traceback" not in done.stderr
+    kept = len(stored(small_disk / "out"))
+    assert 1 <= kept < N_SIMULATION
+    grow = ["mount", "-o", "remount,size=8m", str(small_disk)]
+    subprocess.run(grow, check=True)
+    assert rerun(configuration, small_disk / "out") == N_SIMULATION - kept
+    assert same(small_disk / "out")
+
+
+def test_a_folder_that_is_read_only_is_refused_before_anything_runs(
+    configuration, same, small_disk
+):
+    subprocess.run(["mount", "-o", "remount,size=8m", str(small_disk)], check=True)
+    assert run(*command(configuration, small_disk / "out", "--spectrum", "flat")).returncode == 0
+    kept = len(stored(small_disk / "out"))
+    subprocess.run(["mount", "-o", "remount,ro,size=8m", str(small_disk)], check=True)
+    done = run(*command(configuration, small_disk / "out"))
+    assert done.returncode == 2
+    assert "Read-only file system; check the path and its permissions" in done.stderr
+    assert "[1/" not in done.stdout
+    assert len(done.stderr.splitlines()) == 1
+    subprocess.run(["mount", "-o", "remount,rw,size=8m", str(small_disk)], check=True)
+    assert rerun(configuration, small_disk / "out") == N_SIMULATION - kept
+    assert same(small_disk / "out")
+
+
+def test_truncated_files_are_computed_anew_and_no_others(configuration, same, copied):
+    for path, left in zip(sorted((copied / "curves").iterdir())[:3], (0, 100, -1), strict=True):
+        path.write_bytes(path.read_bytes()[:left])
+    assert rerun(configuration, copied) == 3
+    assert same(copied)
+
+
+def test_a_torn_last_line_of_a_journal_costs_nothing(configuration, same, copied):
+    [journal] = (copied / "journals").iterdir()
+    journal.write_bytes(journal.read_bytes()[:-50])
+    assert rerun(configuration, copied) == 0
+    assert same(copied)
+
+
+@pytest.mark.parametrize("moment", [pytest.param(0, marks=pytest.mark.slow), 4e9])
+def test_a_clock_that_jumps_makes_nothing_older_or_newer(configuration, same, copied, moment):
+    for path in copied.rglob("*"):
+        os.utime(path, (moment, moment))
+    assert rerun(configuration, copied) == 0
+    lost = min((copied / "curves").iterdir())
+    lost.unlink()
+    assert rerun(configuration, copied) == 1
+    assert same(copied)

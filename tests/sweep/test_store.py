@@ -1,0 +1,593 @@
+"""The store: what is finished stays, what is missing or broken is found and run."""
+
+import itertools
+import json
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+from crackfront.cli import main
+from crackfront.data.comparison import comparison
+from crackfront.data.digests import Integrity
+from crackfront.data.files import leftover_parts, read_dataset
+from crackfront.data.provenance import provenance
+from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.files import read_simulation, write_checkpoint
+from crackfront.simulate.run import run_simulation
+from crackfront.simulate.simulation import Simulation
+from crackfront.sweep import journal, tasks
+from crackfront.sweep import table as tables
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.journal import Entry, Journal
+from crackfront.sweep.store import Store
+from crackfront.sweep.table import read_table
+from crackfront.sweep.verification import verification
+
+TEST = Path(__file__).parents[2] / "config/test.yaml"
+SWEEP = load_configuration(TEST)
+FLAT = SWEEP.shard(SWEEP.spectra[0])
+
+
+@pytest.fixture
+def store(tmp_path):
+    """An empty store."""
+    return Store(tmp_path / "sweep")
+
+
+def fill(store, simulations):
+    """Fill a store and return how the simulations ended."""
+    return list(tasks.fill(store, simulations, provenance("text")))
+
+
+def states(store):
+    """Names and moments of the stored files."""
+    files = (store.folder / "curves").iterdir()
+    return {path.name: path.stat().st_mtime_ns for path in files}
+
+
+def test_an_empty_store_lacks_everything(store):
+    inventory = store.inventory(FLAT)
+    assert inventory.missing == FLAT
+    assert inventory.unreadable == ()
+
+
+def test_a_filled_store_lacks_nothing_and_holds_one_file_a_simulation(store):
+    outcomes = fill(store, FLAT)
+    assert {finished.status for _, finished in outcomes} == {"lost_contact"}
+    assert {simulation for simulation, _ in outcomes} == set(FLAT)
+    assert store.inventory(FLAT).missing == ()
+    assert set(states(store)) == {f"{simulation.stem}.nc" for simulation in FLAT}
+
+
+def test_the_longest_simulations_start_first(store):
+    costs = [expected_cost(simulation).seconds for simulation, _ in fill(store, FLAT[::-1])]
+    assert costs == sorted(costs, reverse=True)
+
+
+def test_a_simulation_is_stored_before_the_next_one_starts(store):
+    filling = tasks.fill(store, FLAT, provenance())
+    first, _ = next(filling)
+    assert store.path(first).exists()
+    assert len(states(store)) == 1
+
+
+def test_added_realisations_are_all_that_is_missing(store):
+    fill(store, FLAT)
+    before = states(store)
+    more = replace(SWEEP, n_realisation=3)
+    missing = store.inventory(more.shard(more.spectra[0])).missing
+    assert {simulation.realisation for simulation in missing} == {2}
+    fill(store, missing)
+    assert before.items() < states(store).items()
+
+
+def test_a_truncated_file_is_named_and_computed_anew_and_the_others_are_not(store):
+    fill(store, FLAT)
+    before = states(store)
+    broken = store.path(FLAT[1])
+    content = broken.read_bytes()
+    broken.write_bytes(content[: len(content) // 2])
+    inventory = store.inventory(FLAT)
+    assert inventory.missing == (FLAT[1],)
+    assert len(inventory.unreadable) == 1
+    assert str(broken) in inventory.unreadable[0]
+    fill(store, inventory.missing)
+    after = states(store)
+    assert {name for name in before if before[name] != after[name]} == {broken.name}
+    assert store.inventory(FLAT).missing == ()
+
+
+def test_a_file_of_an_older_solver_is_not_found(store, monkeypatch):
+    fill(store, FLAT[:1])
+    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda: "newer")
+    assert store.inventory(FLAT[:1]).missing == FLAT[:1]
+
+
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [
+        ({"solver": replace(FLAT[0].solver, tolerance=1e-7)}, "numerics"),
+        ({"sweep_seed": 2}, "seed"),
+        ({"solver": replace(FLAT[0].solver, max_sweeps=7)}, "numerics"),
+    ],
+)
+def test_what_is_stale_is_told_with_what_has_changed(store, change, part):
+    fill(store, FLAT[:2])
+    inventory = store.inventory([replace(FLAT[0], **change), FLAT[1]])
+    assert [item.label for item in inventory.stale] == [FLAT[0].label]
+    assert inventory.stale_sentence() == f"1 stored simulations are stale: 1 as {part} changed"
+    assert store.inventory(FLAT).stale_sentence() == ""
+
+
+def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
+    fill(store, FLAT[:2])
+    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda: "newer")
+    inventory = store.inventory(FLAT)
+    assert len(inventory.missing) == 4
+    assert inventory.stale_sentence() == "2 stored simulations are stale: 2 as sources changed"
+
+
+def test_a_part_that_keys_did_not_have_before_is_told_as_changed(store):
+    old = Entry("0" * 16, FLAT[0].label, {"kind": FLAT[0].parts["kind"]}, definition="older")
+    Journal(store.folder / "journals").append(old)
+    [stale] = store.inventory(FLAT[:1]).stale
+    assert set(stale.changed) == set(FLAT[0].parts) - {"kind"}
+
+
+def test_spectra_of_one_shape_and_two_names_have_rows_of_their_own(store, monkeypatch):
+    def refuse(*_, **__):
+        raise ValueError("too rough")
+
+    twins = [FLAT[0], replace(FLAT[0], spectrum_name="twin")]
+    assert twins[0].key == twins[1].key
+    monkeypatch.setattr(tasks, "run_simulation", refuse)
+    fill(store, twins)
+    rows = [held.row for held in store.holdings(twins)]
+    assert [row.status for row in rows] == ["refused", "refused"]
+
+
+def test_a_file_without_a_line_in_a_journal_counts(store):
+    fill(store, FLAT)
+    for path in (store.folder / "journals").iterdir():
+        path.unlink()
+    assert store.inventory(FLAT).missing == ()
+
+
+def test_a_line_in_a_journal_without_its_file_does_not_count(store):
+    fill(store, FLAT)
+    store.path(FLAT[2]).unlink()
+    assert store.inventory(FLAT).missing == (FLAT[2],)
+
+
+def test_a_failed_simulation_is_stored_with_its_status(store):
+    limited = replace(FLAT[0], solver=replace(FLAT[0].solver, max_sweeps=1))
+    [(_, finished)] = fill(store, [limited])
+    assert finished.status == "step_limit"
+    assert read_simulation(store.path(limited), limited).record.status.name == "STEP_LIMIT"
+    assert store.inventory([limited]).missing == ()
+
+
+def test_a_simulation_that_cannot_be_done_is_a_row_and_is_not_tried_again(store):
+    impossible = replace(FLAT[0], elastic_energy=0.999999, sweep_seed=5)
+    energies = [replace(impossible, realisation=number) for number in range(8)]
+    outcomes = fill(store, [*energies, FLAT[0]])
+    refused = [one for one, finished in outcomes if finished.status == "refused"]
+    assert refused
+    assert store.path(FLAT[0]).exists()
+    assert not any(store.path(one).exists() for one in refused)
+    assert store.inventory([*energies, FLAT[0]]).missing == ()
+    rows = [held.row for held in store.holdings(refused)]
+    assert {row.status for row in rows} == {"refused"}
+    for row in rows:
+        assert "full conformity needs less than w_int" in row.status_sentence
+        assert np.isnan(row.w_appr)
+
+
+def test_a_disk_that_is_full_ends_the_run_at_once_with_a_sentence(store, monkeypatch):
+    def fail(*_):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(tasks, "write_simulation", fail)
+        [(_, finished)] = fill(store, FLAT)
+    assert finished.status == tasks.NOT_STORED
+    assert "No space left on device" in finished.sentence
+    assert store.inventory(FLAT).missing == FLAT
+
+
+def test_a_manifest_lists_the_files_of_a_shard(store):
+    [shard, *_] = SWEEP.shards(1)
+    simulations = SWEEP.shard(shard.item, shard.realisations)
+    path = store.write_manifest(shard, simulations)
+    assert path.name == "flat.0-0.json"
+    content = json.loads(path.read_text(encoding="utf-8"))
+    assert [entry["key"] for entry in content["simulations"]] == [one.key for one in simulations]
+    assert store.folder / content["simulations"][0]["file"] == store.path(simulations[0])
+
+
+def test_an_incomplete_sweep_is_not_aggregated(store):
+    fill(store, FLAT[1:])
+    with pytest.raises(ValueError, match=r"5 of 8 simulations are missing .*, the first is fl"):
+        store.aggregate(SWEEP, provenance())
+    assert not (store.folder / "hysteresis.nc").exists()
+
+
+@pytest.mark.parametrize(
+    ("block", "left"),
+    [(None, ["rough.json"]), (1, ["flat.1-1.json", "rough.0-0.json", "rough.1-1.json"])],
+)
+def test_the_list_of_a_shard_with_a_truncated_file_is_taken_back(store, block, left):
+    for shard in SWEEP.shards(block):
+        simulations = SWEEP.shard(shard.item, shard.realisations)
+        fill(store, simulations)
+        store.write_manifest(shard, simulations)
+    store.path(FLAT[0]).write_bytes(b"half")
+    with pytest.raises(ValueError, match="1 of 8 simulations are missing or unreadable"):
+        store.aggregate(SWEEP, provenance())
+    assert sorted(path.name for path in (store.folder / "shards").iterdir()) == left
+
+
+def test_a_complete_sweep_is_aggregated(store):
+    fill(store, [one for item in SWEEP.spectra for one in SWEEP.shard(item)])
+    path, statuses = store.aggregate(SWEEP, provenance("text"))
+    assert statuses == {"lost_contact": 8}
+    assert read_table(path).w_appr.shape == (2, 2, 2)
+
+
+def test_a_sweep_is_aggregated_the_same_whatever_is_held_at_once(store, monkeypatch):
+    simulations = list(SWEEP.simulations())
+    fill(store, simulations[:3])
+    # Some files have no line in a journal any more.
+    for path in (store.folder / "journals").iterdir():
+        path.unlink()
+    fill(store, simulations[3:])
+    whole = read_dataset(store.aggregate(SWEEP, provenance("text"))[0])
+    monkeypatch.setattr(journal, "ROWS_AT_ONCE", 3)
+    monkeypatch.setattr(tables, "ROWS_AT_ONCE", 1)
+    parts = read_dataset(store.aggregate(SWEEP, provenance("text"))[0])
+    assert parts.drop_attrs().identical(whole.drop_attrs())
+    assert [*whole["curve"].values.flat] == [f"{one.stem}.nc" for one in simulations]
+
+
+@pytest.mark.parametrize("curves", [True, False])
+def test_an_archive_holds_what_was_archived_under_checksums_that_fit(store, tmp_path, curves):
+    fill(store, list(SWEEP.simulations()))
+    store.aggregate(SWEEP, provenance("text"))
+    (store.folder / "curves/.killed.part").write_text("half")
+    (store.folder / "elsewhere").symlink_to(__file__)
+    os.utime(store.folder / "hysteresis.nc", (0, 0))  # written under a clock at 1970
+    path = tmp_path / "sweep.zip"
+    n_file = store.archive(path, curves=curves)
+    with zipfile.ZipFile(path) as archive:
+        assert len(archive.namelist()) == n_file + 1
+        archive.extractall(tmp_path / "unpacked")
+    unpacked = tmp_path / "unpacked/sweep"
+    done = subprocess.run(
+        ["sha256sum", "--check", "SHA256SUMS"],
+        cwd=unpacked,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.count(": OK") == n_file
+    names = {str(file.relative_to(unpacked)) for file in unpacked.rglob("*") if file.is_file()}
+    wanted = {"hysteresis.nc", "configuration.yaml", "SHA256SUMS"}
+    wanted |= {f"curves/{one.stem}.nc" for one in SWEEP.simulations()} if curves else set()
+    assert {name for name in names if not name.startswith("journals/")} == wanted
+
+
+def test_a_sweep_that_was_not_run_is_not_archived(store, tmp_path):
+    fill(store, FLAT[:1])
+    with pytest.raises(ValueError, match=r"holds no hysteresis.nc; run the sweep before it is ar"):
+        store.archive(tmp_path / "sweep.zip", curves=True)
+
+
+def test_what_a_killed_process_left_half_written_is_removed_by_the_next_run(store):
+    fill(store, FLAT[:1])
+    old, new = (store.folder / "curves" / f".{name}.part" for name in ("old", "new"))
+    for path in (old, new):
+        path.write_text("half")
+    moment = old.stat().st_mtime - 7200
+    os.utime(old, (moment, moment))
+    fill(store, FLAT[1:2])
+    assert not old.exists()
+    assert new.exists()
+
+
+def test_a_defect_that_the_solver_finds_in_itself_is_a_row_and_the_others_run(store, monkeypatch):
+    def defective(simulation, **options):
+        if simulation == FLAT[1]:
+            raise RuntimeError("the solver moved a site past its equilibrium")
+        return run_simulation(simulation, **options)
+
+    monkeypatch.setattr(tasks, "run_simulation", defective)
+    ended = {one: (finished.status, finished.sentence) for one, finished in fill(store, FLAT[:3])}
+    assert ended.pop(FLAT[1]) == ("defect", "the solver moved a site past its equilibrium")
+    assert {status for status, _ in ended.values()} == {"lost_contact"}
+
+
+def test_memory_that_does_not_suffice_ends_the_run_and_leaves_no_row(store, monkeypatch):
+    def devour(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr(tasks, "run_simulation", devour)
+    [(_, finished)] = fill(store, FLAT)
+    assert finished.status == tasks.NOT_STORED
+    assert "start fewer ranks" in finished.sentence
+    assert store.inventory(FLAT).missing == FLAT
+
+
+_STARTS = """
+import os, sys
+from pathlib import Path
+from crackfront.data.provenance import provenance
+from crackfront.sweep.store import Store
+from crackfront.sweep.tasks import fill
+
+store, origin = Store(Path(sys.argv[1])), provenance("text")
+signal, hold = os.pipe()
+starts = []
+for _ in range(200):
+    starts.append(os.fork())
+    if starts[-1] == 0:
+        os.close(hold)
+        os.read(signal, 1)
+        list(fill(store, [], origin))
+        os._exit(0)
+os.close(hold)
+sys.exit(any([os.waitpid(start, 0)[1] for start in starts]))
+"""
+"""Processes that have all imported and wait for one signal, the end of a pipe."""
+
+
+def test_two_hundred_starts_in_one_instant_do_not_meet(store):
+    command = [sys.executable, "-c", _STARTS, str(store.folder)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert store.configuration.read_text(encoding="utf-8").startswith("text")
+    assert not list(store.folder.rglob(".*.part"))
+
+
+def flip(path, place=0.5):
+    """Change one bit of a file."""
+    content = bytearray(path.read_bytes())
+    content[int(place * len(content))] ^= 16
+    path.write_bytes(content)
+
+
+@pytest.mark.parametrize("journals", [True, False])
+@pytest.mark.parametrize("place", [0.0, 0.3, 0.6, 0.999])
+def test_a_curve_with_a_flipped_bit_is_named_and_computed_anew(store, journals, place):
+    fill(store, FLAT[:2])
+    expected = [held.row for held in store.holdings(FLAT[:2])]
+    flip(store.path(FLAT[1]), place)
+    if not journals:
+        shutil.rmtree(store.journals)
+    inventory = store.inventory(FLAT[:2])
+    assert inventory.missing == (FLAT[1],)
+    [sentence] = inventory.unreadable
+    assert str(store.path(FLAT[1])) in sentence
+    assert "is damaged, its content does not have the digest that it states" in sentence
+    fill(store, inventory.missing)
+    found = [held.row for held in store.holdings(FLAT[:2])]
+    assert [row.w_retr for row in found] == [row.w_retr for row in expected]
+
+
+def test_a_valid_file_of_another_simulation_is_not_believed(store):
+    fill(store, FLAT[:2])
+    shutil.copyfile(store.path(FLAT[0]), store.path(FLAT[1]))
+    shutil.rmtree(store.journals)
+    inventory = store.inventory(FLAT[:2])
+    assert inventory.missing == (FLAT[1],)
+    assert "is not the result of" in inventory.unreadable[0]
+
+
+def test_files_of_an_earlier_version_without_digests_count(store):
+    fill(store, FLAT[:2])
+    for path in (store.folder / "curves").iterdir():
+        content = path.read_bytes()
+        path.write_bytes(content[: content.rindex(b"crackfront digest") - 1])
+    shutil.rmtree(store.journals)
+    assert store.inventory(FLAT[:2]).missing == ()
+    assert verification(store.folder).counts["curves"] == {Integrity.UNKNOWN: 2}
+
+
+def damaging(checkpoint):
+    """What a checkpoint may be: damaged, cut, of another load, or no netCDF at all."""
+    content = checkpoint.read_bytes()
+    yield content[:200] + bytes([content[200] ^ 1]) + content[201:]
+    yield content[: len(content) // 2]
+    with xr.open_dataset(checkpoint) as dataset:
+        wrong = dataset.load()
+    wrong["penetration"] = wrong["penetration"] + 0.5
+    wrong.to_netcdf(checkpoint)
+    yield checkpoint.read_bytes()
+    wrong.drop_vars("turning_front").to_netcdf(checkpoint)
+    yield checkpoint.read_bytes()
+    yield b"text"
+
+
+def test_a_checkpoint_that_is_of_no_use_costs_time_and_no_refusal_is_stored(store):
+    fill(store, FLAT[:1])
+    [expected] = [held.row for held in store.holdings(FLAT[:1])]
+    kept = []
+    run_simulation(FLAT[0], keep=lambda make: kept.append(make()))
+    path = store.checkpoint(FLAT[0])
+    write_checkpoint(path, kept[3], provenance())
+    for content in list(damaging(path)):
+        shutil.rmtree(store.folder)
+        path.parent.mkdir(parents=True)
+        path.write_bytes(content)
+        [(_, finished)] = fill(store, FLAT[:1])
+        assert finished.status == "lost_contact"
+        assert finished.sentence.startswith("begun anew without its checkpoint: ")
+        [held] = store.holdings(FLAT[:1])
+        assert held.row.w_appr == expected.w_appr
+        assert held.row.iterations == expected.iterations
+        assert not path.exists()
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A store with everything that the workflow makes of a sweep but figures."""
+    store = Store(tmp_path_factory.mktemp("made") / "sweep")
+    for shard in SWEEP.shards():
+        simulations = SWEEP.shard(shard.item, shard.realisations)
+        fill(store, simulations)
+        store.write_manifest(shard, simulations)
+    store.aggregate(SWEEP, provenance("text"))
+    return store
+
+
+@pytest.fixture
+def whole(made, store):
+    """A copy of that store."""
+    shutil.copytree(made.folder, store.folder)
+    return store
+
+
+def test_nothing_is_taken_back_of_a_store_that_is_whole(whole, tmp_path):
+    assert list(whole.renewed(SWEEP, tmp_path / "none.yaml")) == []
+    assert len(list((whole.folder / "shards").iterdir())) == 2
+
+
+@pytest.mark.parametrize("damage", ["flipped", "removed"])
+def test_the_lists_of_what_is_damaged_or_gone_are_taken_back(whole, tmp_path, damage):
+    path = whole.path(FLAT[0])
+    flip(path) if damage == "flipped" else path.unlink()
+    told = list(whole.renewed(SWEEP, tmp_path / "none.yaml"))
+    assert any(f"{path} is damaged" in line for line in told) == (damage == "flipped")
+    assert "1 list(s) of shards are made anew with what they lack" in told[-1]
+    assert [path.name for path in (whole.folder / "shards").iterdir()] == ["rough.json"]
+
+
+@pytest.mark.parametrize("name", ["hysteresis.nc", "shards/flat.json", "configuration.yaml"])
+@pytest.mark.parametrize("damage", ["flipped", "truncated"])
+def test_a_damaged_file_is_set_aside_and_told(whole, tmp_path, name, damage):
+    path = whole.folder / name
+    if damage == "flipped":
+        flip(path)
+    else:
+        path.write_bytes(path.read_bytes()[:-40])
+    (tmp_path / "sweep.yaml").write_text("text")
+    [first, *_] = whole.renewed(SWEEP, tmp_path / "sweep.yaml")
+    assert first.startswith(f"{path} is damaged; it is made anew, and set aside as {path.name}.dam")
+    assert path.exists() == (name == "configuration.yaml")
+    assert path.with_name(f"{path.name}.damaged").exists()
+
+
+def test_a_list_of_a_shard_that_is_no_json_is_taken_back(whole):
+    for path, content in zip((whole.folder / "shards").iterdir(), (b"", b"[1]"), strict=True):
+        path.write_bytes(content)
+    whole.path(FLAT[0]).unlink()
+    with pytest.raises(ValueError, match="1 of 8 simulations are missing"):
+        whole.aggregate(SWEEP, provenance())
+    assert not any((whole.folder / "shards").iterdir())
+
+
+def test_the_table_of_another_configuration_is_refused(whole):
+    other = replace(SWEEP, fit=replace(SWEEP.fit, n_bootstrap=7))
+    assert whole.table(other).w_appr.shape == (2, 2, 2)
+    with pytest.raises(ValueError, match="is the table of another configuration than the one gi"):
+        whole.table(replace(SWEEP, n_realisation=1))
+
+
+def test_a_damaged_file_is_not_archived(whole, tmp_path):
+    flip(whole.path(FLAT[0]))
+    with pytest.raises(ValueError, match=r"1 files of .* are damaged, the first is .*flat-e"):
+        whole.archive(tmp_path / "sweep.zip", curves=True)
+    assert not (tmp_path / "sweep.zip").exists()
+    whole.archive(tmp_path / "sweep.zip", curves=False)
+
+
+def test_a_folder_and_its_archive_are_verified(whole, tmp_path):
+    archive = tmp_path / "sweep.zip"
+    whole.archive(archive, curves=True)
+    for place in (whole.folder, archive):
+        found = verification(place)
+        assert found.damaged == found.missing == ()
+        assert found.counts["curves"] == {Integrity.WHOLE: 8}
+        assert found.counts["lines of journals"] == {Integrity.WHOLE: 16}
+    flip(whole.path(FLAT[0]))
+    flip(next(whole.journals.iterdir()), 0.01)
+    whole.path(FLAT[1]).unlink()
+    found = verification(whole.folder)
+    assert {name.partition("/")[0] for name in found.damaged} == {"curves", "journals"}
+    assert found.missing == (f"curves/{FLAT[1].stem}.nc",)
+    result = CliRunner().invoke(main, ["verify", str(whole.folder)])
+    assert result.exit_code == 1
+    assert "2 files are damaged and 1 missing" in result.output
+    flip(archive)
+    result = CliRunner().invoke(main, ["verify", str(archive)])
+    assert result.exit_code in (1, 2)
+    assert "Traceback" not in result.output
+
+
+def test_two_stores_of_one_sweep_agree_in_bits_and_another_sweep_does_not(whole, tmp_path):
+    twin, other = Store(tmp_path / "twin"), Store(tmp_path / "other")
+    changed = replace(SWEEP, seed=SWEEP.seed + 1)
+    for store, sweep in ((twin, SWEEP), (other, changed)):
+        fill(store, list(sweep.simulations()))
+        store.aggregate(sweep, provenance())
+    found = comparison(whole.folder, twin.folder)
+    assert found.in_bits
+    assert found.n_file == 9
+    found = comparison(whole.folder, other.folder)
+    assert found.n_file == 9  # keys do not matter
+    assert not found.in_bits
+    assert found.by_variable()["force"].largest > 0
+    result = CliRunner().invoke(main, ["compare", str(whole.folder), str(twin.folder)])
+    assert result.exit_code == 0
+    assert "9 files agree in bits" in result.output
+
+
+def test_the_fit_of_a_sweep_that_was_interrupted_is_that_of_an_undisturbed_one(
+    made, whole, tmp_path
+):
+    undisturbed = tmp_path / "undisturbed"
+    shutil.copytree(made.folder, undisturbed)
+    # What a killed process leaves: some curves, one on its way, and half a line.
+    simulations = list(SWEEP.simulations())
+    for one in simulations[3:]:
+        whole.path(one).unlink()
+    [journal_file] = whole.journals.iterdir()
+    journal_file.write_bytes(journal_file.read_bytes()[:-300])
+    kept = []
+    run_simulation(simulations[3], keep=lambda make: kept.append(make()))
+    write_checkpoint(whole.checkpoint(simulations[3]), kept[5], provenance())
+    assert len(fill(whole, whole.inventory(simulations).missing)) == 5
+    folders = (undisturbed, whole.folder)
+    for folder, name in itertools.product(folders, ("aggregate", "fit")):
+        result = CliRunner().invoke(main, [name, str(TEST), "--output", str(folder)])
+        assert result.exit_code == 0, result.output
+    one, other = ((folder / "fit.md").read_bytes() for folder in folders)
+    assert one == other
+    assert comparison(*(folder / "fit.nc" for folder in folders)).in_bits
+    one, other = (json.loads((folder / "fit.json").read_text()) for folder in folders)
+    assert {name for name in one if one[name] != other[name]} <= {"origin", "digest"}
+    differing = {name for name, text in one["origin"].items() if text != other["origin"][name]}
+    assert differing <= {"date", "command"}
+
+
+def test_a_part_that_its_writer_renames_meanwhile_is_left_alone(tmp_path, monkeypatch):
+    glob = Path.glob
+    gone = tmp_path / ".renamed.part"
+    monkeypatch.setattr(Path, "glob", lambda folder, pattern: [*glob(folder, pattern), gone])
+    assert leftover_parts(tmp_path) == []
+
+
+def test_keys_are_made_of_stored_simulations_alone_as_they_take_long(store, monkeypatch):
+    fill(store, FLAT[:1])
+    many, asked, key = replace(SWEEP, n_realisation=300), [], Simulation.key.fget
+    monkeypatch.setattr(Simulation, "key", property(lambda one: asked.append(one) or key(one)))
+    assert len(store.inventory(many.simulations()).missing) == many.n_simulation - 1
+    assert len(asked) < 10

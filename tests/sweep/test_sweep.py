@@ -1,0 +1,103 @@
+"""Sweeps: their simulations, and that additions leave the others alone."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import Scales
+from crackfront.simulate.run import run_simulation
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.sweep import NamedSpectrum, shard_fingerprint
+
+SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
+
+
+def stems(sweep):
+    """Names of all simulations."""
+    return {one.stem for item in sweep.spectra for one in sweep.shard(item)}
+
+
+def test_a_shard_holds_every_amplitude_and_realisation_once():
+    shard = SWEEP.shard(SWEEP.spectra[0])
+    pairs = {(one.elastic_energy, one.realisation) for one in shard}
+    assert len(shard) == len(pairs) == len(SWEEP.elastic_energies) * SWEEP.n_realisation
+
+
+def test_additions_and_order_leave_all_other_simulations_as_they_are():
+    before = stems(SWEEP)
+    new = NamedSpectrum("new", SelfAffineSpectrum(0.3, 0.3, 1.0))
+    additions = (
+        replace(SWEEP, n_realisation=5),
+        replace(SWEEP, elastic_energies=(0.5, *SWEEP.elastic_energies)),
+        replace(SWEEP, spectra=(new, *SWEEP.spectra)),
+    )
+    assert all(before < stems(sweep) for sweep in additions)
+    assert stems(replace(SWEEP, spectra=SWEEP.spectra[::-1])) == before
+
+
+def test_the_fit_range_changes_no_simulation():
+    narrower = replace(SWEEP, fit=replace(SWEEP.fit, lowest_elastic_energy=0.05))
+    assert stems(narrower) == stems(SWEEP)
+
+
+def test_the_fingerprint_of_a_shard_changes_with_its_simulations_alone():
+    flat, rough = SWEEP.spectra
+    before = shard_fingerprint(SWEEP.shard(flat))
+    more = replace(SWEEP, n_realisation=3)
+    fewer = replace(SWEEP, spectra=(flat,))
+    assert shard_fingerprint(more.shard(flat)) != before
+    assert shard_fingerprint(SWEEP.shard(rough)) != before
+    assert shard_fingerprint(fewer.shard(flat)) == before
+
+
+@pytest.mark.parametrize("block", [None, 1, 3, 10, 11])
+def test_shards_hold_every_simulation_once(block):
+    sweep = replace(SWEEP, n_realisation=10)
+    shards = sweep.shards(block)
+    assert len(shards) == 2 * {None: 1, 1: 10, 3: 4, 10: 1, 11: 1}[block]
+    assert len({shard.name for shard in shards}) == len(shards)
+    found = [one.key for shard in shards for one in sweep.shard(shard.item, shard.realisations)]
+    wanted = [one.key for item in sweep.spectra for one in sweep.shard(item)]
+    assert sorted(found) == sorted(wanted)
+
+
+def test_a_hundred_thousand_simulations_are_no_more_than_a_thousand_jobs():
+    sweep = replace(SWEEP, n_realisation=25_000)
+    with pytest.raises(ValueError, match=r"2500 shards, more than 1000 jobs; take blocks of 50 or"):
+        sweep.shards(20)
+    assert len(sweep.shards(50)) == 1000
+
+
+@pytest.mark.parametrize("block", [0, -1, "many"])
+def test_a_block_that_is_no_number_of_realisations_is_refused(block):
+    with pytest.raises(ValueError, match="it must be 1 or more of them"):
+        SWEEP.shards(block)
+
+
+def test_realisations_that_the_sweep_does_not_have_are_refused():
+    with pytest.raises(ValueError, match="realisations 1 to 2 are not among those"):
+        SWEEP.named_shard(SWEEP.spectra[0], range(1, 3))
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"), [("flatt", "did you mean flat?"), ("xyz", "choose one of flat, rough")]
+)
+def test_a_misspelt_spectrum_is_refused_with_the_nearest_name(name, hint):
+    with pytest.raises(ValueError, match="has no spectrum") as caught:
+        SWEEP.named(name)
+    assert hint in str(caught.value)
+
+
+def test_a_sweep_in_metres_is_the_reduced_one_to_round_off():
+    scales = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.93e6)
+    item = SWEEP.spectra[1]
+    lengths = (item.spectrum.short_cutoff, item.spectrum.roll_off)
+    there_and_back = [length * scales.lateral * 1.1 / scales.lateral / 1.1 for length in lengths]
+    assert there_and_back != list(lengths)
+    metres = NamedSpectrum("rough", SelfAffineSpectrum(*there_and_back, item.spectrum.hurst))
+    one, other = (run_simulation(SWEEP.simulation(one, 0.1, 0)) for one in (item, metres))
+    assert other.simulation.key != one.simulation.key
+    assert other.record.states.mean_radius == pytest.approx(one.record.states.mean_radius, rel=1e-9)
+    assert other.record.states.force == pytest.approx(one.record.states.force, rel=1e-9)

@@ -1,0 +1,184 @@
+"""What is found in the densities of scans, held against what was done to them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.ndimage import grey_dilation
+
+from crackfront.topography.bands import scan
+from crackfront.topography.joining import joint_spectrum
+from crackfront.topography.prediction import surface_notes
+from crackfront.topography.tips import tip_wavelength
+from studies.accuracy import predicted_energies as surfaces
+from studies.accuracy.predicted_energies import (
+    KINDS,
+    MEAN_SQUARE,
+    PIXEL,
+    SIDE,
+    found_scan,
+    kind_row,
+    rows,
+)
+
+
+def kind(name):
+    """Kind of scans of a name."""
+    return next(one for one in KINDS if one.name == name)
+
+
+@pytest.fixture(scope="module")
+def found():
+    """A scan of every kind that is asked for, made once."""
+    known = {}
+
+    def one(name):
+        if name not in known:
+            known[name] = found_scan(kind(name), 0)
+        return known[name]
+
+    return one
+
+
+def ends(result):
+    """Causes of the ends of the first scan, and these in pixels and sides."""
+    low, high = result.surface.scans[0].band.ends
+    return low.cause, low.wavelength / PIXEL, high.cause, SIDE / high.wavelength
+
+
+def test_an_undistorted_scan_ends_by_its_pixels_and_by_levelling(found):
+    assert ends(found("self-affine, H = 0.8")) == ("pixels", pytest.approx(4), "levelling", 2)
+
+
+def test_the_resolution_of_an_optic_is_found_where_it_takes_a_fifth(found):
+    cause, pixels, *_ = ends(found("optic, Gaussian"))
+    assert cause == "resolution"
+    assert pixels == pytest.approx(2 * np.pi / np.sqrt(np.log(1.25)), rel=0.35)
+
+
+def test_the_mark_of_a_tip_is_found_and_what_it_takes_away_is_told(found):
+    result = found("tip of an AFM")
+    cause, pixels, *_ = ends(result)
+    assert cause == "tip"
+    assert 8 < pixels < 16
+    assert result.covers
+    # Its density falls as that of a surface: without the mark, the band would end with the pixels.
+    assert result.surface.joint.shares.measured < 0.8
+
+
+def test_surfaces_with_sharp_peaks_or_valleys_have_no_mark_of_a_tip(found):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    heights = one.measurement.heights / one.measurement.heights.std()
+    for other in (heights, np.exp(heights), -np.exp(-heights), np.minimum(heights, 0.5)):
+        assert tip_wavelength(replace(one.measurement, heights=1e-7 * other)) == 0
+
+
+def test_the_mark_of_a_tip_grows_with_its_radius_and_hardly_depends_on_noise_of_rows(found, rng):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    marks = []
+    for radius in (1e-6, 4e-6):
+        along = PIXEL * np.arange(-30, 31)
+        shape = -(along[:, None] ** 2 + along**2) / (2 * radius)
+        heights = grey_dilation(one.measurement.heights, structure=shape)
+        rows = 1e-9 * rng.standard_normal((1, heights.shape[1]))
+        both = (replace(one.measurement, heights=heights + shift) for shift in (0.0, rows))
+        clean, shifted = map(tip_wavelength, both)
+        assert shifted == pytest.approx(clean, rel=0.3)
+        marks.append(clean)
+    assert 0 < 1.2 * marks[0] < marks[1]
+
+
+def test_the_noise_of_a_scan_is_found_and_ends_its_band(found, rng):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    heights = one.measurement.heights
+    noise = 0.6 * heights.std() * rng.standard_normal(heights.shape)
+    band = scan(replace(one.measurement, heights=heights + noise)).band
+    # The density of white noise is its variance times the area of a point.
+    assert band.instrument.noise == pytest.approx(np.var(noise) * PIXEL**2, rel=0.2)
+    assert band.shortest.cause == "noise"
+    assert one.band.instrument.noise == 0
+
+
+def test_shifted_rows_are_found_and_left_out(found, rng):
+    surface = found("self-affine, H = 0.8").surface
+    [one] = surface.scans
+    heights = one.measurement.heights
+    shifts = 0.5 * heights.std() * rng.standard_normal((1, heights.shape[1]))
+    shifted = scan(replace(one.measurement, heights=heights + shifts))
+    assert (one.band.stripes, shifted.band.stripes) == ((), (1,))
+    assert shifted.trusted.value == pytest.approx(one.trusted.value, rel=0.6)
+    assert shifted.waves.power.mean() > 1.2 * one.waves.power.mean()
+    notes = "\n".join(surface_notes(replace(surface, scans=(shifted,))))
+    assert "waves along y alone" in notes
+
+
+def test_form_that_levelling_leaves_is_found(found):
+    cause, _, reason, sides = ends(found("form that is left"))
+    assert (cause, reason) == ("pixels", "form")
+    assert 2.5 < sides < 6
+    assert found("form that is left").ratio.value == pytest.approx(1, abs=0.3)
+
+
+def test_a_density_that_ends_is_not_continued(found):
+    result = found("end at four pixels")
+    assert result.surface.joint.spectrum.short_cutoff == pytest.approx(4 * PIXEL, rel=0.15)
+
+
+def test_scans_that_agree_join_and_those_that_do_not_are_told(found):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    path = one.measurement.path.with_name("other.al3d")
+    rough = replace(one.measurement, heights=3 * one.measurement.heights, path=path)
+    joint = joint_spectrum([one, scan(rough)])
+    assert joint.density.scatter > 0.5
+    assert joint.density.disagrees(0)
+    assert joint.density.disagrees(1)
+    assert joint.density.levels[1].value == pytest.approx(9, rel=1e-6)
+    energy = joint.estimate(lambda spectrum: spectrum.mean_square(0.5))
+    assert energy.high / energy.low > 3
+    same = joint_spectrum([one, replace(one, measurement=replace(one.measurement, path=path))])
+    assert not same.density.disagrees(0)
+    assert same.density.scatter == 0
+
+
+def test_limits_that_are_named_stand_in_place_of_those_that_are_found(found):
+    [one] = found("form that is left").surface.scans
+    band = scan(one.measurement, shortest=8 * PIXEL, longest=SIDE / 3).band
+    assert [limit.cause for limit in band.ends] == ["named", "named"]
+    assert [limit.wavelength for limit in band.ends] == [8 * PIXEL, SIDE / 3]
+
+
+def test_a_band_of_less_than_an_octave_is_refused(found):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    with pytest.raises(ValueError, match=r"less than an octave; use a better scan, or name"):
+        scan(one.measurement, shortest=SIDE / 3)
+
+
+def test_intervals_of_distorted_scans_hold_the_truth(found):
+    names = (
+        *("self-affine, H = 0.8", "optic, Gaussian", "noise", "rows that are shifted"),
+        *("form that is left", "end at four pixels", "oblong pixels", "missing points"),
+    )
+    results = [found(name) for name in names]
+    assert all(one.ratio.low > 0 for one in results)
+    assert np.mean([one.covers for one in results]) > 0.85
+    assert np.median([abs(one.ratio.value - 1) for one in results]) < 0.2
+
+
+def test_the_table_of_the_benchmark_has_a_row_for_each_kind(monkeypatch, found):
+    monkeypatch.setattr(surfaces, "KINDS", (kind("noise"),))
+    monkeypatch.setattr(surfaces, "found_scan", lambda kind, number: found(kind.name))
+    [(one, results)] = rows(2)
+    assert len(results) == 2
+    assert kind_row(one, results).startswith("| noise | yes | ")
+    assert one.truth.mean_square(0.5) == pytest.approx(MEAN_SQUARE)
+
+
+@pytest.mark.slow
+def test_intervals_of_two_hundred_scans_hold_the_truth():
+    every = [(one, result) for one, results in rows(12) for result in results]
+    assert len(every) > 200
+    assert np.median([abs(one.ratio.value - 1) for _, one in every]) < 0.2
+    assert np.mean([one.covers for _, one in every]) >= 0.9
+    assert np.median([one.factor for kind, one in every if kind.resolved]) < 1.5
+    tips = [one.covers for kind, one in every if kind.name == "tip of an AFM"]
+    assert np.mean(tips) >= 0.9
