@@ -24,7 +24,7 @@ def commands() -> None:
 @commands.command(
     epilog=examples(
         "python -m studies boundary-elements validate config/validation.yaml",
-        "python -m studies boundary-elements validate config/validation-512.yaml --output results/large",
+        "python -m studies boundary-elements validate config/validation-512.yaml",
         "python -m studies boundary-elements validate config/validation-strong.yaml --finished",
     )
 )

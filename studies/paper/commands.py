@@ -44,7 +44,8 @@ _GALLERY = (
     "",
     "Every computed figure of the paper, beside what the paper states or what must be true. `make",
     "figures` computes all of them, `python -m studies paper gallery` writes this page. A check",
-    "agrees; or it differs from the paper as [the law of k](law.md) says, with the law's number beside it; or it",
+    "agrees; or it differs from the paper as [the law of k](law.md) says, with the law's number",
+    "beside it; or it",
     "fails, and then the difference has no explanation.",
 )
 
