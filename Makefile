@@ -107,10 +107,11 @@ nightly: env  ## Run all tests, the slow ones too
 	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT)
 
 benchmark: env  ## Solvers against the reference, what requests cost, how sweeps scale (40 minutes)
-	$(IN_ENV) .venv/bin/python -m studies.speed --output results/benchmark
-	$(IN_ENV) .venv/bin/python -m studies.speed.needs --output results/benchmark
-	$(IN_ENV) .venv/bin/python -m studies.speed.costs --output results/benchmark
-	$(IN_ENV) .venv/bin/python -m studies.speed.scaling --output results/benchmark
+	$(IN_ENV) .venv/bin/python -m studies speed solvers
+	$(IN_ENV) .venv/bin/python -m studies speed needs
+	$(IN_ENV) .venv/bin/python -m studies speed costs
+	$(IN_ENV) .venv/bin/python -m studies speed scaling
+	@echo "Results: results/benchmark/"
 
 accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (16 minutes on two cores)
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default accuracy

@@ -1,6 +1,6 @@
 r"""What simulations cost before they are run: time, memory and disk, from laws of measured runs.
 
-`python -m studies.speed.costs` measures the runs of `costs.csv`. The processor time is that of
+`python -m studies speed costs` measures the runs of `costs.csv`. The processor time is that of
 making the tile and that of the load steps,
 
 .. math:: t = c_t n_p^2 \log_2 n_p + n_b N\, e^{c_0 + c \cdot x},

@@ -1,33 +1,25 @@
-"""Measure what simulations cost: the runs that the cost model is fitted to and held against.
-
-python -m studies.speed.costs --output results/benchmark
+"""What simulations cost: the runs that the cost model is fitted to, and is held against.
 
 Every row of `costs.csv` is one simulation, run several times unless that takes long: the least
-counts, since the speed of a processor varies by a quarter over minutes. Copied to
-`crackfront/simulate/costs.csv`, it is what `crackfront plan` predicts from.
+counts, since the speed of a processor varies by a quarter over minutes.
 """
 
 from __future__ import annotations
 
-import argparse
 import csv
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
-from pathlib import Path
 
-import click
 import numpy as np
 
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.data.files import write_text
 from crackfront.simulate.costs import Features, Measured, features, measured_runs, predicted_seconds
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.run import compile_solver, run_simulation
+from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
-from studies.speed.machine import described_machine
 
 KNOBS = Knobs(None, 2.4, 4, "cubic", 4, 1e-4)
 ENERGIES = (0.002, 0.01, 0.05, 0.15)
@@ -101,18 +93,19 @@ def measured(simulation: Simulation, held: bool) -> Measured:
     )
 
 
-def least_of_passes(simulations: list[Simulation], held: bool) -> list[Measured]:
+def least_of_passes(
+    simulations: Iterator[Simulation], held: bool, progress: Callable[[str], None]
+) -> list[Measured]:
     """What simulations cost on this machine, each the least of the passes through all."""
-    least: dict[int, Measured] = {}
-    for _ in range(_PASSES):
-        for place, simulation in enumerate(simulations):
-            known = least.get(place)
-            if known is not None and known.cpu_seconds > _LONG:
-                continue
-            run = measured(simulation, held)
-            click.echo(f"{run.name}: {run.cpu_seconds:.3g} s, {run.n_state} states")
-            if known is None or run.cpu_seconds < known.cpu_seconds:
-                least[place] = run
+    least: dict[Simulation, Measured] = {}
+    for one in [*simulations] * _PASSES:
+        known = least.get(one)
+        if known is not None and known.cpu_seconds > _LONG:
+            continue
+        run = measured(one, held)
+        progress(f"{run.name}: {run.cpu_seconds:.3g} s, {run.n_state} states")
+        if known is None or run.cpu_seconds < known.cpu_seconds:
+            least[one] = run
     return list(least.values())
 
 
@@ -141,23 +134,3 @@ def table(runs: list[Measured]) -> str:
         last = [run.n_state, f"{run.cpu_seconds:.4g}"]
         writer.writerow([run.name, int(run.held_out), *values, *last])
     return text.getvalue()
-
-
-def main() -> None:
-    """Measure all runs, one after the other."""
-    parser = argparse.ArgumentParser(description="what simulations cost")
-    parser.add_argument("--output", type=Path, default=Path("results/benchmark"))
-    chosen = parser.parse_args()
-    compile_solver("newton")
-    click.echo(described_machine())
-    runs = least_of_passes([*fitted_to()], held=False) + least_of_passes([*held_out()], held=True)
-    write_text(chosen.output / "costs.csv", table(runs))
-    click.echo(f"Results: {chosen.output / 'costs.csv'}")
-    click.echo(
-        f"The law in use meets its fitted runs within a factor {worst_factor(False):.2f}, "
-        f"its held-out ones within {worst_factor(True):.2f}"
-    )
-
-
-if __name__ == "__main__":
-    main()

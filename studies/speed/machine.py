@@ -1,22 +1,22 @@
-"""What the tables say about the machine and the code, and the memory of a process."""
+"""The memory of a process, and processes of their own for what is measured."""
 
 from __future__ import annotations
 
-import os
-import platform
+import multiprocessing
 import resource
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
+from typing import Any, TypeVar
 
-from crackfront.data.provenance import provenance
+Result = TypeVar("Result")
 
 
-def described_machine() -> str:
-    """One sentence: processor, cores, Python, version and commit."""
-    origin = provenance()
-    return (
-        f"Machine: {_processor()}, {os.cpu_count()} cores, Python {platform.python_version()}; "
-        f"crackfront {origin.crackfront_version}, commit {origin.git_commit}."
-    )
+def in_fresh_process(function: Callable[..., Result], *arguments: Any) -> Result:
+    """What a function returns in a process of its own, whose memory is that of the call."""
+    spawn = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, mp_context=spawn) as fresh:
+        return fresh.submit(function, *arguments).result()
 
 
 def restart_peak() -> float:
@@ -36,11 +36,3 @@ def peak_memory() -> float:
         return marks[0] * 1024 / 1e6
     # This mark cannot be restarted, and a process may inherit that of its parent; macOS: in bytes.
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
-
-
-def _processor() -> str:
-    """Name of the processor."""
-    listed = Path("/proc/cpuinfo")
-    lines = listed.read_text(encoding="utf-8").splitlines() if listed.exists() else []
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()

@@ -1,26 +1,19 @@
 """What each request of a scene costs: time, memory, bytes on disk, samples of the field.
 
-python -m studies.speed.needs --output results/benchmark
-
 The scenes are rings (a scalar problem), the hysteresis alone, and full cycles with more and more of
 what can be recorded; all but the rings are on one surface.
 """
 
 from __future__ import annotations
 
-import argparse
 import functools
-import multiprocessing
 import tempfile
 import time
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, astuple, dataclass, replace
 from pathlib import Path
 from typing import Literal
 
-import click
 import numpy as np
-import xarray as xr
 
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.run import run_cycle
@@ -32,14 +25,16 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import variable
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
-from crackfront.simulate.contact import contact_field, simulation_adhesion
+from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.files import cycle_dataset, write_simulation
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.run import compile_solver, run_simulation
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
-from studies.speed.machine import described_machine, peak_memory, restart_peak
+from studies.pages import markdown_table
+from studies.speed.machine import peak_memory, restart_peak
 
 TOLERANCE = 1e-5
 RING_AMPLITUDE = 0.2
@@ -121,37 +116,18 @@ NEEDS = (
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What one request cost.
+    """What one request cost."""
 
-    Attributes
-    ----------
-    name, status : str
-        The request, and how its run ended.
-    n_angle, n_step : int
-        Sites of the front, load steps.
-    samples : float
-        Samples of w_loc that the front crosses; each is evaluated once when the front gets there.
-    seconds : float
-        CPU time, the making of the field included. (Units: s)
-    peak : float
-        Largest memory above that of the imported package. (Units: MB)
-    field, record : float
-        Memory of the arrays that describe the field while the front moves, and of what is
-        recorded of it. (Units: MB)
-    file : float
-        Size of the file. (Units: kB)
-    """
-
-    name: str
-    status: str
-    n_angle: int
-    n_step: int
-    samples: float
-    seconds: float
-    peak: float
-    field: float
-    record: float
-    file: float
+    name: str = variable("request", "1")
+    status: str = variable("how its run ended", "1")
+    n_angle: int = variable("sites of the front", "1")
+    n_step: int = variable("load steps", "1")
+    samples: float = variable("samples of w_loc that the front crosses, each counted once", "1")
+    seconds: float = variable("processor time, the making of the field included", "s")
+    peak: float = variable("largest memory above that of the imported package", "MB")
+    field: float = variable("arrays of the field while the front moves", "MB")
+    record: float = variable("arrays of the record", "MB")
+    file: float = variable("size of the file", "kB")
 
 
 def simulation(scene: Scene, need: Need) -> Simulation:
@@ -172,16 +148,17 @@ def simulation(scene: Scene, need: Need) -> Simulation:
 def ring_field(scene: Scene, rays: int) -> Field:
     """Rings w_int (1 + 0.2 sin(2 pi a / d)) on one ray or more."""
     period = scene.spectrum.short_cutoff
-    radii = period / RING_SAMPLES * np.arange(1, int(2.1 / period * RING_SAMPLES))
+    radii = period / RING_SAMPLES * np.arange(1.0, int(2.1 / period * RING_SAMPLES))
     ring = WORK_OF_ADHESION * (1 + RING_AMPLITUDE * np.sin(2 * np.pi * radii / period))
-    return polar_field(radii, np.broadcast_to(ring[:, None], (radii.size, rays)), "cubic")
+    return polar_field(radii, np.tile(ring[:, None], rays), "cubic")
 
 
-def measure(scene: Scene, need: Need) -> Row:
-    """Run one request and write its file; compiled kernels are loaded before."""
+def measured(scene: Scene, need: Need) -> Row:
+    """Cost of one request and its file; compiled kernels are loaded before."""
     compile_solver("newton")
     run_cycle(ring_field(SMALL, 1), LoadSchedule(0.0, 1.0))
     before, start = restart_peak(), time.process_time()
+    field: Field
     if need.rays:
         field = ring_field(scene, need.rays)
         record = run_cycle(field, scene.cycle, Newton(TOLERANCE))
@@ -192,7 +169,7 @@ def measure(scene: Scene, need: Need) -> Row:
         write = functools.partial(write_simulation, result=result)
     seconds, peak = time.process_time() - start, peak_memory() - before
     if not need.rays:
-        field = surface_field(simulation(scene, need))
+        field = simulation_field(simulation(scene, need))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.nc"
         write(path, origin=provenance())
@@ -209,20 +186,6 @@ def measure(scene: Scene, need: Need) -> Row:
         record=_bytes((*asdict(record.states).values(), *astuple(record)[3:])) / 1e6,
         file=size / 1e3,
     )
-
-
-def measure_apart(scene: Scene, need: Need) -> Row:
-    """The same in a process of its own."""
-    spawn = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(1, mp_context=spawn) as fresh:
-        return fresh.submit(measure, scene, need).result()
-
-
-def surface_field(one: Simulation) -> Field:
-    """Field of a simulation, as its run has it."""
-    adhesion, sizes = simulation_adhesion(one), one.resolution
-    largest = one.schedule.max_penetration
-    return contact_field(adhesion, sizes.n_angle, sizes.spacing, largest, band_limited=True)
 
 
 def _way(record: CycleRecord) -> float:
@@ -246,72 +209,32 @@ def _bytes(values: object) -> int:
     return values.nbytes if isinstance(values, np.ndarray) else 0
 
 
-def table(rows: list[Row]) -> str:
-    """Markdown table of rows."""
-    lines = [
-        "| asked for | CPU s | sites | load steps | samples crossed | peak MB | field MB "
-        "| record kB | file kB |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
-    lines += [
-        f"| {row.name} | {row.seconds:.3g} | {row.n_angle} | {row.n_step} | {row.samples:.2g} "
-        f"| {row.peak:.1f} | {row.field:.2f} | {1e3 * row.record:.1f} | {row.file:.1f} |"
+def sections(rows: list[Row]) -> list[str]:
+    """Paragraphs of the page."""
+    columns = (
+        "asked for",
+        "CPU s",
+        "sites",
+        "load steps",
+        "samples crossed",
+        "peak MB",
+        "field MB",
+        "record kB",
+        "file kB",
+    )
+    cells = [
+        (
+            row.name,
+            f"{row.seconds:.3g}",
+            f"{row.n_angle}",
+            f"{row.n_step}",
+            f"{row.samples:.2g}",
+            f"{row.peak:.1f}",
+            f"{row.field:.2f}",
+            f"{1e3 * row.record:.1f}",
+            f"{row.file:.1f}",
+        )
         for row in rows
     ]
-    return "\n".join(lines)
-
-
-def dataset(rows: list[Row]) -> xr.Dataset:
-    """All rows on one dimension."""
-    meanings = {
-        "name": ("1", "request"),
-        "status": ("1", "how its run ended"),
-        "n_angle": ("1", "sites of the front"),
-        "n_step": ("1", "load steps"),
-        "samples": ("1", "samples of w_loc that the front crosses"),
-        "seconds": ("s", "CPU time"),
-        "peak": ("MB", "largest memory above that of the imported package"),
-        "field": ("MB", "arrays of the field while the front moves"),
-        "record": ("MB", "arrays of the record"),
-        "file": ("kB", "size of the file"),
-    }
-    return xr.Dataset(
-        {
-            name: (
-                "request",
-                np.array([getattr(row, name) for row in rows]),
-                {"units": units, "long_name": meaning},
-            )
-            for name, (units, meaning) in meanings.items()
-        }
-    )
-
-
-def report(rows: list[Row]) -> str:
-    """The whole page."""
-    listed = [f"- {need.name}: {need.asked}" for need in NEEDS]
-    parts = ["# What each request costs", "", *listed, "", described_machine(), "", table(rows)]
-    return "\n".join(parts) + "\n"
-
-
-def main() -> None:
-    """Measure all requests."""
-    parser = argparse.ArgumentParser(description="what each request of a scene costs")
-    parser.add_argument("--output", type=Path, default=Path("results/benchmark"))
-    chosen = parser.parse_args()
-    # A process for each, so that its memory is its own; the first of all compiles.
-    measure_apart(SMALL, NEEDS[0])
-    rows = []
-    for need in NEEDS:
-        rows.append(row := measure_apart(SCENE, need))
-        click.echo(f"{row.name}: {row.seconds:.3g} s, {row.peak:.1f} MB, {row.file:.1f} kB")
-    chosen.output.mkdir(parents=True, exist_ok=True)
-    text = report(rows)
-    (chosen.output / "needs.md").write_text(text, encoding="utf-8")
-    write_dataset(chosen.output / "needs.nc", dataset(rows), provenance())
-    click.echo(text)
-    click.echo(f"Results: {chosen.output}/")
-
-
-if __name__ == "__main__":
-    main()
+    listed = "\n".join(f"- {need.name}: {need.asked}" for need in NEEDS)
+    return [listed, markdown_table(columns, cells)]

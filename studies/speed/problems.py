@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from crackfront.core.field.rays import sampled_on_rays
 from crackfront.core.geometry.sphere import sphere
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
+
+Group = Literal["disorder", "scaling", "smoke"]
+"""Tables of problems; `smoke` is for tests."""
 
 LARGEST_RADIUS = 2.6
 """Where the fields end. (Units: reduced lateral length)"""
@@ -27,8 +31,8 @@ class Problem:
 
     Attributes
     ----------
-    group : str
-        The table that the problem belongs to.
+    group : {"disorder", "scaling", "smoke"}
+        Its table.
     rms : float
         w_rms / w_int.
     spectrum : SelfAffineSpectrum
@@ -46,7 +50,7 @@ class Problem:
         Evaluate the field from its tile where the front is, instead of sampling all rays first.
     """
 
-    group: str
+    group: Group
     rms: float
     spectrum: SelfAffineSpectrum
     n_angle: int
@@ -135,4 +139,4 @@ PROBLEMS = (
     ),
     Problem("smoke", 0.4, _flat(0.16), 256, step=0.5),
 )
-"""All problems; those of the group `smoke` are for the tests."""
+"""All problems."""

@@ -1,7 +1,5 @@
 """How a sweep scales: efficiency of dispatch, a million simulations on paper, aggregation.
 
-python -m studies.speed.scaling --output results/benchmark
-
 Dispatch is measured with tasks that sleep, on real ranks of MPI. The million simulations are
 played through event by event, with the times of the cost model and the recorded deviations from
 it, for 1 to 4096 ranks. Aggregation reads as many rows as asked for from synthetic journals.
@@ -9,7 +7,6 @@ it, for 1 to 4096 ranks. Aggregation reads as many rows as asked for from synthe
 
 from __future__ import annotations
 
-import argparse
 import heapq
 import subprocess
 import sys
@@ -19,11 +16,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import click
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.data.files import write_text
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost, measured_runs, predicted_seconds
 from crackfront.sweep.configuration import load_configuration
@@ -32,11 +27,12 @@ from crackfront.sweep.parallel import default_launcher
 from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import Sweep
 from crackfront.sweep.table import failed_row, row_fingerprint
-from studies.speed.machine import described_machine, peak_memory, restart_peak
+from studies.pages import markdown_table
+from studies.speed.machine import peak_memory, restart_peak
 
 Array = NDArray[np.float64]
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 RANKS = tuple(2**power for power in range(13))
 
 HAND_OUT_SECONDS = 0.8e-3
@@ -205,38 +201,27 @@ def aggregation(n_simulation: int) -> tuple[float, float]:
     return seconds, 1e6 * peak_memory()
 
 
-def report(plays: dict[int, list[Played]]) -> str:
-    """Markdown table of a sweep in several numbers of shards on different numbers of ranks."""
-    head = " | ".join(f"hours, {n_shard} shards | efficiency" for n_shard in plays)
-    lines = [f"| ranks | {head} |", "|---" * (1 + 2 * len(plays)) + "|"]
-    for rows in zip(*plays.values(), strict=True):
-        cells = " | ".join(f"{row.hours:.3g} | {row.efficiency:.1%}" for row in rows)
-        lines.append(f"| {rows[0].n_rank} | {cells} |")
-    return "\n".join(lines)
-
-
-def main() -> None:
-    """Measure and play all."""
-    parser = argparse.ArgumentParser(description="how a sweep scales")
-    parser.add_argument("--output", type=Path, default=Path("results/benchmark"))
-    chosen = parser.parse_args()
-    lines = ["# How a sweep scales", "", described_machine(), ""]
-    lines += [
+def sections() -> list[str]:
+    """Paragraphs of the page, measured and played."""
+    measured = [
         f"Dispatch of 0.5 s to {n_worker} workers: {dispatch_efficiency(n_worker, 20):.1%}."
         for n_worker in (2, 32)
     ]
     for n_row in (10**5, 10**6):
         seconds, peak = aggregation(n_row)
-        lines.append(f"Aggregation of {n_row} rows: {seconds:.1f} s, {peak / 1e6:.0f} MB.")
-    lines.append("")
+        measured.append(f"Aggregation of {n_row} rows: {seconds:.1f} s, {peak / 1e6:.0f} MB.")
     sweeps = [million(n_shard=n_shard) for n_shard in (1000, 250)]
     useful = sum(float(np.sum(shard)) for shard in sweeps[0]) / 3600
-    lines += [f"{sum(map(len, sweeps[0]))} simulations of {useful:.0f} core hours:", ""]
-    plays = {len(shards): played(shards) for shards in sweeps}
-    text = "\n".join([*lines, report(plays)]) + "\n"
-    write_text(chosen.output / "scaling.md", text)
-    click.echo(text)
-
-
-if __name__ == "__main__":
-    main()
+    columns = ["ranks"]
+    for shards in sweeps:
+        columns += [f"hours, {len(shards)} shards", "efficiency"]
+    cells = [
+        [f"{rows[0].n_rank}"]
+        + [text for row in rows for text in (f"{row.hours:.3g}", f"{row.efficiency:.1%}")]
+        for rows in zip(*map(played, sweeps), strict=True)
+    ]
+    return [
+        "\n".join(measured),
+        f"{sum(map(len, sweeps[0]))} simulations of {useful:.0f} core hours:",
+        markdown_table(columns, cells),
+    ]

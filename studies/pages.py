@@ -1,0 +1,81 @@
+"""What studies write into pages: tables, marked blocks, and the machine that measured."""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+from crackfront.data.provenance import provenance
+
+_BLOCK = re.compile(r"<!-- (?P<study>[\w-]+): (?P<name>.*?) -->.*?<!-- end -->", re.DOTALL)
+
+
+def markdown_table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Table in Markdown.
+
+    Examples
+    --------
+    >>> print(markdown_table(["scene", "time / s"], [["flat", "3"]]))
+    | scene | time / s |
+    | --- | --- |
+    | flat | 3 |
+    """
+    lines = [columns, ["---"] * len(columns), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def renewed(page: str, study: str, parts: Mapping[str, str]) -> str:
+    r"""Page with the blocks of a study written anew; those of others are kept.
+
+    Parameters
+    ----------
+    page : str
+        The page. A block stands between `<!-- STUDY: PART -->` and `<!-- end -->`.
+    study : str
+        Name of the study.
+    parts : mapping
+        What the study has measured, in Markdown, by name.
+
+    Raises
+    ------
+    ValueError
+        If the page has a block of a part that there is not.
+
+    Examples
+    --------
+    >>> renewed("<!-- speed: ratio -->\n7\n<!-- end -->", "speed", {"ratio": "8"}).split("\n\n")
+    ['<!-- speed: ratio -->', '8', '<!-- end -->']
+    """
+
+    def block(found: re.Match[str]) -> str:
+        name = found["name"]
+        if found["study"] != study:
+            return found[0]
+        if name not in parts:
+            raise ValueError(
+                f"the page has a block {name!r}, which the study {study} has not measured; there "
+                f"are {', '.join(parts)}"
+            )
+        return f"<!-- {study}: {name} -->\n\n{parts[name]}\n\n<!-- end -->"
+
+    return _BLOCK.sub(block, page)
+
+
+def described_machine() -> str:
+    """One sentence: processor, cores, Python, version and commit."""
+    origin = provenance()
+    return (
+        f"Machine: {_processor()}, {os.cpu_count()} cores, Python {platform.python_version()}; "
+        f"crackfront {origin.crackfront_version}, commit {origin.git_commit}."
+    )
+
+
+def _processor() -> str:
+    """Name of the processor, or its kind where the system does not say."""
+    listed = Path("/proc/cpuinfo")
+    lines = listed.read_text(encoding="utf-8").splitlines() if listed.exists() else []
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()

@@ -1,0 +1,117 @@
+"""Commands that measure speed: solvers, requests, the cost model, the scaling of sweeps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, get_args
+
+import click
+
+from crackfront.cli.report import FILE, examples, refuse_unwritable
+from crackfront.data.files import write_text
+from crackfront.data.provenance import provenance
+from crackfront.data.records import write_records
+from crackfront.plots.style import save_figure
+from crackfront.simulate.run import compile_solver
+from studies.pages import described_machine
+from studies.speed import costs as cost_model
+from studies.speed import needs as requests
+from studies.speed import scaling as sweeps
+from studies.speed import solvers as pairs
+from studies.speed.machine import in_fresh_process
+from studies.speed.problems import PROBLEMS, Group
+
+
+@click.group()
+def commands() -> None:
+    """Solvers against the reference, what requests cost, how sweeps scale."""
+
+
+_output = click.option(
+    "--output",
+    type=FILE,
+    default=Path("results/benchmark"),
+    show_default=True,
+    help="Folder of the results.",
+)
+
+
+def _write(path: Path, title: str, sections: Sequence[str], rows: Sequence[Any] = ()) -> None:
+    """Write and print a page, and the rows of its tables as netCDF; the path has no suffix."""
+    page = "\n\n".join([f"# {title}", described_machine(), *sections]) + "\n"
+    write_text(path.with_suffix(".md"), page)
+    if rows:
+        write_records(path.with_suffix(".nc"), rows, "row", provenance(), title=title)
+    click.echo(page)
+    click.echo(f"results: {path.with_suffix('.md')}")
+
+
+@commands.command(epilog=examples("python -m studies speed solvers --group scaling --repeats 1"))
+@click.option(
+    "--group",
+    "groups",
+    type=click.Choice(get_args(Group)),
+    multiple=True,
+    default=("disorder", "scaling"),
+    show_default=True,
+    help="Problems to run.",
+)
+@click.option("--repeats", type=click.IntRange(min=1), default=2, show_default=True)
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True)
+@_output
+def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path) -> None:
+    """Time the solvers against the reference on problems of known size."""
+    refuse_unwritable(output)
+    rows = []
+    for problem in PROBLEMS:
+        if problem.group in groups:
+            rows.append(row := in_fresh_process(pairs.measured, problem, seed, repeats))
+            click.echo(f"{row.label}: {row.ratio:.1f} times, error {row.error:.1e}")
+    title = "The solvers against the reference"
+    _write(output / "solvers", title, pairs.sections(rows, repeats), rows)
+    if "scaling" in groups:
+        save_figure(pairs.scaling_figure(rows), output / "scaling")
+
+
+@commands.command(epilog=examples("python -m studies speed needs"))
+@_output
+def needs(output: Path) -> None:
+    """Measure what each request of a contact costs: time, memory, disk, samples."""
+    refuse_unwritable(output)
+    # The first process of all compiles.
+    in_fresh_process(requests.measured, requests.SMALL, requests.NEEDS[0])
+    rows = []
+    for need in requests.NEEDS:
+        rows.append(row := in_fresh_process(requests.measured, requests.SCENE, need))
+        click.echo(f"{row.name}: {row.seconds:.3g} s, {row.peak:.1f} MB, {row.file:.1f} kB")
+    _write(output / "needs", "What each request costs", requests.sections(rows), rows)
+
+
+@commands.command(epilog=examples("python -m studies speed costs"))
+@_output
+def costs(output: Path) -> None:
+    """Measure the runs that the cost model is fitted to and held against.
+
+    The table costs.csv, copied to crackfront/simulate, is what `crackfront plan` predicts from.
+    """
+    refuse_unwritable(output)
+    compile_solver("newton")
+    click.echo(described_machine())
+    runs = cost_model.least_of_passes(cost_model.fitted_to(), held=False, progress=click.echo)
+    runs += cost_model.least_of_passes(cost_model.held_out(), held=True, progress=click.echo)
+    write_text(output / "costs.csv", cost_model.table(runs))
+    click.echo(f"results: {output / 'costs.csv'}")
+    fitted, held_out = (cost_model.worst_factor(held_out) for held_out in (False, True))
+    click.echo(
+        f"The law in use meets its fitted runs within a factor {fitted:.2f}, its held-out ones "
+        f"within {held_out:.2f}"
+    )
+
+
+@commands.command(epilog=examples("python -m studies speed scaling"))
+@_output
+def scaling(output: Path) -> None:
+    """Measure dispatch and aggregation, and play a sweep of a million simulations through."""
+    refuse_unwritable(output)
+    _write(output / "scaling", "How a sweep scales", sweeps.sections())
