@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.steady import SteadyMeasures
-from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
 
 Array = NDArray[np.float64]
@@ -17,9 +18,7 @@ SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
 """Dimensions of a sweep."""
 
 _SHAPE = SPECTRUM, AMPLITUDE
-_TABLE = SPECTRUM, "node"
-_TABLE_WAVELENGTH = "wavelengths of spectra that are tables; else NaN"
-_TABLE_DENSITY = "their densities, relative to the first"
+_SHAPE_TEXT = "JSON of a spectrum's parameters, where not all are self-affine"
 _CELL = SPECTRUM, AMPLITUDE, REALISATION
 
 _LENGTH = "reduced lateral length"
@@ -62,7 +61,7 @@ class SweepAxes:
     spectrum: NDArray[np.str_] = variable("name of the spectrum", "1", SPECTRUM)
     short_cutoff: Array = variable("shortest wavelength lambda_s", LATERAL, SPECTRUM)
     roll_off: Array = variable("roll-off lambda_r, or longest wave of effect", LATERAL, SPECTRUM)
-    hurst: Array = variable("Hurst exponent; NaN of spectra that are tables", "1", SPECTRUM)
+    hurst: Array = variable("Hurst exponent; NaN of spectra without one", "1", SPECTRUM)
     correlation_length: Array = variable(
         "wavelength of the mean wavevector of w", LATERAL, SPECTRUM
     )
@@ -77,8 +76,7 @@ class SweepAxes:
     amplitude: Array = variable("requested e_el (chemical field: w_rms^2/4)", ADHESION, AMPLITUDE)
     w_rms_requested: Array = variable("requested rms, 2 sqrt(e_el w_int)", ADHESION, AMPLITUDE)
     realisation: NDArray[np.int64] = variable("number of the realisation", "1", REALISATION)
-    table_wavelength: Array | None = variable(_TABLE_WAVELENGTH, LATERAL, *_TABLE, default=None)
-    table_density: Array | None = variable(_TABLE_DENSITY, "1", *_TABLE, default=None)
+    parameters: NDArray[np.str_] | None = variable(_SHAPE_TEXT, "1", SPECTRUM, default=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,23 +105,15 @@ class SweepTable:
     w_retr_numerical_error: Array = variable("expected error of w_retr", ADHESION, *_CELL)
     contact_radius: Array = variable("middle of the steady window; else NaN", _LENGTH, *_CELL)
     spring: Array = variable("springs of a straight front, L_kappa; else NaN", _LENGTH, *_SHAPE)
-    table_wavelength: Array | None = variable(_TABLE_WAVELENGTH, _LENGTH, *_TABLE, default=None)
-    table_density: Array | None = variable(_TABLE_DENSITY, "1", *_TABLE, default=None)
+    parameters: NDArray[np.str_] | None = variable(_SHAPE_TEXT, "1", SPECTRUM, default=None)
 
     def __post_init__(self) -> None:
-        n_spectrum, n_amplitude = self.spectrum.size, self.e_el_requested.size
-        whole = (n_spectrum, n_amplitude, self.e_el.shape[-1])
+        sizes = dict(zip(_CELL, (self.spectrum.size, *self.e_el.shape[1:]), strict=True))
         for item in variables(SweepTable):
-            shape = np.shape(getattr(self, item.name))
-            if item.dims == (SPECTRUM,) and shape != (n_spectrum,):
-                raise ValueError(f"{item.name} has shape {shape}; there are {n_spectrum} spectra")
-            if item.dims == _SHAPE and shape != whole[:2]:
+            values, whole = getattr(self, item.name), tuple(sizes[name] for name in item.dims)
+            if values is not None and np.shape(values) != whole:
                 raise ValueError(
-                    f"{item.name} has shape {shape}; (spectrum, amplitude) is {whole[:2]}"
-                )
-            if item.dims == _CELL and shape != whole:
-                raise ValueError(
-                    f"{item.name} has shape {shape}; (spectrum, amplitude, realisation) is {whole}"
+                    f"{item.name} has shape {np.shape(values)}; ({', '.join(item.dims)}) is {whole}"
                 )
         for name in ("e_el", "w_rms"):
             lowest = np.min(getattr(self, name), where=self.finite, initial=np.inf)
@@ -151,11 +141,10 @@ class SweepTable:
 
     def shape_of(self, index: int) -> Spectrum:
         """Spectrum of a place in the table, of any amplitude."""
-        if self.table_wavelength is not None and self.table_density is not None:
-            table = self.table_wavelength[index], self.table_density[index]
-            known = np.isfinite(table[0])
-            if np.any(known):
-                return TabulatedSpectrum(*(tuple(values[known].tolist()) for values in table))
+        if self.parameters is not None:
+            stated = Spectrum.stated(json.loads(str(self.parameters[index])))
+            assert stated is not None, "the table was written with the parameters of a shape"
+            return stated
         columns = self.short_cutoff, self.roll_off, self.hurst
         return SelfAffineSpectrum(*(float(values[index]) for values in columns))
 

@@ -130,10 +130,8 @@ def _row(name: str, n_shard: int, missing: Sequence[Simulation]) -> str:
 
 def _sizes(item: NamedSpectrum, simulations: Sequence[Simulation]) -> str:
     """Shape and sizes of a spectrum."""
-    from crackfront.core.spectrum import SelfAffineSpectrum
-
     shape, sizes = item.spectrum, [one.resolution for one in simulations]
-    hurst = f"{shape.hurst:.2f}" if isinstance(shape, SelfAffineSpectrum) else "-"
+    hurst = f"{shape.hurst:.2f}" if hasattr(shape, "hurst") else "-"
     return (
         f"{item.name:16}  {shape.short_cutoff:8.4g}  {shape.longest_feature:8.4g}  {hurst:>4}"
         f"  {_span([size.n_angle for size in sizes]):>13}"

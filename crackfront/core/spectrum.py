@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import zlib
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Any, ClassVar, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,25 +18,63 @@ from crackfront.core.units import CONTACT_MODULUS
 
 Array = NDArray[np.float64]
 
-_DIRECTIONS = 200
-"""Points of the quadrature that projects a spectrum on a line."""
-
 
 class Spectrum(ABC):
     """Isotropic 2D spectrum of a rough surface: what any shape has in common.
 
     A shape is a frozen dataclass with a `short_cutoff`, beyond which it is zero, and the methods
-    that are abstract here.
+    that are abstract here. It says which of its fields are lengths, pure numbers and amplitudes;
+    files, seeds, keys and units follow from these names, which differ from those of other shapes.
     """
 
     __slots__ = ()
 
     short_cutoff: float
 
+    lengths: ClassVar[tuple[str, ...]] = ("short_cutoff",)
+    numbers: ClassVar[tuple[str, ...]] = ()
+    amplitudes: ClassVar[tuple[str, ...]] = ("plateau",)
+
+    _shapes: ClassVar[dict[str, type[Spectrum]]] = {}
+
+    def __init_subclass__(cls) -> None:
+        Spectrum._shapes[cls.__name__] = cls
+
+    @staticmethod
+    def stated(parameters: Mapping[str, Any]) -> Spectrum | None:
+        """Shape that some parameters state, numbers or arrays by their names, if they state one."""
+        for shape in sorted(Spectrum._shapes.values(), key=lambda one: -len(one._names())):
+            if all(name in parameters for name in shape._names()):
+                given = (np.asarray(parameters[name], float).tolist() for name in shape._names())
+                return shape(*(tuple(one) if isinstance(one, list) else one for one in given))
+        return None
+
+    @staticmethod
+    def length_names() -> set[str]:
+        """Names of the lengths of all shapes."""
+        return {name for shape in Spectrum._shapes.values() for name in shape.lengths}
+
+    @classmethod
+    def _names(cls) -> tuple[str, ...]:
+        """Names of the parameters."""
+        return *cls.lengths, *cls.numbers
+
     @property
-    @abstractmethod
+    def parameters(self) -> dict[str, float | Array]:
+        """Lengths and pure numbers by their names, which :meth:`stated` makes the shape of."""
+        given = {name: getattr(self, name) for name in self._names()}
+        return {
+            name: np.array(one) if isinstance(one, tuple) else one for name, one in given.items()
+        }
+
+    @property
     def identity(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Lengths and pure numbers that tell this shape from others, whatever its amplitude."""
+        lengths, numbers = (
+            tuple(float(value) for name in names for value in np.ravel(getattr(self, name)))
+            for names in (self.lengths, self.numbers)
+        )
+        return lengths, (*numbers, float(zlib.crc32(type(self).__name__.encode())))
 
     @abstractmethod
     def density(self, wavevector: ArrayLike) -> Array:
@@ -68,45 +108,32 @@ class Spectrum(ABC):
             Mean square. (Units: those of the density / length**(2 + 2 * order))
         """
 
-    @abstractmethod
     def longer_than(self, wavelength: float) -> Self:
         """Part of the spectrum with wavelengths above one that is not below the short cutoff."""
+        return self._with(("short_cutoff",), lambda _: wavelength)
 
-    @abstractmethod
     def in_units(self, length: float) -> Self:
         """The spectrum with its lengths divided by a unit, and the density as it is."""
+        return self._with(self.lengths, lambda value: value / length)
 
-    @abstractmethod
     def amplified(self, factor: float) -> Self:
         """The spectrum with its density multiplied by a factor."""
+        return self._with(self.amplitudes, lambda value: value * factor)
+
+    def _with(self, names: Sequence[str], change: Callable[[float], float]) -> Self:
+        """Copy with every number of some fields changed."""
+        known = {name: getattr(self, name) for name in names}
+        changed = {
+            name: tuple(map(change, value)) if isinstance(value, tuple) else change(value)
+            for name, value in known.items()
+        }
+        found: Self = replace(cast(Any, self), **changed)
+        return found
 
     @property
     def longest_feature(self) -> float:
         """Wavelength above which the spectrum adds little to w_loc, for the side of tiles."""
         return self.dominant_wavelengths(0.5)[1]
-
-    def profile_density(self, wavevector: ArrayLike) -> Array:
-        r"""Spectral density of a profile along a line (1D PSD), the projection of C.
-
-        .. math:: C_{1D}(q) = \frac{1}{2\pi} \int dk\, C(\sqrt{q^2 + k^2})
-
-        Parameters
-        ----------
-        wavevector : array_like
-            Magnitude q > 0. (Units: 1 / length)
-
-        Returns
-        -------
-        array
-            C_1D(q); the mean square height is its integral over q > 0, divided by pi.
-            (Units: those of the density / length)
-        """
-        q = np.asarray(wavevector, dtype=float)[..., None]
-        # k = q sinh(t), so that pieces of power laws are smooth.
-        last = np.arccosh(np.maximum(2 * math.pi / self.short_cutoff / q, 1.0))
-        place, weight = np.polynomial.legendre.leggauss(_DIRECTIONS)
-        way = q * np.cosh(last * (1 + place) / 2)
-        return np.asarray(np.sum(weight * self.density(way) * way * last / 2, axis=-1) / np.pi)
 
     def dominant_wavelengths(self, order: float, share: float = 0.8) -> tuple[float, float]:
         """Range of wavelengths that carries a share of the mean square of a derivative.
@@ -193,6 +220,9 @@ class SelfAffineSpectrum(Spectrum):
     0.05
     """
 
+    lengths: ClassVar[tuple[str, ...]] = ("short_cutoff", "roll_off")
+    numbers: ClassVar[tuple[str, ...]] = ("hurst",)
+
     short_cutoff: float
     roll_off: float
     hurst: float
@@ -239,14 +269,20 @@ class SelfAffineSpectrum(Spectrum):
         return self.plateau * moment / (2 * math.pi)
 
     def profile_density(self, wavevector: ArrayLike) -> Array:
-        """Spectral density of a profile along a line, in closed form.
+        r"""Spectral density of a profile along a line (1D PSD), the projection of C.
 
-        Examples
-        --------
-        >>> spectrum = SelfAffineSpectrum(short_cutoff=1e-6, roll_off=1.0, hurst=1.0)
-        >>> q = 1e3
-        >>> round(float(spectrum.profile_density(q) / (q / np.pi * spectrum.density(q))), 4)
-        0.7854
+        .. math:: C_{1D}(q) = \frac{1}{2\pi} \int dk\, C(\sqrt{q^2 + k^2})
+
+        Parameters
+        ----------
+        wavevector : array_like
+            Magnitude q > 0. (Units: 1 / length)
+
+        Returns
+        -------
+        array
+            C_1D(q); the mean square height is its integral over q > 0, divided by pi.
+            (Units: those of the density / length)
         """
         q = np.asarray(wavevector, dtype=float)
         knee, cutoff = 2 * math.pi / self.roll_off, 2 * math.pi / self.short_cutoff
@@ -262,16 +298,6 @@ class SelfAffineSpectrum(Spectrum):
     def longer_than(self, wavelength: float) -> SelfAffineSpectrum:
         """Part of the spectrum with wavelengths above one that is not below the short cutoff."""
         return replace(self, short_cutoff=wavelength, roll_off=max(self.roll_off, wavelength))
-
-    def in_units(self, length: float) -> SelfAffineSpectrum:
-        """The spectrum with its lengths divided by a unit, and the density as it is."""
-        return replace(
-            self, short_cutoff=self.short_cutoff / length, roll_off=self.roll_off / length
-        )
-
-    def amplified(self, factor: float) -> SelfAffineSpectrum:
-        """The spectrum with its density multiplied by a factor."""
-        return replace(self, plateau=self.plateau * factor)
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,6 +326,10 @@ class TabulatedSpectrum(Spectrum):
     >>> round(table.elastic_energy / fractal.elastic_energy, 12)
     1.0
     """
+
+    lengths: ClassVar[tuple[str, ...]] = ("wavelengths",)
+    numbers: ClassVar[tuple[str, ...]] = ("densities",)
+    amplitudes: ClassVar[tuple[str, ...]] = ("densities",)
 
     wavelengths: tuple[float, ...]
     densities: tuple[float, ...]
@@ -332,7 +362,9 @@ class TabulatedSpectrum(Spectrum):
         q = np.asarray(wavevector, dtype=float) * self.short_cutoff / (2 * np.pi)
         places = -np.log(np.array(self.wavelengths) / self.short_cutoff)
         # Far below the first wavelength all is flat; the logarithm needs a number.
-        found = np.interp(np.log(np.maximum(q, math.exp(places[0]))), places, self._logarithms)
+        found = np.interp(
+            np.log(np.maximum(q, math.exp(places[0]))), places, np.log(self.densities)
+        )
         return np.where(q <= 1 + 1e-12, np.exp(found), 0.0)
 
     def mean_square(self, order: float) -> float:
@@ -340,7 +372,7 @@ class TabulatedSpectrum(Spectrum):
         wavevector, densities = 2 * np.pi / np.array(self.wavelengths), np.array(self.densities)
         power = 2 + 2 * order
         growth = np.diff(np.log(wavevector))
-        exponent = power * growth + np.diff(self._logarithms)
+        exponent = power * growth + np.diff(np.log(densities))
         # expm1(x) / x tends to 1 where the integrand is flat.
         near = np.abs(exponent) < 1e-9
         mean = np.where(near, 1.0, np.expm1(exponent) / np.where(near, 1.0, exponent))
@@ -357,16 +389,3 @@ class TabulatedSpectrum(Spectrum):
         # Where all of it is flat, the first density stands at any longer wavelength as well.
         values = (self.densities[0], *self.densities[1 : len(longer)], end)
         return TabulatedSpectrum((*longer, wavelength), values)
-
-    def in_units(self, length: float) -> TabulatedSpectrum:
-        """The spectrum with its lengths divided by a unit, and the density as it is."""
-        return replace(self, wavelengths=tuple(value / length for value in self.wavelengths))
-
-    def amplified(self, factor: float) -> TabulatedSpectrum:
-        """The spectrum with its density multiplied by a factor."""
-        return replace(self, densities=tuple(factor * value for value in self.densities))
-
-    @property
-    def _logarithms(self) -> Array:
-        """Logarithms of the densities."""
-        return np.log(self.densities)

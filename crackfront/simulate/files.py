@@ -30,7 +30,6 @@ from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.run import PartialRun, SimulationResult
 from crackfront.simulate.si_units import SURFACES
 from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.tiles import shape_attributes
 
 Array = NDArray[np.float64]
 
@@ -52,7 +51,7 @@ def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -
         "solver": simulation.solver.name,
         "tolerance": simulation.solver.tolerance,
         "elastic_energy_requested": simulation.elastic_energy,
-        **shape_attributes(simulation.spectrum),
+        **simulation.spectrum.parameters,
         **asdict(simulation.resolution),
     }
     return write_dataset(path, dataset, origin)

@@ -15,6 +15,7 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.cycle.instabilities import Instabilities
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState, sphere
+from crackfront.core.spectrum import Spectrum
 from crackfront.core.variables import (
     ADHESION,
     ENERGY,
@@ -113,10 +114,7 @@ _REDUCED = {
 } | {"x": LATERAL, "y": LATERAL}
 """Reduced units of everything that may be converted."""
 
-_ATTRIBUTES = {
-    "short_cutoff": LATERAL,
-    "roll_off": LATERAL,
-    "wavelengths": LATERAL,
+_ATTRIBUTES = dict.fromkeys(Spectrum.length_names(), LATERAL) | {
     "end_penetration": VERTICAL,
     "pull_off_energy": ENERGY,
     "travel": LATERAL,

@@ -25,7 +25,6 @@ from crackfront.simulate.contact import simulation_adhesion
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.si_units import SURFACES, refuse_other_units
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
-from crackfront.simulate.tiles import shape_attributes
 
 Array = NDArray[np.float64]
 
@@ -100,7 +99,7 @@ def random_surface(
         kind,
         _values(simulation),
         tile.tile_side / tile.n_point,
-        **shape_attributes(spectrum),
+        **spectrum.parameters,
         elastic_energy_requested=elastic_energy,
         seed=seed,
         realisation=realisation,

@@ -11,26 +11,13 @@ from scipy.fft import fftfreq, rfft2, rfftfreq
 from xarray import DataArray
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind
-from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
+from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
 
 _ROUND_OFF = 1e-28
 """Power of a mode that is none, relative to that of all; round-off leaves (2e-16)^2."""
-
-
-_SHAPES: dict[type[Spectrum], tuple[str, ...]] = {
-    SelfAffineSpectrum: ("short_cutoff", "roll_off", "hurst"),
-    TabulatedSpectrum: ("wavelengths", "densities"),
-}
-"""What the attributes of surfaces and simulations say of a spectrum of each shape."""
-
-
-def shape_attributes(spectrum: Spectrum) -> dict[str, float | Array]:
-    """Attributes that state the shape of a spectrum."""
-    values = {name: getattr(spectrum, name) for name in _SHAPES[type(spectrum)]}
-    return {name: np.array(one) if isinstance(one, tuple) else one for name, one in values.items()}
 
 
 def stated_spectrum(surface: DataArray) -> Spectrum | None:
@@ -46,12 +33,8 @@ def stated_spectrum(surface: DataArray) -> Spectrum | None:
     ValueError
         If the surface holds waves below its stated short cutoff.
     """
-    for shape, names in _SHAPES.items():
-        if all(name in surface.attrs for name in names):
-            values = (np.asarray(surface.attrs[name], dtype=float).tolist() for name in names)
-            spectrum = shape(*(tuple(one) if isinstance(one, list) else one for one in values))
-            break
-    else:
+    spectrum = Spectrum.stated({str(name): value for name, value in surface.attrs.items()})
+    if spectrum is None:
         return None
     pixel = float(surface.x[1] - surface.x[0])
     modes = tile_modes(surface.values, pixel)
@@ -59,7 +42,8 @@ def stated_spectrum(surface: DataArray) -> Spectrum | None:
     if np.sum(modes.power[beyond]) > 1e-9 * np.sum(modes.power):
         raise ValueError(
             f"the surface holds waves shorter than its attributes say, "
-            f"{spectrum.short_cutoff:g}; remove {' and '.join(names)}, so that the pixels decide"
+            f"{spectrum.short_cutoff:g}; remove {' and '.join(spectrum.parameters)}, so that the "
+            "pixels decide"
         )
     return spectrum
 

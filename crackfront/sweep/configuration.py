@@ -19,7 +19,7 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.solver.relax import SOLVERS
-from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.data.bounds import (
     SI,
@@ -81,7 +81,7 @@ class SurfaceSection(Section):
     shortest: Length | None = None
     longest: Length | None = None
 
-    def measured(self) -> tuple[TabulatedSpectrum, str]:
+    def shape(self) -> tuple[TabulatedSpectrum, str]:
         """Spectrum in metres, and eight digits that change with any of the files.
 
         Five digits of each number, so that simulations keep their names whatever the round-off.
@@ -96,8 +96,14 @@ class SurfaceSection(Section):
         return TabulatedSpectrum(lengths, densities), surface.checksum
 
 
+_SELF_AFFINE = ("short_cutoff", "roll_off", "hurst")
+
+
 class SpectrumSection(Section):
-    """Shape of one spectrum: its parameters, or the surface that it was measured on."""
+    """Shape of one spectrum: self-affine by its parameters, or another by its own section.
+
+    The method `shape` of such a section returns the spectrum and what its name ends with.
+    """
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
     short_cutoff: Positive | None = None
@@ -107,8 +113,9 @@ class SpectrumSection(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> SpectrumSection:
-        if self.surface is not None:
-            _refuse_overruled(self, "surface", ("short_cutoff", "roll_off", "hurst"))
+        sections = self._sections()
+        if sections:
+            _refuse_overruled(self, sections[0], (*_SELF_AFFINE, *sections[1:]))
         elif missing := _missing(self, ("short_cutoff", "hurst")):
             raise refusal(f"key {', '.join(missing)} is missing; add it, or name a surface")
         if self.roll_off and self.short_cutoff and self.roll_off < self.short_cutoff:
@@ -120,24 +127,26 @@ class SpectrumSection(Section):
 
     def named(self, position: int, lateral: float) -> NamedSpectrum:
         """Spectrum that stands at a position of the list, lengths divided by a unit."""
-        name = self.name
-        if self.surface is None:
-            assert self.short_cutoff is not None, "the schema asks for it"
-            assert self.hurst is not None, "the schema asks for it"
-            long = self.roll_off or self.short_cutoff
-            spectrum: Spectrum = SelfAffineSpectrum(self.short_cutoff, long, self.hurst)
-        else:
+        for key in self._sections():
             try:
-                spectrum, checksum = self.surface.measured()
+                spectrum, ending = getattr(self, key).shape()
             except OSError as error:
                 raise ConfigurationError(
-                    f"spectra[{position}].surface: {error.filename} cannot be read: "
-                    f"{error.strerror}"
+                    f"spectra[{position}].{key}: {error.filename} cannot be read: {error.strerror}"
                 ) from error
             except ValueError as error:
-                raise ConfigurationError(f"spectra[{position}].surface: {error}") from error
-            name += f"-{checksum}"
-        return NamedSpectrum(name, spectrum.in_units(lateral))
+                raise ConfigurationError(f"spectra[{position}].{key}: {error}") from error
+            name = f"{self.name}-{ending}" if ending else self.name
+            return NamedSpectrum(name, spectrum.in_units(lateral))
+        assert self.short_cutoff is not None, "the schema asks for it"
+        assert self.hurst is not None, "the schema asks for it"
+        long = self.roll_off or self.short_cutoff
+        fractal = SelfAffineSpectrum(self.short_cutoff, long, self.hurst)
+        return NamedSpectrum(self.name, fractal.in_units(lateral))
+
+    def _sections(self) -> list[str]:
+        """Keys of the sections that are given: shapes other than self-affine ones."""
+        return [key for key, value in self if isinstance(value, Section)]
 
 
 class AmplitudesSection(Section):

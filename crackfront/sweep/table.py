@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import json
 import math
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -31,7 +32,7 @@ from crackfront.analysis.table import (
 )
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.fingerprint import fingerprint
-from crackfront.core.spectrum import TabulatedSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.variables import ADHESION, variables
 from crackfront.data.files import UnreadableFileError, labelled_fields, read_dataset
 from crackfront.data.provenance import Provenance
@@ -56,8 +57,8 @@ NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
 
 
-_OPTIONAL = ("table_wavelength", "table_density")
-"""Columns of sweeps that have spectra which are tables."""
+_OPTIONAL = ("parameters",)
+"""Columns of sweeps that have spectra which are not self-affine."""
 
 
 def write_hysteresis(
@@ -190,7 +191,6 @@ def _axes(sweep: Sweep) -> SweepAxes:
         for item in sweep.spectra
     ]
     tiles = [[one.resolution for one in row] for row in firsts]
-    tables = [one if isinstance(one, TabulatedSpectrum) else None for one in spectra]
     return SweepAxes(
         spectrum=np.array([item.name for item in sweep.spectra]),
         short_cutoff=np.array([spectrum.short_cutoff for spectrum in spectra]),
@@ -206,17 +206,19 @@ def _axes(sweep: Sweep) -> SweepAxes:
         amplitude=energies,
         w_rms_requested=2 * np.sqrt(energies),
         realisation=np.arange(sweep.n_realisation),
-        table_wavelength=_tables([one.wavelengths if one else () for one in tables]),
-        table_density=_tables([one.identity[1] if one else () for one in tables]),
+        parameters=_parameters(spectra),
     )
 
 
-def _tables(rows: Sequence[tuple[float, ...]]) -> NDArray[np.float64] | None:
-    """Rows of unequal lengths, filled up with NaN; None where all are empty."""
-    longest = max(map(len, rows))
-    if not longest:
+def _parameters(spectra: Sequence[Spectrum]) -> NDArray[np.str_] | None:
+    """Texts that state the shapes of spectra; None where their columns do."""
+    if all(isinstance(one, SelfAffineSpectrum) for one in spectra):
         return None
-    return np.array([(*row, *[math.nan] * (longest - len(row))) for row in rows])
+    known = (
+        {name: np.asarray(one).tolist() for name, one in item.parameters.items()}
+        for item in spectra
+    )
+    return np.array([json.dumps(one) for one in known])
 
 
 def _attributes(sweep: Sweep) -> dict[str, str | float]:

@@ -358,7 +358,7 @@ def test_the_file_of_a_sweep_has_everything_under_its_labels(hysteresis, results
     assert np.array_equal(dataset["hurst"], [1.0, 0.8])
     assert dataset["w_rms_requested"].values == pytest.approx(2 * np.sqrt(SWEEP.elastic_energies))
     expected = {item.name for kind in (SweepAxes, SweepRow) for item in variables(kind)}
-    assert set(dataset.variables) == expected - {"table_wavelength", "table_density"}
+    assert set(dataset.variables) == expected - {"parameters"}
     assert all(values.attrs["units"] for values in dataset.variables.values())
 
 
