@@ -6,7 +6,7 @@ import hashlib
 import math
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, Field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +24,8 @@ from crackfront.cli.report import (
     refuse_unwritable,
     whole,
 )
-from crackfront.cli.watch import Progress, Watch
+from crackfront.cli.watch import Progress
+from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE
 from crackfront.data.bounds import COUNT, DENSITY, TOLERANCE, Range
 from crackfront.simulate.cases import CASES, Problem, Resolution
 from crackfront.sweep.parallel import heeding_notice, notice_is_given
@@ -41,33 +42,40 @@ _MEASURES = ("w_appr", "w_retr", "hysteresis")
 """Measures of a loop that machines are told."""
 
 
-def _case_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options of all cases."""
-    known: dict[str, list[str]] = {}
-    texts: dict[str, str] = {}
-    bounds: dict[str, Range] = {}
-    for name, case in CASES.items():
-        for item in fields(case):
-            flag = _flag(item)
-            known.setdefault(flag, []).append(name)
-            texts.setdefault(flag, item.metadata["text"])
-            bounds.setdefault(flag, item.metadata["bounds"])
-    for flag, names in reversed(known.items()):
-        owner = "" if len(names) == len(CASES) else f"({', '.join(names)}) "
-        command = click.option(
-            flag, _parameter(flag), type=Number(bounds[flag]), help=owner + texts[flag]
-        )(command)
-    return command
-
-
-def _flag(item: Any) -> str:
-    """How the option of a field of a case is written."""
+def _flag(item: Field[Any]) -> str:
+    """Option of the command line that fills a field of a case."""
     return item.metadata["flag"] or f"--{item.name.replace('_', '-')}"
 
 
 def _parameter(flag: str) -> str:
     """Name of the parameter of an option; some flags are words of Python."""
     return f"case_{flag.strip('-').replace('-', '_')}"
+
+
+def _case_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of all cases."""
+    known: dict[str, tuple[Field[Any], list[str]]] = {}
+    for name, case in CASES.items():
+        for item in fields(case):
+            known.setdefault(_flag(item), (item, []))[1].append(name)
+    for flag, (item, names) in reversed(known.items()):
+        owner = "" if len(names) == len(CASES) else f"({', '.join(names)}) "
+        bounds, text = Number(item.metadata["bounds"]), owner + item.metadata["text"]
+        command = click.option(flag, _parameter(flag), type=bounds, help=text)(command)
+    return command
+
+
+def _case(geometry: str, given: dict[str, float | None]) -> Any:
+    """The case that the options name."""
+    own = {_parameter(_flag(item)): item for item in fields(CASES[geometry])}
+    for name, value in given.items():
+        flag = f"--{name.removeprefix('case_').replace('_', '-')}"
+        if name not in own and value is not None:
+            raise ValueError(f"{flag} is no option of --geometry {geometry}; leave it out")
+        if name in own and value is None and own[name].default is MISSING:
+            raise ValueError(f"{flag} is missing; --geometry {geometry} needs it")
+    known = {own[name].name: value for name, value in given.items() if value is not None}
+    return CASES[geometry](**known)
 
 
 @click.command(
@@ -93,7 +101,7 @@ def _parameter(flag: str) -> str:
 @click.option(
     "--tolerance",
     type=Number(TOLERANCE),
-    default=1e-8,
+    default=DEFAULT_TOLERANCE,
     show_default=True,
     help="Force that may be left, relative to w_int per front length.",
 )
@@ -106,7 +114,7 @@ def _parameter(flag: str) -> str:
 @click.option(
     "--max-sweeps",
     type=whole(COUNT),
-    default=10_000_000,
+    default=DEFAULT_MAX_SWEEPS,
     show_default=True,
     help="Limit on the sweeps of one load step.",
 )
@@ -136,7 +144,7 @@ def _parameter(flag: str) -> str:
 @click.option(
     "--watch",
     is_flag=True,
-    help="Show front and loop on the terminal as they grow; elsewhere print a line a state.",
+    help="Print a line for every state; a terminal shows the last one.",
 )
 @as_json
 def cycle(
@@ -187,8 +195,7 @@ def cycle(
     problem = case.problem(lambda: read_field(field_file, interpolation or "linear"), resolution)
     key = _key(field_file, geometry, given, tolerance, solver, max_sweeps, record, resolution)
     keeper = _Keeper(output, key, problem.field.geometry)
-    deepest = getattr(case, "max_penetration", None)
-    shown = Watch(problem.expected, deepest) if watch else Progress(problem.expected)
+    shown = Progress(problem.expected, every_state=watch)
     recorder = _recorder(problem, record, shown, keeper)
     announce_compilation(err=as_json)
     announce_cost(problem.seconds)
@@ -326,18 +333,3 @@ def _draw(found: Dataset, stem: Path) -> tuple[Path, ...]:
         figure = blank_figure(COLUMN, 0.82 * COLUMN)
         plot_loop(found, figure.add_subplot())
         return save_figure(figure, stem)
-
-
-def _case(geometry: str, given: dict[str, float | None]) -> Any:
-    """The case that the options name."""
-    own = {_parameter(_flag(item)): item for item in fields(CASES[geometry])}
-    values = {}
-    for name, value in given.items():
-        flag = f"--{name.removeprefix('case_').replace('_', '-')}"
-        if name not in own and value is not None:
-            raise ValueError(f"{flag} is no option of --geometry {geometry}; leave it out")
-        if name in own and value is None and own[name].default is MISSING:
-            raise ValueError(f"{flag} is missing; --geometry {geometry} needs it")
-        if name in own and value is not None:
-            values[own[name].name] = value
-    return CASES[geometry](**values)

@@ -29,6 +29,7 @@ from crackfront.core import jkr
 from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.data.bounds import (
     LENGTH,
@@ -158,7 +159,9 @@ def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_samp
     TooLargeError
         If time or memory are more than there is.
     """
-    usual = Features(n_angle, math.sqrt(n_point), _USUAL, 1e-8, 1.0, 1.0, True, n_state)
+    usual = Features(
+        n_angle, math.sqrt(n_point), _USUAL, DEFAULT_TOLERANCE, 1.0, 1.0, True, n_state
+    )
     cost = featured_cost(usual, fronts=False)
     cost = replace(cost, seconds=cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample)
     told = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"

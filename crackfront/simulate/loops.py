@@ -24,6 +24,7 @@ from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction, Status
+from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
@@ -122,7 +123,7 @@ def run_loop(
         refuse_other_type(name, value, bool, "True or False")
     if not callable(progress):
         refuse_other_type("progress", progress, type(None), "a function of a state")
-    solution = named_solver(solver, _TOLERANCE)
+    solution = named_solver(solver, DEFAULT_TOLERANCE)
     schedule = LoadSchedule(max_penetration, step)
     contact = surface_contact(surface, schedule, error)
     compile_solver(solver)
@@ -293,10 +294,6 @@ def find_instabilities(
     return Dataset(found, {angle.name: labelled(angle, field.geometry.sites)}, {"travel": reach})
 
 
-_TOLERANCE = 1e-8
-"""Force that may be left on a surface whose spectrum is not known, relative to w_int."""
-
-
 @dataclass(frozen=True, slots=True)
 class SurfaceContact:
     """A sphere on a surface: the field, the tolerance of its solver, and what its tile measures.
@@ -321,7 +318,7 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
     measures = replace(tile_measures(adhesion), kind=kind)
     spectrum, deepest = stated_spectrum(surface), schedule.max_penetration
     if spectrum is None or adhesion.e_el == 0:
-        return SurfaceContact(tile_contact(adhesion, deepest), _TOLERANCE, measures, None)
+        return SurfaceContact(tile_contact(adhesion, deepest), DEFAULT_TOLERANCE, measures, None)
     chosen = chosen_simulation(kind, spectrum, adhesion.e_el, schedule, error=error)
     n_point = min(adhesion.work_of_adhesion.shape)
     sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)

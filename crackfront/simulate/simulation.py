@@ -21,6 +21,7 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.fingerprint import NO_PART, SOLVER, fingerprint
+from crackfront.core.solver import DEFAULT_MAX_SWEEPS
 from crackfront.core.solver.filters import ROWS
 from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.solver.team import LARGE
@@ -55,7 +56,7 @@ class Numerics:
     knobs: Knobs | float
     tile_roll_offs: float = 4.0
     tile_cutoffs: float = 200.0
-    max_sweeps: int = 100_000_000
+    max_sweeps: int = DEFAULT_MAX_SWEEPS
     solver: str = "newton"
 
     def knobs_of(

@@ -161,7 +161,7 @@ class DisorderParameters(Section):
             spectrum,
             elastic_energy,
             LoadSchedule(self.max_penetration, max(self.max_penetration, 1.0)),
-            Numerics(self.error, side / self.short_cutoff, tile_cutoffs=1.0, max_sweeps=10_000_000),
+            Numerics(self.error, side / self.short_cutoff, tile_cutoffs=1.0),
             seed=self.seed,
             realisation=realisation,
             name="flat",

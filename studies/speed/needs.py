@@ -138,7 +138,7 @@ def simulation(scene: Scene, need: Need) -> Simulation:
         scene.spectrum,
         0.05,
         scene.steady if need.load == "steady" else scene.cycle,
-        Numerics(knobs, tile_cutoffs=scene.tile_cutoffs, max_sweeps=10_000_000),
+        Numerics(knobs, tile_cutoffs=scene.tile_cutoffs),
         seed=1,
         name="surface",
         record=[name for name in ("fronts", "energy") if getattr(need, name)],

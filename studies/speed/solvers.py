@@ -13,14 +13,13 @@ from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import RayField, TileField
+from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.variables import ADHESION, variable
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
 from studies.pages import markdown_table
 from studies.speed.machine import peak_memory
 from studies.speed.problems import Problem
-
-TOLERANCE = 1e-8
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +51,7 @@ def timed_cycle(
 ) -> tuple[float, CycleRecord]:
     """CPU seconds of a cycle, and its record."""
     start = time.process_time()
-    record = run_cycle(field, schedule, SOLVERS[solver](TOLERANCE), Recorder(fronts=True))
+    record = run_cycle(field, schedule, SOLVERS[solver](DEFAULT_TOLERANCE), Recorder(fronts=True))
     return time.process_time() - start, record
 
 
@@ -166,7 +165,8 @@ def sections(rows: Sequence[Row], repeats: int) -> list[str]:
     """Paragraphs of the page."""
     parts = [
         "One process, one core; both solvers in turn on the same field, tolerance\n"
-        f"{TOLERANCE:g} w_int, penetration 0 to 1 and back to pull-off; CPU seconds, the least of\n"
+        f"{DEFAULT_TOLERANCE:g} w_int, penetration 0 to 1 and back to pull-off; CPU seconds, the "
+        "least of\n"
         f"{repeats} runs. The error is the largest difference of the fronts over all load steps."
     ]
     for group in dict.fromkeys(row.group for row in rows):

@@ -47,8 +47,8 @@ class LineState(Generic[Value]):
     def told(self) -> str:
         """One state in words."""
         return (
-            f"load {self.load:+.6g}, mean position {self.mean_position:.6g}, "
-            f"pinning force {self.pinning_force:+.4f}"
+            f"load {self.load:+.6g}, pinning force {self.pinning_force:+.4f}, "
+            f"mean position {self.mean_position:.6g}, rms {self.rms_position:.4g}"
         )
 
 

@@ -51,8 +51,8 @@ class ContactState(Generic[Value]):
     def told(self) -> str:
         """One state in words."""
         return (
-            f"penetration {self.penetration:+.4f}, radius {self.mean_radius:.4f}, "
-            f"force {self.force:+.4f}"
+            f"penetration {self.penetration:+.4f}, force {self.force:+.4f}, "
+            f"radius {self.mean_radius:.4f}, rms {self.rms_radius:.4f}"
         )
 
 

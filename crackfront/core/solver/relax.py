@@ -19,7 +19,7 @@ from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.samples import SampleMemory, evaluate, make_memory
 from crackfront.core.geometry.base import lowest_place
 from crackfront.core.outcome import Direction, Relaxation, Status
-from crackfront.core.solver import forces
+from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE, forces
 from crackfront.core.solver.reference import rosso_krauth
 from crackfront.core.solver.threads import monotone_newton
 
@@ -51,8 +51,8 @@ class Solver:
         If the limit on the sweeps is not positive.
     """
 
-    tolerance: float = 1e-8
-    max_sweeps: int = 10_000_000
+    tolerance: float = DEFAULT_TOLERANCE
+    max_sweeps: int = DEFAULT_MAX_SWEEPS
 
     name: ClassVar[str]
     kernel: ClassVar[Callable[..., Any]]
@@ -81,7 +81,7 @@ SOLVERS: dict[str, type[Solver]] = {kind.name: kind for kind in (Reference, Newt
 """Solvers by name."""
 
 
-def named_solver(name: str, tolerance: float, max_sweeps: int = 10_000_000) -> Solver:
+def named_solver(name: str, tolerance: float, max_sweeps: int = DEFAULT_MAX_SWEEPS) -> Solver:
     """Solver of a name in :data:`SOLVERS`.
 
     Raises
