@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,6 @@ import click
 
 from crackfront.cli.report import (
     FILE,
-    Number,
     announce_compilation,
     as_json,
     echo_json,
@@ -21,11 +19,21 @@ from crackfront.cli.report import (
     whole,
 )
 from crackfront.data.bounds import SEED, Range, in_time
+from crackfront.topography.options import (
+    LENGTH,
+    PredictionOptions,
+    ReadingOptions,
+    declared,
+    number,
+    option,
+    options_for_each,
+    parsed_options,
+    quantity,
+)
 
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
     from crackfront.topography.measures import MeasuredSurface
-    from crackfront.topography.prediction import Prediction
     from crackfront.topography.simulated import Simulated
     from crackfront.topography.tile import Placement
 
@@ -37,107 +45,39 @@ _EXIT_CODES = {"applies": 0, "applies with reservations": 3, "does not apply": 4
 
 
 @dataclass(frozen=True, slots=True)
-class _Reading:
-    """Files of a surface, and the words of :class:`crackfront.topography.wording.Wording`."""
+class SphereOptions:
+    """What is pressed on a surface; the library and configurations take its scales."""
 
-    scans: tuple[Path, ...]
-    channel: tuple[str, ...]
-    crop: tuple[str, ...]
-    detrend: str
-    mask: tuple[str, ...]
-    unit: str | None
-    size: str | None
-    shortest: str | None
-    longest: str | None
-
-
-@dataclass(frozen=True, slots=True)
-class _Sphere:
-    """What is pressed on a surface, as options say it."""
-
-    modulus: str | None
-    poisson: float | None
-    radius: str | None
-    work_of_adhesion: str | None
-
-
-def _bundled(
-    command: Command, name: str, kind: type[Any], options: Sequence[Callable[[Command], Command]]
-) -> Command:
-    """A command whose options reach it as one record."""
-    fields = kind.__dataclass_fields__
-
-    @functools.wraps(command)
-    def bundled(**values: Any) -> None:
-        given = {field: values.pop(field) for field in fields}
-        command(**{name: kind(**given)}, **values)
-
-    wrapped: Command = bundled
-    for option in reversed(options):
-        wrapped = option(wrapped)
-    return wrapped
-
-
-def _reading_options(command: Command) -> Command:
-    """Give a command the argument SCANS and the options of :class:`_Reading`, as `reading`."""
-    options = (
-        click.argument("scans", type=FILE, nargs=-1, required=True),
-        click.option(
-            "--channel",
-            multiple=True,
-            help="Channel by name or number, for files with several; once, or once for each scan.",
-        ),
-        click.option(
-            "--crop",
-            multiple=True,
-            help="Part of the scan to use, as in 2um:8um,0um:5um; once, or once for each scan.",
-        ),
-        click.option(
-            "--detrend",
-            default="curvature",
-            show_default=True,
-            metavar="NAME|ORDER",
-            help="What is taken off: center (mean), height (plane of least height), slope (that of "
-            "least slope), curvature (paraboloid), or the polynomial of an order up to 9.",
-        ),
-        click.option(
-            "--mask",
-            multiple=True,
-            help="What the levelling leaves out and the map keeps: a part of the scan as above, or "
-            "a file with a number for each point, not zero there. May be repeated.",
-        ),
-        click.option("--unit", help="Unit of length of files that state none, as in um."),
-        click.option(
-            "--size", help="Sides of scans that state none, in that unit, as in 50,50 or 50."
-        ),
-        click.option(
-            "--shortest",
-            help="Shortest wavelength to trust, as in 0.4um.  [default: found by resolution, "
-            "noise, what the file says of its tip, and four pixels]",
-        ),
-        click.option(
-            "--longest",
-            help="Longest wavelength to trust.  [default: found by what is left of the form, and "
-            "half a side]",
-        ),
+    modulus: float | None = option(
+        "Young's modulus, as in 0.7MPa", quantity("Pa", "pressure", "0.7MPa")
     )
-    return _bundled(command, "reading", _Reading, options)
-
-
-def _sphere_options(*, required: bool) -> Callable[[Command], Command]:
-    """Give a command the options of :class:`_Sphere`, as `sphere`."""
-    options = (
-        click.option("--modulus", required=required, help="Young's modulus, as in 0.7MPa."),
-        click.option(
-            "--poisson",
-            type=Number(Range(-0.99, 0.5)),
-            required=required,
-            help="Poisson's ratio.",
-        ),
-        click.option("--radius", required=required, help="Radius of the sphere, as in 1.25mm."),
-        click.option("--work-of-adhesion", required=required, help="w_int, as in 63mJ/m2."),
+    poisson: float | None = option("Poisson's ratio", number(Range(-0.99, 0.5)))
+    radius: float | None = option("Radius of the sphere, as in 1.25mm", LENGTH)
+    work_of_adhesion: float | None = option(
+        "w_int, as in 63mJ/m2", quantity("J/m^2", "energy per area", "63mJ/m2")
     )
-    return lambda command: _bundled(command, "sphere", _Sphere, options)
+
+
+def _taking(record: type[Any], *, required: bool = False) -> Callable[[Command], Command]:
+    """Give a command the options of a record, by the names of its fields."""
+
+    def decorated(command: Command) -> Command:
+        for item in reversed(list(declared(record))):
+            command = click.option(
+                f"--{item.name.replace('_', '-')}",
+                required=required,
+                multiple=item.times != "once",
+                default=item.default or None,
+                show_default=bool(item.default),
+                metavar=item.kind.metavar,
+                help=item.sentence,
+            )(command)
+        return command
+
+    return decorated
+
+
+_scans = click.argument("scans", type=FILE, nargs=-1, required=True)
 
 
 @click.command(
@@ -146,13 +86,10 @@ def _sphere_options(*, required: bool) -> Callable[[Command], Command]:
         "    --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2 --json",
     )
 )
-@_reading_options
-@_sphere_options(required=True)
-@click.option(
-    "--range",
-    "attraction_range",
-    help="Range of the attraction, as in 0.3nm.  [default: 0.5nm, of van der Waals forces]",
-)
+@_scans
+@_taking(ReadingOptions)
+@_taking(SphereOptions, required=True)
+@_taking(PredictionOptions)
 @as_json
 @click.option(
     "--simulate", is_flag=True, help="Run the simulations that the prediction stands for."
@@ -174,15 +111,15 @@ def _sphere_options(*, required: bool) -> Callable[[Command], Command]:
 @click.pass_context
 def predict(
     context: click.Context,
-    reading: _Reading,
-    sphere: _Sphere,
-    attraction_range: str | None,
+    /,
+    scans: tuple[Path, ...],
     as_json: bool,
     simulate: bool,
     realisations: int,
     seed: int,
     figure: Path | None,
     no_figure: bool,
+    **options: Any,
 ) -> None:
     """Predict how strongly a soft sphere sticks to a measured surface, from the fitted law.
 
@@ -193,63 +130,36 @@ def predict(
     Exit code 0: the theory applies. 3: it applies with reservations, which are named. 4: it does
     not apply; nothing is predicted, and it is said what modulus, radius or roughness would do.
     """
-    from crackfront.topography.prediction import predicted, prediction_notes, surface_notes
-    from crackfront.topography.report import (
-        conformity_text,
-        machine_readable,
-        prediction_text,
-        simulation_text,
-        surface_text,
-        verdict_text,
-    )
+    from crackfront.topography.prediction import predicted
+    from crackfront.topography.report import machine_readable, report_text, simulation_text
     from crackfront.topography.verdict import verdict
 
-    scales = _scales_of(sphere)
-    reach = _range_of(attraction_range)
-    stem = _RESULTS / reading.scans[0].stem if figure is None else figure
+    scales = _scales(options)
+    reach = parsed_options(PredictionOptions, options, "--").range
+    stem = _RESULTS / scans[0].stem if figure is None else figure
     if not no_figure:
         refuse_unwritable(stem.parent)
-    found = _surface_of(reading)
-    ruling = verdict(found, scales, reach)
-    if ruling.outcome == "does not apply":
-        if as_json:
-            echo_json(machine_readable(found, scales, ruling=ruling))
-        else:
-            energy = conformity_text(found, scales)
-            click.echo(f"{surface_text(found)}\n\n{verdict_text(ruling)}\n\n{energy}")
-            _echo_notes(surface_notes(found))
-        context.exit(_EXIT_CODES[ruling.outcome])
-    prediction = predicted(found, scales)
-    ruling = verdict(found, scales, reach, prediction)
+    surface = _surface(scans, options)
+    ruling, prediction, outcome = verdict(surface, scales, reach), None, None
+    if ruling.outcome != "does not apply":
+        prediction = predicted(surface, scales, reach)
+        ruling = prediction.verdict
     if not as_json:
-        texts = surface_text(found), verdict_text(ruling), prediction_text(prediction)
-        click.echo("\n\n".join(texts))
-        _echo_notes(prediction_notes(found, prediction))
-    paths = () if no_figure else _drawn(found, prediction, stem)
-    outcome = _simulated(found, scales, realisations, seed, as_json) if simulate else None
-    if as_json:
-        echo_json(machine_readable(found, scales, prediction, outcome, ruling))
-    else:
-        for path in paths:
-            click.echo(f"figure: {path}")
-        if outcome is not None:
+        click.echo(report_text(surface, scales, ruling, prediction))
+    if prediction is not None and not no_figure:
+        from crackfront.plots.style import save_figure
+        from crackfront.topography.drawing import prediction_figure
+
+        for path in save_figure(prediction_figure(surface, prediction), stem):
+            if not as_json:
+                click.echo(f"figure: {path}")
+    if prediction is not None and simulate:
+        outcome = _simulated(surface, scales, realisations, seed, as_json)
+        if not as_json:
             click.echo(simulation_text(outcome))
+    if as_json:
+        echo_json(machine_readable(surface, scales, ruling, prediction, outcome))
     context.exit(_EXIT_CODES[ruling.outcome])
-
-
-def _drawn(surface: MeasuredSurface, prediction: Prediction, stem: Path) -> tuple[Path, ...]:
-    """Files of the figure of a prediction."""
-    from crackfront.plots.style import save_figure
-    from crackfront.topography.drawing import prediction_figure
-
-    return tuple(save_figure(prediction_figure(surface, prediction), stem))
-
-
-def _range_of(text: str | None) -> float | None:
-    """Range of attraction that an option names, in metres."""
-    from crackfront.data.written_units import si_value
-
-    return None if text is None else si_value(text, "m", what="--range")
 
 
 def _simulated(
@@ -276,8 +186,9 @@ def _simulated(
         "    --work-of-adhesion 63mJ/m2 --field field.nc",
     )
 )
-@_reading_options
-@_sphere_options(required=False)
+@_scans
+@_taking(ReadingOptions)
+@_taking(SphereOptions)
 @as_json
 @click.option("--field", type=FILE, help="Write the very map as a field for crackfront cycle.")
 @click.option(
@@ -288,34 +199,24 @@ def _simulated(
     help="Field: let the contact go on to mirror images of the scan, or refuse that.",
 )
 def surface(
-    reading: _Reading,
-    sphere: _Sphere,
-    as_json: bool,
-    field: Path | None,
-    place: Placement,
+    scans: tuple[Path, ...], as_json: bool, field: Path | None, place: Placement, **options: Any
 ) -> None:
     """Analyse one measurement of a surface or several: spectrum, rms measures, their scales.
 
     SCANS are files of instruments in any format that SurfaceTopography reads. With the sphere,
     e_el and w_rms too.
     """
-    from crackfront.topography.prediction import surface_doubts, surface_notes
-    from crackfront.topography.report import conformity_text, machine_readable, surface_text
+    from crackfront.topography.report import machine_readable, report_text
 
-    named = sphere != _Sphere(None, None, None, None)
-    scales = _scales_of(sphere) if named or field is not None else None
-    if field is not None and len(reading.scans) > 1:
-        raise ValueError(
-            f"--field takes one scan, not {len(reading.scans)}; name the one to press on"
-        )
-    found = _surface_of(reading)
+    is_pressed = any(options[item.name] is not None for item in declared(SphereOptions))
+    scales = _scales(options) if is_pressed or field is not None else None
+    if field is not None and len(scans) > 1:
+        raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
+    found = _surface(scans, options)
     if as_json:
         echo_json(machine_readable(found, scales))
     else:
-        click.echo(surface_text(found))
-        if scales is not None:
-            click.echo("\n" + conformity_text(found, scales))
-        _echo_notes([*surface_notes(found), *surface_doubts(found)])
+        click.echo(report_text(found, scales))
     if field is not None and scales is not None:
         _write_field(found, scales, place, field, quiet=as_json)
 
@@ -343,19 +244,19 @@ def _write_field(
         click.echo(f"field: {path}, e_el {adhesion.e_el:.4g} w_int on the tile")
 
 
-def _surface_of(reading: _Reading) -> MeasuredSurface:
-    """Surface of the files that a command names."""
-    from crackfront.topography.wording import Wording
+def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSurface:
+    """Surface of the files that a command names, read by its options."""
+    reading = options_for_each(ReadingOptions, options, len(scans), "--")
+    from crackfront.topography.measures import read_surface
 
-    words = {name: getattr(reading, name) for name in reading.__slots__ if name != "scans"}
-    return Wording(**words, prefix="--").surface(reading.scans)
+    return read_surface(scans, reading)
 
 
-def _scales_of(sphere: _Sphere) -> Scales:
-    """Scene of a sphere, in SI units."""
+def _scales(options: Mapping[str, Any]) -> Scales:
+    """Scene of the sphere of a command, in SI units."""
     from crackfront.core.units import Scales
-    from crackfront.data.written_units import si_value
 
+    sphere = parsed_options(SphereOptions, options, "--")
     modulus, poisson, radius = sphere.modulus, sphere.poisson, sphere.radius
     adhesion = sphere.work_of_adhesion
     if modulus is None or poisson is None or radius is None or adhesion is None:
@@ -363,15 +264,4 @@ def _scales_of(sphere: _Sphere) -> Scales:
             "the sphere is incomplete; name all of --modulus, --poisson, --radius and "
             "--work-of-adhesion"
         )
-    young = si_value(modulus, "Pa", what="--modulus")
-    return Scales(
-        radius=si_value(radius, "m", what="--radius"),
-        work_of_adhesion=si_value(adhesion, "J/m^2", what="--work-of-adhesion"),
-        contact_modulus=young / (1 - poisson**2),
-    )
-
-
-def _echo_notes(notes: Iterable[str]) -> None:
-    """Print what a reader must know."""
-    for number, note in enumerate(notes):
-        click.echo(f"  {note}" if number else f"\nNotes\n  {note}")
+    return Scales(radius, adhesion, modulus / (1 - poisson**2))

@@ -10,7 +10,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, create_model, model_validator
 
 from crackfront.analysis.sweep import FEWEST_BOOTSTRAP
 from crackfront.core.adhesion import FieldKind, larkin_length
@@ -46,7 +46,8 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineLoad, SpringUnit
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
-from crackfront.topography.wording import Wording
+from crackfront.topography.measures import read_surface
+from crackfront.topography.options import ReadingOptions, declared, options_for_each
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 
@@ -64,30 +65,27 @@ def _several(value: Any) -> Any:
     return (value,) if isinstance(value, (str, int)) else value
 
 
-Words = Annotated[tuple[str | int, ...], BeforeValidator(_several)]
-Length = float | str
+_READING_KEYS: Any = {item.name: (Any, item.default) for item in declared(ReadingOptions)}
+
+_ReadingSection = create_model("_ReadingSection", __base__=Section, **_READING_KEYS)
 
 
-class SurfaceSection(Section):
-    """Measurements of a surface, in the words of :class:`crackfront.topography.wording.Wording`."""
+class SurfaceSection(_ReadingSection):
+    """Measurements of a surface, and the options by which they are read."""
 
     file: Annotated[tuple[InputFile, ...], BeforeValidator(_several), Field(min_length=1)]
-    channel: Words = ()
-    crop: Words = ()
-    detrend: str | int = "curvature"
-    mask: Words = ()
-    unit: str | None = None
-    size: tuple[Positive, ...] | None = None
-    shortest: Length | None = None
-    longest: Length | None = None
 
     def shape(self) -> tuple[TabulatedSpectrum, str]:
         """Spectrum in metres, and eight digits that change with any of the files.
 
         Five digits of each number, so that simulations keep their names whatever the round-off.
         """
-        words = self.model_dump(exclude={"file"})
-        surface = Wording(**words).surface(self.file)
+        given = self.model_dump(exclude={"file"})
+        try:
+            options = options_for_each(ReadingOptions, given, len(self.file))
+        except TypeError as error:
+            raise ValueError(str(error)) from error
+        surface = read_surface(self.file, options)
         table = surface.joint.spectrum
         lengths, densities = (
             tuple(float(f"{value:.5g}") for value in values)

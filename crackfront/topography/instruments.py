@@ -17,31 +17,13 @@ from crackfront.core.optional_libraries import MissingExtraError
 from crackfront.data.lazy_modules import loaded_on_use, unavailable
 from crackfront.data.written_units import prefixed
 from crackfront.topography.files import readable, refuse_special, refuse_too_many_points
+from crackfront.topography.options import ReadingOptions
 
 _RARELY_USED = ("pandas", "openpyxl", "requests", "h5py", "yaml")
 """What the library imports for single formats, which takes a part of a second."""
 
 _SIDES = (1e-9, 1.0)
 """Sides of a scan within which instruments measure (Units: m): beyond, the unit is wrong."""
-
-
-@dataclass(frozen=True, slots=True)
-class Unstated:
-    """What a user says of files that do not say it, or of several channels.
-
-    Attributes
-    ----------
-    unit : str or None
-        Unit of lengths.
-    size : tuple of float or None
-        Sides of the scan, or the length of a line. (Units: those of `unit`, or of the file)
-    channel : str or None
-        Name or number of the channel.
-    """
-
-    unit: str | None = None
-    size: tuple[float, ...] | None = None
-    channel: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +71,7 @@ def _silenced() -> Iterator[None]:
 
 
 @_silenced()
-def raw_scan(path: Path, unstated: Unstated) -> RawScan:
+def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
     """The heights of a file in metres.
 
     Raises
@@ -102,10 +84,10 @@ def raw_scan(path: Path, unstated: Unstated) -> RawScan:
     refuse_special(path)
     source = readable(path)
     reader = _reader(path, source)
-    channel, name = _channel(path, reader, unstated.channel)
+    channel, name = _channel(path, reader, options.channel)
     if channel.nb_grid_pts is not None:
         refuse_too_many_points(path, channel.nb_grid_pts)
-    given, sides = _completed(path, reader.format(), channel, unstated)
+    given, sides = _completed(path, reader.format(), channel, options)
     try:
         raw = reader.topography(channel_index=channel.index, **given)
         level = raw.to_unit("m")
@@ -221,47 +203,44 @@ def _choice(channels: list[Any]) -> str:
 
 
 def _completed(
-    path: Path, name: str, channel: Any, unstated: Unstated
+    path: Path, name: str, channel: Any, options: ReadingOptions
 ) -> tuple[dict[str, Any], tuple[float, ...] | None]:
     """What a file does not state, and sides in metres where it states impossible ones."""
+    unit, size = channel.unit, channel.physical_sizes
+    is_sized = size is not None and None not in size
+    if unit is not None and is_sized and not _are_possible(stated := _in_metres(size, unit)):
+        if options.size is None or options.unit is None:
+            raise ValueError(
+                f"{path} states sides of {shown_sides(stated)}, which no instrument measures; its "
+                "unit is wrong, so name the sides, as in --size "
+                f"{','.join(f'{side:g}' for side in stated)} --unit um"
+            )
+        return {}, _named_sides(path, options.size, options.unit)
     given: dict[str, Any] = {}
-    stated = _stated_size(channel)
-    if stated is not None and not _are_possible(stated):
-        return given, _corrected(path, stated, unstated)
-    if channel.unit is None:
-        if unstated.unit is None:
+    if unit is None:
+        if options.unit is None:
             raise ValueError(
                 f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
             )
-        if not surface_library().Support.UnitConversion.is_length_unit(unstated.unit):
-            raise ValueError(f"--unit {unstated.unit} is no unit of length; name one, as in um")
-        given["unit"] = unstated.unit
-    elif unstated.unit not in (None, channel.unit):
-        raise ValueError(
-            f"{path} states its own unit, {channel.unit}; leave --unit {unstated.unit} out"
-        )
-    if channel.physical_sizes is None or None in channel.physical_sizes:
-        if unstated.size is None:
+        if not surface_library().Support.UnitConversion.is_length_unit(options.unit):
+            raise ValueError(f"--unit {options.unit} is no unit of length; name one, as in um")
+        given["unit"] = unit = options.unit
+    elif options.unit not in (None, unit):
+        raise ValueError(f"{path} states its own unit, {unit}; leave --unit {options.unit} out")
+    if not is_sized:
+        if options.size is None:
             raise ValueError(f"{path} states no size of the scan; name it, as in --size 50,50")
-        if len(unstated.size) != channel.dim:
+        if len(options.size) != channel.dim:
             raise ValueError(
                 f"{path} has {channel.dim} dimension(s) and the size that is named "
-                f"{len(unstated.size)}; name one length for each, as in --size 50,50"
+                f"{len(options.size)}; name one length for each, as in --size 50,50"
             )
-        given["physical_sizes"] = unstated.size
-    elif unstated.size is not None:
-        known = " x ".join(f"{side:g}" for side in channel.physical_sizes)
-        raise ValueError(f"{path} states its own size, {known} {channel.unit}; leave --size out")
-    sides = given.get("physical_sizes", channel.physical_sizes)
-    _refuse_impossible(path, sides, given.get("unit", channel.unit))
+        given["physical_sizes"] = size = options.size
+    elif options.size is not None:
+        known = " x ".join(f"{side:g}" for side in size)
+        raise ValueError(f"{path} states its own size, {known} {unit}; leave --size out")
+    _named_sides(path, size, unit)
     return given, None
-
-
-def _stated_size(channel: Any) -> tuple[float, ...] | None:
-    """Sides that a file states, in metres; None if it does not."""
-    if channel.unit is None or channel.physical_sizes is None or None in channel.physical_sizes:
-        return None
-    return _in_metres(channel.physical_sizes, channel.unit)
 
 
 def _in_metres(sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
@@ -275,26 +254,15 @@ def _are_possible(sides: tuple[float, ...]) -> bool:
     return all(_SIDES[0] <= side <= _SIDES[1] for side in sides)
 
 
-def _corrected(path: Path, stated: tuple[float, ...], unstated: Unstated) -> tuple[float, ...]:
-    """Sides that are named in place of impossible ones (Units: m)."""
-    if unstated.size is None or unstated.unit is None:
+def _named_sides(path: Path, sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
+    """Sides in metres, refused where no instrument measures them."""
+    found = _in_metres(sides, unit)
+    if not _are_possible(found):
         raise ValueError(
-            f"{path} states sides of {shown_sides(stated)}, which no instrument measures; its unit "
-            "is wrong, so name the sides, as in --size "
-            f"{','.join(f'{side:g}' for side in stated)} --unit um"
-        )
-    _refuse_impossible(path, unstated.size, unstated.unit)
-    return _in_metres(unstated.size, unstated.unit)
-
-
-def _refuse_impossible(path: Path, sides: tuple[float, ...], unit: str) -> None:
-    """Raise where named sides are beyond every instrument."""
-    named = _in_metres(sides, unit)
-    if not _are_possible(named):
-        raise ValueError(
-            f"{path} cannot have sides of {shown_sides(named)}: instruments measure from "
+            f"{path} cannot have sides of {shown_sides(found)}: instruments measure from "
             f"{shown_sides(_SIDES[:1])} to {shown_sides(_SIDES[1:])}; check --size and --unit"
         )
+    return found
 
 
 def shown_sides(sides: tuple[float, ...]) -> str:

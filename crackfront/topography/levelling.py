@@ -5,56 +5,22 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
+from crackfront.topography.options import Detrend
+
 Array = NDArray[np.float64]
 Points = NDArray[np.bool_]
 
-DetrendName = Literal["center", "height", "slope", "curvature"]
-
-Detrend = DetrendName | int
-"""What is taken off: the mean, the plane of least height, that of least slope, the paraboloid; or
-the polynomial of an order."""
-
 _ORDERS = {"center": 0, "height": 1, "slope": 1, "curvature": 2}
-
-HIGHEST_ORDER = 9
-"""Highest order of a polynomial; more would be a filter of waves, which its fit is not."""
 
 _ROUND_OFF = 1e-6
 """Heights left over those taken off, below which they are the digits of the file."""
 
 _SHAPES = ("the mean", "the plane", "the paraboloid")
-
-
-def detrend_named(text: str) -> Detrend:
-    """What is taken off by the name of it, or by an order as a text.
-
-    Raises
-    ------
-    ValueError
-        If it is neither.
-    """
-    found: Any = int(text) if text.isdecimal() else text
-    refuse_unknown(found)
-    return found
-
-
-def refuse_unknown(detrend: object) -> None:
-    """Raise a ValueError for what nothing is known by."""
-    names = get_args(DetrendName)
-    if detrend in names or (
-        isinstance(detrend, int) and not isinstance(detrend, bool) and 0 <= detrend <= HIGHEST_ORDER
-    ):
-        return
-    raise ValueError(
-        f"detrend is {detrend!r}; choose one of {', '.join(names)}, or an order from 0 to "
-        f"{HIGHEST_ORDER}"
-    )
 
 
 def order_of(detrend: Detrend) -> int:

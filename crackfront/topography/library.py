@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, fields
+import functools
+import inspect
+from collections.abc import Callable, Iterable, Iterator
 from os import PathLike
 from pathlib import Path
+from typing import Any, ParamSpec, TypeVar
 
 from xarray import DataArray
 
@@ -14,28 +16,59 @@ from crackfront.data.arguments import refuse_other_type
 from crackfront.data.written_units import prefixed
 from crackfront.simulate.si_units import refuse_no_scales
 from crackfront.simulate.surfaces import surface_array
-from crackfront.topography.levelling import Detrend
-from crackfront.topography.measures import MeasuredSurface
-from crackfront.topography.prediction import Prediction, predicted, prediction_notes
-from crackfront.topography.reading import Measurement
-from crackfront.topography.report import prediction_text, surface_text, verdict_text
+from crackfront.topography.bands import scan
+from crackfront.topography.measures import read_surface
+from crackfront.topography.options import (
+    PredictionOptions,
+    ReadingOptions,
+    declared,
+    options_for_each,
+    parameters_text,
+    parsed_options,
+)
+from crackfront.topography.prediction import Prediction, predicted
+from crackfront.topography.reading import Measurement, read_measurements
 from crackfront.topography.tile import tile_heights, zero_load_radius
-from crackfront.topography.verdict import verdict
-from crackfront.topography.wording import File, Name, Wording
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+File = str | PathLike[str]
 
 
-def read_scan(
-    path: str | PathLike[str],
-    sphere: Scales,
-    *,
-    channel: Name | None = None,
-    crop: str | None = None,
-    detrend: Detrend = "curvature",
-    mask: File | Sequence[File] = (),
-    unit: str | None = None,
-    size: str | Sequence[float] | None = None,
-    shortest: float | str | None = None,
-) -> DataArray:
+def _taking(
+    *records: type[Any],
+) -> Callable[[Callable[Arguments, Result]], Callable[Arguments, Result]]:
+    """Give a function the options of records: as keywords, in its signature and its docstring."""
+    keywords = [
+        inspect.Parameter(
+            one.name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=one.default,
+            annotation=one.kind.accepts,
+        )
+        for record in records
+        for one in declared(record)
+    ]
+
+    def decorated(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+        plain = inspect.signature(function)
+        named = [item for item in plain.parameters.values() if item.kind is not item.VAR_KEYWORD]
+        signature = plain.replace(parameters=[*named, *keywords])
+
+        @functools.wraps(function)
+        def taking(*arguments: Arguments.args, **given: Arguments.kwargs) -> Result:
+            signature.bind(*arguments, **given)
+            return function(*arguments, **given)
+
+        taking.__doc__ = str(function.__doc__).replace("{options}", parameters_text(*records))
+        taking.__signature__ = signature  # type: ignore[attr-defined]
+        return taking
+
+    return decorated
+
+
+@_taking(ReadingOptions)
+def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     """A measured map as a surface to press on, levelled and made periodic.
 
     Parameters
@@ -44,23 +77,7 @@ def read_scan(
         File of an instrument, in any format that SurfaceTopography reads.
     sphere : Scales
         What is pressed on it; it says what a reduced length is.
-    channel : str or int, optional
-        Channel by name or number, for files with several.
-    crop : str, optional
-        Part of the scan to use, as in '2um:8um,0um:5um'.
-    detrend : {"center", "height", "slope", "curvature"} or int, optional
-        What is taken off: the mean, the plane of least height, that of least slope, a paraboloid,
-        or the polynomial of an order.
-    mask : str, path or sequence of them, optional
-        What the levelling leaves out and the map keeps: parts of the scan as in `crop`, or files
-        with a number for each point, not zero there.
-    unit : str, optional
-        Unit of lengths, for files that state none.
-    size : str or sequence of float, optional
-        Sides of the scan, for files that state none, as in '50,50'. (Units: those of `unit`, or of
-        the file)
-    shortest : float or str, optional
-        Shortest wavelength to trust, as in '0.4um', in place of that which is found. (Units: m)
+    {options}
 
     Returns
     -------
@@ -79,8 +96,9 @@ def read_scan(
     """
     refuse_no_scales(sphere)
     refuse_other_type("scan", path, (str, PathLike), "the path of a file")
-    words = Wording(channel, crop, detrend, mask, unit, size, shortest)
-    measurement = words.scan(Path(path)).trusted_measurement
+    reading = parsed_options(ReadingOptions, options)
+    [measured] = read_measurements([Path(path)], reading)
+    measurement = scan(measured, reading.shortest, reading.longest).trusted_measurement
     heights, pixel = tile_heights(measurement)
     return surface_array(
         "roughness",
@@ -113,33 +131,8 @@ def _treatments(measurement: Measurement, across: float) -> Iterator[tuple[str, 
         )
 
 
-@dataclass(frozen=True, slots=True, repr=False)
-class SurfacePrediction(Prediction):
-    """A prediction that shows itself as text, and the surface that it is for."""
-
-    surface: MeasuredSurface = field(kw_only=True)
-
-    def __repr__(self) -> str:
-        notes = ["Notes", *(f"  {note}" for note in prediction_notes(self.surface, self))]
-        scales = Scales(self.radius, self.work_of_adhesion, self.contact_modulus)
-        ruling = verdict(self.surface, scales, None, self)
-        texts = surface_text(self.surface), verdict_text(ruling), prediction_text(self)
-        return "\n\n".join([*texts, "\n".join(notes)])
-
-
-def predict(
-    scans: File | Iterable[File],
-    sphere: Scales,
-    *,
-    channel: Name | Sequence[Name] | None = None,
-    crop: str | Sequence[str] | None = None,
-    detrend: Detrend = "curvature",
-    mask: File | Sequence[File] = (),
-    unit: str | None = None,
-    size: str | Sequence[float] | None = None,
-    shortest: float | str | None = None,
-    longest: float | str | None = None,
-) -> SurfacePrediction:
+@_taking(ReadingOptions, PredictionOptions)
+def predict(scans: File | Iterable[File], sphere: Scales, **options: Any) -> Prediction:
     """How strongly a sphere sticks to a measured surface, by the law of k.
 
     Parameters
@@ -148,16 +141,11 @@ def predict(
         One measurement of the surface or several, maps or lines.
     sphere : Scales
         What is pressed on it.
-    channel, crop
-        As of :func:`read_scan`; one for all scans, or a list of one for each.
-    detrend, mask, unit, size, shortest
-        As of :func:`read_scan`.
-    longest : float or str, optional
-        Longest wavelength to trust, in place of that which is found. (Units: m)
+    {options}
 
     Returns
     -------
-    SurfacePrediction
+    Prediction
         e_el, k, w_appr, w_retr, pull-off forces and more, in SI units; printed, it says all of them
         with intervals, limits and notes.
 
@@ -177,8 +165,6 @@ def predict(
     for path in paths:
         refuse_other_type("scan", path, (str, PathLike), "the path of a file")
         files.append(Path(path))
-    words = Wording(channel, crop, detrend, mask, unit, size, shortest, longest)
-    surface = words.surface(files)
-    found = predicted(surface, sphere)
-    known = {item.name: getattr(found, item.name) for item in fields(Prediction)}
-    return SurfacePrediction(**known, surface=surface)
+    given = parsed_options(PredictionOptions, options)
+    surface = read_surface(files, options_for_each(ReadingOptions, options, len(files)))
+    return predicted(surface, sphere, given.range)

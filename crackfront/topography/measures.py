@@ -6,6 +6,7 @@ import hashlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from scipy.special import beta
 
@@ -14,7 +15,8 @@ from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.bands import Scan, scan
 from crackfront.topography.densities import Density, profile_density
 from crackfront.topography.joining import JointSpectrum, joint_spectrum
-from crackfront.topography.reading import Measurement
+from crackfront.topography.options import ReadingOptions
+from crackfront.topography.reading import Measurement, read_measurements
 
 _ORDERS = (0.0, 0.5, 1.0)
 """Orders of the derivatives: heights, half-derivatives, slopes."""
@@ -75,14 +77,9 @@ class MeasuredSurface:
     half_derivative: Estimate[float]
 
     @property
-    def measurements(self) -> tuple[Measurement, ...]:
-        """What was measured."""
-        return tuple(one.measurement for one in self.scans)
-
-    @property
     def checksum(self) -> str:
         """Eight hexadecimal digits of the content of all files, in their order."""
-        text = "".join(item.checksum for item in self.measurements)
+        text = "".join(one.measurement.checksum for one in self.scans)
         return hashlib.sha256(text.encode()).hexdigest()[:8]
 
     def conformity_energy(self, contact_modulus: float) -> Estimate[float]:
@@ -124,6 +121,20 @@ def measured_surface(
         measures=tuple(_measure(order, joint, scans) for order in _ORDERS),
         half_derivative=joint.estimate(lambda spectrum: spectrum.mean_square(0.5)),
     )
+
+
+def read_surface(paths: Sequence[Path], options: Sequence[ReadingOptions]) -> MeasuredSurface:
+    """Surface of files, each of which is read by its options.
+
+    Raises
+    ------
+    ValueError
+        If a file cannot be used, or the densities do not determine a spectrum.
+    OSError
+        If a file cannot be opened.
+    """
+    measurements = read_measurements(paths, options)
+    return measured_surface(measurements, options[0].shortest, options[0].longest)
 
 
 def measured_mean_square(one: Scan, order: float) -> float:

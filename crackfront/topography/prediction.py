@@ -3,38 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.finding import PAPER_FACTOR
-from crackfront.analysis.law import shipped_law
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
-from crackfront.analysis.validity import validity_sentence
 from crackfront.core import jkr
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.tile import zero_load_radius
-
-_MOST_ANISOTROPY = 1.25
-_MOST_UNMEASURED = 0.1
-_MOST_CONTINUED = 0.5
-"""Ratio of slopes and parts of e_el from which on they are doubts."""
-
-_EDGE, _MATTERS = 0.05, 0.1
-"""Distance of a Hurst exponent from 0 and from 1 below which it is at the edge of what is fitted,
-and part of e_el that is continued from which on that matters."""
+from crackfront.topography.verdict import Verdict, verdict
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Prediction:
-    """Adhesion that is predicted, in SI units, and the factors k that it rests on.
+    """Adhesion that is predicted for a surface, in SI units; printed, it says all that is known.
 
     The intervals of the works of adhesion hold those of k and of e_el.
     """
 
+    surface: MeasuredSurface
+    verdict: Verdict
     factors: SphereFactors
     radius: float = variable("radius of the sphere", "m")
     contact_modulus: float = variable("contact modulus E'", "Pa")
@@ -59,6 +50,11 @@ class Prediction:
     paper_w_appr: float = variable("work of adhesion of the approach by that factor", "J m-2")
     paper_w_retr: float = variable("work of adhesion of the retraction by that factor", "J m-2")
 
+    def __repr__(self) -> str:
+        from crackfront.topography.report import report_text
+
+        return report_text(self.surface, ruling=self.verdict, prediction=self)
+
 
 def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSpectrum:
     """A spectrum of heights in metres in reduced units: its `elastic_energy` is e_el / w_int."""
@@ -66,8 +62,12 @@ def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSp
     return spectrum.in_units(scales.lateral).amplified(1 / unit)
 
 
-def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
+def predicted(
+    surface: MeasuredSurface, scales: Scales, attraction_range: float | None = None
+) -> Prediction:
     """Prediction for a surface under a sphere, of scales in SI units.
+
+    The range of attraction (Units: m) is that of :func:`crackfront.topography.verdict.verdict`.
 
     Raises
     ------
@@ -85,6 +85,8 @@ def predicted(surface: MeasuredSurface, scales: Scales) -> Prediction:
     retr = _linear(adhesion, energy, k_retr, -1.0, 1.0)
     hysteresis = _linear(0.0, energy, k, 0.0, 2.0)
     return Prediction(
+        surface=surface,
+        verdict=verdict(surface, scales, attraction_range, factors),
         factors=factors,
         radius=scales.radius,
         contact_modulus=scales.contact_modulus,
@@ -146,96 +148,3 @@ def _forces(retraction: Estimate[float], reduced: float, scales: Scales) -> Esti
     """Pull-off forces, positive; by JKR they are linear in the work of adhesion."""
     slope = -reduced * scales.force / scales.work_of_adhesion
     return retraction.each(lambda adhesion: slope * adhesion)
-
-
-def prediction_notes(surface: MeasuredSurface, prediction: Prediction) -> Iterator[str]:
-    """What a reader of a prediction must know, one sentence each."""
-    yield from surface_notes(surface, prediction.contact_radius)
-    yield from _factor_notes(prediction)
-    yield validity_sentence()
-    if prediction.w_appr.value <= 0:
-        yield (
-            "w_appr is not positive: the sphere is not drawn into contact, it has to be pressed on."
-        )
-
-
-def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None) -> Iterator[str]:
-    """Treatments of the measurements, against the radius of a contact (Units: m)."""
-    for one in surface.scans:
-        item = one.measurement
-        if item.missing > 0:
-            yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
-        if item.is_line:
-            yield (
-                f"{item.path} is a line scan: its density is that of an isotropic surface with "
-                "this projection."
-            )
-        elif max(item.pixels) > 1.001 * min(item.pixels):
-            yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
-        for axis in one.band.stripes:
-            yield (
-                f"{item.path}: waves along {'xy'[axis]} alone have another density than all "
-                "others, as of rows that are shifted or levelled one by one; they are left out."
-            )
-        if contact_radius is not None and min(item.size) < 2 * contact_radius:
-            yield (
-                f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
-                f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
-                "spectrum."
-            )
-
-
-def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
-    """What makes a spectrum doubtful, one sentence each."""
-    joint = surface.joint
-    for index, one in enumerate(surface.scans):
-        path, ratio, level = one.measurement.path, one.band.anisotropy, joint.density.levels[index]
-        if max(ratio, 1 / ratio) > _MOST_ANISOTROPY:
-            yield (
-                f"{path}: the rms slope along x is {ratio:.2g} times that along y; the theory is "
-                "for isotropic surfaces."
-            )
-        if joint.density.disagrees(index):
-            yield (
-                f"{path} disagrees with the other scans: its density is {level.value:.2g} "
-                f"({level.low:.2g} to {level.high:.2g}) times theirs where they overlap; the "
-                "intervals hold that."
-            )
-    if joint.shares.continued > _MOST_CONTINUED:
-        yield (
-            f"{joint.shares.continued:.0%} of e_el is not measured but continued by a model; look "
-            "at the figure, and add a scan of the waves that are missing."
-        )
-    hurst, _, _ = joint.fit.hurst
-    if min(hurst, 1 - hurst) < _EDGE and joint.shares.continued > _MATTERS:
-        yield (
-            f"The Hurst exponent of the shortest waves, {hurst:.2g}, is at the edge of what is "
-            f"fitted, 0 to 1: the model that continues {joint.shares.continued:.0%} of e_el may "
-            "not be what the surface is."
-        )
-    if not joint.fit.has_roll_off:
-        yield (
-            "The density shows no plateau within the trusted wavelengths: it is taken as flat "
-            f"above, longer waves would add about {joint.shares.missing_long:.0%} to e_el, and its "
-            "interval holds roll-offs of up to four sides of the scan; add a larger scan."
-        )
-    if joint.shares.missing_short > _MOST_UNMEASURED:
-        yield (
-            "Waves shorter than the points hold are left out: two more decades of the power law "
-            f"would add {joint.shares.missing_short:.0%} to e_el; add a finer scan."
-        )
-
-
-def _factor_notes(prediction: Prediction) -> Iterator[str]:
-    """Where the factors come from, and where they are weak."""
-    factors = prediction.factors
-    yield (
-        "k is that of a straight front on springs of the length L_kappa, by the law that was "
-        "fitted to simulations of such fronts; its interval holds the errors of both."
-    )
-    _, largest = shipped_law().size
-    if factors.size > largest:
-        yield (
-            f"Size g {factors.size:.3g} is above the largest that was measured ({largest:.3g}): k "
-            "follows the finite-size exponent of the elastic line from there."
-        )

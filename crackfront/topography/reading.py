@@ -12,21 +12,9 @@ from numpy.typing import NDArray
 
 from crackfront.data.written_units import prefixed
 from crackfront.topography.files import checksum
-from crackfront.topography.instruments import (
-    Unstated,
-    array_of,
-    library_scan,
-    raw_scan,
-    shown_sides,
-)
-from crackfront.topography.levelling import (
-    Detrend,
-    levelled,
-    order_of,
-    refuse_unknown,
-    taken_off,
-)
-from crackfront.topography.regions import Region, region_slices
+from crackfront.topography.instruments import array_of, library_scan, raw_scan, shown_sides
+from crackfront.topography.levelling import levelled, order_of, taken_off
+from crackfront.topography.options import ReadingOptions, Region
 
 Array = NDArray[np.float64]
 Points = NDArray[np.bool_]
@@ -51,42 +39,6 @@ _FEWEST_POINTS = 8
 _LEAST_HEIGHT, _MOST_HEIGHT = 1e-12, 10.0
 """Rms of heights (Units: m), and their span in sides of the scan, beyond which no instrument
 measures, so that a unit of the file must be wrong."""
-
-
-@dataclass(frozen=True, slots=True)
-class Treatment:
-    """How files are read.
-
-    Attributes
-    ----------
-    detrend : {"center", "height", "slope", "curvature"} or int
-        What is taken off, or the order of the polynomial that is.
-    unit : str or None
-        Unit of lengths, for files that state none.
-    size : tuple of float or None
-        Sides of the scan, or the length of a line, for files that state none.
-        (Units: those of `unit`, or of the file)
-    channel : str or None
-        Name or number of the channel, for files with several; by default that which the library
-        takes for the heights.
-    crop : Region or None
-        Part of the scan that is used.
-    mask : tuple of Region or Path
-        What the levelling leaves out and the map keeps: parts of the whole scan, or files of maps
-        with as many points that are not zero there.
-    """
-
-    detrend: Detrend = "curvature"
-    unit: str | None = None
-    size: tuple[float, ...] | None = None
-    channel: str | None = None
-    crop: Region | None = None
-    mask: tuple[Region | Path, ...] = ()
-
-    def __post_init__(self) -> None:
-        refuse_unknown(self.detrend)
-        if not all(math.isfinite(side) and side > 0 for side in self.size or ()):
-            raise ValueError(f"size is {self.size}; it must be positive and finite")
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +98,7 @@ class Measurement:
 
 
 def read_measurements(
-    paths: Sequence[Path], treatment: Treatment | Sequence[Treatment] | None = None
+    paths: Sequence[Path], options: ReadingOptions | Sequence[ReadingOptions] | None = None
 ) -> tuple[Measurement, ...]:
     """Measurements of one surface, from files in any format that SurfaceTopography reads.
 
@@ -154,7 +106,7 @@ def read_measurements(
     ----------
     paths : sequence of Path
         The files.
-    treatment : Treatment or sequence of Treatment, optional
+    options : ReadingOptions or sequence of them, optional
         How they are read; one for all, or one for each.
 
     Raises
@@ -169,24 +121,29 @@ def read_measurements(
     repeated = sorted({str(path) for path in paths if list(paths).count(path) > 1})
     if repeated:
         raise ValueError(f"{repeated[0]} is named twice; a measurement counts once")
-    if treatment is None or isinstance(treatment, Treatment):
-        treatment = [treatment or Treatment()] * len(paths)
-    return tuple(_measurement(*both) for both in zip(paths, treatment, strict=True))
+    if options is None or isinstance(options, ReadingOptions):
+        options = [options or ReadingOptions()] * len(paths)
+    return tuple(_measurement(*both) for both in zip(paths, options, strict=True))
 
 
-def _measurement(path: Path, treatment: Treatment) -> Measurement:
-    """One measurement."""
-    scan = raw_scan(path, Unstated(treatment.unit, treatment.size, treatment.channel))
+def _measurement(path: Path, options: ReadingOptions) -> Measurement:
+    """Measurement of one file."""
+    scan = raw_scan(path, options)
     raw = scan.level
     heights = np.ma.masked_invalid(raw.heights())
-    size = tuple(map(float, raw.physical_sizes))
-    fitted = ~np.ma.getmaskarray(heights) & ~_masked(path, treatment, heights.shape, size)
-    part = _part(path, treatment, heights.shape, size)
-    size = tuple(
-        side * len(range(*cut.indices(count))) / count
-        for side, cut, count in zip(size, part, heights.shape, strict=True)
-    )
+    counts, size = heights.shape, tuple(map(float, raw.physical_sizes))
+    fitted = ~np.ma.getmaskarray(heights) & ~_masked(path, options, counts, size)
+    part: tuple[slice, ...] = tuple(map(slice, counts))
+    if options.crop is not None:
+        part = _slices(path, "crop", options.crop, counts, size)
     heights, fitted = heights[part], fitted[part]
+    if options.crop is not None and min(heights.shape) < _FEWEST_POINTS:
+        raise ValueError(
+            f"{path}: the crop leaves fewer than {_FEWEST_POINTS} points along a side; widen it"
+        )
+    size = tuple(
+        side * kept / count for side, kept, count in zip(size, heights.shape, counts, strict=True)
+    )
     missing = float(np.mean(np.ma.getmaskarray(heights)))
     if missing > _MOST_MISSING:
         raise ValueError(
@@ -195,22 +152,20 @@ def _measurement(path: Path, treatment: Treatment) -> Measurement:
         )
     _refuse_impossible_heights(path, np.ma.compressed(heights), size)
     try:
-        values = levelled(np.ma.getdata(heights), fitted, treatment.detrend)
+        values = levelled(np.ma.getdata(heights), fitted, options.detrend)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
+    periodic = raw.is_periodic and options.crop is None and not order_of(options.detrend)
     level = library_scan(
         np.ma.array(values, mask=np.ma.getmask(heights)),
         size,
-        periodic=bool(
-            raw.is_periodic and treatment.crop is None and not order_of(treatment.detrend)
-        ),
+        periodic=bool(periodic),
         info=raw.info,
     )
     if missing > 0:
         level = level.interpolate_undefined_data()
     pixel = max(side / count for side, count in zip(size, heights.shape, strict=True))
-    stated = level.short_reliability_cutoff() or 0.0
-    shortest = max(_PIXELS_PER_WAVE * pixel, stated)
+    shortest = max(_PIXELS_PER_WAVE * pixel, level.short_reliability_cutoff() or 0.0)
     longest = min(size) / _WAVES_PER_SIDE
     if longest < 2**_FEWEST_OCTAVES * shortest:
         raise ValueError(
@@ -218,6 +173,10 @@ def _measurement(path: Path, treatment: Treatment) -> Measurement:
             f"{prefixed('m', shortest)} (points or instrument) and below {prefixed('m', longest)} "
             "(half a side); use a larger or finer scan"
         )
+    levelling = taken_off(options.detrend)
+    if options.mask:
+        left_out = 1 - np.count_nonzero(fitted) / np.ma.count(heights)
+        levelling += f" of all but {left_out:.2%} of the points"
     return Measurement(
         path=path,
         format=scan.format,
@@ -230,64 +189,59 @@ def _measurement(path: Path, treatment: Treatment) -> Measurement:
         shortest=shortest,
         longest=longest,
         channel=scan.channel,
-        levelling=_levelling(treatment, fitted, heights),
+        levelling=levelling,
     )
 
 
-def _levelling(treatment: Treatment, fitted: Points, heights: Array) -> str:
-    """What was taken off, and where it was fitted."""
-    text = taken_off(treatment.detrend)
-    left_out = 1 - np.count_nonzero(fitted) / np.count_nonzero(~np.ma.getmaskarray(heights))
-    return f"{text} of all but {left_out:.2%} of the points" if treatment.mask else text
-
-
-def _part(
-    path: Path, treatment: Treatment, counts: tuple[int, ...], size: tuple[float, ...]
-) -> tuple[slice, ...]:
-    """Points of the part of a scan that is used."""
-    if treatment.crop is None:
-        return tuple(slice(count) for count in counts)
-    part = region_slices(path, "crop", treatment.crop, counts, size)
-    for cut, count in zip(part, counts, strict=True):
-        if len(range(*cut.indices(count))) < _FEWEST_POINTS:
-            raise ValueError(
-                f"{path}: the crop leaves fewer than {_FEWEST_POINTS} points along a side; widen it"
-            )
-    return part
-
-
 def _masked(
-    path: Path, treatment: Treatment, counts: tuple[int, ...], size: tuple[float, ...]
+    path: Path, options: ReadingOptions, counts: tuple[int, ...], size: tuple[float, ...]
 ) -> Points:
     """Points that the levelling leaves out."""
     found = np.zeros(counts, dtype=bool)
-    for mask in treatment.mask:
+    for mask in options.mask:
         if not isinstance(mask, Path):
-            found[region_slices(path, "mask", mask, counts, size)] = True
+            found[_slices(path, "mask", mask, counts, size)] = True
             continue
         numbers = array_of(mask)
         if numbers.shape != counts:
+            given, needed = (" x ".join(map(str, shape)) for shape in (numbers.shape, counts))
             raise ValueError(
-                f"mask {mask} has {_times(numbers.shape)} points and {path} {_times(counts)}; a "
-                "mask has a number for each point, not zero where the levelling leaves it out"
+                f"mask {mask} has {given} points and {path} {needed}; a mask has a number for each "
+                "point, not zero where the levelling leaves it out"
             )
         found |= numbers != 0
     return found
 
 
+def _slices(
+    path: Path, what: str, region: Region, counts: tuple[int, ...], size: tuple[float, ...]
+) -> tuple[slice, ...]:
+    """Points within a region of a scan."""
+    if len(region) != len(counts):
+        raise ValueError(
+            f"{path} has {len(counts)} dimension(s) and the {what} {len(region)}; name both ends "
+            "along each, as in 2um:8um,0um:5um"
+        )
+    for (_, high), side in zip(region, size, strict=True):
+        if high > side * (1 + 1e-9):
+            raise ValueError(
+                f"{path} ends at {prefixed('m', side)} and the {what} at {prefixed('m', high)}; "
+                "name ends within the scan"
+            )
+    return tuple(
+        slice(*(math.ceil(end / side * count - 1e-6) for end in ends))
+        for ends, side, count in zip(region, size, counts, strict=True)
+    )
+
+
 def _refuse_impossible_heights(path: Path, heights: Array, size: tuple[float, ...]) -> None:
-    """Raise where heights are what no instrument measures."""
-    if not np.ptp(heights) > 0:
-        raise ValueError(f"{path}: all heights are equal; a smooth surface has no spectrum")
+    """Raise where heights are equal, or vary as no instrument measures."""
     rms, span = float(np.std(heights)), float(np.ptp(heights))
+    if not span > 0:
+        raise ValueError(f"{path}: all heights are equal; a smooth surface has no spectrum")
     if rms < _LEAST_HEIGHT or span > _MOST_HEIGHT * max(size):
         raise ValueError(
             f"{path}: the heights vary by {prefixed('m', rms)} rms and span {prefixed('m', span)} "
             f"on {shown_sides(size)}, which cannot be; their unit is wrong, so export them with "
             "the right one"
         )
-
-
-def _times(counts: tuple[int, ...]) -> str:
-    """Numbers of points as a text."""
-    return " x ".join(map(str, counts))

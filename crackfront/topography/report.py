@@ -4,26 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import PinningFactor
 from crackfront.analysis.law_spheres import SphereFactors
 from crackfront.core.units import Scales
-from crackfront.core.variables import Variable, variables
+from crackfront.core.variables import variables
 from crackfront.data.written_units import prefixed
-from crackfront.topography.bands import Band, BandLimit
+from crackfront.topography.bands import BandLimit, Scan
+from crackfront.topography.cautions import prediction_notes, surface_doubts, surface_notes
 from crackfront.topography.densities import Density
 from crackfront.topography.fitting import Fit
 from crackfront.topography.joining import JointSpectrum
 from crackfront.topography.measures import MeasuredSurface, RmsMeasure
-from crackfront.topography.prediction import (
-    Prediction,
-    prediction_notes,
-    surface_notes,
-)
-from crackfront.topography.reading import Measurement
+from crackfront.topography.prediction import Prediction
 from crackfront.topography.verdict import Condition, Verdict
 
 if TYPE_CHECKING:
@@ -40,25 +36,30 @@ _FAR = 1000.0
 _ADHESIONS = ("w_appr", "w_retr", "hysteresis")
 
 
-def surface_text(surface: MeasuredSurface) -> str:
-    """Measurements, spectrum and measures of a surface."""
-    return "\n".join(_surface_lines(surface))
+def report_text(
+    surface: MeasuredSurface,
+    scales: Scales | None = None,
+    ruling: Verdict | None = None,
+    prediction: Prediction | None = None,
+) -> str:
+    """Surface, verdict and prediction, each where it is known, and what a reader must know.
 
-
-def conformity_text(surface: MeasuredSurface, scales: Scales) -> str:
-    """Energy of full conformity and the fluctuation that goes with it, for scales in SI units."""
-    energy = surface.conformity_energy(scales.contact_modulus)
-    return "\n".join(_conformity_lines(energy, scales.work_of_adhesion))
-
-
-def prediction_text(prediction: Prediction) -> str:
-    """A prediction."""
-    return "\n".join(_prediction_lines(prediction))
-
-
-def verdict_text(found: Verdict) -> str:
-    """Whether the theory applies, every condition, and what is in doubt or would make it apply."""
-    return "\n".join(_verdict_lines(found))
+    Without a prediction, scales in SI units add the energy of full conformity.
+    """
+    parts = [_surface_lines(surface)]
+    if ruling is not None:
+        parts.append(_verdict_lines(ruling))
+    if prediction is not None:
+        parts.append(_prediction_lines(prediction))
+    elif scales is not None:
+        energy = surface.conformity_energy(scales.contact_modulus)
+        parts.append(_conformity_lines(energy, scales.work_of_adhesion))
+    notes = [*(surface_notes(surface) if prediction is None else prediction_notes(prediction))]
+    if ruling is None:
+        notes += surface_doubts(surface)
+    if notes:
+        parts.append(iter(["Notes", *(f"  {note}" for note in notes)]))
+    return "\n\n".join("\n".join(lines) for lines in parts)
 
 
 def simulation_text(found: Simulated) -> str:
@@ -75,20 +76,17 @@ def simulation_text(found: Simulated) -> str:
 def machine_readable(
     surface: MeasuredSurface,
     scales: Scales | None = None,
+    ruling: Verdict | None = None,
     prediction: Prediction | None = None,
     found: Simulated | None = None,
-    ruling: Verdict | None = None,
 ) -> dict[str, Any]:
     """What the texts and notes say, for JSON; SI units, null where there is nothing."""
     energy = None if scales is None else surface.conformity_energy(scales.contact_modulus)
-
-    notes = surface_notes(surface) if prediction is None else prediction_notes(surface, prediction)
+    notes = surface_notes(surface) if prediction is None else prediction_notes(prediction)
     return {
         "measurements": [
-            _measurement_entry(one.measurement)
-            | _band_entry(one.band)
+            _scan_entry(one)
             | {
-                "density": _density_entry(one.trusted, "m^3" if one.trusted.is_profile else "m^4"),
                 "profile_density": _density_entry(profile, "m^3"),
                 "level": _interval_entry(level),
                 "disagrees": surface.joint.density.disagrees(index),
@@ -103,15 +101,14 @@ def machine_readable(
             asdict(item) | {"rms": _uncertain_entry(item.rms)} for item in surface.measures
         ],
         "e_el": None if energy is None else {**_uncertain_entry(energy), "units": "J m-2"},
-        "prediction": None
-        if prediction is None
-        else {
-            item.name: {"value": value, **item.attributes} for item, value in _columns(prediction)
-        },
+        "prediction": None if prediction is None else dict(_prediction_entries(prediction)),
         "factors": None if prediction is None else _factors_entry(prediction.factors),
         "verdict": None if ruling is None else _verdict_entry(ruling),
         "notes": list(notes),
-        "simulation": None if found is None else _with_intervals(found, *_ADHESIONS, "k"),
+        "simulation": None
+        if found is None
+        else asdict(found)
+        | {name: _interval_entry(getattr(found, name)) for name in (*_ADHESIONS, "k")},
     }
 
 
@@ -131,7 +128,7 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
         points = " x ".join(map(str, item.heights.shape))
         sides = " x ".join(prefixed("m", side) for side in item.size)
         yield f"{item.path}: {item.format}, {points} points, {sides}"
-        yield f"  trusted wavelengths   {_band_text(one.band)}"
+        yield f"  trusted wavelengths   {' to '.join(map(_limit_text, one.band.ends))}"
         others = [limit for limit in one.band.limits if limit not in one.band.ends]
         if others:
             yield f"  other limits          {', '.join(map(_limit_text, others))}"
@@ -284,11 +281,6 @@ def _factor(found: Number) -> str:
     return f"{found.value:.2f}{interval}"
 
 
-def _band_text(band: Band) -> str:
-    """Trusted wavelengths, and why they end."""
-    return " to ".join(map(_limit_text, band.ends))
-
-
 def _limit_text(limit: BandLimit) -> str:
     """A limit of trusted wavelengths."""
     return f"{prefixed('m', limit.wavelength)} ({limit.cause})"
@@ -299,8 +291,10 @@ def _span(shortest: float, longest: float) -> str:
     return f"{prefixed('m', shortest)} to {prefixed('m', longest)}"
 
 
-def _measurement_entry(item: Measurement) -> dict[str, Any]:
-    """A measurement without its heights."""
+def _scan_entry(one: Scan) -> dict[str, Any]:
+    """A scan without its heights: its file, trusted wavelengths, and what its density shows."""
+    item, band, instrument = one.measurement, one.band, one.band.instrument
+    is_seen = math.isfinite(instrument.attenuation)
     return {
         "path": str(item.path),
         "format": item.format,
@@ -309,27 +303,18 @@ def _measurement_entry(item: Measurement) -> dict[str, Any]:
         "taken_off": item.levelling,
         "checksum": item.checksum,
         "points": list(item.heights.shape),
-        "size": {"value": list(item.size), "units": "m"},
+        "size": _number(list(item.size), "m"),
         "missing": item.missing,
-    }
-
-
-def _band_entry(band: Band) -> dict[str, Any]:
-    """Trusted wavelengths of a measurement, and what its density shows."""
-    instrument = band.instrument
-    return {
         "shortest": _number(band.shortest.wavelength, "m"),
         "longest": _number(band.longest.wavelength, "m"),
         "limits": [
-            {"end": limit.end, "cause": limit.cause, "wavelength": _number(limit.wavelength, "m")}
-            for limit in band.limits
+            asdict(limit) | {"wavelength": _number(limit.wavelength, "m")} for limit in band.limits
         ],
         "stripes_along": ["xy"[axis] for axis in band.stripes],
         "anisotropy": band.anisotropy,
-        "attenuation": _number(instrument.attenuation, "1/m")
-        if math.isfinite(instrument.attenuation)
-        else None,
+        "attenuation": _number(instrument.attenuation, "1/m") if is_seen else None,
         "noise": _number(instrument.noise, "m^4"),
+        "density": _density_entry(one.trusted, "m^3" if one.trusted.is_profile else "m^4"),
     }
 
 
@@ -337,11 +322,11 @@ def _spectrum_entry(joint: JointSpectrum) -> dict[str, Any]:
     """The spectrum of a surface, and where its e_el comes from."""
     table, density = joint.spectrum, joint.density
     return {
-        "wavelength": {"value": list(table.wavelengths), "units": "m"},
-        "density": {"value": list(table.densities), "units": "m^4"},
+        "wavelength": _number(list(table.wavelengths), "m"),
+        "density": _number(list(table.densities), "m^4"),
         "measured": {
-            "wavevector": {"value": density.wavevector.tolist(), "units": "1/m"},
-            "density": {"value": density.value.tolist(), "units": "m^4"},
+            "wavevector": _number(density.wavevector.tolist(), "1/m"),
+            "density": _number(density.value.tolist(), "m^4"),
             "relative_error": density.error.tolist(),
         },
         "scatter": density.scatter,
@@ -364,20 +349,20 @@ def _continuation_entry(fit: Fit) -> dict[str, Any]:
 def _density_entry(density: Density, units: str) -> dict[str, Any]:
     """A density in its bins."""
     return {
-        "wavevector": {"value": density.wavevector.tolist(), "units": "1/m"},
-        "density": {"value": density.value.tolist(), "units": units},
+        "wavevector": _number(density.wavevector.tolist(), "1/m"),
+        "density": _number(density.value.tolist(), units),
         "modes": density.modes.tolist(),
     }
 
 
-def _columns(prediction: Prediction) -> Iterator[tuple[Variable, float]]:
-    """Numbers of a prediction, with what they have of standard errors and intervals."""
+def _prediction_entries(prediction: Prediction) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Numbers of a prediction by name, with what they have of standard errors and intervals."""
     for item in variables(Prediction):
         found = getattr(prediction, item.name)
         if not isinstance(found, Estimate):
-            yield item, found
+            yield item.name, {"value": found, **item.attributes}
             continue
-        yield item, found.value
+        yield item.name, {"value": found.value, **item.attributes}
         low, high = ("smaller", "larger") if item.units == "N" else ("lower", "upper")
         for ending, value, text in (
             ("error", found.standard_error, "its standard error"),
@@ -385,7 +370,8 @@ def _columns(prediction: Prediction) -> Iterator[tuple[Variable, float]]:
             ("high", found.high, f"{high} end of its interval"),
         ):
             if math.isfinite(value):
-                yield replace(item, name=f"{item.name}_{ending}", long_name=text), value
+                entry = {"value": value, "units": item.units, "long_name": text}
+                yield f"{item.name}_{ending}", entry
 
 
 def _factors_entry(factors: SphereFactors) -> dict[str, Any]:
@@ -403,11 +389,6 @@ def _factors_entry(factors: SphereFactors) -> dict[str, Any]:
     }
 
 
-def _with_intervals(record: Any, *names: str) -> dict[str, Any]:
-    """Entries of a record, those of some names as numbers with intervals."""
-    return asdict(record) | {name: _interval_entry(getattr(record, name)) for name in names}
-
-
 def _interval_entry(found: Number) -> dict[str, float | None]:
     """A number with its interval, null where there is none, as JSON needs it."""
     entries = {"value": found.value, "low": found.low, "high": found.high}
@@ -419,6 +400,6 @@ def _uncertain_entry(found: Number) -> dict[str, Any]:
     return _interval_entry(found) | {"error": found.standard_error}
 
 
-def _number(value: float, units: str) -> dict[str, Any]:
-    """A number with its units."""
+def _number(value: float | list[float], units: str) -> dict[str, Any]:
+    """A number, or a list of numbers, with its units."""
     return {"value": value, "units": units}

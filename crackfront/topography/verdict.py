@@ -9,11 +9,12 @@ from typing import Literal
 
 from scipy.special import ndtr, ndtri
 
+from crackfront.analysis.law_spheres import SphereFactors
 from crackfront.analysis.validity import TOLERANCES, largest_energy, shipped_validity
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
+from crackfront.topography.cautions import surface_doubts
 from crackfront.topography.measures import MeasuredSurface
-from crackfront.topography.prediction import Prediction, surface_doubts
 from crackfront.topography.tile import zero_load_radius
 
 Standing = Literal["holds", "in doubt", "fails"]
@@ -131,7 +132,7 @@ def verdict(
     surface: MeasuredSurface,
     scales: Scales,
     attraction_range: float | None = None,
-    prediction: Prediction | None = None,
+    factors: SphereFactors | None = None,
 ) -> Verdict:
     """Whether the theory applies to a surface under a sphere.
 
@@ -144,12 +145,10 @@ def verdict(
     attraction_range : float, optional
         Distance over which surfaces attract each other; by default that of van der Waals forces.
         (Units: m)
-    prediction : Prediction, optional
-        What was predicted, whose law may have been left.
+    factors : SphereFactors, optional
+        Factors k by the law, which may not have been measured there.
     """
     reach = ASSUMED_RANGE if attraction_range is None else attraction_range
-    if not (math.isfinite(reach) and reach > 0):
-        raise ValueError(f"the range of attraction is {reach}; it must be positive and finite")
     conditions = tuple(_conditions(surface, scales, reach))
     doubts = [
         f"{item.name}: {item.found}; {item.reason}."
@@ -157,8 +156,8 @@ def verdict(
         if item.standing == "in doubt"
     ]
     doubts += [*_energy_doubts(surface, scales), *surface_doubts(surface)]
-    if prediction is not None and prediction.factors.warning:
-        doubts.append(f"The law of k was not measured there: {prediction.factors.warning}.")
+    if factors is not None and factors.warning:
+        doubts.append(f"The law of k was not measured there: {factors.warning}.")
     assumption = ""
     if attraction_range is None:
         assumption = (
@@ -181,7 +180,7 @@ def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Itera
         slope,
         *_SLOPES,
         "1",
-        remedies=(f"slopes lower by a factor of {_factor(slope / _SLOPES[1])}",),
+        remedies=(f"slopes lower by a factor of {slope / _SLOPES[1]:.3g}",),
     )
 
 
@@ -289,10 +288,9 @@ def _attraction_conditions(
 
 def _softer(scales: Scales, excess: float) -> tuple[str, ...]:
     """What lowers e_el over w_int by a factor."""
-    lower = math.sqrt(excess)
     return (
         _modulus("below", scales, 1 / excess),
-        f"a roughness lower by a factor of {_factor(lower)}",
+        f"a roughness lower by a factor of {math.sqrt(excess):.3g}",
         f"w_int above {prefixed('J/m2', scales.work_of_adhesion * excess)}",
     )
 
@@ -325,8 +323,3 @@ def _energy_doubts(surface: MeasuredSurface, scales: Scales) -> Iterator[str]:
         yield f"The interval of e_el reaches w_int, where no contact conforms: {shown}."
     elif energy.high > _MOST_UNSURE * energy.low:
         yield f"e_el is not known to a factor of {_MOST_UNSURE:g}: {shown}."
-
-
-def _factor(value: float) -> str:
-    """A factor as a text."""
-    return f"{value:.3g}"

@@ -30,7 +30,8 @@ from crackfront.analysis.estimate import Estimate
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.measures import MeasuredSurface, measured_surface
-from crackfront.topography.reading import Treatment, read_measurements
+from crackfront.topography.options import ReadingOptions
+from crackfront.topography.reading import read_measurements
 from studies.accuracy.scans import al3d
 
 Array = NDArray[np.float64]
@@ -241,7 +242,7 @@ def _lines(kind: Kind, rng: np.random.Generator, folder: Path) -> MeasuredSurfac
         line = heights[:, number * whole // _LINES]
         places = PIXEL * np.arange(_LINE_POINTS)
         np.savetxt(path, 1e6 * np.column_stack([places, line]))
-    return measured_surface(read_measurements(paths, Treatment(unit="um")))
+    return measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
 
 
 def kind_row(kind: Kind, found: list[Found]) -> str:

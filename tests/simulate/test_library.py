@@ -27,9 +27,9 @@ from crackfront.simulate.surfaces import chosen_simulation, surface_adhesion
 from crackfront.simulate.tiles import measured_correlation_length
 from crackfront.topography.bands import scan
 from crackfront.topography.measures import measured_surface
-from crackfront.topography.prediction import predicted, prediction_notes
-from crackfront.topography.reading import Treatment, read_measurements
-from crackfront.topography.report import prediction_text, surface_text
+from crackfront.topography.options import ReadingOptions, parsed_options
+from crackfront.topography.prediction import predicted
+from crackfront.topography.reading import read_measurements
 from crackfront.topography.tile import measured_adhesion
 
 ROOT = Path(__file__).parents[2]
@@ -409,9 +409,7 @@ WORDS = {"channel": 0, "crop": "1um:6um,1.5um:6.5um", "detrend": 3, "mask": ["2u
 
 def test_scans_are_read_in_the_words_of_the_commands():
     small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
-    region = ((1e-6, 6e-6), (1.5e-6, 6.5e-6))
-    treatment = Treatment(3, channel="0", crop=region, mask=(((2e-6, 3e-6), (2e-6, 3e-6)),))
-    [measurement] = read_measurements([SCAN], treatment)
+    [measurement] = read_measurements([SCAN], parsed_options(ReadingOptions, WORDS))
     found = cf.read_scan(SCAN, small, **WORDS)
     assert found.attrs["levelling"].startswith(f"{measurement.levelling} was taken off")
     adhesion = measured_adhesion(scan(measurement).trusted_measurement, small)
@@ -453,11 +451,15 @@ def test_a_prediction_shows_itself_with_intervals_limits_and_notes():
     assert found.w_retr == expected.w_retr
     assert found.surface.checksum == surface.checksum
     shown = repr(found)
-    assert prediction_text(expected) in shown
-    assert "\nThe theory applies" in shown
-    assert surface_text(surface) in shown
-    for note in prediction_notes(surface, expected):
-        assert note in shown
+    assert shown == repr(expected)
+    for text in (
+        "al3d, 144 x 144",
+        "\nThe theory applies",
+        "\n  w_retr   ",
+        "\nNotes\n",
+        "--range",
+    ):
+        assert text in shown
     assert repr(cf.predict([str(SCAN)], SPHERE)) == shown
 
 

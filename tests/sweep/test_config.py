@@ -18,7 +18,8 @@ from crackfront.simulate.laws import Knobs
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.table import failed_row, read_table, write_hysteresis
 from crackfront.topography.measures import measured_surface
-from crackfront.topography.reading import Treatment, read_measurements
+from crackfront.topography.options import ReadingOptions
+from crackfront.topography.reading import read_measurements
 
 ROOT = Path(__file__).parents[2]
 
@@ -471,8 +472,9 @@ def test_a_surface_is_read_in_the_words_of_the_commands(tmp_path):
     spectra = f"spectra:\n  - {{name: film, surface: {{file: {file}, shortest: 0.3um, {words}}}}}\n"
     sweep = load_configuration(written(tmp_path, with_surface(spectra)))
     square = ((2e-6, 3e-6), (2e-6, 3e-6))
-    treatment = Treatment(3, channel="0", crop=((1e-6, 6e-6), (1e-6, 6e-6)), mask=(square,))
-    found = measured_surface(read_measurements([file], treatment), 0.3e-6).joint.spectrum
+    crop = ((1e-6, 6e-6), (1e-6, 6e-6))
+    options = ReadingOptions(channel="0", crop=crop, detrend=3, mask=(square,))
+    found = measured_surface(read_measurements([file], options), 0.3e-6).joint.spectrum
     lengths = np.array(sweep.spectra[0].spectrum.wavelengths) * sweep.scales.lateral
     assert lengths == pytest.approx(np.array(found.wavelengths), rel=1e-4)
 

@@ -7,8 +7,8 @@ import pytest
 from scipy.ndimage import grey_dilation
 
 from crackfront.topography.bands import scan
+from crackfront.topography.cautions import surface_notes
 from crackfront.topography.joining import joint_spectrum
-from crackfront.topography.prediction import surface_notes
 from crackfront.topography.tips import tip_wavelength
 from studies.accuracy import predicted_energies as surfaces
 from studies.accuracy.predicted_energies import (

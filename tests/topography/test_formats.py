@@ -7,11 +7,12 @@ import h5py
 import numpy as np
 import pytest
 
-from crackfront.topography.reading import Treatment, read_measurements
+from crackfront.topography.options import ReadingOptions
+from crackfront.topography.reading import read_measurements
 
 SIDE, N_POINT = 20e-6, 32
 PIXEL = SIDE / N_POINT
-UNSTATED = Treatment("center", unit="m", size=(SIDE, SIDE))
+UNSTATED = ReadingOptions(detrend="center", unit="m", size=(SIDE, SIDE))
 
 _X3P = """<?xml version="1.0" encoding="UTF-8"?>
 <p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2">
@@ -70,9 +71,9 @@ def write_xyz(path, heights):
 
 
 WRITERS = {
-    "x3p": (write_x3p, Treatment("center")),
-    "sdf": (write_sdf, Treatment("center")),
-    "xyz": (write_xyz, Treatment("center", unit="m")),
+    "x3p": (write_x3p, ReadingOptions(detrend="center")),
+    "sdf": (write_sdf, ReadingOptions(detrend="center")),
+    "xyz": (write_xyz, ReadingOptions(detrend="center", unit="m")),
     "asc": (lambda path, heights: np.savetxt(path, heights.T), UNSTATED),
     "npy": (np.save, UNSTATED),
     "h5": (write_h5, UNSTATED),
@@ -82,10 +83,10 @@ WRITERS = {
 @pytest.mark.parametrize("name", WRITERS)
 def test_a_map_is_the_same_in_every_format(tmp_path, rng, name):
     heights = 1e-8 * rng.standard_normal((N_POINT, N_POINT))
-    write, treatment = WRITERS[name]
+    write, options = WRITERS[name]
     path = tmp_path / f"scan.{name}"
     write(path, heights)
-    [measurement] = read_measurements([path], treatment)
+    [measurement] = read_measurements([path], options)
     assert measurement.format == name
     assert measurement.size == pytest.approx((SIDE, SIDE))
     np.testing.assert_allclose(measurement.heights, heights - heights.mean(), atol=1e-20)

@@ -3,7 +3,6 @@
 import os
 import struct
 import warnings
-from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -12,8 +11,8 @@ from scipy.io import netcdf_file
 
 from crackfront.topography import files
 from crackfront.topography.levelling import levelled
-from crackfront.topography.reading import Treatment, read_measurements
-from crackfront.topography.regions import region_named
+from crackfront.topography.options import ReadingOptions, parsed_options
+from crackfront.topography.reading import read_measurements
 from studies.accuracy import scans
 
 SIDE, N_POINT = 20e-6, 48
@@ -40,10 +39,15 @@ def one_cell(text):
     return lambda row, column, known: text if (row, column) == (20, 7) else known
 
 
-def refusal(path, **treatment):
+def read(path, **given):
+    """Measurement of a file, read by options as a user gives them."""
+    return read_measurements([path], parsed_options(ReadingOptions, given))[0]
+
+
+def refusal(path, **given):
     """Sentence for a file that is refused."""
     with pytest.raises(ValueError, match=r".") as caught:
-        read_measurements([path], Treatment(**treatment))
+        read(path, **given)
     message = str(caught.value)
     assert "\n" not in message
     return message
@@ -80,7 +84,7 @@ def test_damaged_points_in_three_columns_are_refused(tmp_path, heights):
     path.write_text("\n".join([*rows[:5], "0 5 ***", *rows[6:]]))
     assert "line 6: number 3 of the row is '***'" in refusal(path, unit="um")
     path.write_text("\n".join([*rows[:5], "0 5 bad", *rows[6:]]))
-    [found] = read_measurements([path], Treatment("center", unit="um"))
+    found = read(path, detrend="center", unit="um")
     assert found.missing == pytest.approx(1 / heights.size)
 
 
@@ -105,7 +109,7 @@ def test_a_surface_that_is_its_trend_is_refused(tmp_path, order):
     x, y = np.indices((N_POINT, N_POINT)) / N_POINT
     path = write_text(tmp_path / "plane.txt", 1e-5 * (x + 2 * y))
     if order == 0:
-        assert read_measurements([path], Treatment("center"))[0].heights.std() > 1e-6
+        assert read(path, detrend="center").heights.std() > 1e-6
     else:
         assert "nothing but the p" in refusal(path, detrend=order)
 
@@ -161,7 +165,7 @@ def test_sides_that_cannot_be_are_refused_and_may_be_named(tmp_path, heights):
     message = refusal(path)
     assert "states sides of 160 m x 160 m, which no instrument measures" in message
     assert "--size 160,160 --unit um" in message
-    [found] = read_measurements([path], Treatment(size=(160.0, 160.0), unit="um"))
+    found = read(path, size="160,160", unit="um")
     assert found.size == pytest.approx((160e-6, 160e-6))
     assert np.std(found.heights) == pytest.approx(np.std(heights), rel=0.1)
     plain = write_h5(tmp_path / "plain.h5", surface=heights)
@@ -174,25 +178,21 @@ def test_a_crop_is_the_map_of_a_part(tmp_path, heights):
     path.write_bytes(scans.al3d(heights, SIDE / N_POINT, "whole"))
     part = tmp_path / "part.al3d"
     part.write_bytes(scans.al3d(heights[12:48, 6:42], SIDE / N_POINT, "part"))
-    crop = region_named("5um:20um,2.5um:17.5um", "--crop")
-    [found], [expected] = read_measurements([path], Treatment(crop=crop)), read_measurements([part])
+    found, expected = read(path, crop="5um:20um,2.5um:17.5um"), read(part)
     assert found.size == pytest.approx(expected.size)
     np.testing.assert_allclose(found.heights, expected.heights, atol=1e-20)
-    assert "ends at 20 um and the crop at 30 um" in refusal(path, crop=((0, 30e-6), (0, 1e-6)))
-    assert "leaves fewer than 8 points" in refusal(path, crop=((0, 1e-6), (0, 1e-6)))
-    assert "1; name both ends" in refusal(path, crop=((0, 1e-5),))
+    assert "ends at 20 um and the crop at 30 um" in refusal(path, crop="0:30um,0:1um")
+    assert "leaves fewer than 8 points" in refusal(path, crop="0:1um,0:1um")
+    assert "1; name both ends" in refusal(path, crop="0:10um")
     for text in ("5um", "5um:2um,0um:5um", "5:6,7:8", "1um:2um,1um:2um,1um:2um"):
-        with pytest.raises(ValueError, match="--crop is"):
-            region_named(text, "--crop")
+        assert refusal(path, crop=text).startswith("crop is ")
 
 
 def test_a_channel_is_chosen_by_name_or_number(tmp_path, heights):
     path = tmp_path / "scan.txt"
     one, two = (write_text(tmp_path / f"{n}.txt", n * heights).read_text() for n in (1, 3))
     path.write_text(one + two.replace("Channel: Main", "Channel: Other"))
-    by_default, by_name, by_number = (
-        read_measurements([path], Treatment(channel=name))[0] for name in (None, "Other", "1")
-    )
+    by_default, by_name, by_number = (read(path, channel=name) for name in (None, "Other", 1))
     assert by_default.channel == "'Main', 0 of 2"
     assert by_name.channel == by_number.channel == "'Other', 1 of 2"
     assert np.std(by_name.heights) == pytest.approx(3 * np.std(by_default.heights), rel=1e-4)
@@ -226,8 +226,7 @@ def test_warnings_of_parsers_are_none_of_the_users(tmp_path, heights, monkeypatc
         return opened(*arguments, **options)
 
     monkeypatch.setattr(library, "open_topography", warning)
-    treatment = Treatment(unit="um", size=(5.0, 4.0), mask=(mask,))
-    [found] = read_measurements([path], [treatment])
+    found = read(path, unit="um", size="5,4", mask=mask)
     assert found.heights.shape == heights.shape
 
 
@@ -238,10 +237,8 @@ def test_a_mask_is_left_out_of_the_levelling_and_stays_in_the_map(tmp_path, heig
     path.write_bytes(scans.al3d(heights + bump, SIDE / N_POINT, "bump"))
     marked = tmp_path / "mask.npy"
     np.save(marked, (bump > 0).astype(float))
-    region = region_named("2.5um:7.5um,10um:15um", "--mask")
-    [plain], [by_file], [by_region] = (
-        read_measurements([path], Treatment(mask=mask)) for mask in ((), (marked,), (region,))
-    )
+    region = "2.5um:7.5um,10um:15um"
+    plain, by_file, by_region = (read(path, mask=mask) for mask in (None, marked, region))
     base = bump == 0
     assert np.std(by_file.heights[base]) == pytest.approx(np.std(heights[base]), rel=0.05)
     assert np.std(plain.heights[base]) > 3 * np.std(heights[base])
@@ -249,12 +246,12 @@ def test_a_mask_is_left_out_of_the_levelling_and_stays_in_the_map(tmp_path, heig
     assert by_file.heights[~base].mean() == pytest.approx(5e-6, rel=0.1)
     assert by_file.levelling == "the paraboloid of all but 6.25% of the points"
     np.save(marked, np.zeros((3, 3)))
-    assert "mask" in refusal(path, mask=(marked,))
-    assert "points are left to fit" in refusal(path, mask=(region_named("0um:20um,0um:20um", "m"),))
+    assert "mask" in refusal(path, mask=marked)
+    assert "points are left to fit" in refusal(path, mask="0um:20um,0um:20um")
 
 
-def test_several_files_may_have_a_treatment_each(tmp_path, heights):
+def test_several_files_may_have_options_each(tmp_path, heights):
     paths = [write_text(tmp_path / f"{number}.txt", heights) for number in range(2)]
-    both = [Treatment("center"), replace(Treatment(), detrend=4)]
+    both = [ReadingOptions(detrend="center"), ReadingOptions(detrend=4)]
     found = read_measurements(paths, both)
     assert [item.levelling for item in found] == ["the mean", "the polynomial of order 4"]

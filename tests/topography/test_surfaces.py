@@ -21,11 +21,8 @@ from crackfront.topography.densities import (
 )
 from crackfront.topography.instruments import surface_library
 from crackfront.topography.measures import measured_mean_square, measured_surface
-from crackfront.topography.reading import (
-    Measurement,
-    Treatment,
-    read_measurements,
-)
+from crackfront.topography.options import ReadingOptions, parsed_options
+from crackfront.topography.reading import Measurement, read_measurements
 from crackfront.topography.tile import measured_adhesion, zero_load_radius
 from studies.accuracy import scans
 from studies.paper.si_6 import profile_periodogram
@@ -87,10 +84,10 @@ def half(surface):
     return surface.joint.estimate(lambda spectrum: spectrum.mean_square(0.5))
 
 
-def refusal(paths, **treatment):
+def refusal(paths, **given):
     """Sentence for files that are refused."""
     with pytest.raises(ValueError, match=r".") as caught:
-        measured_surface(read_measurements(paths, Treatment(**treatment)))
+        measured_surface(read_measurements(paths, parsed_options(ReadingOptions, given)))
     message = str(caught.value)
     assert "\n" not in message
     return message
@@ -244,8 +241,8 @@ def test_the_surface_does_not_depend_on_a_tilt_or_a_curvature(tmp_path, heights,
     other = write_al3d(tmp_path / "bent.al3d", bent)
     straight, found = (measured_surface(read_measurements([path])) for path in (scan, other))
     assert half(found).value == pytest.approx(half(straight).value, rel=1e-4)
-    [raw] = read_measurements([other], Treatment(detrend="center"))
-    assert np.ptp(raw.heights) > 10 * np.ptp(straight.measurements[0].heights)
+    [raw] = read_measurements([other], ReadingOptions(detrend="center"))
+    assert np.ptp(raw.heights) > 10 * np.ptp(straight.scans[0].measurement.heights)
 
 
 def test_line_scans_stand_for_an_isotropic_surface(rng, tmp_path):
@@ -255,16 +252,16 @@ def test_line_scans_stand_for_an_isotropic_surface(rng, tmp_path):
         write_line(tmp_path / f"{number}.xyz", heights[:, 25 * number], 20 / 128)
         for number in range(5)
     ]
-    surface = measured_surface(read_measurements(paths, Treatment(unit="um")))
+    surface = measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
     assert all(one.density.is_profile for one in surface.scans)
-    assert all(item.is_line for item in surface.measurements)
+    assert all(one.measurement.is_line for one in surface.scans)
     found = half(surface)
     assert found.low < truth < found.high < 4 * found.low
 
 
 def test_a_line_scan_is_no_field(rng, tmp_path):
     path = write_line(tmp_path / "line.xyz", 1e6 * map_heights(rng)[0], 20 / 128)
-    [measurement] = read_measurements([path], Treatment(unit="um"))
+    [measurement] = read_measurements([path], ReadingOptions(unit="um"))
     with pytest.raises(ValueError, match="is a line scan, which is no field"):
         measured_adhesion(measurement, SOFT)
 
@@ -317,7 +314,7 @@ def test_units_and_sizes_that_a_file_lacks_must_be_named(tmp_path, heights, scan
     assert "states no size" in refusal([path], unit="um")
     assert "--unit kg is no unit of length" in refusal([path], unit="kg", size=(20.0, 20.0))
     assert "2 dimension(s)" in refusal([path], unit="um", size=(20.0,))
-    [given] = read_measurements([path], Treatment(unit="um", size=(20.0, 20.0)))
+    [given] = read_measurements([path], ReadingOptions(unit="um", size=(20.0, 20.0)))
     assert given.size == pytest.approx((20e-6, 20e-6))
     assert np.std(given.heights) == pytest.approx(
         np.std(read_measurements([scan])[0].heights), rel=1e-6
