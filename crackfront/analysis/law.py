@@ -7,7 +7,7 @@ The size is the length of the springs over the Larkin length, g = L_kappa / ell.
 
 The Larkin length makes one curve of all surfaces at weak disorder. At strong disorder k falls with
 s, the less the broader the spectrum of the slope of w_loc is (:func:`slope_breadth`, beta).
-`python -m studies.law.measure` measures `law.csv`, fits the coefficients and writes `law.json`.
+`python -m studies law fit` fits the coefficients to straight fronts and writes `law.json`.
 A sphere is locally such a front (:mod:`crackfront.analysis.law_spheres`).
 docs/law.md derives all lengths.
 """

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -26,6 +25,7 @@ from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
 from studies.accuracy.scenes import SCENES, Progress, Scene
 from studies.accuracy.study import Errors, SceneErrors, joined, pareto_front, rms
+from studies.pages import renewed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,8 +33,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Found = TypeVar("Found")
-
-_TABLE = re.compile(r"<!-- table: (?P<name>.*?) -->.*?<!-- end -->", re.DOTALL)
 
 _TARGETS = (0.1, 0.03, 0.01, 0.003)
 """Relative errors of the hysteresis whose cheapest settings the report names."""
@@ -61,8 +59,7 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     folder : Path
         Folder of the studies' files, and of what is written.
     page : Path or None
-        Markdown page whose tables are written anew; each stands between `<!-- table: NAME -->` and
-        `<!-- end -->`.
+        Page whose blocks `<!-- accuracy: TABLE -->` are written anew.
 
     Raises
     ------
@@ -86,7 +83,7 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
     write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]), sealed=True)
     if page is not None:
-        write_text(page, filled_page(page.read_text(encoding="utf-8"), tables))
+        write_text(page, renewed(page.read_text(encoding="utf-8"), "accuracy", tables))
     shown = [studies[name] for name in _SHOWN if name in studies]
     flat = [study for study in knobs.values() if study.scene.shape == "flat"]
     drawn = {}
@@ -125,27 +122,6 @@ def _tables(
     tables |= {f"Averages, {scene.name}": _sample_rows(found) for scene, found in samples}
     tables |= {f"Settings, {study.scene.name}": _setting_rows(study) for study in studies}
     return {name: "\n".join(rows) for name, rows in tables.items()}
-
-
-def filled_page(page: str, tables: Mapping[str, str]) -> str:
-    r"""A page with its tables written anew.
-
-    Examples
-    --------
-    >>> filled_page("<!-- table: a --><!-- end -->", {"a": "| 1 |"}).split("\n\n")
-    ['<!-- table: a -->', '| 1 |', '<!-- end -->']
-    """
-
-    def filled(found: re.Match[str]) -> str:
-        name = found["name"]
-        if name not in tables:
-            raise ValueError(
-                f"the page asks for the table {name!r}, which was not measured; there are "
-                f"{', '.join(tables)}"
-            )
-        return f"<!-- table: {name} -->\n\n{tables[name]}\n\n<!-- end -->"
-
-    return _TABLE.sub(filled, page)
 
 
 def _markdown(header: str, rows: Iterable[Sequence[str]]) -> Iterator[str]:

@@ -25,7 +25,7 @@ from crackfront.analysis.law import (
 from crackfront.plots.parts import label_decimals
 from crackfront.plots.style import BLACK, COLOURS, MARKERS, PAGE, blank_figure, explain, house_style
 from crackfront.plots.sweep import draw_infinite_law
-from studies.law.fitting import LawCell
+from studies.law.cells import LawCell
 
 Array = NDArray[np.float64]
 

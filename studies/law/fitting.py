@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
-from importlib.resources import files
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,47 +17,14 @@ from crackfront.analysis.law import (
     law_value,
     model_error,
 )
-from crackfront.core.variables import variable
+from studies.law.cells import LawCell
 
 Array = NDArray[np.float64]
 
 _START = (3.9, 0.55, 0.05, 0.1, 1.2, 1.25, 1.8, 1.3, 0.6)
 
 _NEAR = 0.8
-"""Cells as close in ln g tell their scatter together: few tiles say little of their own."""
-
-
-@dataclass(frozen=True, slots=True)
-class LawCell:
-    """One spectrum, amplitude and spring: a row of `law.csv`."""
-
-    spectrum: str = variable("name of the spectrum", "1")
-    breadth: float = variable("breadth of the spectrum of the slope of w_loc", "1")
-    disorder: float = variable("s, rms of w_loc; 0 where sites are uncorrelated", "w_int")
-    size: float = variable("g, length of the springs over the Larkin length", "1")
-    realisations: int = variable("tiles", "1")
-    approach: float = variable("k_appr", "1")
-    retraction: float = variable("k_retr", "1")
-    both: float = variable("k, the mean of the two", "1")
-    error: float = variable("standard error of k over the tiles", "1")
-    numerical_error: float = variable("standard error of k that the numerics leave", "1")
-    front_rms: float = variable("rms of the front over the force's correlation length", "1")
-    negative_share: float = variable("part of the tile where w_loc is negative", "1")
-
-
-@functools.cache
-def measured_cells() -> tuple[LawCell, ...]:
-    """Rows of `law.csv`."""
-    return cells_of(files("crackfront.analysis").joinpath("law.csv").read_text(encoding="utf-8"))
-
-
-def cells_of(text: str) -> tuple[LawCell, ...]:
-    """Rows of the text of a `law.csv`."""
-    types: dict[str, type[Any]] = {"str": str, "int": int, "float": float}
-    return tuple(
-        LawCell(**{item.name: types[str(item.type)](row[item.name]) for item in fields(LawCell)})
-        for row in csv.DictReader(text.splitlines())
-    )
+"""Largest difference of ln g of cells whose scatter is pooled, as few tiles say little of it."""
 
 
 def fitted_law(cells: Sequence[LawCell]) -> Law:

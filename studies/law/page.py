@@ -1,64 +1,49 @@
-"""Numbers of the law of k in the pages, between marks, so that a new measurement renews them."""
+"""Numbers of the law of k for the blocks `<!-- law: PART -->` of pages."""
 
 from __future__ import annotations
 
 import math
-import re
 import textwrap
 from collections.abc import Sequence
 
 import numpy as np
 
-from crackfront.analysis.finding import PAPER_FACTOR, STRONG, crossing
-from crackfront.analysis.law import COEFFICIENTS, WEAKEST, Law, pinning_factor
-from studies.law.fitting import LawCell
+from crackfront.analysis.finding import (
+    PAPER_FACTOR,
+    STRONG,
+    crossing,
+    departure_of_spheres,
+    finding,
+)
+from crackfront.analysis.law import COEFFICIENTS, WEAKEST, Law, pinning_factor, shipped_law
+from studies.law.cells import LawCell, measured_cells
+from studies.law.spheres import SphereRow, departures, sphere_table
+from studies.pages import markdown_table
 
 DISORDERS = (WEAKEST, 0.2, 0.4, STRONG)
 """Disorders s of the table of the infinite contact."""
 
-_MARK = re.compile(r"(<!-- (\S+) of the law -->\n).*?(<!-- end -->)", re.DOTALL)
 
-
-def renewed_page(text: str, law: Law, cells: Sequence[LawCell], spheres: str, finding: str) -> str:
-    """Page whose marked parts are those of a law.
-
-    Parameters
-    ----------
-    text : str
-        The page.
-    law, cells
-        The law and what it was fitted to.
-    spheres : str
-        Table of spheres, in Markdown.
-    finding : str
-        The sentences that pages open with.
-
-    Raises
-    ------
-    ValueError
-        If a mark names none of the parts that there are.
-    """
-    parts = {
-        "coefficients": coefficients_part(law),
+def law_parts(spheres: Sequence[SphereRow]) -> dict[str, str]:
+    """All parts, of the law of the package, what it is fitted to, and spheres."""
+    apart = departures(spheres)
+    rms = float(np.sqrt(np.mean(np.square(apart))))
+    return {
+        "coefficients": coefficients_part(shipped_law()),
         "limit": limit_part(),
-        "fronts": fronts_part(cells),
-        "spheres": spheres,
-        "finding": _wrapped(finding),
+        "fronts": fronts_part(measured_cells()),
+        "spheres": sphere_table(spheres),
+        "finding": _wrapped(finding(departure_of_spheres(rms, len(apart), len(spheres)))),
     }
-
-    def part(found: re.Match[str]) -> str:
-        if found[2] not in parts:
-            raise ValueError(f"no part of the law is {found[2]}; choose one of {', '.join(parts)}")
-        return f"{found[1]}\n{parts[found[2]]}\n\n{found[3]}"
-
-    return _MARK.sub(part, text)
 
 
 def coefficients_part(law: Law) -> str:
     """Table of the coefficients, and how far the measured k are from the law."""
-    errors = np.sqrt(np.diag(law.covariance))
-    numbers = (law.coefficients, errors)
-    rows = [f"| {name} | {value:.3f} | {error:.3f} |" for name, value, error in _named(*numbers)]
+    errors = np.sqrt(np.diag(law.covariance)).tolist()
+    rows = [
+        (name, f"{value:.3f}", f"{error:.3f}")
+        for name, value, error in zip(COEFFICIENTS, law.coefficients, errors, strict=True)
+    ]
     exponent, error = law.exponent
     text = (
         f"Measured are s from {law.disorder[0]:.2g} to {law.disorder[1]:.2g} and g up to "
@@ -68,20 +53,8 @@ def coefficients_part(law: Law) -> str:
         f"{law.model_factor:.1%} of k, and {law.model_length:.1%} of g. Left free, the exponent "
         f"1 - zeta is {exponent:.2f} ± {error:.2f} (one standard error)."
     )
-    return "\n".join(
-        [
-            "| coefficient | value | standard error |",
-            "| --- | --- | --- |",
-            *rows,
-            "",
-            _wrapped(text),
-        ]
-    )
-
-
-def _named(values: Sequence[float], errors: Sequence[float]) -> list[tuple[str, float, float]]:
-    """Coefficients with their names and errors."""
-    return list(zip(COEFFICIENTS, values, errors, strict=True))
+    table = markdown_table(("coefficient", "value", "standard error"), rows)
+    return f"{table}\n\n{_wrapped(text)}"
 
 
 def limit_part() -> str:
@@ -90,22 +63,13 @@ def limit_part() -> str:
     for s in DISORDERS:
         found = pinning_factor(s, math.inf)
         k, name = found.factor, "0, k_0" if s == WEAKEST else f"{s:g}"
-        rows.append(
-            f"| {name} | {k.value:.2f} ({k.low:.2f} to {k.high:.2f}) | {found.negative_share:.1%} |"
-        )
+        interval = f"{k.value:.2f} ({k.low:.2f} to {k.high:.2f})"
+        rows.append((name, interval, f"{found.negative_share:.1%}"))
     s, low, high = crossing()
-    text = (
-        f"In the infinite contact k is {PAPER_FACTOR:g} at s = {s:.2f} ({low:.2f} to {high:.2f}) "
-        "alone."
-    )
-    return "\n".join(
-        [
-            "| s | k, infinite contact (95% interval) | share of negative w_loc |",
-            "| --- | --- | --- |",
-            *rows,
-            "",
-            text,
-        ]
+    columns = ("s", "k, infinite contact (95% interval)", "share of negative w_loc")
+    return (
+        f"{markdown_table(columns, rows)}\n\nIn the infinite contact k is {PAPER_FACTOR:g} at s = "
+        f"{s:.2f} ({low:.2f} to {high:.2f}) alone."
     )
 
 

@@ -1,18 +1,15 @@
-"""The law of k: its limits, its lengths, the fit behind it, and the pages that tell its numbers."""
+"""The law of k: its limits, its lengths, and what it refuses."""
 
 import re
-from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from crackfront.analysis.finding import crossing, departure_of_spheres, finding, least_size
+from crackfront.analysis.finding import departure_of_spheres, finding, least_size
 from crackfront.analysis.law import (
     LEAST_SIZE,
-    TYPICAL_BREADTH,
     WEAKEST,
     infinite_ratio,
     law_value,
@@ -24,13 +21,7 @@ from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import force_correlation_length, larkin_length
 from crackfront.core.spectrum import SelfAffineSpectrum
-from studies.law.drawing import LawPoints, law_figure, spectra_points
-from studies.law.fitting import LawCell, fitted_law, measured_cells
-from studies.law.measure import PAGES, draw_law, law_of, read_spheres, renew_pages, sphere_table
-from studies.law.page import limit_part, renewed_page
 
-ROOT = Path(__file__).parents[2]
-SPHERES = [ROOT / "docs/reference" / name for name in ("spheres.csv", "held-out.csv")]
 FLAT = SelfAffineSpectrum(short_cutoff=0.01, roll_off=0.01, hurst=1.0)
 SPECTRA = (FLAT, SelfAffineSpectrum(0.01, 0.08, 0.8), SelfAffineSpectrum(0.01, 0.2, 0.3))
 
@@ -100,41 +91,6 @@ def test_the_springs_of_a_sphere_are_a_half_a_third_and_a_fifth_of_its_radius(ra
     assert radius / jkr.spring(radius) == pytest.approx(ratio)
 
 
-def test_the_shipped_law_is_fitted_to_the_shipped_cells(law):
-    again = fitted_law(measured_cells())
-    np.testing.assert_allclose(again.coefficients, law.coefficients, rtol=1e-6, atol=1e-6)
-    assert again.rms == pytest.approx(law.rms, rel=1e-6)
-    assert again.size == pytest.approx(law.size)
-
-
-def test_the_fit_finds_the_law_that_was_planted(rng):
-    truth = (3.6, 0.5, 0.1, 0.05, 1.0, 1.2, 2.0, 1.2, 0.6)
-    template = measured_cells()[0]
-    cells = [
-        planted_cell(template, truth, s, g, breadth, 1 + 0.01 * rng.standard_normal())
-        for s, breadth in zip(
-            (0.1, 0.2, 0.4, 0.6, 0.84, 1.1), (1, 1.2, 1.4, 1, 1.4, 1.2), strict=True
-        )
-        for g in np.geomspace(0.3, 100, 10)
-    ]
-    found = fitted_law(cells)
-    s, g = np.array([0.1, 0.4, 0.84]), np.array([1.0, 10.0, np.inf])
-    np.testing.assert_allclose(
-        law_value(found.coefficients, s[:, None], g),
-        law_value(truth, s[:, None], g),
-        rtol=0.03,
-    )
-    assert found.rms < 0.02
-    assert found.exponent[0] == pytest.approx(0.612, abs=3 * found.exponent[1])
-
-
-def planted_cell(template: LawCell, truth, s, g, breadth, noise):
-    """A cell whose k is that of the law times the noise."""
-    k = float(law_value(truth, s, g, breadth)) * noise
-    place = {"disorder": s, "size": g, "breadth": breadth}
-    return replace(template, **place, both=k, error=0.01 * k, numerical_error=0.0)
-
-
 def test_the_interval_holds_the_three_errors():
     found = pinning_factor(0.3, 5.0)
     expected = np.sqrt(found.statistical**2 + found.numerical**2 + found.model**2)
@@ -198,45 +154,6 @@ def test_what_has_no_k_is_refused(call, sentence):
         call()
 
 
-def test_spheres_lie_on_the_law_without_having_been_used(law):
-    rows = [row for path in SPHERES for row in read_spheres(path)]
-    apart = []
-    for row in rows:
-        found = law_of(row)
-        if found.size > 1 and 2 * np.sqrt(row.elastic_energy) < law.disorder[1]:
-            apart.append(found.both.value / row.both - 1)
-    assert len(apart) > 20
-    assert np.sqrt(np.mean(np.square(apart))) < 0.08
-
-
-def test_the_pages_tell_the_numbers_of_the_shipped_law(tmp_path):
-    rows = [row for path in SPHERES for row in read_spheres(path)]
-    for name in PAGES:
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text((ROOT / name).read_text())
-    renew_pages(tmp_path, rows)
-    for name in PAGES:
-        # Otherwise: python -m studies.law.measure pages --table (both) --output .
-        assert (tmp_path / name).read_text() == (ROOT / name).read_text()
-        assert "<!-- end -->" in (ROOT / name).read_text()
-
-
-def test_a_part_that_there_is_not_is_refused(law):
-    page = "<!-- weather of the law -->\n<!-- end -->"
-    with pytest.raises(ValueError, match="no part of the law is weather; choose one of coeff"):
-        renewed_page(page, law, measured_cells(), "", "")
-
-
-def test_the_table_of_the_limit_holds_its_values_and_where_k_is_that_of_the_paper(law):
-    text = limit_part()
-    k = pinning_factor(0.4, np.inf).factor
-    assert f"| 0.4 | {k.value:.2f} ({k.low:.2f} to {k.high:.2f}) |" in text
-    s, low, high = crossing()
-    assert float(law_value(law.coefficients, s, np.inf)) == pytest.approx(3)
-    assert pinning_factor(low, np.inf).factor.low == pytest.approx(3)
-    assert pinning_factor(high, np.inf).factor.high == pytest.approx(3)
-
-
 def test_the_finding_is_three_sentences_with_the_numbers_of_the_law(law):
     text = finding(departure_of_spheres(0.0251, 65, 87))
     assert len(re.findall(r"\.(?= [A-Z]|$)", text)) == 3
@@ -244,53 +161,6 @@ def test_the_finding_is_three_sentences_with_the_numbers_of_the_law(law):
     assert f"k is {k_0.value:.2f} ({k_0.low:.2f} to {k_0.high:.2f}) at vanishing" in text
     assert float(law_value(law.coefficients, 0.0, least_size())) == pytest.approx(3)
     assert "within 2.5% rms where g is above 1 (65 of 87" in text
-
-
-def test_the_table_of_spheres_states_how_far_the_law_is():
-    rows = [row for path in SPHERES for row in read_spheres(path)]
-    table = sphere_table(rows)
-    assert len(re.findall(r"^\| (?!spectrum|---)", table, re.MULTILINE)) == len(rows)
-    assert re.search(r"For g above 1, \d+ rows: rms [\d.]+%, worst [\d.]+%", table)
-
-
-def drawn_at(container):
-    """Points of errorbars."""
-    return np.transpose(container.lines[0].get_data())
-
-
-def test_the_figure_collapses_fronts_and_spheres_on_one_curve(law):
-    fronts = spectra_points(measured_cells())
-    s, g = np.array([0.2, 0.4]), np.array([5.0, 10.0])
-    spheres = LawPoints(
-        "spheres",
-        s,
-        g,
-        law_value(law.coefficients, s, g),
-        np.full(2, 0.01),
-        np.full(2, TYPICAL_BREADTH),
-    )
-    left, right = law_figure(fronts, spheres).axes
-    curve = left.get_lines()[0].get_xydata()
-    points = drawn_at(left.containers[len(fronts)])
-    expected = np.interp(np.log(points[:, 0]), np.log(curve[:, 0]), curve[:, 1])
-    np.testing.assert_allclose(points[:, 1], expected, rtol=1e-3)
-    # Extrapolated they lie on the limit.
-    np.testing.assert_allclose(
-        drawn_at(right.containers[-1]), np.transpose([s, law_value(law.coefficients, s, np.inf)])
-    )
-    labels = [text.get_text() for text in left.get_legend().get_texts()]
-    assert len(labels) == len(fronts) + 2
-    assert "$H=0.8$" in labels
-    theories = [text.get_text() for text in right.get_legend().get_texts()]
-    assert [one[:5] for one in theories if "k = " in one] == ["$k = ", "$k = "]
-
-
-def test_the_command_draws_the_law(tmp_path):
-    (path,) = draw_law(
-        tmp_path / "figures", [row for path in SPHERES for row in read_spheres(path)]
-    )
-    assert path.name == "law.png"
-    assert path.stat().st_size > 10_000
 
 
 def test_a_contact_is_refused_up_to_the_radius_at_which_it_is_lost_in_retraction():

@@ -9,7 +9,6 @@ import pytest
 from click.testing import CliRunner
 from scipy import stats
 
-from crackfront.cli import main
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -19,6 +18,7 @@ from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.laws import LAW_SIZE, chosen_knobs, read_laws
+from studies.__main__ import main
 from studies.accuracy.averages import (
     Coverage,
     Sample,
@@ -401,15 +401,16 @@ def test_schedules_change_the_mean_within_its_error(tmp_path):
 def test_the_commands_measure_a_scene_and_report_it(tmp_path):
     run = CliRunner().invoke
     output = ["--output", str(tmp_path)]
-    empty = run(main, ["accuracy-report", *output])
+    empty = run(main, ["accuracy", "report", *output])
     assert empty.exit_code == 2
     assert "holds no errors; run python -m studies accuracy scene" in empty.output
     measured = run(
-        main, ["accuracy", "small-0.04", "--study", "asked", "--realisations", "2", *output]
+        main,
+        ["accuracy", "scene", "small-0.04", "--study", "asked", "--realisations", "2", *output],
     )
     assert measured.exit_code == 0, measured.output
     assert "asked 0.03: rms error of k" in measured.output
-    reported = run(main, ["accuracy-report", *output])
+    reported = run(main, ["accuracy", "report", *output])
     assert reported.exit_code == 0, reported.output
     text = (tmp_path / "accuracy.md").read_text()
     assert "## Time to an error of the hysteresis" in text
@@ -421,20 +422,20 @@ def test_a_page_gets_the_measured_tables_and_keeps_its_words(tmp_path):
     run = CliRunner().invoke
     output = ["--output", str(tmp_path)]
     arguments = ["small-0.04", "--study", "asked", "--realisations", "2"]
-    assert run(main, ["accuracy", *arguments, *output]).exit_code == 0
+    assert run(main, ["accuracy", "scene", *arguments, *output]).exit_code == 0
     page = tmp_path / "page.md"
-    page.write_text("Before\n<!-- table: Settings, small-0.04 -->\nold\n<!-- end -->\nAfter\n")
-    reported = run(main, ["accuracy-report", *output, "--page", str(page)])
+    page.write_text("Before\n<!-- accuracy: Settings, small-0.04 -->\nold\n<!-- end -->\nAfter\n")
+    reported = run(main, ["accuracy", "report", *output, "--page", str(page)])
     assert reported.exit_code == 0, reported.output
     text = page.read_text()
     assert text.startswith("Before\n")
     assert text.endswith("<!-- end -->\nAfter\n")
     assert "old" not in text
     assert "asked 0.03" in text
-    page.write_text("<!-- table: Settings, flat-0.04 --><!-- end -->")
-    refused = run(main, ["accuracy-report", *output, "--page", str(page)])
+    page.write_text("<!-- accuracy: Settings, flat-0.04 --><!-- end -->")
+    refused = run(main, ["accuracy", "report", *output, "--page", str(page)])
     assert refused.exit_code == 2
-    assert "the table 'Settings, flat-0.04', which was not measured" in refused.output
+    assert "'Settings, flat-0.04', which the study accuracy has not measured" in refused.output
 
 
 @pytest.mark.parametrize("study", STUDIES)
@@ -443,7 +444,7 @@ def test_the_cost_of_a_study_is_told_before_it_is_measured(study, tmp_path, monk
         raise ValueError("measured")
 
     monkeypatch.setitem(STUDIES, study, measured)
-    arguments = ["accuracy", "large-0.04", "--study", study, "--realisations", "16"]
+    arguments = ["accuracy", "scene", "large-0.04", "--study", study, "--realisations", "16"]
     stopped = CliRunner().invoke(main, [*arguments, "--output", str(tmp_path)])
     told, _ = stopped.stderr.split("Error: measured")
     assert re.fullmatch(r"about [\d.]+ (s|min|hours) of processor time\n", told)
@@ -457,6 +458,6 @@ def test_the_cost_of_a_study_is_that_of_its_runs():
 
 
 def test_an_unknown_scene_is_refused_with_the_nearest_one():
-    refused = CliRunner().invoke(main, ["accuracy", "flat-0.4"])
+    refused = CliRunner().invoke(main, ["accuracy", "scene", "flat-0.4"])
     assert refused.exit_code == 2
     assert "there is no scene 'flat-0.4'; did you mean flat-0.04?" in refused.output

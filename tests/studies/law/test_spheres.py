@@ -9,16 +9,17 @@ import pytest
 from crackfront.core.adhesion import correlation_length
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.sweep.configuration import load_configuration
-from studies.law.measure import is_covered, law_of, read_spheres, sphere_table, text_of
+from studies.law.cells import csv_text
+from studies.law.spheres import is_covered, law_of, read_spheres, sphere_table
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 REFERENCE = ROOT / "docs/reference/spheres.csv"
 HELD_OUT = ROOT / "docs/reference/held-out.csv"
 
 
 @pytest.fixture(scope="module")
 def spheres():
-    return read_spheres(REFERENCE)
+    return read_spheres([REFERENCE])
 
 
 def test_the_reference_holds_the_sweeps_that_it_is_made_from(spheres):
@@ -42,8 +43,8 @@ def test_the_reference_holds_the_sweeps_that_it_is_made_from(spheres):
 
 def test_a_table_of_spheres_is_read_as_it_was_written(spheres, tmp_path):
     path = tmp_path / "spheres.csv"
-    path.write_text(text_of(spheres))
-    assert read_spheres(path) == spheres
+    path.write_text(csv_text(spheres))
+    assert read_spheres([path]) == spheres
     assert path.read_text() == REFERENCE.read_text()
 
 
@@ -68,7 +69,7 @@ def test_the_table_has_a_line_for_every_sphere_and_says_how_many_are_covered(sph
 
 def test_the_line_alone_predicts_spheres_with_intervals_that_cover_and_are_narrow(spheres):
     """A twentieth may lie outside of 95% intervals."""
-    rows = [*spheres, *read_spheres(HELD_OUT)]
+    rows = [*spheres, *read_spheres([HELD_OUT])]
     held = [(row, law) for row in rows if (law := law_of(row)).size > 1]
     assert len(held) >= 60
     half = [(law.both.high - law.both.low) / 2 / law.both.value for _, law in held]

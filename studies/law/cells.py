@@ -1,0 +1,184 @@
+"""k of straight fronts, to which the law is fitted: from sweeps of them to rows of `law.csv`."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass, fields, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from crackfront.analysis.estimate import mean_estimate
+from crackfront.analysis.law import slope_breadth
+from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
+from crackfront.core.variables import variable
+from crackfront.data.files import read_dataset
+from crackfront.simulate.lines import LineLoad
+from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.sweep import Sweep
+
+Row = TypeVar("Row")
+
+COLUMNS = ("e_el", "w_appr", "w_retr", "w_appr_numerical_error", "w_retr_numerical_error")
+"""Columns of a sweep's table that k is made of."""
+
+MEASURED = Path(__file__).with_name("law.csv")
+"""Straight fronts that the law of the package is fitted to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Means:
+    """e_el and k of one spectrum and amplitude, with standard errors over realisations."""
+
+    elastic_energy: float
+    realisations: int
+    approach: float
+    approach_error: float
+    retraction: float
+    retraction_error: float
+    both: float
+    both_error: float
+    numerical_error: float
+
+
+@dataclass(frozen=True, slots=True)
+class LawCell:
+    """One spectrum, amplitude and spring: a row of `law.csv`."""
+
+    spectrum: str = variable("name of the spectrum", "1")
+    breadth: float = variable("breadth of the spectrum of the slope of w_loc", "1")
+    disorder: float = variable("s, rms of w_loc; 0 where sites are uncorrelated", "w_int")
+    size: float = variable("g, length of the springs over the Larkin length", "1")
+    realisations: int = variable("tiles", "1")
+    approach: float = variable("k_appr", "1")
+    retraction: float = variable("k_retr", "1")
+    both: float = variable("k, the mean of the two", "1")
+    error: float = variable("standard error of k over the tiles", "1")
+    numerical_error: float = variable("standard error of k that the numerics leave", "1")
+    front_rms: float = variable("rms of the front over the force's correlation length", "1")
+    negative_share: float = variable("part of the tile where w_loc is negative", "1")
+
+
+def measured_cells() -> tuple[LawCell, ...]:
+    """Rows of the kept `law.csv`."""
+    return csv_rows(MEASURED.read_text(encoding="utf-8"), LawCell)
+
+
+def csv_rows(text: str, kind: type[Row]) -> tuple[Row, ...]:
+    """Records of texts, whole numbers and numbers from comma-separated values."""
+    numbers = {"int": int, "float": float}
+    types = {name: numbers.get(kind_of, str) for name, kind_of in kind.__annotations__.items()}
+    return tuple(
+        kind(**{name: read(row[name]) for name, read in types.items()})
+        for row in csv.DictReader(text.splitlines())
+    )
+
+
+def csv_text(rows: Sequence[Any]) -> str:
+    """Comma-separated values of records of one kind, numbers to five digits."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([item.name for item in fields(rows[0])])
+    for row in rows:
+        writer.writerow([f"{x:.5g}" if isinstance(x, float) else x for x in astuple(row)])
+    return text.getvalue()
+
+
+def mean_factors(kind: FieldKind, *columns: ArrayLike) -> Means:
+    """Mean k of realisations with the values of :data:`COLUMNS`; those without are left out."""
+    e_el, w_appr, w_retr, *errors = (np.asarray(column, dtype=float) for column in columns)
+    e_el = np.where(np.isfinite(w_appr + w_retr), e_el, np.nan)
+    mean = 1 - e_el if kind == "roughness" else 1.0
+    lowering, raising = (mean - w_appr) / e_el, (w_retr - mean) / e_el
+    approach, retraction = mean_estimate(lowering)[0], mean_estimate(raising)[0]
+    both, count = mean_estimate((lowering + raising) / 2)
+    return Means(
+        elastic_energy=float(mean_estimate(e_el)[0].value),
+        realisations=int(count),
+        approach=float(approach.value),
+        approach_error=float(approach.standard_error),
+        retraction=float(retraction.value),
+        retraction_error=float(retraction.standard_error),
+        both=float(both.value),
+        both_error=float(both.standard_error),
+        numerical_error=float(mean_estimate(sum(errors) / (2 * e_el))[0].value),
+    )
+
+
+def cell_means(kind: FieldKind, dataset: xr.Dataset) -> dict[tuple[int, int], Means]:
+    """Means of every spectrum and amplitude of a sweep, by their places in it."""
+    columns = [dataset[name].values for name in COLUMNS]
+    return {
+        (place, amplitude): mean_factors(kind, *(column[place, amplitude] for column in columns))
+        for place, amplitude in np.ndindex(columns[0].shape[:2])
+    }
+
+
+def law_cells(configuration: Path) -> list[LawCell]:
+    """Cells of one sweep of straight fronts that has been run.
+
+    Raises
+    ------
+    ValueError
+        If the sweep runs spheres.
+    """
+    sweep = load_configuration(configuration)
+    load = sweep.schedule
+    if not isinstance(load, LineLoad):
+        raise ValueError(f"{configuration} runs spheres; the law is measured on straight fronts")
+    dataset, cells = read_dataset(results_folder(configuration) / "hysteresis.nc"), []
+    for (place, amplitude), found in cell_means(sweep.kind, dataset).items():
+        item, requested = sweep.spectra[place], sweep.elastic_energies[amplitude]
+        simulation = sweep.simulation(item, requested, 0)
+        larkin = larkin_length(sweep.kind, item.spectrum, 2 * math.sqrt(requested))
+        depth = force_correlation_length(sweep.kind, item.spectrum)
+        cell = dataset.isel(spectrum=place, amplitude=amplitude)
+        # A spectrum has an entry for every spring, whose name ends with the spring's.
+        name = item.name.rpartition("-L")[0]
+        cells.append(
+            LawCell(
+                spectrum=name if sweep.kind == "roughness" else f"{name}-{sweep.kind}",
+                breadth=slope_breadth(sweep.kind, item.spectrum),
+                disorder=0.0 if load.uncorrelated else 2 * math.sqrt(found.elastic_energy),
+                size=simulation.spring / larkin,
+                realisations=found.realisations,
+                approach=found.approach,
+                retraction=found.retraction,
+                both=found.both,
+                error=found.both_error,
+                numerical_error=found.numerical_error,
+                front_rms=float(cell.front_rms.mean()) / depth,
+                negative_share=float(cell.negative_share.mean()),
+            )
+        )
+    return _without_spacing(sweep, cells) if load.uncorrelated else cells
+
+
+def _without_spacing(sweep: Sweep, cells: Sequence[LawCell]) -> list[LawCell]:
+    """Extrapolation of two spacings of uncorrelated sites to none, linear in the spacing."""
+    fine, coarse = sorted(sweep.elastic_energies)
+    # The spacing is a pixel; in units of the Larkin length it goes with e_el.
+    weight = fine / (coarse - fine)
+    found = []
+    for first, second in zip(cells[::2], cells[1::2], strict=True):
+        numbers = {
+            name: getattr(first, name) + weight * (getattr(first, name) - getattr(second, name))
+            for name in ("approach", "retraction", "both", "front_rms")
+        }
+        left = abs(numbers["both"] - first.both) / 3
+        found.append(
+            replace(
+                first,
+                **numbers,
+                spectrum=f"{first.spectrum}-weak",
+                error=float(np.hypot((1 + weight) * first.error, weight * second.error)),
+                numerical_error=float(np.hypot(first.numerical_error, left)),
+            )
+        )
+    return found

@@ -1,0 +1,140 @@
+"""Commands of the law of k: measure it on straight fronts, fit it, hold spheres against it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+
+from crackfront.cli.report import FILE, examples, refuse_unwritable
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.data.files import write_text
+from crackfront.plots.style import save_picture
+from crackfront.sweep.configuration import load_configuration
+from studies.law.cells import LawCell, csv_rows, csv_text, law_cells, measured_cells
+from studies.law.drawing import law_figure, spectra_points
+from studies.law.fitting import fitted_law
+from studies.law.page import law_parts
+from studies.law.spheres import (
+    read_spheres,
+    reference_rows,
+    scene_rows,
+    sphere_points,
+    sphere_rows,
+    sphere_table,
+)
+from studies.pages import renewed
+
+PAGES = ("README.md", "docs/index.md", "docs/law.md")
+"""Pages with numbers of the law."""
+
+_FRONTS = "config/line.yaml config/line-chemical.yaml config/line-weak.yaml"
+
+
+@click.group()
+def commands() -> None:
+    """The law of k: measure it on straight fronts, fit it, hold spheres against it."""
+
+
+_configurations = click.argument("configurations", nargs=-1, type=FILE)
+_output = click.option(
+    "--output",
+    type=FILE,
+    default=Path("results/law"),
+    show_default=True,
+    help="Folder of the results.",
+)
+_tables = click.option(
+    "--table",
+    "tables",
+    type=FILE,
+    multiple=True,
+    default=(Path("docs/reference/spheres.csv"), Path("docs/reference/held-out.csv")),
+    show_default=True,
+    help="Tables of simulated spheres.",
+)
+
+
+@commands.command(
+    epilog=examples("python -m studies law fit", f"python -m studies law fit {_FRONTS}")
+)
+@_configurations
+@_output
+def fit(configurations: tuple[Path, ...], output: Path) -> None:
+    """Fit the law to straight fronts: of sweeps that have been run, or those of the last fit.
+
+    Writes law.csv, a row for every spectrum, amplitude and spring, and law.json, the law. They are
+    kept as studies/law/law.csv and crackfront/analysis/law.json, on which predictions rest.
+    """
+    refuse_unwritable(output)
+    cells = [cell for path in configurations for cell in law_cells(path)]
+    cells.sort(key=lambda cell: (cell.spectrum, cell.disorder, cell.size))
+    text = csv_text(cells or measured_cells())
+    # The fit is that of the rows as they are written, to five digits.
+    known = csv_rows(text, LawCell)
+    law = fitted_law(known)
+    write_text(output / "law.csv", text)
+    write_text(output / "law.json", json.dumps(asdict(law), indent=1) + "\n")
+    click.echo(f"{len(known)} rows; rms {law.rms:.1%}, worst {law.worst:.1%} for g above 1")
+    click.echo(f"law: {output / 'law.json'}")
+
+
+@commands.command(
+    epilog=examples(
+        "python -m studies law spheres", "python -m studies law spheres config/spheres.yaml"
+    )
+)
+@_configurations
+@_tables
+@_output
+def spheres(configurations: tuple[Path, ...], tables: tuple[Path, ...], output: Path) -> None:
+    """Hold spheres against the law: of sweeps that have been run, or of tables.
+
+    Of sweeps it writes spheres.csv, which is kept as docs/reference/spheres.csv.
+    """
+    rows = [row for path in configurations for row in sphere_rows(path)]
+    if rows:
+        write_text(output / "spheres.csv", csv_text(rows))
+    click.echo(sphere_table(rows or read_spheres(tables)))
+
+
+@commands.command("held-out", epilog=examples("python -m studies law held-out"))
+@_output
+def held_out(output: Path) -> None:
+    """Simulate spheres that had no part in any fit, and hold them against the law.
+
+    Writes held-out.csv, with the spheres of docs/reference/si-5.nc, which is kept in
+    docs/reference.
+    """
+    refuse_unwritable(output)
+    schedule = load_configuration(Path("config/paper.yaml")).schedule
+    assert isinstance(schedule, SteadySchedule), "the paper's sweep has steady branches"
+    rows = [*scene_rows(), *reference_rows(Path("docs/reference/si-5.nc"), schedule)]
+    write_text(output / "held-out.csv", csv_text(rows))
+    click.echo(sphere_table(rows))
+
+
+@commands.command(epilog=examples("python -m studies law figure"))
+@_tables
+@click.option("--output", type=FILE, default=Path("docs/figures"), show_default=True)
+def figure(tables: tuple[Path, ...], output: Path) -> None:
+    """Draw the law of the package with what it is fitted to and with spheres, as law.png."""
+    refuse_unwritable(output)
+    points = sphere_points(read_spheres(tables))
+    save_picture(law_figure(spectra_points(measured_cells()), points), output / "law.png")
+    click.echo(f"figure: {output / 'law.png'}")
+
+
+@commands.command(epilog=examples("python -m studies law pages"))
+@_tables
+@click.option(
+    "--output", type=FILE, default=Path(), show_default=True, help="Folder of the checkout."
+)
+def pages(tables: tuple[Path, ...], output: Path) -> None:
+    """Write the numbers of the law of the package into README.md and the pages."""
+    parts = law_parts(read_spheres(tables))
+    for path in (output / name for name in PAGES):
+        write_text(path, renewed(path.read_text(encoding="utf-8"), "law", parts))
+        click.echo(f"page: {path}")

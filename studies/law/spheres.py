@@ -1,0 +1,206 @@
+"""Spheres held against the law of k, to which nothing is adjusted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import astuple, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from crackfront.analysis.estimate import REACH, with_error
+from crackfront.analysis.law import slope_breadth
+from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
+from crackfront.core import jkr
+from crackfront.core.adhesion import FieldKind
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.data.files import read_dataset
+from crackfront.simulate.run import run_simulation
+from crackfront.simulate.simulation import Numerics, simulation_of
+from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.table import sweep_row
+from studies.law.cells import COLUMNS, Means, cell_means, csv_rows, mean_factors
+from studies.law.drawing import LawPoints
+from studies.pages import markdown_table
+
+
+@dataclass(frozen=True, slots=True)
+class SphereRow:
+    """k of a sphere as simulated: a row of `spheres.csv` or `held-out.csv`.
+
+    The numbers from `elastic_energy` on are those of :class:`studies.law.cells.Means`.
+    """
+
+    spectrum: str
+    kind: FieldKind
+    short_cutoff: float
+    roll_off: float
+    hurst: float
+    contact_radius: float
+    elastic_energy: float
+    realisations: int
+    approach: float
+    approach_error: float
+    retraction: float
+    retraction_error: float
+    both: float
+    both_error: float
+    numerical_error: float
+
+    @property
+    def shape(self) -> SelfAffineSpectrum:
+        """Spectrum of the surface."""
+        return SelfAffineSpectrum(self.short_cutoff, self.roll_off, self.hurst)
+
+
+def read_spheres(paths: Sequence[Path]) -> list[SphereRow]:
+    """Rows of tables of spheres."""
+    return [row for path in paths for row in csv_rows(path.read_text(encoding="utf-8"), SphereRow)]
+
+
+def _row(
+    name: str, kind: FieldKind, spectrum: SelfAffineSpectrum, radius: float, found: Means
+) -> SphereRow:
+    """Row of a sphere with what was found for it."""
+    shape = spectrum.short_cutoff, spectrum.roll_off, spectrum.hurst
+    return SphereRow(name, kind, *shape, radius, *astuple(found))
+
+
+def sphere_rows(configuration: Path) -> Iterator[SphereRow]:
+    """Spheres of a sweep that has been run.
+
+    Raises
+    ------
+    ValueError
+        If the sweep runs full cycles or straight fronts, or spectra that are not self-affine.
+    """
+    sweep = load_configuration(configuration)
+    if not isinstance(sweep.schedule, SteadySchedule):
+        raise ValueError(f"{configuration} does not run the steady branches of spheres")
+    dataset = read_dataset(results_folder(configuration) / "hysteresis.nc")
+    radius = (dataset.lowest_radius + dataset.highest_radius).mean("realisation") / 2
+    for (place, amplitude), found in cell_means(sweep.kind, dataset).items():
+        item = sweep.spectra[place]
+        if not isinstance(item.spectrum, SelfAffineSpectrum):
+            raise ValueError(f"{item.name} of {configuration} is not self-affine; leave it out")
+        yield _row(item.name, sweep.kind, item.spectrum, float(radius[place, amplitude]), found)
+
+
+def _steady(start: float, reach: float = 1.0, travel: float = 1.5) -> SteadySchedule:
+    """Steady branches from a penetration on."""
+    return SteadySchedule(start, start + reach, travel, standard_error=0.05)
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A sphere that has no part in any fit."""
+
+    name: str
+    kind: FieldKind
+    spectrum: SelfAffineSpectrum
+    elastic_energy: float
+    schedule: SteadySchedule
+
+
+SCENES = (
+    Scene("short-0.1", "roughness", SelfAffineSpectrum(0.1, 0.1, 1.0), 0.05, _steady(1.0, 4, 0.5)),
+    Scene("from-0", "roughness", SelfAffineSpectrum(0.01, 0.01, 1.0), 0.05, _steady(0.0)),
+    Scene("from-3", "roughness", SelfAffineSpectrum(0.01, 0.04, 0.6), 0.05, _steady(3.0)),
+    Scene("chemical", "chemical", SelfAffineSpectrum(0.01, 0.01, 1.0), 0.08, _steady(1.0)),
+    # Of Main Fig. 5, as its spectrum is in reduced lengths.
+    Scene(
+        "nanodiamond", "roughness", SelfAffineSpectrum(0.00104, 0.0334, 1.0), 0.173, _steady(1.0)
+    ),
+)
+
+
+def scene_rows(realisations: int = 3) -> Iterator[SphereRow]:
+    """The scenes, simulated."""
+    for scene in SCENES:
+        first = simulation_of(
+            scene.kind,
+            scene.spectrum,
+            scene.elastic_energy,
+            scene.schedule,
+            Numerics(0.03),
+            seed=20261122,
+        )
+        runs = [
+            sweep_row(run_simulation(replace(first, realisation=number)))
+            for number in range(realisations)
+        ]
+        columns = [[getattr(run, name) for run in runs] for name in COLUMNS]
+        radius = np.mean([(run.lowest_radius + run.highest_radius) / 2 for run in runs])
+        found = mean_factors(scene.kind, *columns)
+        yield _row(scene.name, scene.kind, scene.spectrum, float(radius), found)
+
+
+def reference_rows(path: Path, schedule: SteadySchedule) -> Iterator[SphereRow]:
+    """Spheres of the kept data of SI Fig. S-5, of given penetrations."""
+    dataset = read_dataset(path)
+    radius = jkr.equilibrium_radius((schedule.start + schedule.max_penetration) / 2)
+    for (place, _), found in cell_means("roughness", dataset).items():
+        item = dataset.isel(spectrum=place)
+        shape = (float(item[name]) for name in ("short_cutoff", "roll_off", "hurst"))
+        name = f"{item.spectrum.item()}, paper"
+        yield _row(name, "roughness", SelfAffineSpectrum(*shape), radius, found)
+
+
+def law_of(row: SphereRow) -> SphereFactors:
+    """Factors k that the law gives for the sphere of a row."""
+    return sphere_factors(row.kind, row.shape, row.elastic_energy, row.contact_radius)
+
+
+def is_covered(row: SphereRow, law: SphereFactors) -> bool:
+    """Whether a simulated k lies in the interval of the law, widened by the row's own errors."""
+    difference = row.both - law.both.value
+    reach = (law.both.high if difference > 0 else law.both.low) - law.both.value
+    own = REACH * np.hypot(row.both_error, row.numerical_error)
+    return bool(abs(difference) <= np.hypot(reach, own))
+
+
+def departures(rows: Sequence[SphereRow]) -> list[float]:
+    """Relative differences of the law's k from simulated ones where g is above 1."""
+    found = ((law_of(row), row) for row in rows)
+    return [law.both.value / row.both - 1 for law, row in found if law.size > 1]
+
+
+def sphere_table(rows: Sequence[SphereRow]) -> str:
+    """Table of simulated and predicted k in Markdown, and how far they are apart.
+
+    The intervals of the law are held against simulations with the errors of both.
+    """
+    columns = "spectrum | e_el/w_int | radius | g | k, line alone | k, simulated | difference"
+    laws = [law_of(row) for row in rows]
+    cells = [
+        (
+            row.spectrum,
+            f"{row.elastic_energy:.3g}",
+            f"{row.contact_radius:.3g}",
+            f"{law.size:.2g}",
+            f"{law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f})",
+            with_error(row.both, row.both_error),
+            f"{law.both.value / row.both - 1:+.1%}",
+        )
+        for row, law in zip(rows, laws, strict=True)
+    ]
+    apart = departures(rows)
+    rms, worst = np.sqrt(np.mean(np.square(apart))), np.max(np.abs(apart))
+    inside = sum(is_covered(row, law) for row, law in zip(rows, laws, strict=True) if law.size > 1)
+    return (
+        f"{markdown_table(columns.split(' | '), cells)}\n\nFor g above 1, {len(apart)} rows: rms "
+        f"{rms:.1%}, worst {worst:.1%}; the 95% intervals cover {inside}."
+    )
+
+
+def sphere_points(rows: Sequence[SphereRow]) -> LawPoints:
+    """Spheres as the figure of the law draws them."""
+    return LawPoints(
+        name="spheres",
+        disorder=2 * np.sqrt([row.elastic_energy for row in rows]),
+        size=np.array([law_of(row).size for row in rows]),
+        factor=np.array([row.both for row in rows]),
+        error=np.array([row.both_error for row in rows]),
+        breadth=np.array([slope_breadth(row.kind, row.shape) for row in rows]),
+    )

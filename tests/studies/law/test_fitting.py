@@ -1,0 +1,51 @@
+"""The fit behind the law of k."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from crackfront.analysis.law import law_value, shipped_law
+from studies.__main__ import main
+from studies.law.cells import MEASURED, LawCell, measured_cells
+from studies.law.fitting import fitted_law
+
+
+def test_the_fit_finds_the_law_that_was_planted(rng):
+    truth = (3.6, 0.5, 0.1, 0.05, 1.0, 1.2, 2.0, 1.2, 0.6)
+    template = measured_cells()[0]
+    cells = [
+        planted_cell(template, truth, s, g, breadth, 1 + 0.01 * rng.standard_normal())
+        for s, breadth in zip(
+            (0.1, 0.2, 0.4, 0.6, 0.84, 1.1), (1, 1.2, 1.4, 1, 1.4, 1.2), strict=True
+        )
+        for g in np.geomspace(0.3, 100, 10)
+    ]
+    found = fitted_law(cells)
+    s, g = np.array([0.1, 0.4, 0.84]), np.array([1.0, 10.0, np.inf])
+    np.testing.assert_allclose(
+        law_value(found.coefficients, s[:, None], g),
+        law_value(truth, s[:, None], g),
+        rtol=0.03,
+    )
+    assert found.rms < 0.02
+    assert found.exponent[0] == pytest.approx(0.612, abs=3 * found.exponent[1])
+
+
+def planted_cell(template: LawCell, truth, s, g, breadth, noise):
+    """A cell whose k is that of the law times the noise."""
+    k = float(law_value(truth, s, g, breadth)) * noise
+    place = {"disorder": s, "size": g, "breadth": breadth}
+    return replace(template, **place, both=k, error=0.01 * k, numerical_error=0.0)
+
+
+def test_the_command_fits_the_law_of_the_package_to_the_kept_cells(tmp_path):
+    done = CliRunner().invoke(main, ["law", "fit", "--output", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / "law.csv").read_text() == MEASURED.read_text()
+    known, again = shipped_law(), json.loads((tmp_path / "law.json").read_text())
+    np.testing.assert_allclose(again["coefficients"], known.coefficients, rtol=1e-6, atol=1e-6)
+    assert again["rms"] == pytest.approx(known.rms, rel=1e-6)
+    assert again["size"] == pytest.approx(known.size)
