@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import atexit
 import errno
 import gc
-import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -19,37 +19,10 @@ from crackfront.cli.report import StoppedError, examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
-from crackfront.data.lazy_modules import loaded_on_use, unavailable
 from crackfront.sweep.parallel import ending_alike
 
-_NEVER_USED = (
-    "asyncio",
-    "numpy.f2py",
-    "numpy.testing",
-    "pandas.api.typing",
-    "scipy.integrate",
-    "scipy.interpolate",
-    "scipy.spatial",
-    "xarray.groupers",
-    "xarray.tutorial",
-    "xarray.ufuncs",
-    "yaml",
-)
-"""What libraries import for single functions of theirs."""
-
-_OBJECTS = 1_000_000
-"""New objects after which garbage is looked for: imports make many, and none of it."""
-
-_NO_READER = (
-    "SurfaceTopography.Generic.Fractional",
-    "SurfaceTopography.Generic.RobustStatistics",
-    "SurfaceTopography.IO.DZI",
-    "SurfaceTopography.Uniform.Filtering",
-    "SurfaceTopography.Uniform.ScalarParameters",
-)
-"""Parts of the reader of scans that give its surfaces methods, for which they import scipy.stats,
-scipy.signal and matplotlib, most of a second; `predict` and `surface` call none of these methods,
-boundary elements do."""
+_OBJECTS = 100_000
+"""New objects after which the process of a command looks for garbage."""
 
 
 class _RefusalError(click.ClickException):
@@ -62,19 +35,12 @@ class Commands(click.Group):
     """Commands whose errors are sentences."""
 
     def main(self, args: Sequence[str] | None = None, *others: Any, **options: Any) -> Any:
-        """Run a command line: that of the process where none is given, which is then alone."""
-        if args is not None:
-            return super().main(args, *others, **options)
-        gc.set_threshold(_OBJECTS)
-        reads_only = sys.argv[1:2] in (["predict"], ["surface"])
-        waiting = _NEVER_USED + (_NO_READER if reads_only else ())
-        try:
-            # xarray would import pint to see whether an array is one of its quantities.
-            with loaded_on_use(waiting), unavailable("pint"):
-                return super().main(*others, **options)
-        finally:
-            # Python looks for garbage as it ends, which takes a third of a second after numba.
-            gc.freeze()
+        """Run a command line; that of the process, its only purpose, where none is given."""
+        if args is None:
+            # Imports leave no garbage; to look for it in them takes as long as a short command.
+            gc.set_threshold(_OBJECTS)
+            atexit.register(gc.freeze)
+        return super().main(args, *others, **options)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""

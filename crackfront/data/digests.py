@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import enum
 import hashlib
-import operator
 import os
 from pathlib import Path
 
@@ -21,9 +20,6 @@ _DIGITS = 64
 _TAIL = 160
 """Bytes at the end of a file among which its digest stands."""
 
-_RESEMBLES = 18
-"""Bytes of a damaged mark that are right, so that it is known as one."""
-
 _COMMENT = {
     ".json": (b',\n "digest": "', b'"\n}\n'),
     ".md": (b"<!-- ", b" -->\n"),
@@ -32,6 +28,16 @@ _COMMENT = {
     ".pdf": (b"% ", b"\n"),
 }
 """What stands around a digest in a file of a format; elsewhere it is a line."""
+
+_ALWAYS_SEALED = (
+    *("configuration.yaml", "hysteresis.nc", "fit.nc", "fit.json", "fit.md", "summary.html"),
+    *("curves/*-r[0-9]*.nc", "checkpoints/*-r[0-9]*.nc", "shards/*.json"),
+    *("figures/*.pdf", "figures/*.png"),
+    *("figures/*/*.nc", "figures/*/*.pdf", "figures/*/*.png", "figures/*/*.gif"),
+    *("checks.md", "accuracy/*.nc", "accuracy/*.pdf", "accuracy/*.png", "accuracy.md"),
+    *("validation*/*.nc", "validation.pdf", "validation.png", "validation.md"),
+)
+"""Files in folders of results that are never written without a digest."""
 
 
 class Integrity(enum.Enum):
@@ -66,14 +72,18 @@ def seal(path: Path, suffix: str) -> str:
 
 
 def integrity(path: Path) -> tuple[Integrity, str]:
-    """Whether a file is as it was written, and the digest that it states; empty where none is."""
+    """Whether a file is as it was written, and the digest that it states; empty where none is.
+
+    Without a digest, a file that is always written with one is damaged.
+    """
     with path.open("rb") as file:
         start = max(0, file.seek(0, os.SEEK_END) - _TAIL)
         file.seek(start)
         tail = file.read()
-        place = _place_of_mark(tail)
-        if place is None:
-            return Integrity.UNKNOWN, ""
+        place = tail.rfind(_MARK)
+        if place < 0:
+            sealed = any(path.match(pattern) for pattern in _ALWAYS_SEALED)
+            return Integrity.DAMAGED if sealed else Integrity.UNKNOWN, ""
         digits = place + len(_MARK)
         stated, left = tail[digits : digits + _DIGITS], start + digits
         content = hashlib.sha256()
@@ -85,12 +95,3 @@ def integrity(path: Path) -> tuple[Integrity, str]:
     if content.hexdigest().encode() != stated:
         return Integrity.DAMAGED, ""
     return Integrity.WHOLE, content.hexdigest()
-
-
-def _place_of_mark(tail: bytes) -> int | None:
-    """Where the mark of a digest begins in the end of a file, even if it is damaged or cut off."""
-    if (place := tail.rfind(_MARK)) >= 0:
-        return place
-    alike = [sum(map(operator.eq, tail[place:], _MARK)) for place in range(len(tail))]
-    most = max(alike, default=0)
-    return alike.index(most) if most >= _RESEMBLES else None

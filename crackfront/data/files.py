@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import math
 import os
-import resource
+import secrets
 import tempfile
 import time
 from collections.abc import Callable, Collection, Iterator
@@ -26,14 +26,6 @@ PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
 
 _SECONDS_TO_WRITE = 3600.0
 """Time after which a file that is not finished will not be."""
-
-_SECONDS_TO_OPEN = 5
-"""Processor time after which the head of a file that is being read will not end."""
-
-_UMASK = os.umask(0)
-os.umask(_UMASK)
-"""Permissions that new files of this process do not get."""
-
 
 DAMAGED_SUFFIX = ".damaged"
 """Ending of the name of a file that was set aside."""
@@ -113,15 +105,12 @@ def replace_atomically(path: Path, write: Callable[[Path], Any], *, sealed: bool
     refuse_no_file(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     # A name of its own: after a killed controller two writers of one file do happen.
-    handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=".part", dir=path.parent)
-    os.close(handle)
-    part = Path(name)
+    part = path.with_name(f".{path.stem}-{secrets.token_hex(8)}.part")
     try:
         write(part)
         digest = seal(part, path.suffix) if sealed else ""
         with part.open("rb+") as file:
             os.fsync(file.fileno())
-        part.chmod(0o666 & ~_UMASK)
         part.replace(path)
     except Exception as error:
         # What netCDF says of a full disk names anything but the disk.
@@ -192,91 +181,45 @@ def read_dataset(
     UnreadableFileError
         If there is no such file, it is damaged, or it is no complete netCDF file.
     """
-    if refuse_damaged(path) is Integrity.UNKNOWN:
-        _refuse_endless(path)
+    refuse_damaged(path)
     try:
-        with _opened(path) as dataset:
+        with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
             others = [] if names is None else [name for name in dataset if name not in names]
             chosen = dataset.drop_vars(others)
             refuse_beyond_memory(
                 f"the variables of {path}", copies * chosen.nbytes, "use smaller ones"
             )
             return chosen.load()
-    except TooLargeError:
+    except (TooLargeError, MemoryError):
         raise
     except Exception as error:  # a file without a digest may be wrong in any way
-        raise _incomplete(path) from error
+        if isinstance(error, OSError) and (error.errno or 0) > 0:
+            raise  # the machine's; the library's own numbers are negative
+        raise UnreadableFileError(
+            f"{path} is no complete netCDF file; write it again, or name another"
+        ) from error
 
 
-def _opened(path: Path) -> xr.Dataset:
-    """Dataset of a netCDF file of which only the head is read."""
-    return xr.open_dataset(path, engine="netcdf4", decode_times=False)
-
-
-def _incomplete(path: Path) -> UnreadableFileError:
-    """What is raised where a file is no netCDF to its end."""
-    return UnreadableFileError(
-        f"{path} is no complete netCDF file; write it again, or name another"
-    )
-
-
-def _refuse_endless(path: Path) -> None:
-    """Raise where the library does not come to the end of a file's head, or crashes on it.
-
-    A damaged head may be a circle, in which HDF5 goes round for ever and hears no signal: it is
-    read in a copy of this process before, which the system ends.
-    """
-    copy = os.fork()
-    if copy == 0:
-        try:
-            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-            resource.setrlimit(resource.RLIMIT_CPU, (_SECONDS_TO_OPEN, _SECONDS_TO_OPEN))
-            _opened(path).close()
-        finally:
-            os._exit(0)
-    _, status = os.waitpid(copy, 0)
-    if os.WIFSIGNALED(status):
-        raise _incomplete(path)
-
-
-def refuse_damaged(path: Path) -> Integrity:
-    """Raise an `UnreadableFileError` if there is no such file, or it is not as it was written.
-
-    A file that states no digest, as one of others or of an earlier version, is not refused.
-
-    Returns
-    -------
-    Integrity
-        Whether it states one.
-    """
+def refuse_damaged(path: Path) -> None:
+    """Raise an `UnreadableFileError` if there is no such file, or it is not as it was written."""
     if not path.is_file():
         what = "is no file" if path.exists() else "does not exist"
         raise UnreadableFileError(f"{path} {what}; check the name")
-    found, _ = integrity(path)
-    if found is Integrity.DAMAGED:
+    if integrity(path)[0] is Integrity.DAMAGED:
         raise UnreadableFileError(
-            f"{path} is damaged, its content does not have the digest that it states; restore it "
-            "or write it again"
+            f"{path} is damaged, its digest is wrong or missing; restore it or write it again"
         )
-    return found
 
 
 def integrities(folder: Path) -> Iterator[tuple[Path, Integrity]]:
     """All files of a folder, and whether they are as they were written.
 
-    Hidden ones, links, journals, and what was set aside are left out. What states no digest counts
-    as damaged if it is netCDF that cannot be read.
+    Hidden ones, links, journals, and what was set aside are left out.
     """
     for path in sorted(folder.rglob("[!.]*")):
-        if path.is_symlink() or not path.is_file() or path.suffix in (DAMAGED_SUFFIX, ".jsonl"):
-            continue
-        found, _ = integrity(path)
-        if found is Integrity.UNKNOWN and path.suffix == ".nc":
-            try:
-                read_dataset(path)
-            except UnreadableFileError:
-                found = Integrity.DAMAGED
-        yield path, found
+        left_out = path.is_symlink() or path.suffix in (DAMAGED_SUFFIX, ".jsonl")
+        if path.is_file() and not left_out:
+            yield path, integrity(path)[0]
 
 
 def set_aside_damaged(folder: Path, but: Collection[str] = ()) -> Iterator[str]:

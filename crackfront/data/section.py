@@ -43,14 +43,11 @@ Energy = Annotated[float, Field(gt=0, lt=1), within(NUMBER)]
 _MOST_BYTES = 5e5
 """Size of a file; that of a person has some thousands."""
 
-_MOST_NODES = 200_000
-"""Values of a file, what an anchor stands for counted wherever it stands."""
-
 _DEEPEST = 30
 """Levels of lists and mappings within each other."""
 
 _MOST_SENTENCES = 20
-"""Refusals of one file that are told."""
+"""Refusals of one file that are printed."""
 
 InputFile = Annotated[Path, Field(strict=False)]
 """A file that a configuration names, from the folder in which the command runs."""
@@ -97,34 +94,7 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
 
 
 class _Loader(yaml.SafeLoader):
-    """Safe YAML that reads 1e-6 as a number, and refuses repeated keys and what grows too large."""
-
-    def __init__(self, stream: str) -> None:
-        super().__init__(stream)
-        self._depth, self._count = 0, 0
-        self._sizes: dict[int, int] = {}
-
-    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        """Node with all that stands in it; what an anchor stands for counts at every place."""
-        event: yaml.Event = self.peek_event()  # type: ignore[no-untyped-call]
-        before = self._count
-        if self._depth > _DEEPEST:
-            raise self._refusal(f"more than {_DEEPEST} lists and mappings are nested", event)
-        self._depth += 1
-        node = super().compose_node(parent, index)
-        self._depth -= 1
-        if not isinstance(event, yaml.AliasEvent):
-            self._count += 1
-            self._sizes[id(node)] = self._count - before
-        elif id(node) not in self._sizes:
-            raise self._refusal(f"anchor {event.anchor} refers to itself", event)
-        else:
-            self._count += self._sizes[id(node)]
-        if self._count > _MOST_NODES:
-            raise self._refusal(
-                f"with what its anchors repeat it has over {_MOST_NODES} values", event
-            )
-        return node
+    """Safe YAML that reads 1e-6 as a number, and refuses repeated keys."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         """Mapping of a node, each key once."""
@@ -132,14 +102,11 @@ class _Loader(yaml.SafeLoader):
         for key, _ in node.value:
             name = str(self.construct_object(key, deep=True))
             if name in names:
-                raise self._refusal(f"key {name!r} stands twice; remove one", key)
+                raise yaml.MarkedYAMLError(
+                    problem=f"key {name!r} stands twice; remove one", problem_mark=key.start_mark
+                )
             names.add(name)
         return super().construct_mapping(node, deep)
-
-    @staticmethod
-    def _refusal(problem: str, place: Any) -> yaml.MarkedYAMLError:
-        """A refusal at a node or an event."""
-        return yaml.MarkedYAMLError(problem=problem, problem_mark=place.start_mark)
 
 
 _Loader.add_implicit_resolver(
@@ -171,27 +138,32 @@ def content_of(path: Path) -> dict[str, Any]:
     except ValueError as error:
         raise ConfigurationError(str(error)) from error
     try:
-        content = yaml.load(text, Loader=_Loader)
+        content = _frozen(yaml.load(text, Loader=_Loader))
     except yaml.MarkedYAMLError as error:
         line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise ConfigurationError(f"{path} is no valid YAML{line}: {error.problem}") from error
+    except RecursionError as error:
+        raise ConfigurationError(
+            f"{path}: more than {_DEEPEST} lists and mappings are nested; write it flatter"
+        ) from error
     except (yaml.YAMLError, *_NO_VALUE) as error:
         raise ConfigurationError(f"{path} is no valid YAML: {error}") from error
     if content is None:
         raise ConfigurationError(f"{path} is empty; write a configuration like config/test.yaml")
     if not isinstance(content, dict):
-        raise ConfigurationError(
-            f"{path} holds a {type(content).__name__}; the top level must be a mapping of keys"
-        )
-    return {str(key): _frozen(value) for key, value in content.items()}
+        kind = "list" if isinstance(content, tuple) else type(content).__name__
+        raise ConfigurationError(f"{path} holds a {kind}; the top level must be a mapping of keys")
+    return content
 
 
-def _frozen(value: Any) -> Any:
+def _frozen(value: Any, depth: int = 0) -> Any:
     """A YAML value with tuples for lists and text for keys."""
+    if depth > _DEEPEST:
+        raise RecursionError
     if isinstance(value, list):
-        return tuple(_frozen(item) for item in value)
+        return tuple(_frozen(item, depth + 1) for item in value)
     if isinstance(value, dict):
-        return {str(key): _frozen(item) for key, item in value.items()}
+        return {str(key): _frozen(item, depth + 1) for key, item in value.items()}
     return value
 
 

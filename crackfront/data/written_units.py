@@ -8,8 +8,8 @@ import re
 from tokenize import TokenError
 from typing import Any
 
+from crackfront.core.private_cache import caches, is_private
 from crackfront.data.bounds import SI, refuse_outside
-from crackfront.data.lazy_modules import reveal
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 """A number and what stands behind it."""
@@ -47,43 +47,18 @@ def si_value(text: str, unit: str, *, what: str) -> float:
         raise ValueError(f"{what} is {text!r}, which is no number with a unit; {example}")
     if found[2] is None:
         raise ValueError(f"{what} is {text!r}, without a unit; {example}")
-    value = float(found[1]) * _plain_factor(found[2], unit)
-    if math.isnan(value):
-        value = _converted(text, float(found[1]), found[2], unit, what=what)
+    try:
+        value = _converted(float(found[1]), _POWER.sub(r"\1^\2", found[2]), unit)
+    except DimensionError as error:
+        raise ValueError(f"{what} is {text!r}, which is no {_NAMES[unit]}; {example}") from error
+    except ValueError as error:
+        raise ValueError(
+            f"{what} is {text!r}, whose unit {found[2]} is unknown; {example}"
+        ) from error
     if not (math.isfinite(value) and value > 0):
         raise ValueError(f"{what} is {text!r}; it must be positive and finite")
     refuse_outside(what, value, SI[unit], unit)
     return value
-
-
-def _plain_factor(written: str, unit: str) -> float:
-    """Value of a unit that is the SI unit with a prefix or none; NaN of any other.
-
-    That needs no registry, which takes half a second to make.
-    """
-    plain = unit.replace("^", "")
-    if not written.replace("^", "").endswith(plain):
-        return math.nan
-    prefix = written.replace("^", "").removesuffix(plain)
-    powers = {name: power for power, name in _PREFIXES.items()} | {"µ": -6}
-    return 10.0 ** powers[prefix] if prefix in powers else math.nan
-
-
-def _converted(text: str, number: float, written: str, unit: str, *, what: str) -> float:
-    """Value of a number with any unit in an SI unit."""
-    pint = _pint()
-
-    example = _EXAMPLE.format(_NAMES[unit], _EXAMPLES[unit])
-    try:
-        given = _registry().parse_units(_POWER.sub(r"\1^\2", written))
-        return float(_registry().Quantity(number, given).to(unit).magnitude)
-    except pint.DimensionalityError as error:
-        raise ValueError(f"{what} is {text!r}, which is no {_NAMES[unit]}; {example}") from error
-    # A unit that is no expression fails in the tokenizer of Python, which pint does not catch.
-    except (pint.PintError, TokenError, SyntaxError, ValueError, TypeError) as error:
-        raise ValueError(
-            f"{what} is {text!r}, whose unit {written} is unknown; {example}"
-        ) from error
 
 
 def unit_value(given: str, unit: str) -> float:
@@ -94,11 +69,9 @@ def unit_value(given: str, unit: str) -> float:
     >>> unit_value("mJ / m^2", "J / m^2")
     0.001
     """
-    pint = _pint()
-
     try:
-        return float(_registry().Quantity(1.0, given).to(unit).magnitude)
-    except (pint.PintError, TokenError, SyntaxError, TypeError) as error:
+        return _converted(1.0, given, unit)
+    except ValueError as error:
         raise ValueError(f"a {given} is not to be had in {unit}") from error
 
 
@@ -107,18 +80,30 @@ _EXAMPLE = "write a number and a unit of {}, as in {}"
 _NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area"}
 
 
-@functools.cache
-def _registry() -> Any:
-    """Registry of units; made once, as it takes half a second."""
-    return _pint().UnitRegistry()
+class DimensionError(ValueError):
+    """A unit that is of another dimension than the wanted one."""
 
 
-def _pint() -> Any:
-    """The library, which commands keep from all who do not ask for it here."""
-    reveal("pint")
+def _converted(value: float, given: str, unit: str) -> float:
+    """Value in a unit of a number in another one; a ValueError where it has none."""
     import pint
 
-    return pint
+    try:
+        return float(_registry().Quantity(value, given).to(unit).magnitude)
+    except pint.DimensionalityError as error:
+        raise DimensionError(str(error)) from error
+    # A unit that is no expression fails in the tokenizer of Python, which pint does not catch.
+    except (pint.PintError, TokenError, SyntaxError, TypeError) as error:
+        raise ValueError(str(error)) from error
+
+
+@functools.cache
+def _registry() -> Any:
+    """Registry of units, which pint keeps in the user's cache once it is made."""
+    import pint
+
+    folder = next((cache / "pint" for cache in caches() if is_private(cache)), None)
+    return pint.UnitRegistry(cache_folder=folder)
 
 
 _PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -14,13 +16,12 @@ from typing import Any
 import numpy as np
 
 from crackfront.core.optional_libraries import MissingExtraError
-from crackfront.data.lazy_modules import loaded_on_use, unavailable
 from crackfront.data.written_units import prefixed
 from crackfront.topography.files import readable, refuse_special, refuse_too_many_points
 from crackfront.topography.options import ReadingOptions
 
 _RARELY_USED = ("pandas", "openpyxl", "requests", "h5py", "yaml")
-"""What the library imports for single formats, which takes a part of a second."""
+"""What the library imports for single formats of files: half of the time of its own import."""
 
 _SIDES = (1e-9, 1.0)
 """Sides of a scan within which instruments measure (Units: m): beyond, the unit is wrong."""
@@ -53,13 +54,41 @@ def surface_library() -> ModuleType:
     ValueError
         If it is not installed, with the command that installs it.
     """
+    for name in _RARELY_USED:
+        _load_on_use(name)
+    # Scans are read by one process; nodes without jobs may refuse to start MPI.
+    modules: dict[str, Any] = sys.modules
+    without_mpi = modules.setdefault("mpi4py", None) is None
     try:
-        # Scans are read by one process; nodes without jobs may refuse to start MPI.
-        with loaded_on_use(_RARELY_USED), unavailable("mpi4py"):
+        with _silenced():
             import SurfaceTopography
     except ModuleNotFoundError as error:
         raise MissingExtraError("measured surfaces", error, "surfaces") from error
+    finally:
+        if without_mpi:
+            del modules["mpi4py"]
     return SurfaceTopography
+
+
+def _load_on_use(name: str) -> None:
+    """Make a module importable at no cost; reading its first attribute executes it."""
+    spec = importlib.util.find_spec(name)
+    if name in sys.modules or spec is None or spec.loader is None:
+        return
+    spec.loader = importlib.util.LazyLoader(spec.loader)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    waiting: Any = type(module)
+
+    class Importable(waiting):  # type: ignore[misc]
+        def __getattribute__(self, attribute: str) -> Any:
+            # Every import of a module that is there already reads this.
+            if attribute == "__spec__":
+                return object.__getattribute__(self, attribute)
+            return super().__getattribute__(attribute)
+
+    module.__class__ = Importable
 
 
 @contextmanager

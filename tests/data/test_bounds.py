@@ -26,7 +26,7 @@ from crackfront.data.bounds import (
     refuse_outside,
     regular_file,
 )
-from crackfront.data.files import UnreadableFileError, read_dataset
+from crackfront.data.files import read_dataset
 from crackfront.data.written_units import si_value
 from crackfront.simulate.costs import affordable_seconds
 
@@ -172,16 +172,6 @@ def test_a_field_with_one_absurd_value_is_refused_with_its_place(tile, tmp_path,
         *("cycle", "--field", tile, "--max-penetration", 1, "--output", tmp_path / "out.nc")
     )
     assert "at index 3, 5 (1 such values); it must lie between -10000 and 10000" in sentence
-
-
-def test_a_file_whose_head_is_a_circle_is_refused(tile, monkeypatch):
-    content = tile.read_bytes()
-    # A heap whose first part has no length is one that HDF5 does not leave, whatever it is told.
-    begin = content.index(b"GCOL") + 16
-    tile.write_bytes(content[:begin] + bytes(16) + content[begin + 16 :])
-    monkeypatch.setattr("crackfront.data.files._SECONDS_TO_OPEN", 1)
-    with pytest.raises(UnreadableFileError, match="is no complete netCDF file; write it again"):
-        read_dataset(tile)
 
 
 def test_many_sites_are_announced_with_their_price(tile, tmp_path, monkeypatch):

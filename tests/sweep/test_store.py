@@ -376,7 +376,7 @@ def test_a_curve_with_a_flipped_bit_is_named_and_computed_anew(store, journals, 
     assert inventory.missing == (FLAT[1],)
     [sentence] = inventory.unreadable
     assert str(store.path(FLAT[1])) in sentence
-    assert "is damaged, its content does not have the digest that it states" in sentence
+    assert "is damaged, its digest is wrong or missing" in sentence
     fill(store, inventory.missing)
     found = [held.row for held in store.holdings(FLAT[:2])]
     assert [row.w_retr for row in found] == [row.w_retr for row in expected]
