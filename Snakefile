@@ -18,14 +18,16 @@ atexit.register(gc.freeze)
 
 sys.path.insert(0, workflow.basedir)  # where the studies stand
 
+from crackfront.core.fingerprint import fingerprint
 from crackfront.data.files import date_back, set_aside_damaged
-from crackfront.data.provenance import package_fingerprint
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import shard_fingerprint
 from studies.paper.figure import (
     FIGURES,
     SCALES,
+    checks_fingerprint,
+    drawing_fingerprint,
     figure,
     figure_fingerprint,
     load_figure,

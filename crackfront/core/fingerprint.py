@@ -1,8 +1,8 @@
-"""Fingerprints of sources by their meaning: what cannot change a number does not change them.
+"""Fingerprints of sources: what a result comes from, found by following names through imports.
 
-Documentation, comments, annotations, imports and the places of definitions do not count. A name
-to which several modules give different meanings is told apart by its module. What was found of the
-same bytes before is kept in the cache of this user, as parsing the package takes a second.
+A definition counts if a named one reaches it by names, attributes and imports, a class also if an
+annotation names it. Documentation, comments, annotations, imports and the places of definitions do
+not count: what cannot change a number does not change a fingerprint.
 """
 
 from __future__ import annotations
@@ -11,184 +11,288 @@ import ast
 import contextlib
 import functools
 import hashlib
+import json
 import os
-import re
 import sys
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from crackfront.core.private_cache import caches, is_private
+from crackfront.core.private_cache import private_folder
 
-PACKAGE = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
+"""Folder of the packages."""
 
-SOLVER = ("core",)
-"""Folders whose sources determine the fronts of a simulation."""
+_PACKAGES = ("crackfront", "studies")
 
-NO_PART = ("core/cycle/instabilities.py",)
-"""Sources there that no simulation uses."""
+_NO_PART = ("crackfront.core.fingerprint", "crackfront.core.private_cache")
+"""Modules that decide what is stored where, and no number."""
 
 
-def fingerprint(
-    *places: str, without: Sequence[str] = (), reached: Mapping[str, Sequence[str]] | None = None
-) -> str:
-    """Twelve hexadecimal digits that change with the meaning of sources, or with data.
+def fingerprint(*names: str) -> str:
+    """Twelve hexadecimal digits that change with the sources that some names reach.
+
+    Of a class that is reached, the subclasses in modules that are reached count as well; files of
+    data count byte by byte where their names stand in what is reached.
 
     Parameters
     ----------
-    *places : str
-        Files or folders of the package. What is no Python counts byte by byte.
-    without : sequence of str, optional
-        Files that do not count.
-    reached : mapping, optional
-        Files of which only some names count, with all that these reach within the file.
+    *names : str
+        Modules, "crackfront.core.units", or definitions, "crackfront.core.jkr.force".
+
+    Raises
+    ------
+    ValueError
+        If there is no such module or definition.
 
     Examples
     --------
-    >>> fingerprint("core/units.py") == fingerprint("core/units.py", "core/__init__.py")
-    True
+    >>> fingerprint("crackfront.core.units") == fingerprint("crackfront.core.units.Scales")
+    False
     """
-    skipped = {PACKAGE / place for place in without}
-    paths = {path for place in places for path in _files(PACKAGE / place)} - skipped
-    chosen = {PACKAGE / place: names for place, names in (reached or {}).items()}
-    contents = {path: path.read_bytes() for path in sorted(paths | set(chosen))}
-    kept = _kept_in(contents, chosen)
-    with contextlib.suppress(OSError, ValueError):
-        if kept is not None and _DIGITS.fullmatch(known := kept.read_text("ascii")):
-            return known
-    found = _meaning(contents, chosen)
+    folder = private_folder("fingerprints")
+    asked = repr((names, str(ROOT), sys.version_info[:2])).encode() + Path(__file__).read_bytes()
+    kept = None if folder is None else folder / _digest(asked)
+    with contextlib.suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
+        if kept is not None:
+            known = json.loads(kept.read_text("utf-8"))
+            if known["files"] == _file_digests(known["files"]):
+                return str(known["fingerprint"])
+    reach = _Reach(names)
+    found = reach.digest()[:12]
     if kept is not None:
         with contextlib.suppress(OSError):
             part = kept.with_name(f"{kept.name}.{os.getpid()}")
-            part.write_text(found, "ascii")
+            known = {"fingerprint": found, "files": _file_digests(reach.files)}
+            part.write_text(json.dumps(known), "utf-8")
             part.replace(kept)
     return found
-
-
-_DIGITS = re.compile("[0-9a-f]{12}")
-
-
-def _kept_in(contents: Mapping[Path, bytes], chosen: Mapping[Path, Sequence[str]]) -> Path | None:
-    """File that keeps the fingerprint of these bytes; None where this user has no cache."""
-    folder = next((parent / "fingerprints" for parent in caches() if is_private(parent)), None)
-    if folder is None or not is_private(folder):
-        return None
-    digest = hashlib.sha256(Path(__file__).read_bytes())
-    # Which modules there are tells them from other names; trees differ between Pythons.
-    modules = sorted(str(path.relative_to(PACKAGE)) for path in PACKAGE.rglob("*.py"))
-    names = {str(path.relative_to(PACKAGE)): list(names) for path, names in chosen.items()}
-    digest.update(repr((sys.version_info[:2], modules, sorted(names.items()))).encode())
-    for path, content in contents.items():
-        head = f"{path.relative_to(PACKAGE)} {len(content)}"
-        digest.update(head.encode() + content)
-    return folder / digest.hexdigest()
-
-
-def _meaning(contents: Mapping[Path, bytes], chosen: Mapping[Path, Sequence[str]]) -> str:
-    """Twelve hexadecimal digits of the meaning of sources, of some of which only names count."""
-    sources = {path: ast.parse(text) for path, text in contents.items() if path.suffix == ".py"}
-    shared = _shared_names(list(sources.values()))
-    parts = [content for path, content in contents.items() if path not in sources]
-    for path, tree in sources.items():
-        meaning = _Meaning(path.stem, tree, shared)
-        kept = _reached(tree, chosen[path]) if path in chosen else tree.body
-        parts += [meaning.text(one).encode() for one in kept if not _is_mute(one)]
-    digest = hashlib.sha256()
-    for part in sorted(hashlib.sha256(part).digest() for part in parts):
-        digest.update(part)
-    return digest.hexdigest()[:12]
 
 
 @functools.cache
 def solver_fingerprint() -> str:
     """Twelve hexadecimal digits that change with what determines the fronts of a simulation."""
-    return fingerprint(*SOLVER, without=NO_PART)
+    parts = "solver.relax", "cycle.run", "cycle.steady", "cycle.period"
+    return fingerprint(*(f"crackfront.core.{part}" for part in parts))
 
 
-def _files(place: Path) -> Iterator[Path]:
-    """A file, or all sources of a folder."""
-    return place.rglob("*.py") if place.is_dir() else iter((place,))
+def _digest(content: bytes) -> str:
+    """Hexadecimal digits of bytes."""
+    return hashlib.sha256(content).hexdigest()
 
 
-def _reached(tree: ast.Module, names: Sequence[str]) -> list[ast.stmt]:
-    """Statements of a module that some of its names reach."""
-    known = {name: one for one in tree.body for name in _defined(one)}
-    found: dict[str, ast.stmt] = {}
-    coming = list(names)
-    while coming:
-        if (name := coming.pop()) in known and name not in found:
-            found[name] = known[name]
-            nodes = ast.walk(known[name])
-            coming += [node.id for node in nodes if isinstance(node, ast.Name)]
-    return [one for one in tree.body if any(one is statement for statement in found.values())]
+def _file_digests(places: Iterable[str]) -> dict[str, str]:
+    """Hexadecimal digits of files, by their places below the folder of the packages."""
+    return {place: _digest((ROOT / place).read_bytes()) for place in places}
 
 
-def _shared_names(trees: Sequence[ast.Module]) -> set[str]:
-    """Names to which several modules give different meanings."""
-    meanings: dict[str, set[str]] = defaultdict(set)
-    for statement in (statement for tree in trees for statement in tree.body):
-        for name in _defined(statement):
-            meanings[name].add(ast.dump(statement))
-    return {name for name, texts in meanings.items() if len(texts) > 1}
+class _Statement:
+    """A statement at the top of a module: what it defines, what it uses, and what it means."""
+
+    def __init__(self, node: ast.stmt, module: _Module) -> None:
+        self.module, self._node = module, node
+        targets = getattr(node, "targets", [getattr(node, "target", None)])
+        found = (one for target in targets if target is not None for one in ast.walk(target))
+        self.defined = [one.id for one in found if isinstance(one, ast.Name)]
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            self.defined.append(node.name)
+        self.bases = [_dotted(base) or "" for base in getattr(node, "bases", ())]
+        calls = (getattr(one, "func", None) for one in getattr(node, "decorator_list", ()))
+        registers = any(_dotted(call) == "implements" for call in calls)
+        self.is_class = isinstance(node, ast.ClassDef)
+        self.acts = registers or not (self.defined or _is_mute(node))
+
+    @functools.cached_property
+    def uses(self) -> set[tuple[str, bool]]:
+        """Names that it uses, with their attributes, and whether it does so in an annotation."""
+        return set(_used(self._node, annotated=False))
+
+    @functools.cached_property
+    def data(self) -> set[Path]:
+        """Files of data that it names, beside its module or in a package that it names."""
+        values = [getattr(node, "value", None) for node in ast.walk(self._node)]
+        texts = [value for value in values if isinstance(value, str)]
+        homes = [ROOT / text.replace(".", "/") for text in texts if text.startswith(_PACKAGES)]
+        names = [text for text in texts if text.endswith((".csv", ".json"))]
+        paths = (home / name for home in (self.module.path.parent, *homes) for name in names)
+        return {path for path in paths if path.is_file()}
+
+    @functools.cached_property
+    def meaning(self) -> list[str]:
+        """Its text without what cannot change a number; every second part is a name."""
+        return _text(self._node).split("\0")
 
 
-def _defined(statement: ast.stmt) -> Iterator[str]:
-    """Names that a statement at the top of a module defines."""
-    if isinstance(statement, (ast.FunctionDef, ast.ClassDef)):
-        yield statement.name
-    for target in getattr(statement, "targets", [getattr(statement, "target", None)]):
-        if target is not None:
-            yield from (node.id for node in ast.walk(target) if isinstance(node, ast.Name))
+class _Module:
+    """The statements of a module by the names that they define, and what its imports bring."""
 
-
-class _Meaning:
-    """The statements of a module as texts, with names as their modules define them."""
-
-    def __init__(self, module: str, tree: ast.Module, shared: set[str]) -> None:
-        self._shared, self._modules = shared, set[str]()
-        own = {name for statement in tree.body for name in _defined(statement)}
-        self._names = {name: f"{module}.{name}" for name in own & shared}
+    def __init__(self, name: str, path: Path, content: bytes) -> None:
+        self.name, self.path = name, path
+        self.defined: dict[str, list[_Statement]] = defaultdict(list)
+        self.imported: dict[str, set[str]] = defaultdict(set)
+        tree = ast.parse(content)
+        statements = [_Statement(node, self) for node in tree.body]
+        self.acting = [one for one in statements if one.acts]
+        for statement in statements:
+            for defined in statement.defined:
+                self.defined[defined].append(statement)
         for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("crackfront"):
-                self._import(node)
+            home = f"{node.module}." if isinstance(node, ast.ImportFrom) else ""
+            for alias in node.names if isinstance(node, (ast.Import, ast.ImportFrom)) else ():
+                self.imported[alias.asname or alias.name].add(f"{home}{alias.name}")
 
-    def _import(self, node: ast.ImportFrom) -> None:
-        """Note what an import of the package brings."""
-        home = str(node.module)
-        for alias in node.names:
-            source = PACKAGE.parent / home.replace(".", "/") / alias.name
-            if source.is_dir() or source.with_suffix(".py").is_file():
-                self._modules.add(alias.asname or alias.name)
-            else:
-                full = f"{home.rpartition('.')[2]}.{alias.name}"
-                known = full if alias.name in self._shared else alias.name
-                self._names[alias.asname or alias.name] = known
 
-    def text(self, part: object) -> str:
-        """A statement, or a part of one, without annotations and what is mute."""
-        if isinstance(part, list):
-            return f"[{' '.join(self.text(one) for one in part if not _is_mute(one))}]"
-        if not isinstance(part, ast.AST):
-            return repr(part)
-        if isinstance(part, ast.Name):
-            return self._names.get(part.id, part.id)
-        home = getattr(getattr(part, "value", None), "id", None)
-        if isinstance(part, ast.Attribute) and home in self._modules:
-            # A name of a module of the package stands for itself, wherever that module lies.
-            return f"{home}.{part.attr}" if part.attr in self._shared else part.attr
-        if isinstance(part, ast.AnnAssign) and part.value is not None:
-            part = ast.Assign([part.target], part.value)
-        values = [
-            self._names.get(value, value) if name == "name" else self.text(value)
-            for name, value in ast.iter_fields(part)
-            if name not in ("annotation", "returns", "ctx", "kind", "type_comment")
-        ]
-        return f"({type(part).__name__} {' '.join(map(str, values))})"
+_parsed = functools.cache(_Module)
+
+
+class _Reach:
+    """The statements and files of data that some names reach."""
+
+    def __init__(self, names: Iterable[str]) -> None:
+        self._modules: dict[str, _Module | None] = {}
+        self._taken: set[_Statement] = set()
+        self._aliases: set[_Statement] = set()
+        self._waiting: list[tuple[_Statement, bool]] = []
+        for name in names:
+            origins = list(self._origins(name))
+            if not origins:
+                raise ValueError(f"there is no module or definition {name}; correct the name")
+            for module, defined, _ in origins:
+                for one in [defined] if defined else list(module.defined):
+                    self._take(module.defined[one])
+        while self._waiting:
+            self._follow(*self._waiting.pop())
+            if not self._waiting:
+                self._take_subclasses()
+        self._data = {path for one in self._taken for path in one.data}
+
+    @property
+    def files(self) -> list[str]:
+        """Places of all files that were read, below the folder of the packages."""
+        paths = {module.path for module in self._modules.values() if module is not None}
+        return sorted(str(path.relative_to(ROOT)) for path in paths | self._data)
+
+    def digest(self) -> str:
+        """Hexadecimal digits of the meaning of all that is reached."""
+        homes: dict[str, set[str]] = defaultdict(set)
+        for statement in self._taken:
+            for name in statement.defined:
+                homes[name].add(statement.module.name)
+        self._shared = {name for name in homes if len(homes[name]) > 1}
+        parts = {self._text(statement).encode() for statement in self._taken}
+        digests = sorted(map(_digest, [*parts, *(path.read_bytes() for path in self._data)]))
+        return _digest("".join(digests).encode())
+
+    def _module(self, name: str) -> _Module | None:
+        """A module of the packages, if there is one of this full name."""
+        if name not in self._modules:
+            self._modules[name] = None if name in _NO_PART else _module(name)
+        return self._modules[name]
+
+    def _origins(self, name: str) -> Iterator[tuple[_Module, str, str]]:
+        """Where a full name is defined: modules, its name there ("" for a module), attributes."""
+        parts = name.split(".")
+        for k in range(len(parts), 0, -1):
+            if parts[0] in _PACKAGES and (module := self._module(".".join(parts[:k]))):
+                rest = ".".join(parts[k:])
+                yield from self._meant(module, rest) if rest else [(module, "", "")]
+                return
+
+    def _meant(self, module: _Module, name: str) -> Iterator[tuple[_Module, str, str]]:
+        """Where what a name means in a module is defined, as of :meth:`_origins`."""
+        first, dot, rest = name.partition(".")
+        if first in module.defined:
+            yield module, first, dot + rest
+        for home in sorted(module.imported.get(first, ())):
+            yield from self._origins(home + dot + rest)
+
+    def _take(self, statements: Iterable[_Statement], *, annotated: bool = False) -> None:
+        """Count statements; of what an annotation names classes count, not the aliases of types."""
+        for statement in statements:
+            is_alias = annotated and not statement.is_class
+            known = self._aliases if is_alias else self._taken
+            if statement not in known:
+                known.add(statement)
+                self._waiting.append((statement, is_alias))
+                if not is_alias:
+                    self._take(statement.module.acting)
+
+    def _follow(self, statement: _Statement, is_alias: bool) -> None:
+        """Count what a statement uses."""
+        for used, annotated in statement.uses:
+            for home, name, _ in self._meant(statement.module, used):
+                if name:
+                    self._take(home.defined[name], annotated=annotated or is_alias)
+
+    def _take_subclasses(self) -> None:
+        """Count the subclasses of what counts, in the modules that are reached."""
+        for module in {statement.module for statement in self._taken}:
+            for statement in [one for ones in module.defined.values() for one in ones]:
+                for base in statement.bases:
+                    for home, name, _ in self._meant(module, base):
+                        if name and home.defined[name][0] in self._taken:
+                            self._take([statement])
+
+    def _text(self, statement: _Statement) -> str:
+        """Meaning of a statement, with names that tell definitions of several modules apart."""
+        parts = list(statement.meaning)
+        for k, used in enumerate(parts[1::2]):
+            for home, name, rest in self._meant(statement.module, used):
+                if name:
+                    own = f"{home.name.rpartition('.')[2]}." if name in self._shared else ""
+                    parts[2 * k + 1] = f"{own}{name}{rest}"
+                    break
+        return "".join(parts)
+
+
+def _module(name: str) -> _Module | None:
+    """A module of this full name, parsed once for the same bytes."""
+    place = ROOT / name.replace(".", "/")
+    for path in (place.with_suffix(".py"), place / "__init__.py"):
+        if path.is_file():
+            return _parsed(name, path, path.read_bytes())
+    return None
+
+
+def _dotted(node: object) -> str:
+    """A name with its attributes, such as `a.b.c`; "" for what is none."""
+    if isinstance(node, ast.Attribute) and (before := _dotted(node.value)):
+        return f"{before}.{node.attr}"
+    return node.id if isinstance(node, ast.Name) else ""
+
+
+def _used(part: ast.AST, annotated: bool) -> Iterator[tuple[str, bool]]:
+    """Names that a part of a syntax tree reads, and whether they stand in an annotation."""
+    if (name := _dotted(part)) and isinstance(getattr(part, "ctx", None), ast.Load):
+        yield name, annotated
+    for field, value in ast.iter_fields(part):
+        for child in value if isinstance(value, list) else [value]:
+            if isinstance(child, ast.AST):
+                yield from _used(child, annotated or field in ("annotation", "returns"))
+
+
+def _text(part: object) -> str:
+    """A part of a syntax tree without annotations and what does nothing, names between zeros."""
+    if isinstance(part, list):
+        return f"[{' '.join(_text(one) for one in part if not _is_mute(one))}]"
+    if not isinstance(part, ast.AST):
+        return repr(part)
+    if name := _dotted(part):
+        return f"\0{name}\0"
+    if isinstance(part, ast.AnnAssign) and part.value is not None:
+        part = ast.Assign([part.target], part.value)
+    values = [
+        f"\0{value}\0" if name == "name" else _text(value)
+        for name, value in ast.iter_fields(part)
+        if name not in ("annotation", "returns", "ctx", "kind", "type_comment")
+    ]
+    return f"({type(part).__name__} {' '.join(values)})"
 
 
 def _is_mute(statement: object) -> bool:
-    """Whether a statement is documentation, an import or a condition of type checkers."""
+    """Whether a statement is documentation, an import, or nothing that an import executes."""
     if isinstance(statement, ast.If):
-        return isinstance(statement.test, ast.Name) and statement.test.id == "TYPE_CHECKING"
+        names = {node.id for node in ast.walk(statement.test) if isinstance(node, ast.Name)}
+        return bool(names & {"TYPE_CHECKING", "__name__"})
     text = isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
     return text or isinstance(statement, (ast.Import, ast.ImportFrom))

@@ -1,33 +1,35 @@
-"""Folders in which this user alone keeps what is made once: compiled kernels, fingerprints."""
+"""Folders in which this user alone keeps compiled kernels and fingerprints."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-import shutil
 import stat
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 
 
-def caches() -> Iterator[Path]:
-    """Folders that may be the cache of this user, the best first."""
+def private_folder(name: str) -> Path | None:
+    """A folder of this name in a cache to which nobody but this user can write, if there is one.
+
+    The cache of the user comes first, then the folder for temporary files.
+    """
+    caches = [Path(tempfile.gettempdir(), f"crackfront-{os.geteuid()}")]
     # A container that runs as a number has neither HOME nor a name.
     with contextlib.suppress(RuntimeError):
-        yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "crackfront")
-    yield Path(tempfile.gettempdir(), f"crackfront-{os.geteuid()}")
+        cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+        caches.insert(0, Path(cache, "crackfront"))
+    folders = (parent / name for parent in caches if _is_private(parent))
+    return next((folder for folder in folders if _is_private(folder)), None)
 
 
-def is_private(folder: Path) -> bool:
-    """Whether nobody but this user writes in a folder; made, or made anew, where that helps."""
-    with contextlib.suppress(OSError):
+def _is_private(folder: Path) -> bool:
+    """Whether nobody but this user can write to a folder, which is made if it is missing."""
+    try:
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         found = folder.lstat()
-        if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.geteuid():
-            return False
-        if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-            shutil.rmtree(folder)
-            folder.mkdir(mode=0o700)
-        return os.access(folder, os.W_OK)
-    return False
+    except OSError:
+        return False
+    own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid()
+    shared = found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    return own and not shared and os.access(folder, os.W_OK)

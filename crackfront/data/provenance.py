@@ -12,7 +12,9 @@ from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from crackfront.core.fingerprint import PACKAGE, fingerprint, solver_fingerprint
+from crackfront.core.fingerprint import solver_fingerprint
+
+PACKAGE = Path(__file__).parents[1]
 
 
 def _version() -> str:
@@ -81,16 +83,18 @@ def utc_now() -> str:
 def git_commit() -> str:
     """Commit of the sources, with "-dirty" where they were changed since; or "unknown"."""
     # Without the tags, whose names would stand for the commit.
-    command = ["git", "-C", str(PACKAGE), "describe", "--always", "--dirty", "--abbrev=40"]
+    command = [
+        "git",
+        "-C",
+        str(PACKAGE),
+        "describe",
+        "--always",
+        "--dirty",
+        "--abbrev=40",
+    ]
     command.append("--exclude=*")
     try:
         result = subprocess.run(command, capture_output=True, text=True, timeout=10, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return "unknown"
     return result.stdout.strip() if result.returncode == 0 else "unknown"
-
-
-@functools.cache
-def package_fingerprint() -> str:
-    """Twelve hexadecimal digits that change with any source of the package."""
-    return fingerprint(".")

@@ -8,7 +8,7 @@ import re
 from tokenize import TokenError
 from typing import Any
 
-from crackfront.core.private_cache import caches, is_private
+from crackfront.core.private_cache import private_folder
 from crackfront.data.bounds import SI, refuse_outside
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
@@ -102,8 +102,7 @@ def _registry() -> Any:
     """Registry of units, which pint keeps in the user's cache once it is made."""
     import pint
 
-    folder = next((cache / "pint" for cache in caches() if is_private(cache)), None)
-    return pint.UnitRegistry(cache_folder=folder)
+    return pint.UnitRegistry(cache_folder=private_folder("pint"))
 
 
 _PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}

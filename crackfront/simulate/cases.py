@@ -103,9 +103,9 @@ class SphereCase:
         """
         from crackfront.core import jkr
         from crackfront.core.adhesion import AdhesionMap
+        from crackfront.core.contact import contact_field
         from crackfront.core.cycle.run import checked_touch
         from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule, loads
-        from crackfront.simulate.contact import tile_contact
         from crackfront.simulate.costs import affordable_seconds
         from crackfront.simulate.tiles import tile_measures
 
@@ -125,7 +125,8 @@ class SphereCase:
                 n_state=n_state,
                 n_sample=2 * radius / given.pixel * (density or 4.0),
             )
-            field = tile_contact(given, self.max_penetration, angles, density, pieces)
+            spacing = given.pixel / density if density else None
+            field = contact_field(given, self.max_penetration, angles, spacing, pieces)
             front, measures = checked_touch(field, self.max_penetration), tile_measures(given)
             return Problem(field, front, way, int(n_state), seconds, measures=measures)
         if angles is not None or density is not None:

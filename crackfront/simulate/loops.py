@@ -13,6 +13,7 @@ from xarray import DataArray, Dataset
 
 from crackfront.analysis.steady import SteadyAdhesion, steady_adhesion
 from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.instabilities import measured_instabilities, resolved_motion
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -30,7 +31,6 @@ from crackfront.core.variables import variables
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.provenance import __version__
-from crackfront.simulate.contact import contact_field, tile_contact
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import Simulation, missed_error, stated_error
@@ -318,7 +318,7 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
     measures = replace(tile_measures(adhesion), kind=kind)
     spectrum, deepest = stated_spectrum(surface), schedule.max_penetration
     if spectrum is None or adhesion.e_el == 0:
-        return SurfaceContact(tile_contact(adhesion, deepest), DEFAULT_TOLERANCE, measures, None)
+        return SurfaceContact(contact_field(adhesion, deepest), DEFAULT_TOLERANCE, measures, None)
     chosen = chosen_simulation(kind, spectrum, adhesion.e_el, schedule, error=error)
     n_point = min(adhesion.work_of_adhesion.shape)
     sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
@@ -330,6 +330,6 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
             f"leave {left:.2g}; ask for that, or make the surface with this error"
         )
     field = contact_field(
-        adhesion, sizes.n_angle, sizes.spacing, deepest, sizes.interpolation, band_limited=True
+        adhesion, deepest, sizes.n_angle, sizes.spacing, sizes.interpolation, band_limited=True
     )
     return SurfaceContact(field, chosen.solver.tolerance, measures, simulation)

@@ -13,6 +13,7 @@ import numpy as np
 
 from crackfront.analysis.table import RunMeasures
 from crackfront.core.adhesion import chemical_adhesion
+from crackfront.core.contact import contact_field
 from crackfront.core.cycle.period import LineSchedule, run_period
 from crackfront.core.cycle.record import Checkpoint, CycleRecord, Observer, Recorder
 from crackfront.core.cycle.run import run_cycle
@@ -21,7 +22,7 @@ from crackfront.core.cycle.steady import run_steady
 from crackfront.core.geometry.line import line_field
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.solver.window import HALF_BAND
-from crackfront.simulate.contact import contact_field, simulation_adhesion, simulation_field
+from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import Simulation
 
 
@@ -126,7 +127,7 @@ def compile_solver(name: str, line: bool = False) -> None:
         schedule = LineSchedule(spring=1.0, length=4.0, period=1.0, lead_in=1.0, step=1.0)
         run_period(field, schedule, elastic_energy=0.0, solver=solver, recorder=recorder)
         return
-    field = contact_field(smooth, n_angle=n_site, spacing=0.1, max_penetration=0.0)
+    field = contact_field(smooth, max_penetration=0.0, n_angle=n_site, spacing=0.1)
     run_cycle(field, LoadSchedule(0.0, 0.5), solver, recorder)
 
 

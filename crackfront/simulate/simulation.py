@@ -16,23 +16,19 @@ from scipy.fft import next_fast_len
 from crackfront.analysis.steady import SteadyAdhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, correlation_length
+from crackfront.core.contact import n_site
 from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Interpolation
-from crackfront.core.fingerprint import NO_PART, SOLVER, fingerprint
+from crackfront.core.fingerprint import fingerprint
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS
-from crackfront.core.solver.filters import ROWS
 from crackfront.core.solver.relax import Solver, named_solver
-from crackfront.core.solver.team import LARGE
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error, usual_size
 
 Schedule = LoadSchedule | SteadySchedule | LineSchedule
 """Loads of a simulation: a full cycle or its steady parts, or those of a straight front."""
-
-_SOURCES = ("simulate/simulation.py", "simulate/contact.py", "simulate/run.py")
-"""What determines a simulation beside the solver."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -347,14 +343,4 @@ def _digest(content: Any) -> str:
 @functools.cache
 def simulation_fingerprint() -> str:
     """Twelve hexadecimal digits that change with what determines a simulation."""
-    return fingerprint(*SOLVER, *_SOURCES, without=NO_PART)
-
-
-def n_site(least: float) -> int:
-    """Even number of sites, 4 or more and not below a number, whose transforms are fast.
-
-    Of larger fronts four pairs of sites are transformed at once, in each part of the largest.
-    """
-    least = max(4.0, least * (1 - 1e-12))
-    together = 2 if least < 256 else 8 if least < LARGE else 8 * ROWS
-    return together * int(next_fast_len(math.ceil(least / together), real=True))
+    return fingerprint("crackfront.simulate.run.run_simulation")

@@ -169,9 +169,8 @@ def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
 @functools.cache
 def row_fingerprint() -> str:
     """Twelve hexadecimal digits that change with any source that makes a row of a result."""
-    return fingerprint(
-        "analysis/steady.py", "sweep/table.py", "simulate/laws.py", "simulate/laws.csv"
-    )
+    home = "crackfront.sweep.table"
+    return fingerprint(f"{home}.sweep_row", f"{home}.failed_row")
 
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:

@@ -15,13 +15,13 @@ import click
 import numpy as np
 
 from crackfront.core.adhesion import chemical_adhesion
+from crackfront.core.contact import contact_field
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import CONTACT_MODULUS
-from crackfront.simulate.contact import contact_field
 
 CUTOFF = 0.08
 N_POINT = 128
@@ -41,7 +41,7 @@ def cycle(rms: float, seed: int, step: float) -> CycleRecord:
     noise = gaussian_field(spectrum, N_POINT, N_POINT * pixel, np.random.default_rng(seed))
     noise *= rms / np.sqrt(spectrum.mean_square(0.0))
     field = contact_field(
-        chemical_adhesion(noise, pixel), N_ANGLE, CUTOFF / 5, 1.0, band_limited=True
+        chemical_adhesion(noise, pixel), 1.0, N_ANGLE, CUTOFF / 5, band_limited=True
     )
     return run_cycle(field, LoadSchedule(1.0, step), recorder=Recorder(energy=True))
 

@@ -335,9 +335,8 @@ class Case:
     @property
     def stem(self) -> str:
         """Name of its file, which changes with anything that determines the result."""
-        here = "../studies/boundary_elements"
-        sources = (f"{here}/contact.py", f"{here}/cycle.py")
-        digest = fingerprint(*sources, "core/synthesis.py", "core/spectrum.py")
+        here = "studies.boundary_elements"
+        digest = fingerprint(f"{here}.contact", f"{here}.cycle")
         text = json.dumps([asdict(self), digest], sort_keys=True, allow_nan=False)
         return f"{self.label}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 

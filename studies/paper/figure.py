@@ -195,19 +195,28 @@ def _module(name: str) -> str:
 
 @functools.cache
 def figure_fingerprint(name: str) -> str:
-    """Twelve hexadecimal digits that change with what the data of a figure come from.
-
-    Its checks and its drawing do not count, nor do other figures.
-    """
+    """Twelve hexadecimal digits that change with what the data of a figure come from."""
     found = figure(name)
-    roots = [part.__name__ for part in (found.parameters, found.record, found.compute)]
-    others = [f"../studies/paper/{one.replace('-', '_')}.py" for one in FIGURES]
-    return fingerprint(
-        *("core", "analysis", "simulate", "simulate/laws.csv", "topography"),
-        "../studies/paper",
-        without=others,
-        reached={f"../studies/paper/{name.replace('-', '_')}.py": roots},
-    )
+    return fingerprint(*_full_names(found.parameters, found.record, found.compute))
+
+
+@functools.cache
+def drawing_fingerprint(name: str) -> str:
+    """Twelve hexadecimal digits that change with the drawing and the animation of a figure."""
+    found = figure(name)
+    parts = [found.record, found.draw, *([found.animate] if found.animate else [])]
+    saved = "crackfront.plots.style.save_figure", "crackfront.plots.animation.save_animation"
+    return fingerprint(*_full_names(*parts), *saved)
+
+
+def checks_fingerprint() -> str:
+    """Twelve hexadecimal digits that change with the checks of any figure."""
+    return fingerprint(*_full_names(checks_table, *(figure(name).checks for name in FIGURES)))
+
+
+def _full_names(*parts: Any) -> list[str]:
+    """Names of classes and functions, with their modules."""
+    return [f"{part.__module__}.{part.__qualname__}" for part in parts]
 
 
 SCALES = ("quick", "paper")

@@ -1,26 +1,33 @@
-"""What changes the fingerprint of sources, and with it the key of every simulation."""
+"""What changes the fingerprint of sources, and with it what is computed anew."""
 
+import json
 import re
 import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
 from crackfront.core import fingerprint as module
 from crackfront.core.fingerprint import fingerprint
-from crackfront.data.provenance import package_fingerprint
 from crackfront.simulate.simulation import simulation_fingerprint
-from studies.paper.figure import figure_fingerprint
+from crackfront.sweep.table import row_fingerprint
+from studies.paper.figure import checks_fingerprint, drawing_fingerprint, figure_fingerprint
 
-KERNEL = "core/solver/monotone.py"
+KERNEL = "crackfront/core/solver/monotone.py"
+RULES = Path(module.ROOT, "workflow/rules")
 
 
 @pytest.fixture
-def package(tmp_path, monkeypatch):
-    """A copy of the package, whose fingerprints are taken instead."""
-    copy = tmp_path / "crackfront"
-    shutil.copytree(module.PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(module, "PACKAGE", copy)
-    return copy
+def sources(tmp_path, monkeypatch):
+    """A copy of the sources, whose fingerprints are taken instead."""
+    for name in ("crackfront", "studies"):
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(module.ROOT / name, tmp_path / name, ignore=ignored)
+    monkeypatch.setattr(module, "ROOT", tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path
 
 
 def edited(path, *changes):
@@ -37,62 +44,76 @@ def key_part():
     return simulation_fingerprint.__wrapped__()
 
 
+def parameters():
+    """Fingerprints that are parameters of the rules of the workflow, and the key of simulations."""
+    found = {"simulate": key_part(), "row": row_fingerprint.__wrapped__()}
+    for path in RULES.glob("*.smk"):
+        for rule, body in re.findall(r"^rule (\w+):\n((?:[ #].*\n|\n)+)", path.read_text(), re.M):
+            if names := re.search(r"sources=fingerprint\(([^)]*)\)", body):
+                found[rule] = fingerprint(*re.findall(r'"([^"]+)"', names[1]))
+    for name in ("main-2", "main-3ab"):
+        found[f"{name} data"] = figure_fingerprint.__wrapped__(name)
+        found[f"{name} drawing"] = drawing_fingerprint.__wrapped__(name)
+    return found | {"figure_checks": checks_fingerprint()}
+
+
 def test_a_fingerprint_is_twelve_hexadecimal_digits():
-    assert re.fullmatch("[0-9a-f]{12}", fingerprint("core"))
+    assert re.fullmatch("[0-9a-f]{12}", fingerprint("crackfront.core"))
 
 
-def test_equal_sources_have_equal_fingerprints(package):
+def test_an_unknown_name_is_refused():
+    with pytest.raises(ValueError, match=r"no module or definition crackfront\.core\.jkr\.none"):
+        fingerprint("crackfront.core.jkr.none")
+
+
+def test_equal_sources_have_equal_fingerprints_wherever_they_lie(sources):
     assert key_part() == simulation_fingerprint()
 
 
 def test_a_known_fingerprint_is_read_and_a_damaged_one_is_found_anew(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    found = fingerprint("core/units.py")
+    found = fingerprint("crackfront.core.units")
     [kept] = (tmp_path / "crackfront/fingerprints").iterdir()
     with monkeypatch.context() as patch:
-        patch.setattr(module.ast, "parse", None)
-        assert fingerprint("core/units.py") == found
-    for damaged in ("", found[:5], "no digits here", "\xff"):
+        patch.setattr(module, "_Reach", None)
+        assert fingerprint("crackfront.core.units") == found
+    for damaged in ("", found[:5], "[]", '{"files": 1}', "\xff"):
         kept.write_text(damaged, "latin-1")
-        assert fingerprint("core/units.py") == kept.read_text("ascii") == found
+        assert fingerprint("crackfront.core.units") == found
+        assert json.loads(kept.read_text())["fingerprint"] == found
 
 
-def test_what_is_known_of_a_source_is_not_taken_for_what_only_a_part_of_it_reaches(package):
-    place = "core/units.py"
-    assert fingerprint(place) != fingerprint(reached={place: ["CONTACT_MODULUS"]})
-    assert fingerprint(place) == fingerprint(place)
-
-
-def test_a_mended_docstring_a_comment_and_an_annotation_change_no_key(package):
-    before = key_part()
+def test_a_mended_docstring_a_comment_and_an_annotation_change_nothing(sources):
+    before = parameters()
     edited(
-        package / KERNEL,
+        sources / KERNEL,
         ('^r"""The fast', 'r"""The very fast'),
         ("^_ROUNDS = 12", "# Why.\n_ROUNDS: int = 12"),
     )
     edited(
-        package / "core/jkr.py", ("-> Array:", "-> ArrayLike:"), ("Contact radius a", "Radius a")
+        sources / "crackfront/core/jkr.py",
+        ("-> Array:", "-> ArrayLike:"),
+        ("Contact radius a", "Radius a"),
     )
-    assert key_part() == before
+    assert parameters() == before
 
 
-def test_a_function_that_moves_changes_no_key(package):
-    before = key_part()
-    source = (package / "core/jkr.py").read_text("utf-8")
+def test_a_function_that_moves_changes_nothing(sources):
+    before = parameters()
+    path = sources / "crackfront/core/jkr.py"
+    source = path.read_text("utf-8")
     start = source.index("def pull_off_force")
     end = source.index("\n\n\n", start)
-    (package / "core/jkr.py").write_text(
-        source[:start] + source[end + 3 :] + "\nfrom crackfront.core.pull import pull_off_force\n",
-        "utf-8",
-    )
-    (package / "core/pull.py").write_text(source[start:end] + "\n", "utf-8")
-    assert key_part() == before
+    left = source[:start] + source[end + 3 :]
+    path.write_text(f"{left}\nfrom crackfront.core.pull import pull_off_force\n", "utf-8")
+    path.with_name("pull.py").write_text(source[start:end] + "\n", "utf-8")
+    assert parameters() == before
 
 
-def test_a_local_module_that_is_renamed_changes_no_key(package):
+def test_a_local_module_that_is_renamed_changes_no_key(sources):
     before = key_part()
-    (package / "core/jkr.py").rename(package / "core/smooth.py")
-    for path in package.rglob("*.py"):
+    (sources / "crackfront/core/jkr.py").rename(sources / "crackfront/core/smooth.py")
+    for path in sources.rglob("*.py"):
         text = path.read_text("utf-8")
         text = re.sub(r"\bjkr\.", "smooth.", text.replace("import jkr", "import smooth"))
         path.write_text(text.replace("core.jkr", "core.smooth"), "utf-8")
@@ -103,71 +124,99 @@ def test_a_local_module_that_is_renamed_changes_no_key(package):
     ("place", "change"),
     [
         (KERNEL, ("^_ROUNDS = 12", "_ROUNDS = 13")),
-        ("core/solver/forces.py", (r"reach \* inverse\) \+ 1", "reach * inverse) + 2")),
-        ("core/units.py", ("CONTACT_MODULUS = 0.75", "CONTACT_MODULUS = 0.7500001")),
-        ("simulate/simulation.py", ("math.ceil", "math.floor")),
+        ("crackfront/core/solver/forces.py", (r"reach \* inverse\) \+ 1", "reach * inverse) + 2")),
+        ("crackfront/core/units.py", ("CONTACT_MODULUS = 0.75", "CONTACT_MODULUS = 0.7500001")),
+        ("crackfront/core/spectrum.py", (r"\(-2 - 2 \* self", "(-2.1 - 2 * self")),
+        ("crackfront/core/spectrum.py", (r"np.where\(q <= 1 \+ 1e-12", "np.where(q <= 1 + 1e-11")),
+        ("crackfront/core/geometry/line.py", ("_spring_force.*\n.*\n    return", r"\g<0> 2 *")),
+        ("crackfront/core/cycle/period.py", ("^_BEHIND = 1.3", "_BEHIND = 1.4")),
+        ("crackfront/core/cycle/follow.py", ("is Status.CONVERGED", "is Status.STEP_LIMIT")),
+        ("crackfront/simulate/contact.py", (r"2 \* math.sqrt", "3 * math.sqrt")),
     ],
-    ids=lambda value: value if isinstance(value, str) else "",
 )
-def test_a_changed_constant_or_call_changes_the_key(package, place, change):
+def test_what_determines_the_numbers_of_a_simulation_changes_its_key(sources, place, change):
     before = key_part()
-    edited(package / place, change)
+    edited(sources / place, change)
     assert key_part() != before
 
 
-def test_what_no_simulation_uses_changes_no_key(package):
-    before = key_part()
-    for place in (*module.NO_PART, "plots/style.py", "cli/sweep.py"):
-        with (package / place).open("a", encoding="utf-8") as file:
-            file.write("ADDED = 1\n")
-    assert key_part() == before
+def test_every_function_that_a_simulation_runs_counts_in_its_key(tmp_path):
+    program = """
+import sys
+from pathlib import Path
+from crackfront.core import fingerprint as module
+from crackfront.simulate.run import run_simulation
+from crackfront.sweep.configuration import load_configuration
+
+root = module.ROOT / "crackfront"
+called = set()
+
+def note(frame, event, _):
+    code = frame.f_code
+    if event == "call" and Path(code.co_filename).is_relative_to(root):
+        name = ".".join(Path(code.co_filename).relative_to(root.parent).with_suffix("").parts)
+        called.add((name, code.co_qualname.partition(".")[0]))
+
+simulations = [next(iter(load_configuration(Path(f"config/{name}.yaml")).simulations()))
+               for name in ("test", "line-test")]
+for simulation in simulations:
+    run_simulation(simulation)  # compiled without a trace, which would take minutes
+    sys.setprofile(note)
+    run_simulation(simulation)
+    sys.setprofile(None)
+counted = {(one.module.name, name)
+           for one in module._Reach(["crackfront.simulate.run.run_simulation"])._taken
+           for name in one.defined}
+missed = {one for one in called - counted if one[0] not in module._NO_PART}
+assert len(called) > 60, len(called)
+assert not missed, missed
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=module.ROOT, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
 
 
-RINGS = "studies/paper/main_2.py"
+FIGURES = "main-2 drawing", "main-3ab drawing", "main-3ab data"
+DRAWN = {"sweep_figures", "accuracy_report", "validate", *FIGURES[:2]}
+LAWS = {"accuracy_study", "accuracy_report", "row", "aggregate", FIGURES[2]}
 
 
 @pytest.mark.parametrize(
-    ("place", "change", "counts"),
+    ("place", "change", "stale"),
     [
-        (RINGS, ("^_PATH = 257", "_PATH = 513"), True),
-        (RINGS, (r"\+ 0\.5\) / count", "+ 0.4) / count"), True),
-        (RINGS, ('variable\\("contact radius"', 'variable("radius"'), True),
-        (RINGS, (r"0\.8 \* PAGE", "0.9 * PAGE"), False),
-        (RINGS, ("^_REACH = 2.2", "_REACH = 2.3"), False),
-        (RINGS, ("^_ROUND_OFF = 1e-9", "_ROUND_OFF = 1e-8"), False),
-        ("studies/paper/main_1d.py", ("^TOLERANCE = 1e-13", "TOLERANCE = 1e-12"), False),
-        ("studies/paper/rings.py", ("^INNERMOST = 1e-3", "INNERMOST = 2e-3"), True),
-        ("plots/parts.py", ('"mutation_scale": 8', '"mutation_scale": 9'), False),
+        ("crackfront/plots/style.py", ("^COLUMN, PAGE = 85", "COLUMN, PAGE = 86"), DRAWN),
+        ("crackfront/plots/loop.py", ("force", "forces"), {"sweep_figures"}),
+        ("crackfront/plots/library.py", ("def plot_loop", "def plot_the_loop"), set()),
+        ("crackfront/cli/report.py", ("click.echo", "click.secho"), set()),
+        ("crackfront/core/cycle/instabilities.py", ("middle", "halfway"), {"main-3ab data"}),
+        ("crackfront/simulate/laws.csv", ("\n", "\n\n"), LAWS),
+        (
+            "studies/accuracy/study.py",
+            ("time.process_time", "time.perf_counter"),
+            {"accuracy_study"},
+        ),
+        ("studies/accuracy/report.py", ("laws.csv", "law.csv"), {"accuracy_report"}),
+        ("studies/paper/main_2.py", ("^_PATH = 257", "_PATH = 513"), {"main-2 data"}),
+        ("studies/paper/main_2.py", (r"\+ 0\.5\) / count", "+ 0.4) / count"), {"main-2 data"}),
+        ("studies/paper/main_2.py", (r"0\.8 \* PAGE", "0.9 * PAGE"), {"main-2 drawing"}),
+        ("studies/paper/main_2.py", ("^_ROUND_OFF = 1e-9", "_ROUND_OFF = 1e-8"), {"figure_checks"}),
     ],
-    ids=lambda value: str(value),
 )
-def test_what_the_data_of_a_figure_come_from_changes_its_fingerprint_alone(
-    package, place, change, counts
-):
-    before = figure_fingerprint.__wrapped__("main-2")
-    edited(package / place, change)
-    assert (figure_fingerprint.__wrapped__("main-2") != before) == counts
+def test_a_change_makes_stale_what_comes_from_it_and_nothing_else(sources, place, change, stale):
+    before = parameters()
+    edited(sources / place, change)
+    after = parameters()
+    assert {name for name in after if after[name] != before[name]} == stale
 
 
-def test_equal_names_of_two_modules_are_told_apart(package):
-    places = "core/one.py", "core/other.py"
+def test_equal_names_of_two_modules_are_told_apart(sources):
+    names = "one", "other"
     before = None
     for values in ((1, 2), (2, 1)):
-        for place, value in zip(places, values, strict=True):
-            text = f"_SIZE = {value}\n\n\ndef {place[5:8]}():\n    return _SIZE\n"
-            (package / place).write_text(text, "utf-8")
-        assert fingerprint(*places) != before
-        before = fingerprint(*places)
-
-
-def test_data_count_byte_by_byte(package):
-    before = fingerprint("simulate/laws.csv")
-    with (package / "simulate/laws.csv").open("a", encoding="utf-8") as file:
-        file.write("\n")
-    assert fingerprint("simulate/laws.csv") != before
-
-
-def test_the_fingerprint_of_the_package_changes_with_any_source(package):
-    before = package_fingerprint.__wrapped__()
-    edited(package / "cli/sweep.py", ("default=60.0", "default=61.0"))
-    assert package_fingerprint.__wrapped__() != before
+        for name, value in zip(names, values, strict=True):
+            text = f"_SIZE = {value}\n\n\ndef {name}():\n    return _SIZE\n"
+            (sources / f"crackfront/core/{name}.py").write_text(text, "utf-8")
+        found = fingerprint(*(f"crackfront.core.{name}" for name in names))
+        assert found != before
+        before = found

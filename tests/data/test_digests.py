@@ -12,6 +12,7 @@ from click.testing import CliRunner
 import crackfront as cf
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.cli import main
+from crackfront.core.contact import contact_field
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.solver.relax import SOLVERS
@@ -26,7 +27,6 @@ from crackfront.data.files import (
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import blank_figure, save_figure
-from crackfront.simulate.contact import tile_contact
 from crackfront.simulate.fields import read_field, write_field
 from crackfront.simulate.files import (
     cycle_dataset,
@@ -150,7 +150,9 @@ def kinds(tmp_path_factory):
     cf.save_result(cf.run_loop(surface, step=0.25), folder / "loop.nc")
     adhesion = surface_adhesion(surface)
     write_field(folder / "field.nc", adhesion, origin)
-    record = run_cycle(tile_contact(adhesion, 0.2), LoadSchedule(0.2, 0.1), SOLVERS["newton"](1e-6))
+    record = run_cycle(
+        contact_field(adhesion, 0.2), LoadSchedule(0.2, 0.1), SOLVERS["newton"](1e-6)
+    )
     write_dataset(folder / "cycle.nc", cycle_dataset(record), origin)
     parameters = load_figure(ROOT / "config/figures/main-1d.yaml", "quick")
     smooth = FIGURE.compute(parameters, lambda line: None)

@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 
 from crackfront.core import jkr
-from crackfront.core.adhesion import AdhesionMap, correlation_length
+from crackfront.core.adhesion import correlation_length
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import last_place
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton, Reference
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.contact import contact_field, simulation_adhesion, tile_contact
+from crackfront.simulate.contact import simulation_adhesion
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.run import compile_solver, run_simulation
 from crackfront.simulate.simulation import Numerics, Resolution, Simulation, resolution
@@ -161,40 +160,6 @@ def test_a_chemical_field_has_the_spectrum_itself_and_keeps_the_mean():
     # C(q) = const: <q> = 2 q_s / 3, while roughness weighs by q once more: <q> = 3 q_s / 4.
     assert correlation_length("chemical", flat) == pytest.approx(0.2 * 3 / 2)
     assert correlation_length("roughness", flat) == pytest.approx(0.2 * 4 / 3)
-
-
-@pytest.mark.parametrize("strength", [0.0, 0.5, 3.0])
-def test_a_smooth_contact_of_the_strongest_adhesion_stays_inside_the_field(strength):
-    adhesion = simulation_adhesion(replace(SIMULATION, kind="chemical"))
-    adhesion = replace(adhesion, work_of_adhesion=adhesion.work_of_adhesion * strength + 0.01)
-    field = contact_field(adhesion, 8, 0.1, 0.7)
-    strongest = np.max(adhesion.work_of_adhesion) / WORK_OF_ADHESION
-    assert last_place(field) > jkr.equilibrium_radius(0.7, max(strongest, 1.0))
-
-
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("count", [1, 64])
-def test_a_tile_that_is_not_finite_is_refused_with_its_place_before_its_contact_is_sized(
-    value, count
-):
-    values = np.full((8, 8), WORK_OF_ADHESION)
-    values.flat[-count:] = value
-    row, column = np.unravel_index(64 - count, (8, 8))
-    with pytest.raises(
-        ValueError, match=rf"is {value} at x index {row}, y index {column} \({count} such values\)"
-    ):
-        tile_contact(AdhesionMap(values, 0.1, 0.0, 0.0), 0.5)
-
-
-def test_a_given_tile_is_resolved_by_its_pixels():
-    adhesion = simulation_adhesion(SIMULATION)
-    field = tile_contact(adhesion, 1.0)
-    assert (field.cubic, field.spacing) == (True, adhesion.pixel / 2)
-    straight = tile_contact(adhesion, 1.0, interpolation="linear")
-    assert (straight.cubic, straight.spacing) == (False, adhesion.pixel / 4)
-    assert field.geometry.n_site >= 2 * np.pi * jkr.equilibrium_radius(1.0) / adhesion.pixel
-    chosen = tile_contact(adhesion, 1.0, n_angle=12, samples_per_pixel=2)
-    assert (chosen.geometry.n_site, chosen.spacing) == (12, adhesion.pixel / 2)
 
 
 def test_a_simulation_completes_its_cycle_and_says_what_it_cost():

@@ -34,7 +34,9 @@ rule accuracy_study:
     output:
         f"{ACCURACY}/{{study}}-{{scene}}.nc",
     params:
-        sources=package_fingerprint(),
+        sources=fingerprint(
+            "studies.accuracy.files.STUDIES", "studies.accuracy.scenes.SCENES"
+        ),
         # At weak disorder few surfaces have an avalanche, on which the laws depend.
         surfaces=lambda wildcards: (
             24
@@ -72,6 +74,6 @@ rule accuracy_report:
             suffix=["pdf", "png"],
         ),
     params:
-        sources=package_fingerprint(),
+        sources=fingerprint("studies.accuracy.report.write_report"),
     shell:
         "python -m studies accuracy report --output {ACCURACY:q}"

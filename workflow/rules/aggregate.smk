@@ -4,7 +4,11 @@ rule aggregate:
     output:
         f"{RESULTS}/hysteresis.nc",
     params:
-        sources=package_fingerprint(),
+        sources=fingerprint(
+            "crackfront.sweep.table.write_hysteresis",
+            "crackfront.sweep.table.sweep_row",
+            "crackfront.sweep.table.failed_row",
+        ),
         sweep=SWEEP.fingerprint,
     shell:
         "crackfront aggregate {CONFIGURATION:q} --output {RESULTS:q}"

@@ -13,7 +13,13 @@ rule sweep_figures:
             for figure in SWEEP_FIGURES
         ],
     params:
-        sources=package_fingerprint(),
+        sources=fingerprint(
+            "crackfront.analysis.steady.steady_adhesion",
+            "crackfront.analysis.sweep.fit_sweep",
+            "crackfront.plots.loop",
+            "crackfront.plots.style.save_figure",
+            "crackfront.plots.sweep",
+        ),
         sweep=SWEEP.fingerprint,
     shell:
         "crackfront figures {CONFIGURATION:q} --output {RESULTS:q}"

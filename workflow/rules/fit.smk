@@ -4,7 +4,11 @@ rule fit:
     output:
         multiext(f"{RESULTS}/fit", ".nc", ".json", ".md"),
     params:
-        sources=package_fingerprint(),
+        sources=fingerprint(
+            "crackfront.analysis.sweep.fit_sweep",
+            "crackfront.sweep.fit_files.write_fit",
+            "crackfront.sweep.table.read_table",
+        ),
         sweep=SWEEP.fingerprint,
     shell:
         "crackfront fit {CONFIGURATION:q} --output {RESULTS:q}"
@@ -21,7 +25,11 @@ rule summary:
             category="Fit, configuration and provenance",
         ),
     params:
-        sources=package_fingerprint(),
+        sources=fingerprint(
+            "crackfront.analysis.sweep.fit_sweep",
+            "crackfront.analysis.report.fit_table",
+            "crackfront.sweep.summary.summary_page",
+        ),
         sweep=SWEEP.fingerprint,
     shell:
         "crackfront summary {CONFIGURATION:q} --output {RESULTS:q}"

@@ -67,6 +67,7 @@ rule figure_of_sweep:
         f"{PAPER}/si-5.nc",
     params:
         sources=figure_fingerprint("si-5"),
+        fit=fingerprint("crackfront.analysis.sweep.fit_sweep"),
         settings=settings_of,
         sweep=lambda wildcards: load_configuration(Path(SWEEPS[SCALE])).fingerprint,
     shell:
@@ -83,7 +84,7 @@ rule figure_drawing:
         f"{PAPER}/{{figure}}.pdf",
         f"{PAPER}/{{figure}}.png",
     params:
-        sources=package_fingerprint(),
+        sources=lambda wildcards: drawing_fingerprint(wildcards.figure),
         settings=settings_of,
     shell:
         "python -m studies paper draw {input:q}"
@@ -99,7 +100,7 @@ rule figure_animation:
     wildcard_constraints:
         figure="|".join(ANIMATED),
     params:
-        sources=package_fingerprint(),
+        sources=lambda wildcards: drawing_fingerprint(wildcards.figure),
         settings=settings_of,
     shell:
         "python -m studies paper draw {input:q}"
@@ -111,7 +112,7 @@ rule figure_checks:
     output:
         "results/figures/checks.md",
     params:
-        sources=package_fingerprint(),
+        sources=checks_fingerprint(),
         scale=SCALE,
     shell:
         "python -m studies paper check --output results/figures"

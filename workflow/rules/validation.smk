@@ -20,7 +20,10 @@ rule validate:
         f"{VALIDATED}/picture.nc",
         multiext(f"{VALIDATED}/validation", ".pdf", ".png"),
     params:
-        sources=package_fingerprint(),
+        sources=fingerprint(
+            "studies.boundary_elements.report.write_validation",
+            "studies.boundary_elements.amplitude_report.write_amplitudes",
+        ),
         settings=lambda wildcards: repr(load_validation(Path(VALIDATION))),
     shell:
         "python -m studies boundary-elements validate {VALIDATION:q} --output {VALIDATED:q}"

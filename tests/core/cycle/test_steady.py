@@ -9,6 +9,7 @@ import pytest
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import correlation_length
+from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import first_touch
@@ -27,7 +28,7 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.contact import contact_field, simulation_adhesion
+from crackfront.simulate.contact import simulation_adhesion
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation
 
@@ -54,7 +55,7 @@ def simulation(elastic_energy=0.04, realisation=0, schedule=SCHEDULE):
 def field_of(one):
     sizes = one.resolution
     return contact_field(
-        simulation_adhesion(one), sizes.n_angle, sizes.spacing, 1.6, band_limited=True
+        simulation_adhesion(one), 1.6, sizes.n_angle, sizes.spacing, band_limited=True
     )
 
 

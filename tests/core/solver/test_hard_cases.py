@@ -8,6 +8,7 @@ import yaml
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
+from crackfront.core.contact import contact_field
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -19,7 +20,6 @@ from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
-from crackfront.simulate.contact import contact_field
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
 
@@ -40,7 +40,7 @@ def chemical_tile(rms, cutoff, seed, n_angle, *, penetration=1.0, interpolation=
     noise *= rms / np.sqrt(spectrum.mean_square(0.0))
     adhesion = chemical_adhesion(noise, pixel)
     return contact_field(
-        adhesion, n_angle, cutoff / 5, penetration, interpolation, band_limited=True
+        adhesion, penetration, n_angle, cutoff / 5, interpolation, band_limited=True
     )
 
 
@@ -293,7 +293,7 @@ def test_self_affine_surfaces_of_any_hurst_exponent_run_through_a_cycle(hurst):
     heights = gaussian_field(spectrum, 128, 3.2, np.random.default_rng(8))
     adhesion = rough_adhesion(heights, 0.025)
     assert adhesion.e_el == pytest.approx(0.05, rel=0.15)
-    field = contact_field(adhesion, 240, 0.02, 0.8, band_limited=True)
+    field = contact_field(adhesion, 0.8, 240, 0.02, band_limited=True)
     reference, newton = (
         run_cycle(field, LoadSchedule(0.8, 0.1), SOLVERS[solver](1e-9), Recorder(fronts=True))
         for solver in ("reference", "newton")
@@ -325,7 +325,7 @@ def test_a_cutoff_of_exactly_two_pixels_gives_the_fronts_of_finer_pixels():
     for n_point in (32, 64, 128):
         heights = gaussian_field(spectrum, n_point, 3.2, np.random.default_rng(9))
         field = contact_field(
-            rough_adhesion(heights, 3.2 / n_point), 128, 0.02, 0.5, band_limited=True
+            rough_adhesion(heights, 3.2 / n_point), 0.5, 128, 0.02, band_limited=True
         )
         fronts.append(tight(np.full(128, 0.02), 0.5, 1, field, "newton"))
     assert np.std(fronts[2]) > 0.005
