@@ -13,16 +13,17 @@ from crackfront.data.provenance import provenance
 _BLOCK = re.compile(r"<!-- (?P<study>[\w-]+): (?P<name>.*?) -->.*?<!-- end -->", re.DOTALL)
 
 
-def markdown_table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Table in Markdown.
+def markdown_table(header: str, rows: Iterable[Sequence[str]]) -> str:
+    """Table in Markdown; the header has a bar between columns.
 
     Examples
     --------
-    >>> print(markdown_table(["scene", "time / s"], [["flat", "3"]]))
+    >>> print(markdown_table("scene | time / s", [["flat", "3"]]))
     | scene | time / s |
     | --- | --- |
     | flat | 3 |
     """
+    columns = header.split(" | ")
     lines = [columns, ["---"] * len(columns), *rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 

@@ -1,10 +1,10 @@
 r"""How wrong numerics make w_appr and w_retr: measured laws, and the numerics for an asked error.
 
-`python -m studies accuracy` measures the laws and writes `laws.csv`. An error is that of the mean
-apparent work of adhesion of one branch, in units of e_el: that of its factor k. It has a bias,
-equal on all surfaces, and a scatter, from avalanches that one discretisation triggers and another
-does not; the scatter falls with the root of the size, the number of cutoffs along the front times
-the number of its states. Each knob has a law of its own,
+`python -m studies accuracy report` fits the laws to measured errors and writes `laws.csv`. An error
+is that of the mean apparent work of adhesion of one branch, in units of e_el: that of its factor k.
+It has a bias, equal on all surfaces, and a scatter, from avalanches that one discretisation
+triggers and another does not; the scatter falls with the root of the size, the number of cutoffs
+along the front times the number of its states. Each knob has a law of its own,
 
 .. math:: \log e = c_0 + c_1 x,
 

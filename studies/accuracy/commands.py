@@ -1,4 +1,4 @@
-"""Numerical errors: measure them scene by scene, and report all of them."""
+"""Commands that measure errors: of the numerics scene by scene, of predictions, of steady runs."""
 
 from __future__ import annotations
 
@@ -16,6 +16,30 @@ from crackfront.cli.report import (
     whole,
 )
 from crackfront.data.bounds import Range
+from crackfront.data.files import write_dataset
+from crackfront.data.provenance import provenance
+from crackfront.simulate.run import compile_solver
+from studies.accuracy import (
+    energies as synthetic,
+)
+from studies.accuracy import (
+    energy_balance as balance,
+)
+from studies.accuracy import (
+    forgetting as starts,
+)
+from studies.accuracy import (
+    independence as states,
+)
+from studies.accuracy import (
+    predictions as films,
+)
+from studies.accuracy import (
+    scans as instrument,
+)
+from studies.accuracy.files import STUDIES
+from studies.accuracy.report import write_report
+from studies.accuracy.scenes import SCENES
 
 
 @click.group()
@@ -42,7 +66,7 @@ _output = click.option(
 @_output
 @click.option(
     "--study",
-    type=click.Choice(["knobs", "asked", "unseen", "averages", "coverage"]),
+    type=click.Choice(list(STUDIES)),
     default="knobs",
     show_default=True,
     help="Errors of single knobs; of numerics that the laws choose; of these on surfaces without a "
@@ -53,34 +77,78 @@ _output = click.option(
 )
 def scene(scene: str, output: Path, study: str, realisations: int) -> None:
     """Measure the errors of one scene."""
-    from crackfront.data.files import write_dataset
-    from crackfront.data.provenance import provenance
-    from crackfront.simulate.run import compile_solver
-    from studies.accuracy.files import SECONDS, STUDIES
-    from studies.accuracy.scenes import SCENES
-
     if scene not in SCENES:
         near = difflib.get_close_matches(scene, SCENES, n=1)
-        names = ", ".join(SCENES)
-        hint = f"did you mean {near[0]}?" if near else f"choose one of {names}"
+        hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(SCENES)}"
         raise click.BadParameter(f"there is no scene {scene!r}; {hint}")
     refuse_unwritable(output)
-    announce_cost(realisations * SECONDS[study](SCENES[scene]))
+    announce_cost(realisations * STUDIES[study].seconds(SCENES[scene]))
     announce_compilation()
     compile_solver("newton")
-    found = STUDIES[study](SCENES[scene], realisations, click.echo)
+    found = STUDIES[study].measured(SCENES[scene], realisations, click.echo)
     path = output / f"{study}-{scene}.nc"
     write_dataset(path, found, provenance())
     click.echo(f"errors: {path}")
 
 
-@commands.command(
-    "report", epilog=examples("python -m studies accuracy report --page docs/accuracy.md")
-)
+@commands.command(epilog=examples("python -m studies accuracy report --page docs/accuracy.md"))
 @_output
 @click.option("--page", type=FILE, help="Page whose tables are written anew, as docs/accuracy.md.")
-def accuracy_report(output: Path, page: Path | None) -> None:
-    """Fit the laws, write the tables, and draw the figures of all measured scenes."""
-    from studies.accuracy.report import write_report
-
+def report(output: Path, page: Path | None) -> None:
+    """Fit the laws, write the tables, and draw the figures of what was measured."""
     write_report(output, page, click.echo)
+
+
+@commands.command(epilog=examples("python -m studies accuracy predictions"))
+def predictions() -> None:
+    """Hold predictions from scans against simulations of the surfaces; print a table."""
+    click.echo(films.comparison_table(films.comparisons()))
+
+
+@commands.command(
+    epilog=examples(
+        "python -m studies accuracy energies --scans 12",
+        "python -m studies accuracy energies --speed",
+    )
+)
+@click.option(
+    "--scans", type=whole(Range(1, 1e6)), default=14, show_default=True, help="Scans of each kind."
+)
+@click.option("--speed", is_flag=True, help="Time predictions from large maps instead.")
+def energies(scans: int, speed: bool) -> None:
+    """Hold e_el of synthetic scans against that of their spectra; print a table."""
+    if speed:
+        for one in synthetic.speeds():
+            click.echo(str(one))
+    else:
+        click.echo(synthetic.energy_table(synthetic.found_scans(scans)))
+
+
+@commands.command(epilog=examples("python -m studies accuracy scans"))
+@click.option("--output", type=FILE, default=Path("examples/scans"), show_default=True)
+def scans(output: Path) -> None:
+    """Write the synthetic scans of nanodiamond that the examples read."""
+    refuse_unwritable(output)
+    instrument.write_scans(output)
+    click.echo(f"scans: {output}")
+
+
+@commands.command(epilog=examples("python -m studies accuracy independence"))
+def independence() -> None:
+    """Measure errors of k from steady branches, and which states are independent; print tables."""
+    announce_compilation()
+    click.echo(states.independence_tables())
+
+
+@commands.command(epilog=examples("python -m studies accuracy forgetting"))
+def forgetting() -> None:
+    """Count steady states that depend on where their branch began; print a table."""
+    announce_compilation()
+    click.echo(starts.forgetting_table())
+
+
+@commands.command("energy-balance", epilog=examples("python -m studies accuracy energy-balance"))
+def energy_balance() -> None:
+    """Compare the dissipated energy of cycles with the work of their steps; print a table."""
+    announce_compilation()
+    click.echo(balance.energy_table())

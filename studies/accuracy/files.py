@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -18,7 +18,7 @@ from studies.accuracy.averages import (
     sampling_errors,
     sampling_seconds,
 )
-from studies.accuracy.scenes import HELD_OUT, SCENES, Progress, Scene
+from studies.accuracy.scenes import HELD_OUT, SCENES, Progress, Scene, Setting
 from studies.accuracy.study import Errors, SceneErrors, scene_errors, setting_seconds
 
 Record = TypeVar("Record")
@@ -31,40 +31,44 @@ _COVERED = (0.1, 0.03, 0.01)
 _UNSEEN = (0.03, 0.01)
 """Errors of k that are asked for on surfaces to which no law was fitted."""
 
-STUDIES: dict[str, Callable[[Scene, int, Progress], xr.Dataset]] = {
-    "knobs": lambda scene, n_realisation, progress: errors_dataset(
-        scene_errors(scene, scene.single_settings, range(n_realisation), progress)
-    ),
-    "asked": lambda scene, n_realisation, progress: errors_dataset(
-        scene_errors(scene, scene.asked_settings(), range(n_realisation), progress)
-    ),
-    "unseen": lambda scene, n_realisation, progress: errors_dataset(
-        scene_errors(
-            scene,
-            scene.asked_settings(_UNSEEN),
-            range(HELD_OUT, HELD_OUT + n_realisation),
-            progress,
-        )
-    ),
-    "averages": lambda scene, n_realisation, progress: records_dataset(
-        "errors of averaging", scene, sampling_errors(scene, range(n_realisation), progress)
-    ),
-    "coverage": lambda scene, n_realisation, progress: records_dataset(
-        "true and stated errors",
-        scene,
-        held_out_coverage(scene, _COVERED, n_realisation, progress),
-    ),
-}
-"""What each study measures, of a scene and a number of surfaces."""
 
-SECONDS: dict[str, Callable[[Scene], float]] = {
-    "knobs": lambda scene: setting_seconds(scene, scene.single_settings),
-    "asked": lambda scene: setting_seconds(scene, scene.asked_settings()),
-    "unseen": lambda scene: setting_seconds(scene, scene.asked_settings(_UNSEEN)),
-    "averages": sampling_seconds,
-    "coverage": lambda scene: coverage_seconds(scene, _COVERED),
+class Study(NamedTuple):
+    """What is measured on a number of surfaces of a scene, and the time that one takes in s."""
+
+    measured: Callable[[Scene, int, Progress], xr.Dataset]
+    seconds: Callable[[Scene], float]
+
+
+def _of_settings(settings: Callable[[Scene], list[Setting]], first: int = 0) -> Study:
+    """Study of the errors of settings, on surfaces from a number on."""
+
+    def measured(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
+        surfaces = range(first, first + n_realisation)
+        return errors_dataset(scene_errors(scene, settings(scene), surfaces, progress))
+
+    return Study(measured, lambda scene: setting_seconds(scene, settings(scene)))
+
+
+def _averages(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
+    """Errors of schedules and tiles."""
+    samples = sampling_errors(scene, range(n_realisation), progress)
+    return records_dataset("errors of averaging", scene, samples)
+
+
+def _coverage(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
+    """True errors beside the stated ones."""
+    found = held_out_coverage(scene, _COVERED, n_realisation, progress)
+    return records_dataset("true and stated errors", scene, found)
+
+
+STUDIES = {
+    "knobs": _of_settings(lambda scene: scene.single_settings),
+    "asked": _of_settings(lambda scene: scene.asked_settings()),
+    "unseen": _of_settings(lambda scene: scene.asked_settings(_UNSEEN), HELD_OUT),
+    "averages": Study(_averages, sampling_seconds),
+    "coverage": Study(_coverage, lambda scene: coverage_seconds(scene, _COVERED)),
 }
-"""Processor time that a surface is expected to take in each study. (Units: s)"""
+"""The studies of a scene, by the first part of the names of their files."""
 
 
 def records_dataset(title: str, scene: Scene, records: tuple[Any, ...]) -> xr.Dataset:

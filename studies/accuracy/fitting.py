@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
@@ -24,14 +26,10 @@ from crackfront.plots.style import (
 from crackfront.simulate.laws import KNOBS, LAW_SIZE, Knob, Law, abscissa
 from studies.accuracy.study import SceneErrors, rms
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 Array = NDArray[np.float64]
 
 _LEAST = 3e-4
-"""Errors of k below this count as this: nobody asks for less."""
+"""Least error of k that counts, as nobody asks for less."""
 
 _FEW = 0.1
 """Scatter of k up to which the size of avalanches is measured; above, surfaces have many."""
@@ -104,7 +102,7 @@ def _knob_errors(study: SceneErrors, knob: Knob) -> tuple[Array, Array]:
 
 
 def _laws(study: SceneErrors, knob: Knob, avalanche: float) -> Iterator[Law]:
-    """Laws of one knob, of both branches."""
+    """Laws of one knob, the approach before the retraction."""
     tried, values = _knob_errors(study, knob)
     x = abscissa(knob, tried)
     n_realisation = values.shape[1]
@@ -177,9 +175,7 @@ def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
 
 
 def _draw_laws(axes: Axes, knob: Knob, studies: Sequence[SceneErrors], laws: Sequence[Law]) -> None:
-    """One knob."""
-    from matplotlib.ticker import NullFormatter
-
+    """Draw the errors of one knob and their laws, a colour a scene."""
     for study, colour, marker in zip(studies, COLOURS, MARKERS, strict=False):
         scene = study.scene
         values, found = _knob_errors(study, knob)

@@ -1,7 +1,5 @@
 """Whether steady branches have forgotten the circle at which they began.
 
-python -m studies.accuracy.forgetting
-
 Fronts that begin at the circle of `core.cycle.steady.forward_circle` are compared, load by load,
 with those that begin as far behind as the field allows.
 """
@@ -10,26 +8,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import click
 import numpy as np
 
 from crackfront.core import jkr
-from crackfront.core.adhesion import correlation_length
-from crackfront.core.cycle.follow import Load
-from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import forward_circle
-from crackfront.core.field.fields import TileField, first_place, last_place
+from crackfront.core.field.fields import first_place, last_place
 from crackfront.core.outcome import Direction
-from crackfront.core.solver.relax import Newton
 from crackfront.simulate.contact import simulation_field
 from studies.accuracy.scenes import SCENES, Scene
+from studies.accuracy.study import branch_record
+from studies.pages import markdown_table
 
-_CHEMICAL, _H03, _H08, _LARGE = (
-    SCENES[f"{shape}-0.04"] for shape in ("chemical", "h03", "h08", "large")
-)
 KNOBS = replace(
-    _CHEMICAL.reference,
+    SCENES["chemical-0.04"].reference,
     angles_per_cutoff=2.2,
     samples_per_cutoff=4,
     pixels_per_cutoff=4,
@@ -41,54 +33,51 @@ SAME = 1e-4
 """Largest difference of equal fronts, in short cutoffs."""
 
 SURFACES = tuple(
-    replace(scene, name=f"{scene.shape}, w_rms {rms:g}", elastic_energy=rms**2 / 4)
-    for scene, amplitudes in (
-        (_CHEMICAL, (0.1, 0.4, 0.84, 1.5)),
-        (_H03, (0.45, 0.77)),
-        (_H08, (0.45,)),
-        (SCENES["f013-0.14"], (0.2, 0.77)),
-        (_LARGE, (0.4,)),
+    replace(SCENES[name], name=f"{SCENES[name].shape}, w_rms {rms:g}", elastic_energy=rms**2 / 4)
+    for name, amplitudes in (
+        ("chemical-0.04", (0.1, 0.4, 0.84, 1.5)),
+        ("h03-0.04", (0.45, 0.77)),
+        ("h08-0.04", (0.45,)),
+        ("f013-0.14", (0.2, 0.77)),
+        ("large-0.04", (0.4,)),
     )
     for rms in amplitudes
 )
 
 
-def branch(field: TileField, start: np.ndarray, loads: np.ndarray, sign: Direction) -> CycleRecord:
-    """States of one branch from a start."""
-    recorder = Recorder(fronts=True)
-    loads_of_branch = (Load(float(penetration), sign) for penetration in loads)
-    recorder.run(field, start, loads_of_branch, Newton(KNOBS.tolerance))
-    return recorder.record()
-
-
-def differing(scene: Scene, sign: Direction) -> tuple[int, int]:
+def differing(scene: Scene, direction: Direction, n_realisation: int) -> tuple[int, int]:
     """Number of states that differ in any site, and of all that count as steady."""
-    length = correlation_length(scene.kind, scene.spectrum)
-    loads = 1.0 + sign * 6 * length * np.arange(N_LOAD)
-    schedule = LoadSchedule(float(loads.max()), 0.1)
     count = total = 0
-    for number in range(N_REALISATION):
-        field = simulation_field(replace(scene.simulation(KNOBS, number), schedule=schedule))
-        furthest = first_place(field) if sign > 0 else last_place(field)
-        behind = branch(field, np.full(field.geometry.n_site, furthest), loads, sign)
-        begin = jkr.equilibrium_radius(1.0) - sign * length
-        near = branch(field, forward_circle(field, 1.0, sign, begin, length), loads, sign)
-        if near.fronts is None or behind.fronts is None:
-            raise RuntimeError("fronts were not recorded")
+    for number in range(n_realisation):
+        simulation = scene.simulation(KNOBS, number)
+        length = simulation.correlation_length
+        loads = 1.0 + direction * 6 * length * np.arange(float(N_LOAD))
+        schedule = LoadSchedule(float(loads.max()), 0.1)
+        field = simulation_field(replace(simulation, schedule=schedule))
+        behind = first_place(field) if direction > 0 else last_place(field)
+        begin = jkr.equilibrium_radius(1.0) - direction * length
+        far, near = (
+            branch_record(field, start, loads, direction, simulation.solver)
+            for start in (
+                np.full(field.geometry.n_site, behind),
+                forward_circle(field, 1.0, direction, begin, length),
+            )
+        )
+        assert near.fronts is not None, "the branches record fronts"
+        assert far.fronts is not None, "the branches record fronts"
         steady = near.states.least_travel >= length
-        difference = np.max(np.abs(near.fronts - behind.fronts), axis=1)
+        difference = np.max(np.abs(near.fronts - far.fronts), axis=1)
         count += int(np.count_nonzero(difference[steady] > SAME * scene.spectrum.short_cutoff))
         total += int(np.count_nonzero(steady))
     return count, total
 
 
-def main() -> None:
-    """Compare on all surfaces in both directions."""
-    for scene in SURFACES:
-        for sign, name in ((1, "approach"), (-1, "retraction")):
-            count, total = differing(scene, 1 if sign > 0 else -1)
-            click.echo(f"{scene.name}, {name}: {count} of {total} steady states differ")
-
-
-if __name__ == "__main__":
-    main()
+def forgetting_table() -> str:
+    """States of all surfaces that still know their start, by branch."""
+    branches: tuple[tuple[Direction, str], ...] = ((1, "approach"), (-1, "retraction"))
+    rows = [
+        (scene.name, name, *map(str, differing(scene, direction, N_REALISATION)))
+        for scene in SURFACES
+        for direction, name in branches
+    ]
+    return markdown_table("surface | branch | steady states that differ | steady states", rows)

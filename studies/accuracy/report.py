@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 from numpy.typing import NDArray
 
 from crackfront.data.files import write_text
@@ -25,11 +28,7 @@ from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
 from studies.accuracy.scenes import SCENES, Progress, Scene
 from studies.accuracy.study import Errors, SceneErrors, joined, pareto_front, rms
-from studies.pages import renewed
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from studies.pages import markdown_table, renewed
 
 Array = NDArray[np.float64]
 Found = TypeVar("Found")
@@ -64,71 +63,56 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     Raises
     ------
     ValueError
-        If there are no errors of numerics, or the page asks for a table that was not measured.
+        If the folder holds none, or the page has a block of a table that was not measured.
     """
-    knobs, asked = (_stored(folder, study, read_errors) for study in ("knobs", "asked"))
+    knobs, asked, unseen = (
+        _stored(folder, study, read_errors) for study in ("knobs", "asked", "unseen")
+    )
+    samples = _stored(folder, "averages", lambda path: read_study(path, Sample))
+    coverages = _stored(folder, "coverage", lambda path: read_study(path, Coverage))
+    if not (knobs or asked or unseen or samples or coverages):
+        raise ValueError(f"{folder} holds no errors; run python -m studies accuracy scene")
     studies = {
         name: joined(*(part[name] for part in (knobs, asked) if name in part))
         for name in SCENES
         if name in knobs | asked
     }
-    if not studies:
-        raise ValueError(f"{folder} holds no errors; run python -m studies accuracy scene")
-    unseen = _stored(folder, "unseen", read_errors)
-    samples = _stored(folder, "averages", lambda path: read_study(path, Sample))
-    coverages = _stored(folder, "coverage", lambda path: read_study(path, Coverage))
-    laws = list(fit_laws(study for study in knobs.values() if study.scene.single_knobs))
-    write_text(folder / "laws.csv", laws_text(laws))
-    tables = _tables(list(studies.values()), unseen.values(), samples.values(), coverages.values())
+    tables = {}
+    if studies:
+        tables["Time to an error of the hysteresis"] = _target_table(studies.values())
+    if asked:
+        tables["Errors that were asked for"] = _asked_table(asked.values())
+    if unseen:
+        tables["Errors on unseen surfaces"] = _unseen_table(unseen.values())
+    if coverages:
+        tables["Stated and true errors"] = _coverage_table(coverages.values())
+    tables |= {f"Averages, {scene.name}": _sample_table(rows) for scene, rows in samples.values()}
+    tables |= {f"Settings, {name}": _setting_table(study) for name, study in studies.items()}
     parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
     write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]), sealed=True)
-    if page is not None:
-        write_text(page, renewed(page.read_text(encoding="utf-8"), "accuracy", tables))
-    shown = [studies[name] for name in _SHOWN if name in studies]
-    flat = [study for study in knobs.values() if study.scene.shape == "flat"]
+    progress(f"tables: {folder / 'accuracy.md'}")
+    fitted = [study for study in knobs.values() if study.scene.single_knobs]
+    laws = list(fit_laws(fitted))
+    if laws:
+        write_text(folder / "laws.csv", laws_text(laws))
+        progress(f"laws: {folder / 'laws.csv'}")
     drawn = {}
-    if shown:
+    if shown := [studies[name] for name in _SHOWN if name in studies]:
         drawn["work-precision"] = _work_precision_figure(shown)
-    if flat:
+    if flat := [study for study in fitted if study.scene.shape == "flat"]:
         drawn["laws"] = laws_figure(flat, laws)
     for name, figure in drawn.items():
         for path in save_figure(figure, folder / name):
             progress(f"figure: {path}")
-    progress(f"laws: {folder / 'laws.csv'}")
-    progress(f"tables: {folder / 'accuracy.md'}")
+    if page is not None:
+        write_text(page, renewed(page.read_text(encoding="utf-8"), "accuracy", tables))
+        progress(f"page: {page}")
 
 
 def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str, Found]:
     """What a folder holds of a study, by the names of its scenes."""
     paths = {name: folder / f"{study}-{name}.nc" for name in SCENES}
     return {name: read(path) for name, path in paths.items() if path.exists()}
-
-
-def _tables(
-    studies: Sequence[SceneErrors],
-    unseen: Collection[SceneErrors],
-    samples: Iterable[tuple[Scene, tuple[Sample, ...]]],
-    coverages: Collection[tuple[Scene, tuple[Coverage, ...]]],
-) -> dict[str, str]:
-    """Markdown tables of all scenes; their names are the headings of the report."""
-    tables = {
-        "Time to an error of the hysteresis": _target_rows(studies),
-        "Errors that were asked for": _asked_rows(studies),
-    }
-    if unseen:
-        tables["Errors on unseen surfaces"] = _unseen_rows(unseen)
-    if coverages:
-        tables["Stated and true errors"] = _coverage_rows(coverages)
-    tables |= {f"Averages, {scene.name}": _sample_rows(found) for scene, found in samples}
-    tables |= {f"Settings, {study.scene.name}": _setting_rows(study) for study in studies}
-    return {name: "\n".join(rows) for name, rows in tables.items()}
-
-
-def _markdown(header: str, rows: Iterable[Sequence[str]]) -> Iterator[str]:
-    """Lines of a table; its header has a bar between columns."""
-    columns = header.split(" | ")
-    for row in (columns, ["---"] * len(columns), *rows):
-        yield "| " + " | ".join(row) + " |"
 
 
 def _numbers(errors: Errors) -> str:
@@ -144,7 +128,7 @@ def _of_k(study: SceneErrors, errors: Errors) -> list[str]:
     return [f"{rms(column) / study.scene.elastic_energy:.2g}" for column in errors.adhesion.T]
 
 
-def _target_rows(studies: Sequence[SceneErrors]) -> Iterator[str]:
+def _target_table(studies: Iterable[SceneErrors]) -> str:
     """Seconds of the cheapest setting for every error."""
     rows = []
     for study in studies:
@@ -162,51 +146,40 @@ def _target_rows(studies: Sequence[SceneErrors]) -> Iterator[str]:
             entries.append(entry)
         rows.append([study.scene.name, f"{study.hysteresis:.4g}", *entries])
     targets = " | ".join(f"{100 * target:g}%" for target in _TARGETS)
-    return _markdown(f"scene | hysteresis | {targets}", rows)
+    return markdown_table(f"scene | hysteresis | {targets}", rows)
 
 
-def _asked_rows(studies: Sequence[SceneErrors]) -> Iterator[str]:
+_CHOSEN = "scene | asked for | numerics | CPU s"
+
+
+def _chosen(study: SceneErrors, errors: Errors) -> list[str]:
+    """Entries of :data:`_CHOSEN`, and rms errors of k, of numerics that the laws chose."""
+    seconds = f"{errors.seconds.mean():.3g}"
+    return [study.scene.name, f"{errors.value:g}", _numbers(errors), seconds, *_of_k(study, errors)]
+
+
+def _asked_table(studies: Iterable[SceneErrors]) -> str:
     """Measured errors of k where the laws chose the numerics."""
-    rows = [
-        [
-            study.scene.name,
-            f"{errors.value:g}",
-            _numbers(errors),
-            f"{errors.seconds.mean():.3g}",
-            *_of_k(study, errors),
-        ]
-        for study in studies
-        for errors in study.errors
-        if errors.knob == "asked"
-    ]
-    return _markdown("scene | asked for | numerics | CPU s | k of w_appr | k of w_retr", rows)
+    rows = [_chosen(study, errors) for study in studies for errors in study.errors]
+    return markdown_table(f"{_CHOSEN} | k of w_appr | k of w_retr", rows)
 
 
-def _unseen_rows(studies: Iterable[SceneErrors]) -> Iterator[str]:
+def _unseen_table(studies: Iterable[SceneErrors]) -> str:
     """Rms errors and biases of k where the laws chose the numerics for surfaces unknown to them."""
     rows = []
     for study in studies:
         for errors in study.errors:
             of_k = errors.adhesion / study.scene.elastic_energy
-            rows.append(
-                [
-                    study.scene.name,
-                    f"{errors.value:g}",
-                    _numbers(errors),
-                    f"{errors.seconds.mean():.3g}",
-                    *_of_k(study, errors),
-                    *(f"{bias:+.2g}" for bias in of_k.mean(axis=0)),
-                    f"{np.abs(of_k).max():.2g}",
-                ]
-            )
-    return _markdown(
-        "scene | asked for | numerics | CPU s | k of w_appr: rms | k of w_retr: rms "
-        "| k of w_appr: bias | k of w_retr: bias | largest of one surface",
+            biases = [f"{bias:+.2g}" for bias in of_k.mean(axis=0)]
+            rows.append([*_chosen(study, errors), *biases, f"{np.abs(of_k).max():.2g}"])
+    return markdown_table(
+        f"{_CHOSEN} | k of w_appr: rms | k of w_retr: rms | k of w_appr: bias | k of w_retr: bias "
+        "| largest of one surface",
         rows,
     )
 
 
-def _coverage_rows(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> Iterator[str]:
+def _coverage_table(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> str:
     """How often intervals of the stated errors cover the true ones, and how wide they are."""
     rows = []
     pooled: tuple[list[Array], list[Array]] = [], []
@@ -230,14 +203,14 @@ def _coverage_rows(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> I
         widths = f"{1 / np.median(relative):.1f} times the median"
         ends += ["", widths, f"{100 * np.mean(relative <= 1):.1f}%"]
     rows.append(["**all**", "", "", *ends])
-    return _markdown(
+    return markdown_table(
         "scene | asked for | numerical: rms | median | interval | covered | total: median "
         "| interval | covered",
         rows,
     )
 
 
-def _setting_rows(study: SceneErrors) -> Iterator[str]:
+def _setting_table(study: SceneErrors) -> str:
     """Errors of all settings of a scene; those on the Pareto front in bold."""
     seconds, error = study.work_and_precision()
     best = pareto_front(seconds, error)
@@ -259,14 +232,14 @@ def _setting_rows(study: SceneErrors) -> Iterator[str]:
                 f"{np.max(errors.front_max):.2g}",
             ]
         )
-    return _markdown(
+    return markdown_table(
         "varied | numerics | CPU s | hysteresis: bias % | rms % | k of w_appr | k of w_retr "
         "| force | front rms | front max",
         rows,
     )
 
 
-def _sample_rows(samples: tuple[Sample, ...]) -> Iterator[str]:
+def _sample_table(samples: tuple[Sample, ...]) -> str:
     """Hysteresis for schedules and tiles; differences from the first on the same surfaces."""
     rows = []
     for sample in samples:
@@ -287,7 +260,7 @@ def _sample_rows(samples: tuple[Sample, ...]) -> Iterator[str]:
                 *(["", ""] if sample.knob == "tile" else compared),
             ]
         )
-    return _markdown(
+    return markdown_table(
         "varied | CPU s | mean hysteresis | one realisation, rms | stated by the runs, rms "
         "| against the first, mean | rms",
         rows,
@@ -315,9 +288,7 @@ def _work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
 
 
 def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
-    """One scene."""
-    from matplotlib.ticker import LogLocator, NullFormatter
-
+    """Draw the settings of one scene."""
     seconds, relative = study.work_and_precision()
     error, best = 100 * relative, pareto_front(seconds, relative)
     knobs = np.array([errors.knob for errors in study.errors])

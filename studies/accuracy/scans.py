@@ -1,16 +1,12 @@
-"""Write the synthetic scans of `examples/scans`: nanodiamond as Main Fig. 5 describes it.
+"""Synthetic scans, as the files of an instrument; those of `examples/scans` among them.
 
-python -m studies.accuracy.scans --output examples/scans
-
-Two maps of one surface, an overview and a detail, each cut from a larger periodic surface so that
-its edges do not fit together, as those of a measurement do not. They are AL3D files, the format of
-Alicona's focus-variation microscopes: a list of tags, a comment, and single-precision heights in
-metres. Their comments say that they are synthetic.
+They are AL3D files, the format of Alicona's focus-variation microscopes: a list of tags, a comment,
+and single-precision heights in metres. Their comments say that they are synthetic.
 """
 
 from __future__ import annotations
 
-import argparse
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +15,10 @@ from numpy.typing import NDArray
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
+from crackfront.topography.measures import MeasuredSurface, measured_surface
+from crackfront.topography.reading import read_measurements
+
+Array = NDArray[np.float64]
 
 SEED = 20240229
 ROLL_OFF, HURST, PLATEAU = 2.1e-6, 1.0, 8.4e-27
@@ -54,7 +54,7 @@ SCANS = (
 )
 
 
-def scan_heights(scan: Scan, seed: np.random.SeedSequence) -> NDArray[np.float64]:
+def scan_heights(scan: Scan, seed: np.random.SeedSequence) -> Array:
     """Heights of a scan, with the waves that its pixels resolve (Units: m)."""
     spectrum = SelfAffineSpectrum(2 * scan.pixel, ROLL_OFF, HURST, PLATEAU)
     side = 2 * scan.n_point * scan.pixel
@@ -62,7 +62,7 @@ def scan_heights(scan: Scan, seed: np.random.SeedSequence) -> NDArray[np.float64
     return heights[: scan.n_point, : scan.n_point]
 
 
-def al3d(heights: NDArray[np.float64], pixel: float | tuple[float, float], comment: str) -> bytes:
+def al3d(heights: Array, pixel: float | tuple[float, float], comment: str) -> bytes:
     """Content of an AL3D file.
 
     Parameters
@@ -101,11 +101,20 @@ def _tag(key: str, value: str) -> bytes:
     return key.encode("ascii").ljust(20, b"\x00") + value.encode("ascii").ljust(30, b"\x00") + END
 
 
-def main() -> None:
-    """Write the scans."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--output", type=Path, default=Path("examples/scans"))
-    folder = parser.parse_args().output
+def scanned(heights: Array, pixel: float | tuple[float, float], comment: str) -> MeasuredSurface:
+    """Surface that is read from an AL3D file, as of :func:`al3d`."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "scan.al3d"
+        path.write_bytes(al3d(heights, pixel, comment))
+        return measured_surface(read_measurements([path]))
+
+
+def write_scans(folder: Path) -> None:
+    """Write the synthetic scans of nanodiamond.
+
+    Two maps of one surface, an overview and a detail, each cut from a larger periodic surface so
+    that its edges do not fit together, as those of a measurement do not.
+    """
     for scan, seed in zip(SCANS, np.random.SeedSequence(SEED).spawn(len(SCANS)), strict=True):
         comment = (
             "SYNTHETIC, not a measurement: random self-affine surface with the published spectrum "
@@ -114,7 +123,3 @@ def main() -> None:
         )
         content = al3d(scan_heights(scan, seed), scan.pixel, comment)
         (folder / f"{scan.name}.al3d").write_bytes(content)
-
-
-if __name__ == "__main__":
-    main()

@@ -13,13 +13,13 @@ from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.steady import forward_circle
-from crackfront.core.field.fields import TileField
+from crackfront.core.field.fields import Field
 from crackfront.core.outcome import Direction
+from crackfront.core.solver.relax import Solver
 from crackfront.core.variables import ADHESION, FORCE, variable
 from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.costs import featured_cost, features
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.simulation import Simulation
 from studies.accuracy.scenes import Progress, Scene, Setting
 
 Array = NDArray[np.float64]
@@ -63,7 +63,6 @@ class Errors:
     value: float = variable("its value; of asked the error of k", "1")
     seconds: Array = variable("processor time of both branches, synthesis included", "s", _RUN)
     adhesion: Array = variable("error of w_appr and w_retr", ADHESION, _RUN, _BRANCH)
-    state: Array = variable("rms error of one state's w", ADHESION, _RUN, _BRANCH)
     force: Array = variable("rms error of the normal force", FORCE, _RUN)
     front_rms: Array = variable("rms error of the radius", "short cutoff", _RUN)
     front_max: Array = variable("largest error of the radius", "short cutoff", _RUN)
@@ -157,7 +156,6 @@ def _errors(scene: Scene, setting: Setting, found: list[Branches], exact: list[B
         value=setting.value,
         seconds=np.array([one.seconds for one in found]),
         adhesion=adhesion.mean(axis=2),
-        state=np.sqrt(np.mean(adhesion**2, axis=2)),
         force=np.sqrt(np.mean(force**2, axis=(1, 2))),
         front_rms=np.array([rms(front) for front in fronts]),
         front_max=np.array([np.max(np.abs(front)) for front in fronts]),
@@ -173,30 +171,33 @@ def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
     RuntimeError
         If there is a load without a state.
     """
-    start = time.process_time()
+    begun = time.process_time()
     simulation = scene.simulation(knobs, realisation)
     field = simulation_field(simulation)
+    length = simulation.correlation_length
     adhesion, force, radius = [], [], []
-    for direction in (1, -1):
-        record = _branch(field, scene.penetrations[::direction], direction, simulation)
+    directions: tuple[Direction, Direction] = (1, -1)
+    for direction in directions:
+        loads = scene.penetrations[::direction]
+        first = float(loads[0])
+        start = forward_circle(field, first, direction, jkr.equilibrium_radius(first), length)
+        record = branch_record(field, start, loads, direction, simulation.solver)
         if record.fronts is None or len(record.fronts) != scene.penetrations.size:
             raise RuntimeError(f"{simulation.label}: {record.status.value}")
         adhesion.append(record.states.apparent_work_of_adhesion[::direction])
         force.append(record.states.force[::direction])
         radius.append(record.fronts[::direction])
-    seconds = time.process_time() - start
+    seconds = time.process_time() - begun
     return Branches(np.array(adhesion), np.array(force), np.array(radius), seconds)
 
 
-def _branch(
-    field: TileField, penetrations: Array, direction: Direction, simulation: Simulation
+def branch_record(
+    field: Field, start: Array, penetrations: Array, direction: Direction, solver: Solver
 ) -> CycleRecord:
-    """One branch over given loads."""
-    first, length = float(penetrations[0]), simulation.correlation_length
-    circle = forward_circle(field, first, direction, jkr.equilibrium_radius(first), length)
+    """States and fronts of one branch over given loads."""
     recorder = Recorder(fronts=True)
     loads = [Load(float(penetration), direction) for penetration in penetrations]
-    recorder.run(field, circle, loads, simulation.solver)
+    recorder.run(field, start, loads, solver)
     return recorder.record()
 
 

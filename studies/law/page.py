@@ -53,7 +53,7 @@ def coefficients_part(law: Law) -> str:
         f"{law.model_factor:.1%} of k, and {law.model_length:.1%} of g. Left free, the exponent "
         f"1 - zeta is {exponent:.2f} ± {error:.2f} (one standard error)."
     )
-    table = markdown_table(("coefficient", "value", "standard error"), rows)
+    table = markdown_table("coefficient | value | standard error", rows)
     return f"{table}\n\n{_wrapped(text)}"
 
 
@@ -66,9 +66,9 @@ def limit_part() -> str:
         interval = f"{k.value:.2f} ({k.low:.2f} to {k.high:.2f})"
         rows.append((name, interval, f"{found.negative_share:.1%}"))
     s, low, high = crossing()
-    columns = ("s", "k, infinite contact (95% interval)", "share of negative w_loc")
+    header = "s | k, infinite contact (95% interval) | share of negative w_loc"
     return (
-        f"{markdown_table(columns, rows)}\n\nIn the infinite contact k is {PAPER_FACTOR:g} at s = "
+        f"{markdown_table(header, rows)}\n\nIn the infinite contact k is {PAPER_FACTOR:g} at s = "
         f"{s:.2f} ({low:.2f} to {high:.2f}) alone."
     )
 

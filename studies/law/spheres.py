@@ -171,7 +171,7 @@ def sphere_table(rows: Sequence[SphereRow]) -> str:
 
     The intervals of the law are held against simulations with the errors of both.
     """
-    columns = "spectrum | e_el/w_int | radius | g | k, line alone | k, simulated | difference"
+    header = "spectrum | e_el/w_int | radius | g | k, line alone | k, simulated | difference"
     laws = [law_of(row) for row in rows]
     cells = [
         (
@@ -189,7 +189,7 @@ def sphere_table(rows: Sequence[SphereRow]) -> str:
     rms, worst = np.sqrt(np.mean(np.square(apart))), np.max(np.abs(apart))
     inside = sum(is_covered(row, law) for row, law in zip(rows, laws, strict=True) if law.size > 1)
     return (
-        f"{markdown_table(columns.split(' | '), cells)}\n\nFor g above 1, {len(apart)} rows: rms "
+        f"{markdown_table(header, cells)}\n\nFor g above 1, {len(apart)} rows: rms "
         f"{rms:.1%}, worst {worst:.1%}; the 95% intervals cover {inside}."
     )
 

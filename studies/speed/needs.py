@@ -211,16 +211,9 @@ def _bytes(values: object) -> int:
 
 def sections(rows: list[Row]) -> list[str]:
     """Paragraphs of the page."""
-    columns = (
-        "asked for",
-        "CPU s",
-        "sites",
-        "load steps",
-        "samples crossed",
-        "peak MB",
-        "field MB",
-        "record kB",
-        "file kB",
+    header = (
+        "asked for | CPU s | sites | load steps | samples crossed | peak MB | field MB | record kB "
+        "| file kB"
     )
     cells = [
         (
@@ -237,4 +230,4 @@ def sections(rows: list[Row]) -> list[str]:
         for row in rows
     ]
     listed = "\n".join(f"- {need.name}: {need.asked}" for need in NEEDS)
-    return [listed, markdown_table(columns, cells)]
+    return [listed, markdown_table(header, cells)]

@@ -212,9 +212,9 @@ def sections() -> list[str]:
         measured.append(f"Aggregation of {n_row} rows: {seconds:.1f} s, {peak / 1e6:.0f} MB.")
     sweeps = [million(n_shard=n_shard) for n_shard in (1000, 250)]
     useful = sum(float(np.sum(shard)) for shard in sweeps[0]) / 3600
-    columns = ["ranks"]
-    for shards in sweeps:
-        columns += [f"hours, {len(shards)} shards", "efficiency"]
+    header = " | ".join(
+        ["ranks", *(f"hours, {len(shards)} shards | efficiency" for shards in sweeps)]
+    )
     cells = [
         [f"{rows[0].n_rank}"]
         + [text for row in rows for text in (f"{row.hours:.3g}", f"{row.efficiency:.1%}")]
@@ -223,5 +223,5 @@ def sections() -> list[str]:
     return [
         "\n".join(measured),
         f"{sum(map(len, sweeps[0]))} simulations of {useful:.0f} core hours:",
-        markdown_table(columns, cells),
+        markdown_table(header, cells),
     ]

@@ -88,16 +88,9 @@ def measured(problem: Problem, seed: int, repeats: int) -> Row:
 
 def table(rows: Iterable[Row]) -> str:
     """Markdown table of rows."""
-    columns = (
-        "problem",
-        "reference s",
-        "newton s",
-        "ratio",
-        "FFT pairs",
-        "updates a site and cutoff",
-        "newton us a site and cutoff",
-        "error / lambda_s",
-        "MB",
+    header = (
+        "problem | reference s | newton s | ratio | FFT pairs | updates a site and cutoff | "
+        "newton us a site and cutoff | error / lambda_s | MB"
     )
     cells = [
         (
@@ -113,7 +106,7 @@ def table(rows: Iterable[Row]) -> str:
         )
         for row in rows
     ]
-    return markdown_table(columns, cells)
+    return markdown_table(header, cells)
 
 
 def _by_disorder(rows: Iterable[Row]) -> dict[float, list[Row]]:

@@ -10,15 +10,14 @@ from crackfront.topography.bands import scan
 from crackfront.topography.cautions import surface_notes
 from crackfront.topography.joining import joint_spectrum
 from crackfront.topography.tips import tip_wavelength
-from studies.accuracy import predicted_energies as surfaces
-from studies.accuracy.predicted_energies import (
+from studies.accuracy.energies import (
     KINDS,
     MEAN_SQUARE,
     PIXEL,
     SIDE,
+    energy_table,
     found_scan,
-    kind_row,
-    rows,
+    found_scans,
 )
 
 
@@ -164,18 +163,17 @@ def test_intervals_of_distorted_scans_hold_the_truth(found):
     assert np.median([abs(one.ratio.value - 1) for one in results]) < 0.2
 
 
-def test_the_table_of_the_benchmark_has_a_row_for_each_kind(monkeypatch, found):
-    monkeypatch.setattr(surfaces, "KINDS", (kind("noise"),))
-    monkeypatch.setattr(surfaces, "found_scan", lambda kind, number: found(kind.name))
-    [(one, results)] = rows(2)
-    assert len(results) == 2
-    assert kind_row(one, results).startswith("| noise | yes | ")
+def test_the_table_of_energies_has_a_row_for_each_kind(found):
+    one = kind("noise")
+    lines = energy_table({one: [found(one.name)] * 2}).splitlines()
+    assert lines[2].startswith("| noise | yes | ")
+    assert lines[-1].startswith("2 scans: median error ")
     assert one.truth.mean_square(0.5) == pytest.approx(MEAN_SQUARE)
 
 
 @pytest.mark.slow
 def test_intervals_of_two_hundred_scans_hold_the_truth():
-    every = [(one, result) for one, results in rows(12) for result in results]
+    every = [(kind, one) for kind, scans in found_scans(12).items() for one in scans]
     assert len(every) > 200
     assert np.median([abs(one.ratio.value - 1) for _, one in every]) < 0.2
     assert np.mean([one.covers for _, one in every]) >= 0.9

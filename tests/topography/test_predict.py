@@ -39,8 +39,7 @@ from crackfront.topography.reading import read_measurements
 from crackfront.topography.simulated import prediction_plan, simulated
 from crackfront.topography.tile import zero_load_radius
 from crackfront.topography.verdict import verdict
-from studies.accuracy import predictions, scans
-from studies.accuracy.predictions import TABLE_HEAD, comparison_row
+from studies.accuracy import scans
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "examples/scans"
@@ -97,12 +96,6 @@ def smooth_scan(tmp_path_factory):
 @pytest.fixture(scope="module")
 def smooth(smooth_scan):
     return measured_surface(read_measurements([smooth_scan]))
-
-
-@pytest.fixture(scope="module")
-def comparisons():
-    """Predictions beside simulations; half a minute."""
-    return tuple(predictions.comparisons())
 
 
 @pytest.fixture
@@ -658,26 +651,3 @@ def test_the_documentation_states_the_range_of_the_law():
     smallest, largest = law.size
     assert f"w_rms/w_int from {weakest:.2g} to {strongest:.2g} and g from {smallest:.2g} " in page
     assert f"to {largest:.3g}" in page
-
-
-def is_met(predicted, found):
-    """Whether two intervals are no further apart than both allow."""
-    reach = np.hypot(*((item.high - item.low) / 2 for item in (predicted, found)))
-    return abs(predicted.value - found.value) < reach
-
-
-@pytest.mark.slow
-def test_predictions_hold_for_surfaces_that_the_law_was_not_fitted_to(comparisons):
-    for item in comparisons:
-        found, law = item.found, item.prediction
-        k = law.factors.both
-        assert is_met(k, found.k)
-        assert abs(found.k.value - k.value) < 0.3
-        assert is_met(law.w_appr, found.w_appr)
-        assert is_met(law.w_retr, found.w_retr)
-
-
-@pytest.mark.slow
-def test_the_documentation_holds_the_predictions_and_their_simulations(comparisons):
-    page = (ROOT / "docs/surfaces.md").read_text(encoding="utf-8")
-    assert "\n".join([TABLE_HEAD, *map(comparison_row, comparisons)]) in page

@@ -1,12 +1,7 @@
 """Hold e_el of synthetic scans, as instruments distort them, against that of their known spectra.
 
-python -m studies.accuracy.predicted_energies --scans 14
-python -m studies.accuracy.predicted_energies --speed
-
 Every scan is cut from a larger surface, distorted, written as the file of an instrument, and read
-as `crackfront predict` reads it. The table has for each kind the e_el that is found over the true
-one, how often its 95% interval holds the truth, and how wide this is. With --speed it has instead
-the processor time of `crackfront predict` from ten large maps, one by one and together.
+as `crackfront predict` reads it.
 """
 
 from __future__ import annotations
@@ -17,11 +12,10 @@ import resource
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import click
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import grey_dilation
@@ -32,7 +26,8 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.measures import MeasuredSurface, measured_surface
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import read_measurements
-from studies.accuracy.scans import al3d
+from studies.accuracy.scans import al3d, scanned
+from studies.pages import markdown_table
 
 Array = NDArray[np.float64]
 Distortion = Callable[[Array, np.random.Generator], Array]
@@ -212,77 +207,85 @@ def found_scan(kind: Kind, number: int) -> Found:
     """What is found for a scan of a kind."""
     key = (KINDS.index(kind), number)
     rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=key))
-    with tempfile.TemporaryDirectory() as folder:
-        surface = (_lines if kind.is_line else _map)(kind, rng, Path(folder))
+    surface = (_lines if kind.is_line else _map)(kind, rng)
     found = surface.joint.estimate(lambda spectrum: spectrum.mean_square(0.5))
     return Found(found.each(lambda number: number / MEAN_SQUARE), surface)
 
 
-def _map(kind: Kind, rng: np.random.Generator, folder: Path) -> MeasuredSurface:
+def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     """Surface of a map."""
     whole = kind.tile * N_POINT
     heights = gaussian_field(kind.truth, whole, kind.tile * SIDE, rng)
-    local = kind.distortion in (_bow, _form, _holes)
-    heights = heights if not local else heights[:N_POINT, :N_POINT]
+    if kind.distortion in (_bow, _form, _holes):
+        heights = heights[:N_POINT, :N_POINT]
     heights = kind.distortion(heights, rng)[:N_POINT, :N_POINT]
-    path = folder / "scan.al3d"
     if kind.oblong:
-        path.write_bytes(al3d(heights[:, ::2], (PIXEL, 2 * PIXEL), kind.name))
-    else:
-        path.write_bytes(al3d(heights, PIXEL, kind.name))
-    return measured_surface(read_measurements([path]))
+        return scanned(heights[:, ::2], (PIXEL, 2 * PIXEL), kind.name)
+    return scanned(heights, PIXEL, kind.name)
 
 
-def _lines(kind: Kind, rng: np.random.Generator, folder: Path) -> MeasuredSurface:
+def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     """Surface of lines."""
     whole = 2 * _LINE_POINTS
     heights = gaussian_field(kind.truth, whole, whole * PIXEL, rng)[:_LINE_POINTS]
-    paths = [folder / f"{number}.xyz" for number in range(_LINES)]
-    for number, path in enumerate(paths):
-        line = heights[:, number * whole // _LINES]
-        places = PIXEL * np.arange(_LINE_POINTS)
-        np.savetxt(path, 1e6 * np.column_stack([places, line]))
-    return measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
+    places = PIXEL * np.arange(_LINE_POINTS)
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [Path(folder) / f"{number}.xyz" for number in range(_LINES)]
+        for number, path in enumerate(paths):
+            line = heights[:, number * whole // _LINES]
+            np.savetxt(path, 1e6 * np.column_stack([places, line]))
+        return measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
 
 
-def kind_row(kind: Kind, found: list[Found]) -> str:
-    """Row of the table."""
-    ratios = np.array([one.ratio.value for one in found])
-    shares = [one.surface.joint.shares.measured for one in found]
-    return (
-        f"| {kind.name} | {'yes' if kind.resolved else 'no'} | {np.median(ratios):.2f} | "
-        f"{np.median(np.abs(ratios - 1)):.0%} | {np.mean([one.covers for one in found]):.0%} | "
-        f"{np.median([one.factor for one in found]):.2f} | {np.median(shares):.0%} |"
+def found_scans(n_scan: int) -> dict[Kind, list[Found]]:
+    """What is found for so many scans of each kind."""
+    return {kind: [found_scan(kind, number) for number in range(n_scan)] for kind in KINDS}
+
+
+def energy_table(found: Mapping[Kind, Sequence[Found]]) -> str:
+    """e_el of all scans relative to the true one, and how often the intervals hold that."""
+    rows = []
+    for kind, scans in found.items():
+        ratios = np.array([one.ratio.value for one in scans])
+        shares = [one.surface.joint.shares.measured for one in scans]
+        rows.append(
+            (
+                kind.name,
+                "yes" if kind.resolved else "no",
+                f"{np.median(ratios):.2f}",
+                f"{np.median(np.abs(ratios - 1)):.0%}",
+                f"{np.mean([one.covers for one in scans]):.0%}",
+                f"{np.median([one.factor for one in scans]):.2f}",
+                f"{np.median(shares):.0%}",
+            )
+        )
+    table = markdown_table(
+        "scans | resolved | e_el found / true | median error | intervals that hold it | "
+        "their factor | e_el measured",
+        rows,
     )
-
-
-TABLE_HEAD = (
-    "| scans | resolved | e_el found / true | median error | intervals that hold it | "
-    "their factor | e_el measured |\n| --- | --- | --- | --- | --- | --- | --- |"
-)
-
-
-def rows(n_scan: int) -> Iterator[tuple[Kind, list[Found]]]:
-    """All kinds with what is found for so many scans of each."""
-    for kind in KINDS:
-        yield kind, [found_scan(kind, number) for number in range(n_scan)]
+    every = [one for scans in found.values() for one in scans]
+    error = np.median([abs(one.ratio.value - 1) for one in every])
+    covered = np.mean([one.covers for one in every])
+    return (
+        f"{table}\n\n{len(every)} scans: median error {error:.0%}, {covered:.0%} of the intervals "
+        "hold the truth"
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class Speed:
-    """Processor time of predictions from large maps (Units: s).
+    """Processor time of predictions from large maps, one by one and together, in s."""
 
-    Attributes
-    ----------
-    what : str
-        Whether they have figures.
-    single, together : float
-        Of as many commands as there are maps, and of one with all of them.
-    """
-
-    what: str
+    figure: bool
     single: float
     together: float
+
+    def __str__(self) -> str:
+        return (
+            f"{_MAPS} maps of {_LARGE} x {_LARGE} points, {'with' if self.figure else 'without'} "
+            f"figure: {self.single:.1f} s of one core one by one, {self.together:.1f} s together"
+        )
 
 
 def speeds() -> Iterator[Speed]:
@@ -293,52 +296,20 @@ def speeds() -> Iterator[Speed]:
             rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=(_LARGE, number)))
             heights = gaussian_field(KINDS[0].truth, 2 * _LARGE, 2 * _LARGE * PIXEL, rng)
             path.write_bytes(al3d(heights[:_LARGE, :_LARGE], PIXEL, "speed"))
-        for name, option in (("without", ["--no-figure"]), ("with", ["--figure", folder + "/f"])):
+        for figure, option in ((False, ["--no-figure"]), (True, ["--figure", folder + "/f"])):
             single = sum(_seconds([path], option) for path in paths)
-            together = _seconds(paths, option)
-            yield Speed(f"{name} figure", single, together)
+            yield Speed(figure, single, _seconds(paths, option))
 
 
-def _seconds(paths: list[Path], options: list[str]) -> float:
+def _seconds(paths: Sequence[Path], options: Sequence[str]) -> float:
     """Processor time of a prediction (Units: s)."""
     command = [sys.executable, "-m", "crackfront", "predict", *map(str, paths), *_SPHERE.split()]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    one_core = {**os.environ, "OMP_NUM_THREADS": "1"}
+    done = subprocess.run(
+        [*command, *options], env=one_core, stdout=subprocess.DEVNULL, check=False
+    )
     # 3: it applies with reservations; 4: it does not.
-    code = subprocess.run(
-        [*command, *options],
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-        stdout=subprocess.DEVNULL,
-        check=False,
-    ).returncode
-    assert code in (0, 3, 4)
+    assert done.returncode in (0, 3, 4)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
-@click.command()
-@click.option("--scans", type=click.IntRange(min=1), default=14, show_default=True)
-@click.option("--speed", "timed", is_flag=True, help="Time predictions from large maps instead.")
-def main(scans: int, timed: bool) -> None:
-    """Print the table."""
-    if timed:
-        for one in speeds():
-            click.echo(
-                f"{_MAPS} maps of {_LARGE} x {_LARGE} points, {one.what}: {one.single:.1f} s of "
-                f"one core one by one, {one.together:.1f} s together"
-            )
-        return
-    click.echo(TABLE_HEAD)
-    every: list[Found] = []
-    for kind, found in rows(scans):
-        click.echo(kind_row(kind, found))
-        every += found
-    errors = [abs(one.ratio.value - 1) for one in every]
-    covered = np.mean([one.covers for one in every])
-    click.echo(
-        f"\n{len(every)} scans: median error {np.median(errors):.0%}, {covered:.0%} of the "
-        "intervals hold the truth"
-    )
-
-
-if __name__ == "__main__":
-    main()

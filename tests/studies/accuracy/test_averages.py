@@ -1,0 +1,95 @@
+"""Steady runs: schedules and tiles, and whether runs state their true errors."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from crackfront.data.files import write_dataset
+from crackfront.data.provenance import provenance
+from studies.accuracy.averages import Coverage, Sample, held_out_coverage, sampling_errors
+from studies.accuracy.files import read_study, records_dataset
+from studies.accuracy.scenes import SCENES
+
+
+@pytest.fixture(scope="module")
+def coverage():
+    return held_out_coverage(SCENES["flat-0.04"], (0.1, 0.03), 5)
+
+
+def check_stated_errors(items):
+    """Intervals cover nine errors in ten; standard errors are not three times the median error."""
+    for name, standard_error_of in (
+        ("total", lambda item: np.hypot(item.run_numerical, item.run_statistical)),
+        ("numerical", lambda item: item.numerical_stated + 0 * item.numerical),
+    ):
+        error, interval, stated = (
+            np.concatenate([np.ravel(part(item)) for item in items])
+            for part in (
+                lambda item, name=name: abs(getattr(item, name)),
+                lambda item, name=name: getattr(item, f"{name}_interval"),
+                standard_error_of,
+            )
+        )
+        known = np.isfinite(error) & np.isfinite(interval)
+        assert np.mean(error[known] <= interval[known]) >= 0.9, name
+        assert np.median(stated[known] / error[known]) <= 3, name
+
+
+def test_the_stated_errors_cover_nine_in_ten_and_are_not_three_times_too_large(coverage):
+    check_stated_errors(coverage)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1200)
+def test_the_stated_errors_cover_nine_in_ten_over_shapes_and_amplitudes():
+    names = [
+        f"{shape}-{energy}"
+        for shape in ("chemical", "flat", "h08", "h03")
+        for energy in (0.01, 0.16)
+    ]
+    check_stated_errors(
+        [item for name in names for item in held_out_coverage(SCENES[name], (0.1, 0.03), 8)]
+    )
+
+
+def test_coverage_is_read_as_it_was_written(coverage, tmp_path):
+    path = tmp_path / "coverage.nc"
+    dataset = records_dataset("true and stated errors", SCENES["flat-0.04"], coverage)
+    write_dataset(path, dataset, provenance())
+    scene, again = read_study(path, Coverage)
+    assert scene == SCENES["flat-0.04"]
+    assert np.array_equal(again[0].total, coverage[0].total)
+    assert again[0].asked == 0.1
+
+
+def test_student_intervals_are_wider_than_normal_ones_where_states_are_few(coverage):
+    item = coverage[0]
+    none = np.zeros_like(item.total)
+    exact = replace(item, run_numerical=none, truth_error=none)
+    few, many = (
+        replace(exact, n_state=np.full(item.total.shape, count)).total_interval
+        for count in (3.0, 1e9)
+    )
+    assert few / many == pytest.approx(stats.t.ppf(0.96, 2) / stats.norm.ppf(0.96))
+    assert np.all(item.total_interval > item.run_numerical)
+
+
+@pytest.mark.slow
+def test_schedules_change_the_mean_within_its_error(tmp_path):
+    samples = sampling_errors(SCENES["flat-0.04"], range(3))
+    path = tmp_path / "averages.nc"
+    dataset = records_dataset("errors of averaging", SCENES["flat-0.04"], samples)
+    write_dataset(path, dataset, provenance())
+    scene, again = read_study(path, Sample)
+    assert scene == SCENES["flat-0.04"]
+    assert [item.knob for item in again] == [item.knob for item in samples]
+    schedules = [item for item in again if item.knob != "tile"]
+    known = [item for item in schedules if np.all(np.isfinite(item.hysteresis))]
+    assert len(known) >= len(schedules) - 1
+    for item in known:
+        difference = np.mean(item.hysteresis - again[0].hysteresis)
+        assert abs(difference) < 2 * np.mean(item.standard_error)
+    seconds = [item.seconds.mean() for item in known if item.knob == "step"]
+    assert seconds[0] > 2 * seconds[-1]

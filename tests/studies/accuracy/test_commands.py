@@ -1,0 +1,88 @@
+"""The commands of the study: scenes are measured, whatever was measured is reported."""
+
+import re
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from studies.__main__ import main
+from studies.accuracy.files import STUDIES
+from studies.accuracy.scenes import SCENES
+from studies.accuracy.study import scene_errors
+
+
+def run(*arguments):
+    """Result of a command of the study."""
+    return CliRunner().invoke(main, ["accuracy", *map(str, arguments)])
+
+
+def measure(folder, study):
+    """Measure two surfaces of the smallest scene."""
+    arguments = ("--study", study, "--realisations", 2, "--output", folder)
+    done = run("scene", "small-0.04", *arguments)
+    assert done.exit_code == 0, done.output
+    return done.output
+
+
+def test_an_empty_folder_has_nothing_to_report(tmp_path):
+    empty = run("report", "--output", tmp_path)
+    assert empty.exit_code == 2
+    assert "holds no errors; run python -m studies accuracy scene" in empty.output
+
+
+@pytest.mark.parametrize(
+    ("study", "tables"),
+    [
+        ("asked", {"Time to an error of the hysteresis", "Errors that were asked for"}),
+        ("unseen", {"Errors on unseen surfaces"}),
+    ],
+)
+def test_one_measured_scene_is_reported(study, tables, tmp_path):
+    assert "asked 0.03: rms error of k" in measure(tmp_path, study)
+    reported = run("report", "--output", tmp_path)
+    assert reported.exit_code == 0, reported.output
+    text = (tmp_path / "accuracy.md").read_text()
+    assert set(re.findall("^## (.*)", text, re.MULTILINE)) - {"Settings, small-0.04"} == tables
+    assert "| small-0.04 | 0.01 |" in text
+
+
+def test_a_page_gets_the_measured_tables_and_keeps_its_words(tmp_path):
+    measure(tmp_path, "asked")
+    page = tmp_path / "page.md"
+    page.write_text("Before\n<!-- accuracy: Settings, small-0.04 -->\nold\n<!-- end -->\nAfter\n")
+    reported = run("report", "--output", tmp_path, "--page", page)
+    assert reported.exit_code == 0, reported.output
+    text = page.read_text()
+    assert text.startswith("Before\n")
+    assert text.endswith("<!-- end -->\nAfter\n")
+    assert "old" not in text
+    assert "asked 0.03" in text
+    page.write_text("<!-- accuracy: Settings, flat-0.04 --><!-- end -->")
+    refused = run("report", "--output", tmp_path, "--page", page)
+    assert refused.exit_code == 2
+    assert "'Settings, flat-0.04', which the study accuracy has not measured" in refused.output
+
+
+@pytest.mark.parametrize("study", STUDIES)
+def test_the_cost_of_a_study_is_told_before_it_is_measured(study, tmp_path, monkeypatch):
+    def measured(*_):
+        raise ValueError("measured")
+
+    monkeypatch.setitem(STUDIES, study, STUDIES[study]._replace(measured=measured))
+    arguments = ("--study", study, "--realisations", 16, "--output", tmp_path)
+    told, _ = run("scene", "large-0.04", *arguments).stderr.split("Error: measured")
+    assert re.fullmatch(r"about [\d.]+ (s|min|hours) of processor time\n", told)
+
+
+def test_the_cost_of_a_study_is_that_of_its_runs():
+    scene = SCENES["small-0.04"]
+    found = scene_errors(scene, scene.asked_settings(), range(2))
+    seconds = np.sum(found.reference_seconds) + sum(np.sum(one.seconds) for one in found.errors)
+    assert seconds / 4 < 2 * STUDIES["asked"].seconds(scene) < 4 * seconds
+
+
+def test_an_unknown_scene_is_refused_with_the_nearest_one():
+    refused = run("scene", "flat-0.4")
+    assert refused.exit_code == 2
+    assert "there is no scene 'flat-0.4'; did you mean flat-0.04?" in refused.output

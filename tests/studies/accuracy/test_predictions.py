@@ -1,0 +1,40 @@
+"""Predictions from scans, held against simulations of the surfaces."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from studies.accuracy import predictions
+from studies.accuracy.predictions import comparison_table
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture(scope="module")
+def comparisons():
+    """Predictions beside simulations; half a minute."""
+    return tuple(predictions.comparisons())
+
+
+def is_met(predicted, found):
+    """Whether two intervals are no further apart than both allow."""
+    reach = np.hypot(*((item.high - item.low) / 2 for item in (predicted, found)))
+    return abs(predicted.value - found.value) < reach
+
+
+@pytest.mark.slow
+def test_predictions_hold_for_surfaces_that_the_law_was_not_fitted_to(comparisons):
+    for item in comparisons:
+        found, law = item.found, item.prediction
+        k = law.factors.both
+        assert is_met(k, found.k)
+        assert abs(found.k.value - k.value) < 0.3
+        assert is_met(law.w_appr, found.w_appr)
+        assert is_met(law.w_retr, found.w_retr)
+
+
+@pytest.mark.slow
+def test_the_documentation_holds_the_predictions_and_their_simulations(comparisons):
+    page = (ROOT / "docs/surfaces.md").read_text(encoding="utf-8")
+    assert comparison_table(comparisons) in page

@@ -1,0 +1,195 @@
+"""Errors of numerics: their orders of convergence, settings, files and Pareto front."""
+
+import math
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.solver.relax import Newton
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.data.files import write_dataset
+from crackfront.data.provenance import provenance
+from crackfront.simulate.contact import simulation_field
+from crackfront.simulate.laws import chosen_knobs
+from studies.accuracy.files import errors_dataset, read_errors
+from studies.accuracy.scenes import SCENES, with_knob
+from studies.accuracy.study import (
+    Errors,
+    front_difference,
+    measured_branches,
+    pareto_front,
+    scene_errors,
+)
+
+MODERATE, SMALL = SCENES["chemical-0.04"], SCENES["small-0.04"]
+
+# So weak that no front is pinned: errors are smooth, and their orders those of the theory.
+FINEST = replace(
+    MODERATE.reference,
+    angles_per_cutoff=4,
+    samples_per_cutoff=48,
+    pixels_per_cutoff=24,
+    tolerance=1e-10,
+)
+WEAK = replace(
+    MODERATE,
+    spectrum=SelfAffineSpectrum(0.08, 0.08, 1.0),
+    elastic_energy=4e-4,
+    tile_cutoffs=32,
+    reference=FINEST,
+)
+
+
+@pytest.fixture(scope="module")
+def converged():
+    return [measured_branches(WEAK, FINEST, number) for number in range(3)]
+
+
+def error_of_the_front(numerics, converged):
+    """Rms error of the radius on the surfaces of the weak scene."""
+    found = [measured_branches(WEAK, numerics, number) for number in range(3)]
+    pairs = zip(found, converged, strict=True)
+    return math.sqrt(
+        np.mean([np.mean(front_difference(a.radius, b.radius) ** 2) for a, b in pairs])
+    )
+
+
+@pytest.mark.parametrize(
+    ("knob", "coarse", "fine", "order"),
+    [
+        ("cubic", 6, 16, 4),
+        ("linear", 16, 64, 2),
+        ("pixels", 4, 12, 4),
+        ("tolerance", 1e-2, 1e-6, -1),
+    ],
+)
+def test_the_front_converges_with_the_order_of_the_knob(converged, knob, coarse, fine, order):
+    errors = [
+        error_of_the_front(with_knob(FINEST, knob, value), converged) for value in (coarse, fine)
+    ]
+    observed = -math.log(errors[1] / errors[0]) / math.log(fine / coarse)
+    assert abs(observed - order) < 0.3
+
+
+def test_more_sites_converge_faster_than_any_power(converged):
+    errors = [
+        error_of_the_front(with_knob(FINEST, "sites", value), converged) for value in (1.4, 2, 2.8)
+    ]
+    orders = np.diff(np.log(errors)) / np.log(np.sqrt(2))
+    assert np.all(orders < -5)
+
+
+def test_the_mean_over_realisations_converges_with_the_root_of_their_number():
+    schedule = LoadSchedule(1.0, 0.2)
+    numerics = chosen_knobs(0.1, "roughness", SMALL.spectrum, 0.04)
+    values = []
+    for number in range(64):
+        field = simulation_field(replace(SMALL.simulation(numerics, number), schedule=schedule))
+        record = run_cycle(field, schedule, Newton(numerics.tolerance))
+        values.append(
+            record.states.apparent_work_of_adhesion[record.states.direction < 0][:4].mean()
+        )
+    single = np.std(values, ddof=1)
+    of_four = np.std(np.mean(np.reshape(values, (16, 4)), axis=1), ddof=1)
+    assert abs(math.log(of_four / single) / math.log(4) + 0.5) < 0.3
+
+
+def test_a_branch_has_the_states_of_a_full_cycle_at_the_same_loads():
+    numerics = chosen_knobs(0.03, "roughness", SMALL.spectrum, 0.04)
+    numerics = replace(numerics, tolerance=1e-9)
+    branches = measured_branches(SMALL, numerics, 1)
+    simulation = SMALL.simulation(numerics, 1)
+    field = simulation_field(simulation)
+    cycle = run_cycle(field, LoadSchedule(1.0, 0.1), Newton(1e-9), Recorder(fronts=True))
+    approach = cycle.states.direction > 0
+    assert np.allclose(SMALL.penetrations, cycle.states.penetration[approach][-8:])
+    assert np.allclose(branches.radius[0], cycle.fronts[approach][-8:], rtol=0, atol=1e-7)
+    # The branch begins outside the turn of the cycle, which has left the turn behind at 0.4.
+    assert np.allclose(cycle.states.penetration[~approach][5:7], SMALL.penetrations[1::-1])
+    retraction = cycle.fronts[~approach][5:7]
+    assert np.allclose(branches.radius[1, 1::-1], retraction, rtol=0, atol=1e-7)
+
+
+def test_fronts_are_compared_as_trigonometric_ones():
+    angle = [2 * np.pi * np.arange(n) / n for n in (16, 40)]
+    coarse, fine = (2 + 0.1 * np.cos(3 * t) + 0.05 * np.sin(5 * t) for t in angle)
+    assert np.max(np.abs(front_difference(coarse, fine))) < 1e-14
+    assert front_difference(coarse + 0.25, fine) == pytest.approx(0.25)
+
+
+def test_a_setting_of_one_knob_leaves_the_others_as_in_the_reference_but_for_few_sites():
+    names = {
+        "sites": {"angles_per_cutoff"},
+        "cubic": {"samples_per_cutoff"},
+        "linear": {"samples_per_cutoff", "interpolation"},
+        "pixels": {"pixels_per_cutoff"},
+        "tolerance": {"tolerance"},
+    }
+    for knob, value, numerics in MODERATE.single_settings:
+        if knob in names:
+            changed = {
+                name
+                for name in MODERATE.reference.__dataclass_fields__
+                if getattr(numerics, name) != getattr(MODERATE.reference, name)
+            }
+            assert changed - {"angles_per_cutoff"} <= names[knob]
+            assert numerics.angles_per_cutoff == (value if knob == "sites" else 2.2)
+            assert value in {getattr(numerics, name) for name in names[knob]}
+
+
+@pytest.fixture(scope="module")
+def small_study():
+    finer = [setting for setting in SMALL.single_settings if setting[0] == "finer"]
+    return scene_errors(SMALL, finer + SMALL.asked_settings(), range(3))
+
+
+def test_errors_fall_with_the_error_that_is_asked_for_and_time_grows(small_study):
+    assert SMALL.elastic_energy == 0.04
+    asked = [errors for errors in small_study.errors if errors.knob == "asked"]
+    rms = {errors.value: np.sqrt(np.mean(errors.adhesion**2)) for errors in asked}
+    seconds = [errors.seconds.mean() for errors in asked]
+    assert rms[0.1] > 3 * rms[0.003]
+    assert seconds[0] < seconds[-1]
+    for errors in asked:
+        assert np.all(errors.front_rms <= errors.front_max)
+    finer = small_study.errors[0]
+    assert finer.knob == "finer"
+    # One surface may have an avalanche that the reference just misses.
+    assert np.median(np.abs(finer.adhesion)) < 0.01 * np.max(np.abs(asked[0].adhesion))
+
+
+def test_errors_are_relative_to_the_mean_hysteresis(small_study):
+    errors = replace(small_study.errors[0], adhesion=np.array([[0.0, 0.01]] * 3))
+    mean = np.mean(small_study.reference_adhesion[:, 1] - small_study.reference_adhesion[:, 0])
+    assert small_study.hysteresis_errors(errors) == pytest.approx(0.01 / mean)
+
+
+def test_a_study_is_read_as_it_was_written(small_study, tmp_path):
+    path = tmp_path / "numerics.nc"
+    write_dataset(path, errors_dataset(small_study), provenance())
+    again = read_errors(path)
+    assert again.scene == SMALL
+    assert np.array_equal(again.reference_adhesion, small_study.reference_adhesion)
+    assert np.array_equal(again.reference_seconds, small_study.reference_seconds)
+    for one, other in zip(again.errors, small_study.errors, strict=True):
+        for item in fields(Errors):
+            assert np.array_equal(getattr(one, item.name), getattr(other, item.name)), item.name
+    with pytest.raises(ValueError, match="does not exist; check the name"):
+        read_errors(tmp_path / "none.nc")
+    with pytest.raises(ValueError, match="is no file; check the name"):
+        read_errors(tmp_path)
+
+
+def test_no_setting_of_the_pareto_front_is_beaten():
+    rng = np.random.default_rng(3)
+    seconds, error = rng.uniform(size=(2, 40))
+    best = pareto_front(seconds, error)
+    for index in range(40):
+        beaten = np.any((seconds < seconds[index]) & (error < error[index]))
+        assert (index in best) == (not beaten)
+    assert np.all(np.diff(seconds[best]) > 0)
+    assert list(pareto_front(np.array([1.0, 1.0, 2.0]), np.array([2.0, 1.0, 1.0]))) == [1]
