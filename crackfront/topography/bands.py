@@ -124,6 +124,11 @@ class Band:
         """Both ends, the shortest first."""
         return self.shortest, self.longest
 
+    @property
+    def wavelengths(self) -> tuple[float, float]:
+        """Wavelengths of both ends (Units: m)."""
+        return self.shortest.wavelength, self.longest.wavelength
+
 
 @dataclass(frozen=True, slots=True)
 class Scan:
@@ -157,7 +162,7 @@ class Scan:
     @property
     def trusted(self) -> Density:
         """The density over its band."""
-        return self.density.within(self.band.shortest.wavelength, self.band.longest.wavelength)
+        return self.density.within(*self.band.wavelengths)
 
     @property
     def informative(self) -> Density:

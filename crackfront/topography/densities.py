@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fftfreq, rfft, rfft2, rfftfreq
 
-from crackfront.topography.instruments import surface_library
 from crackfront.topography.reading import Measurement
 
 Array = NDArray[np.float64]
@@ -103,9 +101,7 @@ class Periodogram:
             used &= ~without
         values, count = wavevector[used], np.broadcast_to(self.count, self.power.shape)[used]
         logarithm = np.log(values)
-        place = np.floor(logarithm * (BINS_PER_DECADE / math.log(10))).astype(np.int64)
-        first = int(place.min())
-        place -= first
+        place = _bins(logarithm)
         modes = np.bincount(place, count)
         known = modes > 0
         number = np.where(known, modes, 1.0)
@@ -125,6 +121,12 @@ class Periodogram:
         step = math.prod(float(np.min(np.abs(one[one != 0]))) for one in self.along)
         total = float(np.sum(count * self.power[inside] * wavevector[inside] ** (2 * order)))
         return total * step / (2 * math.pi) ** len(self.along)
+
+
+def _bins(logarithm: Array) -> NDArray[np.int64]:
+    """Numbers of the bins of logarithms of wavevectors, from 0."""
+    place = np.floor(logarithm * (BINS_PER_DECADE / math.log(10))).astype(np.int64)
+    return np.asarray(place - place.min())
 
 
 def periodogram(
@@ -191,10 +193,7 @@ def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
     wavevector = waves.wavevector
     beside = ~(waves.near_axis(0) | waves.near_axis(1)) & (wavevector > 0)
     inside = wavevector <= 2 * np.pi / shortest
-    scale = BINS_PER_DECADE / math.log(10)
-    place = np.floor(np.log(np.where(wavevector > 0, wavevector, 1.0)) * scale).astype(np.int64)
-    first = int(place[wavevector > 0].min())
-    place -= first
+    place = _bins(np.log(np.where(wavevector > 0, wavevector, np.max(wavevector))))
     count = np.broadcast_to(waves.count, waves.power.shape)
     size = int(place.max()) + 1
     found = []
@@ -203,7 +202,7 @@ def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
     for axis in (0, 1):
         step = float(np.min(np.abs(waves.along[axis][waves.along[axis] != 0])))
         chosen = waves.near_axis(axis) & inside & (wavevector > (_FIRST_ON_AXIS - 0.5) * step)
-        chosen &= number[np.clip(place, 0, size - 1)] > 0
+        chosen &= number[place] > 0
         here = place[chosen]
         ratio = waves.power[chosen] * number[here] / base[here]
         modes = np.sum(count[chosen]) / (2 * waves.dependence)
@@ -221,10 +220,3 @@ def anisotropy(waves: Periodogram, shortest: float) -> float:
     weight = waves.count * waves.power * (waves.wavevector <= 2 * np.pi / shortest)
     along_x, along_y = (float(np.sum(weight * one**2)) for one in waves.along)
     return math.sqrt(along_x / along_y)
-
-
-def topography(measurement: Measurement) -> Any:
-    """A measurement as an object of the library, in metres."""
-    library = surface_library()
-    kind = library.UniformLineScan if measurement.is_line else library.Topography
-    return kind(measurement.heights, measurement.size, periodic=measurement.periodic, unit="m")

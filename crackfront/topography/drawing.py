@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
 from numpy.typing import NDArray
 
 from crackfront.core import jkr
-from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.plots.densities import (
     ISOTROPIC_LABEL,
@@ -33,14 +33,20 @@ from crackfront.plots.style import (
     house_style,
 )
 from crackfront.topography.densities import Density
-from crackfront.topography.maps import draw_scan
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import Prediction
+from crackfront.topography.reading import Measurement
 
 Array = NDArray[np.float64]
 
 _MOST_MAPS, _FEWEST_PLACES = 4, 2
 """Scans that are shown as maps, and places for them."""
+
+_MOST_PIXELS = 512
+"""Points along a side that a drawn map has at most; others are left out."""
+
+_SHOWN = (0.002, 0.998)
+"""Quantiles of the heights between which colours are spread."""
 
 _LAST = 0.4
 """Part of the last wavevector from which on a limit is named on its left."""
@@ -48,15 +54,14 @@ _LAST = 0.4
 _BESIDE_TICKS = 12.0
 """Points to the left of a panel where its letter is beside the ticks of an upper axis."""
 
-_ENTRY = 0.1
-"""Part of the height of a panel that an entry of a legend takes."""
-
 _ROOM = 3.0
 """How far beyond the longest trusted wavelength the spectrum is shown."""
 
 
 def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figure:
     """Densities with the spectrum, predicted forces of both branches, and the scans as used."""
+    ends = surface.joint.longest * _ROOM, surface.joint.spectrum.short_cutoff / 1.5
+    wavevector = np.geomspace(2 * np.pi / ends[0], 2 * np.pi / ends[1], 400)
     with house_style():
         figure = blank_figure(PAGE, 0.86 * PAGE)
         above, below = figure.subfigures(2, 1, height_ratios=(0.56, 0.3), squeeze=False)[:, 0]
@@ -64,8 +69,8 @@ def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figur
         upper, lower, forces = panels["a"], panels["b"], panels["c"]
         upper.sharex(lower)
         upper.tick_params(labelbottom=False)
-        _draw_isotropic(upper, surface)
-        _draw_profiles(lower, surface)
+        _draw_isotropic(upper, surface, wavevector)
+        _draw_profiles(lower, surface, wavevector)
         add_wavelengths(upper)
         lower.set_xlabel(WAVEVECTOR_LABEL)
         _draw_forces(forces, prediction)
@@ -81,27 +86,27 @@ def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figur
         return figure
 
 
-def _draw_isotropic(axes: Axes, surface: MeasuredSurface) -> None:
+def _draw_isotropic(axes: Axes, surface: MeasuredSurface, wavevector: Array) -> None:
     """Densities of maps, trusted and not, the spectrum and the scales that dominate."""
-    joint, wavevector = surface.joint, _wavevectors(surface)
+    spectrum, measures = surface.joint.spectrum, surface.measures
     set_density_scales(axes, wavevector)
-    shown = wavevector <= 2 * np.pi / joint.spectrum.short_cutoff
+    shown = wavevector[wavevector <= 2 * np.pi / spectrum.short_cutoff]
     for index, one in enumerate(surface.scans):
         if not one.measurement.is_line:
             _draw_density(axes, index, one.trusted, one.measurement.path.name)
-            _draw_untrusted(axes, index, one.density.within(*_ends(wavevector)))
-    logarithms = np.log([item.density(wavevector[shown]) for item in _reaching(surface)])
+            whole = one.density.within(2 * np.pi / wavevector[-1], 2 * np.pi / wavevector[0])
+            colour = COLOURS[index % len(COLOURS)]
+            axes.plot(
+                whole.wavevector, whole.value, color=colour, linewidth=0.5, alpha=0.6, zorder=2
+            )
+    # Draws that end before the spectrum have no density up to its end.
+    reaching = (one for one in surface.joint.draws if one.short_cutoff <= spectrum.short_cutoff)
+    logarithms = np.log([one.density(shown) for one in reaching])
     low, high = np.exp(np.quantile(logarithms, (0.025, 0.975), axis=0))
-    axes.fill_between(wavevector[shown], low, high, color="0.8", linewidth=0, zorder=1)
-    axes.plot(
-        wavevector[shown],
-        joint.spectrum.density(wavevector[shown]),
-        color=BLACK,
-        label="spectrum, with its 95% interval",
-        zorder=4,
-    )
-    axes.set_ylim(0.2 * np.min(low), 5 * np.max(high))
-    measures = surface.measures
+    axes.fill_between(shown, low, high, color="0.8", linewidth=0, zorder=1)
+    label = "spectrum, with its 95% interval"
+    axes.plot(shown, spectrum.density(shown), color=BLACK, label=label, zorder=4)
+    axes.set_ylim(0.02 * np.min(low), 5 * np.max(high))
     draw_dominant_scales(
         axes,
         np.array([item.rms.value**2 for item in measures]),
@@ -110,33 +115,7 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface) -> None:
     )
     _draw_limits(axes, surface, named=False)
     axes.set_ylabel(ISOTROPIC_LABEL)
-    _add_legend(axes)
-
-
-def _add_legend(axes: Axes) -> None:
-    """Legend at the lower left, below all that is drawn there."""
-    middle = math.sqrt(math.prod(axes.get_xlim()))
-    bottom, top = axes.get_ylim()
-    curves = (line for line in axes.get_lines() if line.get_transform() == axes.transData)
-    points = [np.asarray(line.get_xydata(), dtype=float) for line in curves]
-    here = [each[each[:, 0] <= middle, 1] for each in points]
-    least = min((float(np.min(values)) for values in here if values.size), default=top)
-    entries = len(axes.get_legend_handles_labels()[0])
-    room = _ENTRY * (entries + 1)
-    # The legend takes a part of the axis, below the least value on the left.
-    axes.set_ylim(bottom=min(bottom, (least / top**room) ** (1 / (1 - room))))
     axes.legend(loc="lower left")
-
-
-def _reaching(surface: MeasuredSurface) -> list[TabulatedSpectrum]:
-    """Draws of the spectrum, continued to the end of what is shown of it."""
-    end = surface.joint.spectrum.short_cutoff
-    return [item for item in surface.joint.draws if item.short_cutoff <= end]
-
-
-def _ends(wavevector: Array) -> tuple[float, float]:
-    """Shortest and longest wavelength of an axis."""
-    return float(2 * np.pi / wavevector[-1]), float(2 * np.pi / wavevector[0])
 
 
 def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
@@ -161,31 +140,19 @@ def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
                 )
 
 
-def _draw_profiles(axes: Axes, surface: MeasuredSurface) -> None:
+def _draw_profiles(axes: Axes, surface: MeasuredSurface, wavevector: Array) -> None:
     """Densities of profiles and the projection of the model that continues the spectrum."""
-    wavevector = _wavevectors(surface)
     for index, (one, density) in enumerate(zip(surface.scans, surface.profiles, strict=True)):
         name = one.measurement.path.name if one.measurement.is_line else ""
         _draw_density(axes, index, density, name)
-    axes.plot(
-        wavevector,
-        surface.joint.fit.projected_density(wavevector),
-        color=BLACK,
-        label="projection of the model",
-        zorder=4,
-    )
+    projection = surface.joint.fit.projected_density(wavevector)
+    axes.plot(wavevector, projection, color=BLACK, label="projection of the model", zorder=4)
     axes.set_yscale("log")
     low, high = axes.get_ylim()
     axes.set_ylim(low, high * (high / low) ** (0.12 * len(surface.scans)))
     _draw_limits(axes, surface, named=True)
     axes.set_ylabel(PROFILE_LABEL)
-    _add_legend(axes)
-
-
-def _draw_untrusted(axes: Axes, index: int, density: Density) -> None:
-    """The whole density of a measurement as a thin line."""
-    colour = COLOURS[index % len(COLOURS)]
-    axes.plot(density.wavevector, density.value, color=colour, linewidth=0.5, alpha=0.6, zorder=2)
+    axes.legend(loc="lower left")
 
 
 def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
@@ -206,28 +173,26 @@ def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
 
 def _draw_forces(axes: Axes, prediction: Prediction) -> None:
     """Force against contact radius of both branches with their intervals, and of a smooth one."""
-    scales = Scales(prediction.radius, prediction.work_of_adhesion, prediction.contact_modulus)
-    branches = (
-        ("approach", BLUE, prediction.w_appr),
-        ("retraction", VERMILION, prediction.w_retr),
-    )
-    strongest = max(prediction.w_retr.high, prediction.work_of_adhesion)
-    largest = 1.15 * jkr.radius_at_force(0.0, strongest / prediction.work_of_adhesion)
-    radius = np.linspace(1e-3, largest, 400)
-    unit, power = _force_unit(scales.force)
+    w_int = prediction.work_of_adhesion
+    scales = Scales(prediction.radius, w_int, prediction.contact_modulus)
+    strongest = max(prediction.w_retr.high, w_int)
+    radius = np.linspace(1e-3, 1.15 * jkr.radius_at_force(0.0, strongest / w_int), 400)
+    unit, newtons = _scaled_unit("N", scales.force)
+    place = 1e6 * radius * scales.lateral
 
     def force(adhesion: float) -> Array:
-        relative = max(adhesion, 0.0) / prediction.work_of_adhesion
-        return jkr.equilibrium_force(radius, relative) * scales.force / power
+        return jkr.equilibrium_force(radius, max(adhesion, 0.0) / w_int) * scales.force / newtons
 
-    place = 1e6 * radius * scales.lateral
-    for name, colour, found in branches:
+    for name, colour, found in (
+        ("approach", BLUE, prediction.w_appr),
+        ("retraction", VERMILION, prediction.w_retr),
+    ):
         label = rf"{name}, $w = {1e3 * found.value:.3g}$ mJ m$^{{-2}}$"
         axes.plot(place, force(found.value), color=colour, label=label, zorder=3)
         ends = force(found.low), force(found.high)
         axes.fill_between(place, *ends, color=colour, alpha=0.2, linewidth=0)
-    smooth = rf"smooth, $w_\mathrm{{int}} = {1e3 * prediction.work_of_adhesion:.3g}$ mJ m$^{{-2}}$"
-    axes.plot(place, force(prediction.work_of_adhesion), color="0.35", dashes=(4, 2), label=smooth)
+    smooth = rf"smooth, $w_\mathrm{{int}} = {1e3 * w_int:.3g}$ mJ m$^{{-2}}$"
+    axes.plot(place, force(w_int), color="0.35", dashes=(4, 2), label=smooth)
     axes.axhline(0.0, color="0.6", linewidth=0.5, zorder=1)
     axes.set_xlim(0, place[-1])
     axes.set_xlabel("contact radius (µm)")
@@ -235,14 +200,43 @@ def _draw_forces(axes: Axes, prediction: Prediction) -> None:
     axes.legend(loc="upper left", title="95% intervals shaded", title_fontsize=6)
 
 
-def _force_unit(force: float) -> tuple[Literal["mN", "µN", "nN"], float]:
-    """Unit in which a force is drawn, and its value in newtons."""
-    if force > 1e-5:
-        return "mN", 1e-3
-    return ("µN", 1e-6) if force > 1e-8 else ("nN", 1e-9)
+def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ()) -> None:
+    """A map in colours with their scale, or the heights along a line, with what was done to it.
+
+    `stripes` are the axes along which its density leaves waves out.
+    """
+    low, high = (float(end) for end in np.quantile(measurement.heights, _SHOWN))
+    unit, scale = _scaled_unit("m", max(abs(low), abs(high)))
+    lateral, side = _scaled_unit("m", max(measurement.size))
+    channel = f", channel {measurement.channel}" if measurement.channel else ""
+    levelling = f"without {measurement.levelling}" if measurement.levelling else "as it is"
+    left_out = " and ".join("xy"[axis] for axis in stripes)
+    waves = f"\n(a) without waves along {left_out} alone" if stripes else ""
+    axes.set_title(f"{measurement.path.name}{channel}\n{levelling}{waves}", fontsize=6)
+    axes.set_xlabel(f"x ({lateral})")
+    label = f"height ({unit})"
+    if measurement.is_line:
+        places = np.arange(measurement.heights.size) * measurement.pixels[0] / side
+        axes.plot(places, measurement.heights / scale, color=BLUE, linewidth=0.5)
+        axes.set_xlim(0, measurement.size[0] / side)
+        axes.set_ylabel(label)
+        return
+    heights, (width, height) = measurement.heights, measurement.size
+    steps = (slice(None, None, math.ceil(count / _MOST_PIXELS)) for count in heights.shape)
+    image = axes.imshow(
+        heights[tuple(steps)].T / scale,
+        origin="lower",
+        extent=(0.0, width / side, 0.0, height / side),
+        cmap="viridis",
+        vmin=low / scale,
+        vmax=high / scale,
+    )
+    axes.set_ylabel(f"y ({lateral})")
+    bar = axes.get_figure().colorbar(image, ax=axes, extend="both", shrink=0.9)  # type: ignore[union-attr]
+    bar.set_label(label)
 
 
-def _wavevectors(surface: MeasuredSurface) -> Array:
-    """Wavevectors that are shown."""
-    ends = surface.joint.longest * _ROOM, surface.joint.spectrum.short_cutoff / 1.5
-    return np.geomspace(2 * np.pi / ends[0], 2 * np.pi / ends[1], 400)
+def _scaled_unit(unit: str, value: float) -> tuple[str, float]:
+    """Unit with the prefix that a value calls for, and what one of it is without the prefix."""
+    power = min(max(3 * math.floor(math.log10(value * (1 + 1e-9)) / 3), -12), 0)
+    return f"{EngFormatter.ENG_PREFIXES[power]}{unit}", 10.0**power

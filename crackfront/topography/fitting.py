@@ -39,6 +39,9 @@ _BEYOND = 8.0
 _SHARPNESS = (1.0, 4.0)
 """Exponents m: of a circular pupil, whose transfer falls linearly at first, to sharp filters."""
 
+_REACH = (0.7, math.nan, 1.0)
+"""How far the logarithms of q_c and of the noise go from where they were seen, in a fit of all."""
+
 _GAIN = 9.0
 """What half of the deviance must fall by for an instrument to be seen in a density."""
 
@@ -218,44 +221,6 @@ def seen_instrument(density: Density) -> Instrument:
     return Instrument(math.exp(found[0]), float(found[1]), math.exp(found[2]))
 
 
-@dataclass(frozen=True, slots=True)
-class _Instruments:
-    """What a fit varies of the instruments that are seen, one row each."""
-
-    given: Array
-
-    @property
-    def free(self) -> list[tuple[int, int]]:
-        """Rows and columns that vary."""
-        return [
-            (index, column)
-            for index, row in enumerate(self.given)
-            for column in range(3)
-            if math.isfinite(row[column]) and not (column == 1 and math.isinf(row[0]))
-        ]
-
-    @property
-    def begin(self) -> list[float]:
-        """Where they begin."""
-        return [float(self.given[place]) for place in self.free]
-
-    @property
-    def limits(self) -> list[tuple[float, float]]:
-        """Between what they vary: resolution, sharpness and noise."""
-        width = {0: 0.7, 2: 1.0}
-        return [
-            _SHARPNESS if place[1] == 1 else (value - width[place[1]], value + width[place[1]])
-            for place, value in zip(self.free, self.begin, strict=True)
-        ]
-
-    def rows(self, values: Array) -> Array:
-        """All rows by the values of those that vary, (n, n_density, 3)."""
-        found = np.tile(self.given, (len(values), 1, 1))
-        for place, (index, column) in enumerate(self.free):
-            found[:, index, column] = values[:, place]
-        return found
-
-
 def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
     """Models of one surface and of the instruments that are seen in its densities.
 
@@ -271,19 +236,27 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
         )
     low = math.log(min(float(item.wavevector[0]) for item, _ in densities))
     high = math.log(max(float(item.wavevector[-1]) for item, _ in densities))
-    instruments = _Instruments(np.array([seen.row for _, seen in densities]))
-    limits = np.array([*_limits(low, high), *instruments.limits])
+    seen = np.array([instrument.row for _, instrument in densities])
+    varied = np.isfinite(seen)
+    varied[:, 1] &= varied[:, 0]
+    begin, reach = seen[varied], np.broadcast_to(_REACH, seen.shape)[varied]
+    around = begin[:, None] + np.outer(reach, (-1, 1))
+    around[np.isnan(reach)] = _SHARPNESS
+    limits = np.array([*_limits(low, high), *around])
+
+    def instruments(trials: Array) -> Array:
+        rows = np.tile(seen, (len(trials), 1, 1))
+        rows[:, varied] = trials[:, _SHAPE:]
+        return rows
 
     def models(trials: Array) -> list[Array]:
-        """Logarithms of all densities by some parameters."""
-        rows = instruments.rows(trials[:, _SHAPE:])
+        rows = instruments(trials)
         return [
             _model(trials[:, :_SHAPE], rows[:, index], item)
             for index, (item, _) in enumerate(densities)
         ]
 
     def deviance(trials: Array) -> Array:
-        """Twice the negative logarithm of the likelihood of some parameters."""
         inside = np.all((trials >= limits[:, 0]) & (trials <= limits[:, 1]), axis=1)
         inside &= trials[:, 4] <= trials[:, 3]
         total = ((trials[:, 2] - trials[:, 1]) / _BEND) ** 2
@@ -294,13 +267,13 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
     only = [item for item, _ in densities]
     _, start = min(
         (
-            _likeliest(only, models, np.array([*shape, *instruments.begin]), limits)
-            for shape in _first_shapes(list(zip(only, instruments.given, strict=True)), low, high)
+            _likeliest(only, models, np.array([*shape, *begin]), limits)
+            for shape in _first_shapes(list(zip(only, seen, strict=True)), low, high)
         ),
         key=lambda pair: pair[0],
     )
     rng = np.random.default_rng(_SEED)
-    scale = np.array([0.05, 0.05, 0.05, 0.2, 0.1, *[0.05] * len(instruments.free)])
+    scale = np.array([0.05, 0.05, 0.05, 0.2, 0.1, *[0.05] * begin.size])
     walkers = start + rng.standard_normal((_WALKERS, start.size)) * scale
     walkers[:, 1:] = np.clip(walkers[:, 1:], limits[1:, 0] + 1e-3, limits[1:, 1] - 1e-3)
     walkers[:, 4] = np.minimum(walkers[:, 4], walkers[:, 3])
@@ -308,7 +281,7 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
     least = float(np.min(deviance(states)))
     return Fit(
         states[:, :_SHAPE],
-        instruments.rows(states[:, _SHAPE:]),
+        instruments(states),
         math.exp(low),
         math.exp(high),
         least / max(count - start.size, 1),

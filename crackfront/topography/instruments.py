@@ -152,12 +152,16 @@ def array_of(path: Path) -> np.ndarray[Any, Any]:
 
 
 def library_scan(
-    heights: np.ndarray[Any, Any], size: tuple[float, ...], *, periodic: bool, info: dict[str, Any]
+    heights: np.ndarray[Any, Any],
+    size: tuple[float, ...],
+    *,
+    periodic: bool,
+    info: dict[str, Any] | None = None,
 ) -> Any:
     """Heights in metres as an object of the library."""
     library = surface_library()
     kind = library.Topography if heights.ndim > 1 else library.UniformLineScan
-    return kind(heights, size, periodic=periodic, unit="m", info=info)
+    return kind(heights, size, periodic=periodic, unit="m", info=info or {})
 
 
 def _reader(path: Path, source: Path | BytesIO) -> Any:

@@ -151,20 +151,18 @@ def joint_spectrum(scans: Sequence[Scan]) -> JointSpectrum:
         replace(item, value=np.exp(np.median(found, axis=0)), is_profile=False)
         for item, found in zip(trusted, logarithms, strict=True)
     ]
-    model = fit.median
     scatter, levels = _levels(isotropic)
-    joined = _joined(isotropic, [0.0] * len(scans), scatter)
-    end = min(one.band.end for one in scans)
-    seen = fit.has_roll_off
-    spectrum = _continued(joined[0], joined[1], model, fit.lowest if seen else None, end)
-    longer = _continued(joined[0], joined[1], model, fit.lowest, end)
-    shares = _shares(spectrum, longer, joined[0], model)
+    density = JointDensity(*_joined(isotropic, [0.0] * len(scans), scatter), scatter, levels)
+    measured, end = (density.wavevector, density.value), min(one.band.end for one in scans)
+    longer = spectrum = _continued(*measured, fit.median, fit.lowest, end)
+    if not fit.has_roll_off:
+        spectrum = _continued(*measured, fit.median, None, end)
     return JointSpectrum(
         spectrum=spectrum,
         draws=_draws(scans, trusted, logarithms, scatter, fit),
-        density=JointDensity(*joined, scatter, levels),
+        density=density,
         fit=fit,
-        shares=shares,
+        shares=_shares(spectrum, longer, density.wavevector, fit.median),
     )
 
 
@@ -175,40 +173,31 @@ def _bins(wavevector: Array) -> NDArray[np.int64]:
 
 def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float], ...]]:
     """Scatter of the levels of scans, and level of each against the others."""
-    unknown = Estimate(*(math.nan,) * 4)
-    tables = [
-        dict(zip(_bins(one.wavevector).tolist(), range(one.value.size), strict=True))
-        for one in densities
-    ]
-    found: list[tuple[float, float]] = []
-    for number, (one, table) in enumerate(zip(densities, tables, strict=True)):
-        apart, weights = [], []
-        for place, index in table.items():
-            others = [
-                (item.value[other[place]], item.modes[other[place]])
-                for position, (item, other) in enumerate(zip(densities, tables, strict=True))
-                if position != number and place in other
-            ]
-            if others:
-                values, modes = np.transpose(others)
-                mean, total = np.average(values, weights=modes), float(np.sum(modes))
-                apart.append(math.log(one.value[index] / mean))
-                weights.append(1 / (1 / one.modes[index] + 1 / total))
-        found.append(
-            (float(np.average(apart, weights=weights)), float(np.sum(weights)) ** -0.5)
-            if weights
-            else (math.nan, math.nan)
-        )
+    places = [_bins(one.wavevector) for one in densities]
+    bins = np.unique(np.concatenate(places))
+    value, modes = np.zeros((2, len(densities), bins.size))
+    for row, (one, place) in enumerate(zip(densities, places, strict=True)):
+        here = np.searchsorted(bins, place)
+        value[row, here], modes[row, here] = one.value, one.modes
+    power, found = value * modes, []
+    for row in range(len(densities)):
+        other_modes = np.delete(modes, row, axis=0).sum(axis=0)
+        shared = (modes[row] > 0) & (other_modes > 0)
+        if not np.any(shared):
+            found.append((math.nan, math.nan))
+            continue
+        mean = np.delete(power, row, axis=0).sum(axis=0)[shared] / other_modes[shared]
+        apart = np.log(value[row, shared] / mean)
+        weights = 1 / (1 / modes[row, shared] + 1 / other_modes[shared])
+        found.append((float(np.average(apart, weights=weights)), float(np.sum(weights)) ** -0.5))
     known = np.array([pair for pair in found if math.isfinite(pair[0])])
     scatter = 0.0
     if len(known) > 1:
         # A level is that against the others, so that two scans tell the same difference twice.
         excess = float(np.mean(known[:, 0] ** 2 - known[:, 1] ** 2))
         scatter = math.sqrt(max(0.0, excess) / 2)
-    levels = tuple(
-        unknown
-        if math.isnan(level)
-        else Estimate(
+    return scatter, tuple(
+        Estimate(
             math.exp(level),
             math.exp(level) * error,
             math.exp(level - 1.96 * error),
@@ -216,7 +205,6 @@ def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float],
         )
         for level, error in found
     )
-    return scatter, levels
 
 
 def _joined(

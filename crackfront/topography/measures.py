@@ -11,7 +11,6 @@ from pathlib import Path
 from scipy.special import beta
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.bands import Scan, scan
 from crackfront.topography.densities import Density, profile_density
 from crackfront.topography.joining import JointSpectrum, joint_spectrum
@@ -112,10 +111,7 @@ def measured_surface(
     return MeasuredSurface(
         scans=scans,
         profiles=tuple(
-            profile_density(one.measurement).within(
-                one.band.shortest.wavelength, one.band.longest.wavelength
-            )
-            for one in scans
+            profile_density(one.measurement).within(*one.band.wavelengths) for one in scans
         ),
         joint=joint,
         measures=tuple(_measure(order, joint, scans) for order in _ORDERS),
@@ -142,8 +138,7 @@ def measured_mean_square(one: Scan, order: float) -> float:
 
     A line counts as one of an isotropic surface. (Units: m^(2 - 2 order))
     """
-    band = one.band
-    found = one.waves.mean_square(order, band.shortest.wavelength, band.longest.wavelength)
+    found = one.waves.mean_square(order, *one.band.wavelengths)
     # A line sees a wave by the cosine of its direction: this is the mean of its power.
     is_line = one.measurement.is_line
     return found / (float(beta(order + 0.5, 0.5)) / math.pi) if is_line else found
@@ -156,11 +151,7 @@ def _measure(order: float, joint: JointSpectrum, scans: Sequence[Scan]) -> RmsMe
         joint.estimate(lambda spectrum: spectrum.mean_square(order) ** 0.5),
         *joint.spectrum.dominant_wavelengths(order, _SHARE),
         measured=tuple(measured_mean_square(one, order) ** 0.5 for one in scans),
-        expected=tuple(_expected(joint.spectrum, one, order) ** 0.5 for one in scans),
+        expected=tuple(
+            joint.spectrum.mean_square_between(order, *one.band.wavelengths) ** 0.5 for one in scans
+        ),
     )
-
-
-def _expected(spectrum: TabulatedSpectrum, one: Scan, order: float) -> float:
-    """Mean square of a spectrum over the band of a scan."""
-    band = one.band
-    return spectrum.mean_square_between(order, band.shortest.wavelength, band.longest.wavelength)

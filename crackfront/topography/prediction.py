@@ -74,7 +74,14 @@ def predicted(
     ValueError
         If no contact conforms, e_el >= w_int.
     """
-    factors = _factors(surface, scales)
+    shape, radius = reduced_spectrum(surface.joint.spectrum, scales), zero_load_radius(scales)
+    reduced_energy = shape.elastic_energy
+    if not reduced_energy < 1:
+        raise ValueError(
+            f"e_el is {reduced_energy:.3g} w_int, so that no contact conforms fully and the theory "
+            "does not apply; a softer sphere, a stronger adhesion or a smoother surface would"
+        )
+    factors = sphere_factors("roughness", shape, reduced_energy, radius / scales.lateral)
     k_appr, k_retr, k = (
         replace(factor, standard_error=math.nan)
         for factor in (factors.approach.factor, factors.retraction.factor, factors.both)
@@ -84,6 +91,11 @@ def predicted(
     appr = _linear(adhesion, energy, k_appr, -1.0, -1.0)
     retr = _linear(adhesion, energy, k_retr, -1.0, 1.0)
     hysteresis = _linear(0.0, energy, k, 0.0, 2.0)
+    # By JKR, pull-off forces are linear in the work of adhesion.
+    at_load, at_displacement = (
+        -reduced * scales.force / adhesion
+        for reduced in (jkr.pull_off_force(), float(jkr.equilibrium_force(jkr.pull_off_radius())))
+    )
     return Prediction(
         surface=surface,
         verdict=verdict(surface, scales, attraction_range, factors),
@@ -91,7 +103,7 @@ def predicted(
         radius=scales.radius,
         contact_modulus=scales.contact_modulus,
         work_of_adhesion=adhesion,
-        contact_radius=zero_load_radius(scales),
+        contact_radius=radius,
         e_el=energy,
         w_rms=2 * math.sqrt(energy.value * adhesion),
         correlation_length=surface.joint.spectrum.correlation_length,
@@ -104,28 +116,13 @@ def predicted(
         w_appr=appr,
         w_retr=retr,
         hysteresis=replace(hysteresis, low=max(0.0, hysteresis.low)),
-        pull_off_force=_forces(retr, jkr.pull_off_force(), scales),
-        pull_off_force_held=_forces(
-            retr, float(jkr.equilibrium_force(jkr.pull_off_radius())), scales
-        ),
+        pull_off_force=retr.each(lambda work: at_load * work),
+        pull_off_force_held=retr.each(lambda work: at_displacement * work),
         pull_off_force_smooth=-jkr.pull_off_force() * scales.force,
         paper_factor=PAPER_FACTOR,
         paper_w_appr=adhesion - (1 + PAPER_FACTOR) * energy.value,
         paper_w_retr=adhesion - (1 - PAPER_FACTOR) * energy.value,
     )
-
-
-def _factors(surface: MeasuredSurface, scales: Scales) -> SphereFactors:
-    """Factors k that the law gives for a surface."""
-    shape = reduced_spectrum(surface.joint.spectrum, scales)
-    energy = shape.elastic_energy
-    if not energy < 1:
-        raise ValueError(
-            f"e_el is {energy:.3g} w_int, so that no contact conforms fully and the theory does "
-            "not apply; a softer sphere, a stronger adhesion or a smoother surface would"
-        )
-    radius = zero_load_radius(scales) / scales.lateral
-    return sphere_factors("roughness", shape, energy, radius)
 
 
 def _linear(
@@ -142,9 +139,3 @@ def _linear(
     ]
     low, high = (math.hypot(*(one[end] for one in ends)) for end in (0, 1))
     return Estimate(value, math.nan, value - low, value + high)
-
-
-def _forces(retraction: Estimate[float], reduced: float, scales: Scales) -> Estimate[float]:
-    """Pull-off forces, positive; by JKR they are linear in the work of adhesion."""
-    slope = -reduced * scales.force / scales.work_of_adhesion
-    return retraction.each(lambda adhesion: slope * adhesion)

@@ -41,7 +41,6 @@ _START, _DEEPEST, _TRAVEL, _STEADY_ERROR = 1.0, 1.5, 1.5, 0.1
 _WAY = 15.0
 """Correlation lengths that the contact grows by at least, for a few independent states."""
 
-
 _MOST_SITES, _MOST_LINE_SITES, _MOST_MEMORY = 1_000_000, 2_000_000, 8e9
 """Sites of a sphere and of a straight front, and bytes of either, up to which they are run."""
 
@@ -144,7 +143,10 @@ def _affordable(
     def line(size: float) -> Simulation:
         return simulation(_LINE.schedule("roughness", spectrum, energy, size, numerics))
 
-    sphere = simulation(_schedule(spectrum.correlation_length))
+    # Spheres go deeper where the features are large against the contact.
+    largest = jkr.equilibrium_radius(_START) + _WAY * spectrum.correlation_length
+    deepest = max(_DEEPEST, float(jkr.equilibrium_penetration(largest)))
+    sphere = simulation(SteadySchedule(_START, deepest, _TRAVEL, _STEADY_ERROR))
     if _fits(sphere, _MOST_SITES):
         return sphere, 1.0, ""
     w_rms = 2 * math.sqrt(energy)
@@ -223,10 +225,3 @@ def simulated(plan: SimulationPlan, scales: Scales) -> Simulated:
         failed=tuple(failed),
         remark=plan.remark,
     )
-
-
-def _schedule(correlation_length: float) -> SteadySchedule:
-    """Penetrations to visit; deeper ones where the features are large against the contact."""
-    largest = jkr.equilibrium_radius(_START) + _WAY * correlation_length
-    deepest = max(_DEEPEST, float(jkr.equilibrium_penetration(largest)))
-    return SteadySchedule(_START, deepest, _TRAVEL, _STEADY_ERROR)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import replace
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.units import Scales
-from crackfront.topography.densities import topography
-from crackfront.topography.instruments import surface_library
+from crackfront.data.written_units import prefixed
+from crackfront.topography.instruments import library_scan, shown_sides, surface_library
 from crackfront.topography.reading import Measurement
 
 Array = NDArray[np.float64]
@@ -51,15 +51,11 @@ def measured_adhesion(
         If the measurement is a line, the contact must fit in the scan and does not, or the surface
         is too rough for full conformity.
     """
-    if placement not in get_args(Placement):
-        raise ValueError(
-            f"placement is {placement!r}; choose one of {', '.join(get_args(Placement))}"
-        )
     across = 2 * zero_load_radius(scales)
     if placement == "within" and min(measurement.size) < across:
         raise ValueError(
-            f"{measurement.path}: the scan of {_micrometres(measurement.size)} is smaller than the "
-            f"contact at zero load, {1e6 * across:.3g} um across; tile it, or use its spectrum"
+            f"{measurement.path}: the scan of {shown_sides(measurement.size)} is smaller than the "
+            f"contact at zero load, {prefixed('m', across)} across; tile it, or use its spectrum"
         )
     heights, pixel = tile_heights(measurement)
     return rough_adhesion(heights / scales.vertical, pixel / scales.lateral)
@@ -78,18 +74,17 @@ def tile_heights(measurement: Measurement) -> tuple[Array, float]:
             f"{measurement.path} is a line scan, which is no field; use its spectrum, as "
             "crackfront predict --simulate does"
         )
-    scan = topography(_with_square_pixels(measurement))
-    whole = scan if measurement.periodic else scan.mirror_stitch()
-    tile = surface_library().Topography(
-        whole.heights(), whole.physical_sizes, periodic=True, unit="m"
-    )
+    square, periodic = _with_square_pixels(measurement), measurement.periodic
+    scan = library_scan(square.heights, square.size, periodic=periodic)
+    whole = scan if periodic else scan.mirror_stitch()
+    tile = library_scan(whole.heights(), whole.physical_sizes, periodic=True)
     with warnings.catch_warnings():
         # The library calls an inverse transform in a way that numpy will change.
         warnings.simplefilter("ignore", DeprecationWarning)
         cut = surface_library().Uniform.Filtering.ShortCutTopography
         heights = cut(tile, cutoff_wavelength=measurement.shortest).heights()
     # Mirror images stand behind the scan: half a scan further its centre is that of the tile.
-    behind = [0 if measurement.periodic else count // 4 for count in heights.shape]
+    behind = [0 if periodic else count // 4 for count in heights.shape]
     centred = np.ascontiguousarray(np.roll(heights, behind, axis=(0, 1)))
     return centred, float(tile.pixel_size[0])
 
@@ -115,8 +110,3 @@ def _with_square_pixels(measurement: Measurement) -> Measurement:
     spline = RectBivariateSpline(*places, measurement.heights)
     sides = tuple(count * pixel for count in counts)
     return replace(measurement, size=sides, heights=np.asarray(spline(*wanted)))
-
-
-def _micrometres(sides: tuple[float, ...]) -> str:
-    """Sides of a scan."""
-    return " x ".join(f"{1e6 * side:.3g}" for side in sides) + " um"

@@ -169,9 +169,84 @@ def verdict(
 
 def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Iterator[Condition]:
     """All conditions."""
-    yield from _energy_conditions(surface, scales)
-    yield from _sphere_conditions(surface, scales)
-    yield from _attraction_conditions(surface, scales, reach)
+    w_int, modulus, radius = scales.work_of_adhesion, scales.contact_modulus, scales.radius
+    e_el = surface.conformity_energy(modulus).value
+    yield Condition(
+        "full conformity",
+        f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', w_int)}",
+        "no contact conforms to the roughness",
+        e_el,
+        w_int,
+        w_int,
+        "J/m2",
+        remedies=_softer(scales, e_el / w_int),
+    )
+    share = _negative_share(e_el / w_int)
+    yield Condition(
+        "attraction nearly everywhere",
+        f"w_loc negative on {share:.2%} of the surface",
+        "the linearisation of the roughness is not to be trusted where w_loc is negative, and the "
+        "hysteresis of boundary elements is smaller",
+        share,
+        _negative_share(largest_energy(shipped_validity(), TOLERANCES[-1])),
+        _MOST_NEGATIVE,
+        "1",
+        remedies=_softer(scales, e_el / w_int / _energy_of_share(_MOST_NEGATIVE)),
+    )
+    contact = zero_load_radius(scales)
+    part = contact / radius / _CONTACT[1]
+    yield Condition(
+        "contact small against the sphere",
+        f"contact of {prefixed('m', contact)} on a sphere of {prefixed('m', radius)}",
+        "the paraboloid that stands for the sphere departs from it",
+        contact,
+        _CONTACT[0] * radius,
+        _CONTACT[1] * radius,
+        "m",
+        # a / R goes as the cube root of w_int / (E' R).
+        remedies=(_modulus("above", modulus, part**3), _larger(radius * part**3)),
+    )
+    half = surface.measures[1]
+    waves = f"{prefixed('m', half.shortest)} to {prefixed('m', half.longest)}"
+    part = half.shortest / contact
+    yield Condition(
+        "roughness fine against the contact",
+        f"waves that matter to e_el of {waves} under a contact of {prefixed('m', contact)}",
+        "the contact holds too few of them for an average",
+        half.longest,
+        contact,
+        contact * half.longest / half.shortest,
+        "m",
+        remedies=(
+            _larger(radius * part**1.5),
+            _modulus("below", modulus, part**-3.0),
+            "a finer roughness",
+        ),
+    )
+    tabor = (radius * w_int**2 / (modulus**2 * reach**3)) ** (1 / 3)
+    part = _TABOR[1] / tabor
+    yield Condition(
+        "attraction short against the sphere",
+        f"Tabor parameter of {tabor:.3g}",
+        "adhesion is not that of a crack at the edge of the contact",
+        tabor,
+        *_TABOR,
+        "1",
+        rising=True,
+        remedies=(_modulus("below", modulus, part**-1.5), _larger(radius * part**3)),
+    )
+    # Dugdale's zone of a stress w/z over a range z: (pi/8) (K z/w)^2 with K^2 = 2 E' w.
+    zone = math.pi / 4 * modulus * reach**2 / w_int
+    yield Condition(
+        "attraction short against the roughness",
+        f"cohesive zone of {prefixed('m', zone)} under waves of {waves}",
+        "the edge does not see waves that are shorter than its cohesive zone",
+        zone,
+        half.shortest,
+        half.longest,
+        "m",
+        remedies=(_modulus("below", modulus, half.longest / zone), "a coarser roughness"),
+    )
     slope = surface.measures[2].rms.value
     yield Condition(
         "small slopes",
@@ -184,124 +259,26 @@ def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Itera
     )
 
 
-def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Condition]:
-    """Conditions on e_el: full conformity, and a local work of adhesion that is positive."""
-    adhesion = scales.work_of_adhesion
-    e_el = surface.conformity_energy(scales.contact_modulus).value
-    ratio = e_el / adhesion
-    yield Condition(
-        "full conformity",
-        f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', adhesion)}",
-        "no contact conforms to the roughness",
-        e_el,
-        adhesion,
-        adhesion,
-        "J/m2",
-        remedies=_softer(scales, ratio),
-    )
-    share = _negative_share(ratio)
-    yield Condition(
-        "attraction nearly everywhere",
-        f"w_loc negative on {share:.2%} of the surface",
-        "the linearisation of the roughness is not to be trusted where w_loc is negative, and the "
-        "hysteresis of boundary elements is smaller",
-        share,
-        _negative_share(largest_energy(shipped_validity(), TOLERANCES[-1])),
-        _MOST_NEGATIVE,
-        "1",
-        remedies=_softer(scales, ratio / _energy_of_share(_MOST_NEGATIVE)),
-    )
-
-
-def _sphere_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Condition]:
-    """Conditions on the contact: small against the sphere, large against the roughness."""
-    contact, radius = zero_load_radius(scales), scales.radius
-    part = contact / radius / _CONTACT[1]
-    yield Condition(
-        "contact small against the sphere",
-        f"contact of {prefixed('m', contact)} on a sphere of {prefixed('m', radius)}",
-        "the paraboloid that stands for the sphere departs from it",
-        contact,
-        _CONTACT[0] * radius,
-        _CONTACT[1] * radius,
-        "m",
-        # a / R goes as the cube root of w_int / (E' R).
-        remedies=(
-            _modulus("above", scales, part**3),
-            f"a radius above {prefixed('m', radius * part**3)}",
-        ),
-    )
-    half = surface.measures[1]
-    part = half.shortest / contact
-    yield Condition(
-        "roughness fine against the contact",
-        f"waves that matter to e_el of {prefixed('m', half.shortest)} to "
-        f"{prefixed('m', half.longest)} under a contact of {prefixed('m', contact)}",
-        "the contact holds too few of them for an average",
-        half.longest,
-        contact,
-        contact * half.longest / half.shortest,
-        "m",
-        remedies=(
-            f"a radius above {prefixed('m', radius * part**1.5)}",
-            _modulus("below", scales, part**-3.0),
-            "a finer roughness",
-        ),
-    )
-
-
-def _attraction_conditions(
-    surface: MeasuredSurface, scales: Scales, reach: float
-) -> Iterator[Condition]:
-    """Conditions on the range of attraction: cracks at the sphere, and at the roughness."""
-    adhesion, modulus, radius = scales.work_of_adhesion, scales.contact_modulus, scales.radius
-    tabor = (radius * adhesion**2 / (modulus**2 * reach**3)) ** (1 / 3)
-    part = _TABOR[1] / tabor
-    yield Condition(
-        "attraction short against the sphere",
-        f"Tabor parameter of {tabor:.3g}",
-        "adhesion is not that of a crack at the edge of the contact",
-        tabor,
-        *_TABOR,
-        "1",
-        rising=True,
-        remedies=(
-            _modulus("below", scales, part**-1.5),
-            f"a radius above {prefixed('m', radius * part**3)}",
-        ),
-    )
-    # Dugdale's zone of a stress w/z over a range z: (pi/8) (K z/w)^2 with K^2 = 2 E' w.
-    zone = math.pi / 4 * modulus * reach**2 / adhesion
-    half = surface.measures[1]
-    yield Condition(
-        "attraction short against the roughness",
-        f"cohesive zone of {prefixed('m', zone)} under waves of {prefixed('m', half.shortest)} to "
-        f"{prefixed('m', half.longest)}",
-        "the edge does not see waves that are shorter than its cohesive zone",
-        zone,
-        half.shortest,
-        half.longest,
-        "m",
-        remedies=(_modulus("below", scales, half.longest / zone), "a coarser roughness"),
-    )
-
-
 def _softer(scales: Scales, excess: float) -> tuple[str, ...]:
     """What lowers e_el over w_int by a factor."""
     return (
-        _modulus("below", scales, 1 / excess),
+        _modulus("below", scales.contact_modulus, 1 / excess),
         f"a roughness lower by a factor of {math.sqrt(excess):.3g}",
         f"w_int above {prefixed('J/m2', scales.work_of_adhesion * excess)}",
     )
 
 
-def _modulus(side: str, scales: Scales, factor: float) -> str:
-    """A change of the modulus."""
-    known = scales.contact_modulus
+def _modulus(side: Literal["above", "below"], known: float, factor: float) -> str:
+    """A contact modulus that is the known one times a factor, or beyond (Units: Pa)."""
     return (
         f"a contact modulus E / (1 - nu^2) {side} {prefixed('Pa', known * factor)}, not "
         f"{prefixed('Pa', known)}"
     )
+
+
+def _larger(radius: float) -> str:
+    """A radius of the sphere or a larger one (Units: m)."""
+    return f"a radius above {prefixed('m', radius)}"
 
 
 def _negative_share(energy: float) -> float:

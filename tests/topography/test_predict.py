@@ -30,8 +30,7 @@ from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import read_cycle
 from crackfront.simulate.run import run_simulation
 from crackfront.topography.cautions import prediction_notes, surface_doubts
-from crackfront.topography.drawing import prediction_figure
-from crackfront.topography.maps import draw_scan
+from crackfront.topography.drawing import draw_scan, prediction_figure
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.prediction import Prediction, predicted, reduced_spectrum
@@ -541,9 +540,9 @@ def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
         for line, density in zip(lines, densities, strict=False):
             np.testing.assert_array_equal(line.get_ydata(), density.value)
     radius, values = force.lines[1].get_data()
-    assert values.min() == pytest.approx(-1e3 * prediction.pull_off_force.value, rel=1e-3)
+    assert values.min() == pytest.approx(-1e6 * prediction.pull_off_force.value, rel=1e-3)
     assert radius[np.argmin(values)] < 1e6 * prediction.contact_radius
-    assert "mN" in force.get_ylabel()
+    assert "µN" in force.get_ylabel()
 
 
 def test_the_figure_says_which_waves_the_density_leaves_out(surface):
