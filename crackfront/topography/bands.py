@@ -65,59 +65,38 @@ _ORDER = 3
 
 @dataclass(frozen=True, slots=True)
 class BandLimit:
-    """An end of the trusted wavelengths, and why it is one.
-
-    Attributes
-    ----------
-    end : {"shortest", "longest"}
-        Which end.
-    cause : str
-        Why, one of :data:`Cause`.
-    wavelength : float
-        Where. (Units: m)
-    """
+    """An end of the trusted wavelengths, and why it is one."""
 
     end: End
     cause: Cause
+    """Why, one of :data:`Cause`."""
     wavelength: float
+    """Where. (Units: m)"""
 
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """Trusted wavelengths of a scan, and what its density shows beside them.
-
-    Attributes
-    ----------
-    shortest, longest : BandLimit
-        The ends that count.
-    limits : tuple of BandLimit
-        All that were found, the ends that count among them.
-    stripes : tuple of int
-        Axes along which the map is shifted or levelled row by row; these waves are left out.
-    anisotropy : float
-        Of a map the rms slope along x over that along y; 1 for lines.
-    instrument : Instrument
-        What the instrument does to the density.
-    informative : float
-        Shortest wavelength that tells the model. (Units: m)
-    end : float
-        Shortest wavelength that the surface is continued to: that which its points hold, unless
-        instrument or density end before. (Units: m)
-    finest, coarsest : float
-        Shortest wavelength that it may go on to, and longest at which it may end, in the draws.
-        (Units: m)
-    """
+    """Trusted wavelengths of a scan, and what its density shows beside them."""
 
     shortest: BandLimit
     longest: BandLimit
+    """The ends that count."""
     limits: tuple[BandLimit, ...]
+    """All that were found, the ends that count among them."""
     stripes: tuple[int, ...]
+    """Axes along which the map is shifted or levelled row by row; these waves are left out."""
     anisotropy: float
+    """Of a map the rms slope along x over that along y; 1 for lines."""
     instrument: Instrument
     informative: float
+    """Shortest wavelength that tells the model. (Units: m)"""
     end: float
+    """Shortest wavelength that the surface is continued to: that which its points hold, unless
+    instrument or density end before. (Units: m)"""
     finest: float
     coarsest: float
+    """Shortest wavelength that it may go on to, and longest at which it may end, in the draws.
+    (Units: m)"""
 
     @property
     def ends(self) -> tuple[BandLimit, BandLimit]:
@@ -132,27 +111,16 @@ class Band:
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """A measurement in its waves.
-
-    Attributes
-    ----------
-    measurement : Measurement
-        What was measured.
-    waves : Periodogram
-        Power of all its waves.
-    density : Density
-        Isotropic density of a map without its stripes, C_1D of a line; trusted or not.
-    alternatives : tuple of Density
-        The same with another window, and with more of the form taken off.
-    band : Band
-        What of it can be trusted.
-    """
+    """A measurement in its waves."""
 
     measurement: Measurement
     waves: Periodogram
     density: Density
+    """Isotropic density of a map without its stripes, C_1D of a line; trusted or not."""
     alternatives: tuple[Density, ...]
+    """The same with another window, and with more of the form taken off."""
     band: Band
+    """What of it can be trusted."""
 
     @property
     def trusted_measurement(self) -> Measurement:
@@ -173,14 +141,7 @@ class Scan:
 def scan(
     measurement: Measurement, shortest: float | None = None, longest: float | None = None
 ) -> Scan:
-    """A measurement with its trusted band.
-
-    Parameters
-    ----------
-    measurement : Measurement
-        A levelled measurement.
-    shortest, longest : float, optional
-        Ends of the band in place of those that are found. (Units: m)
+    """A measurement with its trusted band, whose ends may be named (Units: m).
 
     Raises
     ------
@@ -189,7 +150,7 @@ def scan(
     """
     waves, pixel = periodogram(measurement), max(measurement.pixels)
     striped = () if measurement.is_line else stripes(waves, measurement.shortest)
-    without = _without(waves, striped)
+    without = np.any([waves.near_axis(axis) for axis in striped], axis=0) if striped else None
     density = waves.density(without)
     seen = density.within(_PIXELS * pixel, measurement.longest)
     cliff, behind = _cliff(seen)
@@ -212,10 +173,14 @@ def scan(
         found.append(BandLimit("shortest", cause, max(resolution, tip)))
     if noise > _NYQUIST * pixel:
         found.append(BandLimit("shortest", "noise", noise))
-    alternatives = _alternatives(measurement, without)
+    alternatives: tuple[Density, ...] = ()
+    if not measurement.periodic:
+        other_window = periodogram(measurement, window="blackman")
+        other_levelling = periodogram(measurement, _levelled(measurement.heights))
+        alternatives = other_window.density(without), other_levelling.density(without)
     form = _form(density, alternatives, measurement.longest)
-    if form is not None:
-        found.append(form)
+    if form:
+        found.append(BandLimit("longest", "form", form))
     given: tuple[tuple[End, float | None], ...] = (("shortest", shortest), ("longest", longest))
     for end, named in given:
         if named is not None:
@@ -260,13 +225,6 @@ def scan(
     return Scan(measurement, waves, density, alternatives, band)
 
 
-def _without(waves: Periodogram, striped: tuple[int, ...]) -> NDArray[np.bool_] | None:
-    """Waves that hold stripes."""
-    if not striped:
-        return None
-    return np.asarray(np.any([waves.near_axis(axis) for axis in striped], axis=0))
-
-
 def _cliff(density: Density) -> tuple[float, float]:
     """Wavelengths before and behind the end of a density, as of a filter; 0 if nowhere."""
     values, least = density.value, np.minimum(density.modes[:-1], density.modes[1:])
@@ -283,29 +241,15 @@ def _cliff(density: Density) -> tuple[float, float]:
     )
 
 
-def _form(density: Density, alternatives: Sequence[Density], longest: float) -> BandLimit | None:
-    """Where the waves begin whose density does not depend on window and levelling."""
+def _form(density: Density, alternatives: Sequence[Density], longest: float) -> float:
+    """Wavelength down from which a density does not depend on window and levelling; 0 if all do."""
     here = np.flatnonzero(density.wavevector >= 2 * math.pi / longest)[:_FORM_BINS]
     apart = [np.abs(np.log(other.value[here] / density.value[here])) for other in alternatives]
     if not apart:
-        return None
+        return 0.0
     agree = np.max(apart, axis=0) < math.log(_FORM)
     first = int(np.argmax(agree)) if np.any(agree) else here.size - 1
-    if first == 0:
-        return None
-    return BandLimit("longest", "form", float(2 * math.pi / density.wavevector[here[first]]))
-
-
-def _alternatives(
-    measurement: Measurement, without: NDArray[np.bool_] | None
-) -> tuple[Density, ...]:
-    """Densities by other choices that are as good: the window, and how much form is taken off."""
-    if measurement.periodic:
-        return ()
-    return (
-        periodogram(measurement, window="blackman").density(without),
-        periodogram(measurement, _levelled(measurement.heights)).density(without),
-    )
+    return float(2 * math.pi / density.wavevector[here[first]]) if first else 0.0
 
 
 def _levelled(heights: Array) -> Array:

@@ -13,7 +13,7 @@ from crackfront.topography.reading import Measurement
 
 Array = NDArray[np.float64]
 
-BINS_PER_DECADE = 20
+_BINS_PER_DECADE = 20
 """Bins of wavevectors; their edges are the same for all scans."""
 
 _WINDOWS = {"hann": (0.5, 0.5), "blackman": (0.42, 0.50, 0.08)}
@@ -32,24 +32,17 @@ _STRIPES, _STRIPE_SIGMA = 1.5, 5.0
 
 @dataclass(frozen=True, slots=True)
 class Density:
-    """Density in bins of wavevectors.
-
-    Attributes
-    ----------
-    wavevector : (n,) array
-        Geometric means of the wavevectors in the bins, increasing. (Units: 1 / m)
-    value : (n,) array
-        Isotropic density C of a map, C_1D of lines. (Units: m^4 or m^3)
-    modes : (n,) array
-        Independent modes that the value is the mean of; the window makes neighbours dependent.
-    is_profile : bool
-        Whether it is C_1D.
-    """
+    """Density in bins of wavevectors."""
 
     wavevector: Array
+    """Geometric means of the wavevectors in the bins, increasing. Shape (n,). (Units: 1 / m)"""
     value: Array
+    """Isotropic density C of a map, C_1D of lines. Shape (n,). (Units: m^4 or m^3)"""
     modes: Array
+    """Independent modes that the value is the mean of; the window makes neighbours dependent. Shape
+    (n,)."""
     is_profile: bool
+    """Whether it is C_1D."""
 
     def within(self, shortest: float, longest: float) -> Density:
         """Part of the density between two wavelengths (Units: m)."""
@@ -62,24 +55,16 @@ class Density:
 
 @dataclass(frozen=True, slots=True)
 class Periodogram:
-    """Power of every wave of a measurement under its window.
-
-    Attributes
-    ----------
-    along : tuple of array
-        Wavevectors along the axes, shaped to broadcast. (Units: 1 / m)
-    power : array
-        Density of each wave. (Units: m^4 of a map, m^3 of a line)
-    count : array
-        Waves that an entry stands for, 2 where its conjugate is not among them.
-    dependence : float
-        Modes of which the window makes one.
-    """
+    """Power of every wave of a measurement under its window."""
 
     along: tuple[Array, ...]
+    """Wavevectors along the axes, shaped to broadcast. (Units: 1 / m)"""
     power: Array
+    """Density of each wave. (Units: m^4 of a map, m^3 of a line)"""
     count: Array
+    """Waves that an entry stands for, 2 where its conjugate is not among them."""
     dependence: float
+    """Modes of which the window makes one."""
 
     @property
     def wavevector(self) -> Array:
@@ -100,13 +85,13 @@ class Periodogram:
         if without is not None:
             used &= ~without
         values, count = wavevector[used], np.broadcast_to(self.count, self.power.shape)[used]
-        logarithm = np.log(values)
-        place = _bins(logarithm)
+        place = bin_numbers(values)
+        place -= place.min()
         modes = np.bincount(place, count)
         known = modes > 0
         number = np.where(known, modes, 1.0)
         return Density(
-            wavevector=np.exp(np.bincount(place, count * logarithm) / number)[known],
+            wavevector=np.exp(np.bincount(place, count * np.log(values)) / number)[known],
             value=(np.bincount(place, count * self.power[used]) / number)[known],
             # Every wave stands twice in a two-sided transform.
             modes=modes[known] / (2 * self.dependence),
@@ -123,10 +108,10 @@ class Periodogram:
         return total * step / (2 * math.pi) ** len(self.along)
 
 
-def _bins(logarithm: Array) -> NDArray[np.int64]:
-    """Numbers of the bins of logarithms of wavevectors, from 0."""
-    place = np.floor(logarithm * (BINS_PER_DECADE / math.log(10))).astype(np.int64)
-    return np.asarray(place - place.min())
+def bin_numbers(wavevector: Array) -> NDArray[np.int64]:
+    """Numbers of the bins of wavevectors, the same for all scans."""
+    scale = _BINS_PER_DECADE / math.log(10)
+    return np.asarray(np.floor(np.log(wavevector) * scale).astype(np.int64))
 
 
 def periodogram(
@@ -193,7 +178,8 @@ def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
     wavevector = waves.wavevector
     beside = ~(waves.near_axis(0) | waves.near_axis(1)) & (wavevector > 0)
     inside = wavevector <= 2 * np.pi / shortest
-    place = _bins(np.log(np.where(wavevector > 0, wavevector, np.max(wavevector))))
+    place = bin_numbers(np.where(wavevector > 0, wavevector, np.max(wavevector)))
+    place -= place.min()
     count = np.broadcast_to(waves.count, waves.power.shape)
     size = int(place.max()) + 1
     found = []

@@ -57,22 +57,15 @@ _SEED = np.random.SeedSequence(20240229, spawn_key=(0x5F17,))
 
 @dataclass(frozen=True, slots=True)
 class Instrument:
-    """What an instrument does to a density.
-
-    Attributes
-    ----------
-    attenuation : float
-        Wavevector q_c at which the density is down to 1/e; infinite where this is not seen.
-        (Units: 1 / m)
-    sharpness : float
-        Exponent m of its fall.
-    noise : float
-        Density of white noise, 0 where it is not seen. (Units: that of the density)
-    """
+    """What an instrument does to a density."""
 
     attenuation: float = math.inf
+    """Wavevector q_c at which the density is down to 1/e; infinite where this is not seen. (Units:
+    1 / m)"""
     sharpness: float = 2.0
+    """Exponent m of its fall."""
     noise: float = 0.0
+    """Density of white noise, 0 where it is not seen. (Units: that of the density)"""
 
     def wavelength(self, part: float) -> float:
         """Wavelength at which a part of the density is lost; 0 where nothing is (Units: m)."""
@@ -100,25 +93,17 @@ class Instrument:
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """Models that agree with densities, states of a Markov chain.
-
-    Attributes
-    ----------
-    surface : (n, 5) array
-        Parameters of P.
-    instruments : (n, n_density, 3) array
-        Logarithm of q_c, m and logarithm of the noise of every density.
-    lowest, highest : float
-        Ends of the wavevectors that are fitted. (Units: 1 / m)
-    misfit : float
-        Least deviance per degree of freedom; 1 where only the number of modes makes noise.
-    """
+    """Models that agree with densities, states of a Markov chain."""
 
     surface: Array
+    """Parameters of P. Shape (n, 5)."""
     instruments: Array
+    """Logarithm of q_c, m and logarithm of the noise of every density. Shape (n, n_density, 3)."""
     lowest: float
     highest: float
+    """Ends of the wavevectors that are fitted. (Units: 1 / m)"""
     misfit: float
+    """Least deviance per degree of freedom; 1 where only the number of modes makes noise."""
 
     def logarithms(self, wavevector: Array) -> Array:
         """Logarithm of C of every state, (n, n_wavevector)."""

@@ -8,7 +8,6 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -29,21 +28,14 @@ _SIDES = (1e-9, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class RawScan:
-    """A channel of a file as it stands there.
-
-    Attributes
-    ----------
-    level : object of the library
-        Heights, sides and what the file says of the instrument. (Units: m)
-    format : str
-        Name of the format, as the library calls it.
-    channel : str
-        Name of the channel, and which of how many of heights it is.
-    """
+    """A channel of a file as it stands there."""
 
     level: Any
+    """Heights, sides and what the file says of the instrument. (Units: m)"""
     format: str
+    """Name of the format, as the library calls it."""
     channel: str
+    """Name of the channel, and which of how many of heights it is."""
 
 
 def surface_library() -> ModuleType:
@@ -93,9 +85,8 @@ def _load_on_use(name: str) -> None:
 
 @contextmanager
 def _silenced() -> Iterator[None]:
-    """Keep what parsers that are not ours warn of, as of pictures in a table, from the user."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    """Keep from users what the library warns of, also at files that it leaves open."""
+    with warnings.catch_warnings(action="ignore"):
         yield
 
 
@@ -110,19 +101,15 @@ def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
     OSError
         If the file cannot be opened.
     """
-    refuse_special(path)
-    source = readable(path)
-    reader = _reader(path, source)
+    reader = _reader(path)
     channel, name = _channel(path, reader, options.channel)
     if channel.nb_grid_pts is not None:
         refuse_too_many_points(path, channel.nb_grid_pts)
     given, sides = _completed(path, reader.format(), channel, options)
-    try:
+    with _parsing(path, reader.format()):
         raw = reader.topography(channel_index=channel.index, **given)
         level = raw.to_unit("m")
         level.heights()
-    except Exception as error:
-        raise _unreadable(path, reader.format(), error) from error
     if not raw.is_uniform:
         raise ValueError(
             f"{path}: the points are not equally spaced; resample the line on a uniform grid"
@@ -141,14 +128,11 @@ def array_of(path: Path) -> np.ndarray[Any, Any]:
     ValueError
         If the file cannot be read.
     """
-    refuse_special(path)
-    reader = _reader(path, readable(path))
+    reader = _reader(path)
     channel = reader.default_channel
     sized = {} if channel.physical_sizes else {"physical_sizes": (1.0,) * channel.dim}
-    try:
+    with _parsing(path, reader.format()):
         return np.ma.filled(reader.topography(channel_index=channel.index, **sized).heights(), 0.0)
-    except Exception as error:
-        raise _unreadable(path, reader.format(), error) from error
 
 
 def library_scan(
@@ -164,17 +148,12 @@ def library_scan(
     return kind(heights, size, periodic=periodic, unit="m", info=info or {})
 
 
-def _reader(path: Path, source: Path | BytesIO) -> Any:
-    """The library's reader of a file."""
+@contextmanager
+def _parsing(path: Path, name: str = "what its head says") -> Iterator[None]:
+    """Turn what the library raises at a file into a sentence."""
     library = surface_library()
-    if isinstance(source, Path):
-        known = _signed(library, source)
-        # A file that is not what it begins as is left to the readers in their order.
-        with suppress(Exception):
-            if known is not None:
-                return library.open_topography(str(source), format=known)
     try:
-        return library.open_topography(str(source) if isinstance(source, Path) else source)
+        yield
     except library.Exceptions.CannotDetectFileFormat as error:
         raise ValueError(
             f"{path} is in no format that SurfaceTopography reads, or damaged; export it from the "
@@ -182,7 +161,24 @@ def _reader(path: Path, source: Path | BytesIO) -> Any:
         ) from error
     # A damaged file may fail anywhere in a parser that is not ours.
     except Exception as error:
-        raise _unreadable(path, "what its head says", error) from error
+        line = next(iter(str(error).splitlines()), "") or type(error).__name__
+        raise ValueError(
+            f"{path} cannot be read as {name}: {line}; export it from the instrument again"
+        ) from error
+
+
+def _reader(path: Path) -> Any:
+    """The library's reader of a file, which is regular and not too large."""
+    refuse_special(path)
+    source, library = readable(path), surface_library()
+    with _parsing(path):
+        if not isinstance(source, Path):
+            return library.open_topography(source)
+        # A file that is not what it begins as is left to the readers in their order.
+        with suppress(Exception):
+            if known := _signed(library, path):
+                return library.open_topography(str(path), format=known)
+        return library.open_topography(str(path))
 
 
 def _signed(library: ModuleType, path: Path) -> str | None:
@@ -199,11 +195,9 @@ def _signed(library: ModuleType, path: Path) -> str | None:
 
 def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
     """A channel of heights, the library's own choice if none is named, and what it is called."""
-    try:
+    with _parsing(path):
         channels = list(reader.channels)
         found: Any = reader.default_channel
-    except Exception as error:
-        raise _unreadable(path, "what its head says", error) from error
     of_heights = [item for item in channels if _kind(item) == "height"]
     if wanted is not None:
         named = [item for item in channels if item.name == wanted]
@@ -301,16 +295,3 @@ def _named_sides(path: Path, sides: tuple[float, ...], unit: str) -> tuple[float
 def shown_sides(sides: tuple[float, ...]) -> str:
     """Sides of a scan as a text (Units: m)."""
     return " x ".join(prefixed("m", side) for side in sides)
-
-
-def _unreadable(path: Path, name: str, error: Exception) -> ValueError:
-    """What is said of a file at which a reader fails."""
-    return ValueError(
-        f"{path} cannot be read as {name}: {_first_line(error)}; export it from the instrument "
-        "again"
-    )
-
-
-def _first_line(error: Exception) -> str:
-    """First line of a message, or what kind it is."""
-    return next(iter(str(error).splitlines()), "") or type(error).__name__

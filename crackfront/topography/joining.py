@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.bands import Scan
-from crackfront.topography.densities import BINS_PER_DECADE, Density
+from crackfront.topography.densities import Density, bin_numbers
 from crackfront.topography.fitting import Fit, fitted_model
 
 Array = NDArray[np.float64]
@@ -42,25 +42,18 @@ _LEVEL_SIGMA, _LEVEL = 3.0, math.log(1.25)
 
 @dataclass(frozen=True, slots=True)
 class JointDensity:
-    """Isotropic density of all scans of a surface over their trusted bands.
-
-    Attributes
-    ----------
-    wavevector, value : (n,) arrays
-        As of a density. (Units: 1 / m and m^4)
-    error : (n,) array
-        Standard error of the logarithm of the value, which holds the scatter between scans.
-    scatter : float
-        Standard deviation of the levels of the scans beyond what their modes explain, relative.
-    levels : tuple of Estimate
-        Density of every scan over that of the others where they overlap; NaN where none do.
-    """
+    """Isotropic density of all scans of a surface over their trusted bands."""
 
     wavevector: Array
     value: Array
+    """As of a density. Shape (n,). (Units: 1 / m and m^4)"""
     error: Array
+    """Standard error of the logarithm of the value, which holds the scatter between scans. Shape
+    (n,)."""
     scatter: float
+    """Standard deviation of the levels of the scans beyond what their modes explain, relative."""
     levels: tuple[Estimate[float], ...]
+    """Density of every scan over that of the others where they overlap; NaN where none do."""
 
     def disagrees(self, index: int) -> bool:
         """Whether a scan departs from the others by more than its modes explain."""
@@ -73,47 +66,27 @@ class JointDensity:
 
 @dataclass(frozen=True, slots=True)
 class Shares:
-    """Where e_el comes from.
-
-    Attributes
-    ----------
-    measured, continued : float
-        Parts of e_el in the measured bands, and in the continuation; their sum is 1.
-    missing_short : float
-        What two more decades of shorter waves would add by the model, relative to e_el.
-    missing_long : float
-        What longer waves would add by the model where it has not found the plateau, else 0.
-    """
+    """Where e_el comes from."""
 
     measured: float
     continued: float
+    """Parts of e_el in the measured bands, and in the continuation; their sum is 1."""
     missing_short: float
+    """What two more decades of shorter waves would add by the model, relative to e_el."""
     missing_long: float
+    """What longer waves would add by the model where it has not found the plateau, else 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointSpectrum:
-    """Spectrum of a surface, measured where it can be and continued beyond.
-
-    Attributes
-    ----------
-    spectrum : TabulatedSpectrum
-        Measured over the bands; by the model to the shortest wave that pixels and instrument hold,
-        and to the plateau where this is seen; else flat above the longest measured wave.
-        (Units: m)
-    draws : tuple of TabulatedSpectrum
-        Spectra that agree as well with what was measured: noise of the modes, scatter of scans,
-        window and levelling, ends of the band, and continuation.
-    density : JointDensity
-        What was measured.
-    fit : Fit
-        The model of the continuation.
-    shares : Shares
-        Where e_el comes from.
-    """
+    """Spectrum of a surface, measured where it can be and continued beyond."""
 
     spectrum: TabulatedSpectrum
+    """Measured over the bands; by the model to the shortest wave that pixels and instrument hold,
+    and to the plateau where this is seen; else flat above the longest measured wave. (Units: m)"""
     draws: tuple[TabulatedSpectrum, ...]
+    """Spectra that agree as well with what was measured: noise of the modes, scatter of scans,
+    window and levelling, ends of the band, and continuation."""
     density: JointDensity
     fit: Fit
     shares: Shares
@@ -166,14 +139,9 @@ def joint_spectrum(scans: Sequence[Scan]) -> JointSpectrum:
     )
 
 
-def _bins(wavevector: Array) -> NDArray[np.int64]:
-    """Number of the bin of a wavevector, the same for all scans."""
-    return np.floor(np.log10(wavevector) * BINS_PER_DECADE).astype(np.int64)
-
-
 def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float], ...]]:
     """Scatter of the levels of scans, and level of each against the others."""
-    places = [_bins(one.wavevector) for one in densities]
+    places = [bin_numbers(one.wavevector) for one in densities]
     bins = np.unique(np.concatenate(places))
     value, modes = np.zeros((2, len(densities), bins.size))
     for row, (one, place) in enumerate(zip(densities, places, strict=True)):
@@ -211,7 +179,7 @@ def _joined(
     densities: Sequence[Density], levels: Sequence[float], scatter: float
 ) -> tuple[Array, Array, Array]:
     """Wavevectors, densities and errors of their logarithms, of scans moved by levels."""
-    places = np.concatenate([_bins(one.wavevector) for one in densities])
+    places = np.concatenate([bin_numbers(one.wavevector) for one in densities])
     values = np.concatenate(
         [one.value * math.exp(level) for one, level in zip(densities, levels, strict=True)]
     )
@@ -309,8 +277,10 @@ def _draws(
 
 def _choices(one: Scan, density: Density) -> list[Array]:
     """Logarithms of what other windows and levellings make of a density, relative to it."""
-    places = {place: index for index, place in enumerate(_bins(one.density.wavevector).tolist())}
-    mine = [places[place] for place in _bins(density.wavevector).tolist()]
+    places = {
+        place: index for index, place in enumerate(bin_numbers(one.density.wavevector).tolist())
+    }
+    mine = [places[place] for place in bin_numbers(density.wavevector).tolist()]
     others = [np.log(item.value / one.density.value)[mine] for item in one.alternatives]
     # What was chosen counts as much as all else together.
     return [np.zeros(len(mine))] * max(1, len(others)) + others

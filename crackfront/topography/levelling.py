@@ -123,14 +123,10 @@ def _plane_of_least_slope(level: Array, fitted: Points) -> Array:
     """Plane with the mean slopes of neighbours."""
     trend = np.zeros(level.shape)
     for axis, count in enumerate(level.shape):
-        both = np.logical_and(*(np.take(fitted, part, axis) for part in _neighbours(count)))
+        pairs = range(count - 1), range(1, count)
+        both = np.logical_and(*(np.take(fitted, points, axis) for points in pairs))
         slope = float(np.mean(np.diff(level, axis=axis)[both])) if both.any() else math.nan
         shape = [1] * level.ndim
         shape[axis] = count
         trend += slope * np.arange(count).reshape(shape)
     return trend
-
-
-def _neighbours(count: int) -> tuple[range, range]:
-    """Points that have a next one, and these."""
-    return range(count - 1), range(1, count)

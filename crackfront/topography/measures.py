@@ -26,54 +26,35 @@ _SHARE = 0.8
 
 @dataclass(frozen=True, slots=True)
 class RmsMeasure:
-    """Root mean square of a derivative of the heights.
-
-    Attributes
-    ----------
-    order : float
-        Order of the derivative.
-    rms : Estimate of a number
-        Of the joint spectrum. (Units: m^(1 - order))
-    shortest, longest : float
-        Wavelengths that dominate it: a tenth lies below, a tenth above. (Units: m)
-    measured : tuple of float
-        Of every measurement, over its own trusted wavelengths; lines as those of an isotropic
-        surface. (Units: m^(1 - order))
-    expected : tuple of float
-        What the joint spectrum has over the same wavelengths.
-    """
+    """Root mean square of a derivative of the heights."""
 
     order: float
     rms: Estimate[float]
+    """Of the joint spectrum. (Units: m^(1 - order))"""
     shortest: float
     longest: float
+    """Wavelengths that dominate it: a tenth lies below, a tenth above. (Units: m)"""
     measured: tuple[float, ...]
+    """Of every measurement, over its own trusted wavelengths; lines as those of an isotropic
+    surface. (Units: m^(1 - order))"""
     expected: tuple[float, ...]
+    """What the joint spectrum has over the same wavelengths."""
 
 
 @dataclass(frozen=True, slots=True)
 class MeasuredSurface:
-    """What was measured of a surface, and what follows from it.
-
-    Attributes
-    ----------
-    scans : tuple of Scan
-        The measurements with their trusted bands.
-    profiles : tuple of Density
-        Density of the lines along x of every measurement.
-    joint : JointSpectrum
-        Their spectrum; maps enter by their isotropic density, lines by that of profiles.
-    measures : tuple of RmsMeasure
-        Of the heights, their half-derivative and their slopes.
-    half_derivative : Estimate of a number
-        Mean square of the half-derivative of the joint spectrum. (Units: m)
-    """
+    """What was measured of a surface, and what follows from it."""
 
     scans: tuple[Scan, ...]
+    """The measurements with their trusted bands."""
     profiles: tuple[Density, ...]
+    """Density of the lines along x of every measurement."""
     joint: JointSpectrum
+    """Their spectrum; maps enter by their isotropic density, lines by that of profiles."""
     measures: tuple[RmsMeasure, ...]
+    """Of the heights, their half-derivative and their slopes."""
     half_derivative: Estimate[float]
+    """Mean square of the half-derivative of the joint spectrum. (Units: m)"""
 
     @property
     def checksum(self) -> str:
@@ -93,13 +74,7 @@ def measured_surface(
 ) -> MeasuredSurface:
     """Spectrum and measures of a surface of which there is one measurement or several.
 
-    Parameters
-    ----------
-    measurements : sequence of Measurement
-        What was measured.
-    shortest, longest : float, optional
-        Ends of the trusted wavelengths, in place of those that are found in each of them.
-        (Units: m)
+    Ends of the trusted wavelengths (Units: m) stand in place of those that are found in each.
 
     Raises
     ------

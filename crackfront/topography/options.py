@@ -34,6 +34,14 @@ HIGHEST_ORDER = 9
 Region = tuple[tuple[float, float], ...]
 """Ends of a part of a scan along every direction (Units: m)."""
 
+Times = Literal["once", "for each", "repeated"]
+
+_OFTEN = {
+    "once": "",
+    "for each": "; one for all scans, or one for each",
+    "repeated": "; may be repeated",
+}
+
 _ZERO = re.compile(r"\s*0(\.0*)?\s*[a-zµ]*\s*")
 
 
@@ -53,27 +61,16 @@ class Option(NamedTuple):
     meaning: str
     kind: Kind
     default: Any
-    times: Literal["once", "for each", "repeated"]
+    times: Times
     """Whether one value holds for all scans, each scan may have its own, or one scan several."""
 
     @property
     def sentence(self) -> str:
         """What it means, and how often it may be given."""
-        often = {
-            "once": "",
-            "for each": "; one for all scans, or one for each",
-            "repeated": "; may be repeated",
-        }
-        return f"{self.meaning}{often[self.times]}."
+        return f"{self.meaning}{_OFTEN[self.times]}."
 
 
-def option(
-    meaning: str,
-    kind: Kind,
-    *,
-    default: Any = None,
-    times: Literal["once", "for each", "repeated"] = "once",
-) -> Any:
+def option(meaning: str, kind: Kind, *, default: Any = None, times: Times = "once") -> Any:
     """Field of a record of options; see :class:`Option`."""
     return field(default=default, metadata={"option": (meaning, kind, default, times)})
 
@@ -145,8 +142,8 @@ def parameters_text(*records: type[Any]) -> str:
     """Paragraphs of a docstring on the options of records."""
     lines = []
     for item in (one for record in records for one in declared(record)):
-        lists = {"once": "", "for each": " or a list of one for each", "repeated": " or a list"}
-        lines.append(f"    {item.name} : {item.kind.accepts}{lists[item.times]}, optional")
+        several = "" if item.times == "once" else " or list of such"
+        lines.append(f"    {item.name} : {item.kind.accepts}{several}, optional")
         indent = " " * 8
         text = textwrap.fill(item.sentence, 100, initial_indent=indent, subsequent_indent=indent)
         lines.append(text)

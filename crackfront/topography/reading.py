@@ -43,46 +43,30 @@ measures, so that a unit of the file must be wrong."""
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """A scan of a surface, ready for analysis.
-
-    Attributes
-    ----------
-    path : Path
-        Where it comes from.
-    format : str
-        Name of the format, as the library calls it.
-    comment : str
-        What the file says of itself.
-    checksum : str
-        Eight hexadecimal digits of its content.
-    size : tuple of float
-        Sides of a map, or the length of a line. (Units: m)
-    heights : (n_x, n_y) or (n_x,) array
-        Detrended heights without gaps. (Units: m)
-    periodic : bool
-        Whether the file says that opposite edges belong together.
-    missing : float
-        Part of the points that were interpolated.
-    shortest, longest : float
-        Wavelengths that are trusted. (Units: m)
-    channel : str
-        Name of the channel in the file, and which of how many of heights it is.
-    levelling : str
-        What was taken off, in words.
-    """
+    """A scan of a surface, ready for analysis."""
 
     path: Path
     format: str
+    """Name of the format, as the library calls it."""
     comment: str
+    """What the file says of itself."""
     checksum: str
+    """Eight hexadecimal digits of its content."""
     size: tuple[float, ...]
+    """Sides of a map, or the length of a line. (Units: m)"""
     heights: Array
+    """Detrended heights without gaps. Shape (n_x, n_y) or (n_x,). (Units: m)"""
     periodic: bool
+    """Whether the file says that opposite edges belong together."""
     missing: float
+    """Part of the points that were interpolated."""
     shortest: float
     longest: float
+    """Wavelengths that are trusted. (Units: m)"""
     channel: str = ""
+    """Name of the channel in the file, and which of how many of heights it is."""
     levelling: str = ""
+    """What was taken off, in words."""
 
     @property
     def pixels(self) -> tuple[float, ...]:

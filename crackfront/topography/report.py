@@ -18,7 +18,7 @@ from crackfront.topography.cautions import prediction_notes, surface_doubts, sur
 from crackfront.topography.densities import Density
 from crackfront.topography.fitting import Fit
 from crackfront.topography.joining import JointSpectrum
-from crackfront.topography.measures import MeasuredSurface, RmsMeasure
+from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import Prediction
 from crackfront.topography.verdict import Condition, Verdict
 
@@ -28,8 +28,9 @@ if TYPE_CHECKING:
 Number = Estimate[float]
 
 _ENERGY = "J/m2"
-_ORDER_NAMES = {0.0: "heights", 0.5: "half-derivative", 1.0: "slopes"}
-_UNITS = {0.0: "m", 0.5: "m^1/2", 1.0: ""}
+_MEASURES = {0.0: ("heights", "m"), 0.5: ("half-derivative", "m^1/2"), 1.0: ("slopes", "1")}
+"""Names and units of rms measures by the orders of their derivatives."""
+
 _FAR = 1000.0
 """Factor to a limit from which on it is not worth a number."""
 
@@ -148,14 +149,9 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
         f"  {'continued':22}down to {prefixed('m', joint.spectrum.short_cutoff)} and to longer "
         f"waves, {shares.continued:.0%} of e_el"
     )
-    for name, (value, low, high), units in _continuation(joint.fit):
-        shown = (
-            prefixed(units, value, low, high)
-            if units == "m"
-            else (f"{value:.3g} ({low:.3g} to {high:.3g}) {units}".removesuffix(" 1"))
-        )
+    for name, ends, units in _continuation(joint.fit):
         unsure = name == "roll_off" and not joint.fit.has_roll_off
-        yield f"    {name:20}{shown}{', not resolved' if unsure else ''}"
+        yield f"    {name:20}{_in_unit(units, *ends)}{', not resolved' if unsure else ''}"
     yield (
         f"  {'missing':22}two more decades of short waves would add {shares.missing_short:.0%} "
         f"to e_el, longer ones {shares.missing_long:.0%}"
@@ -163,20 +159,23 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
     yield ""
     yield "Measures: of the spectrum; scales of 80% of the mean square; scans over the spectrum"
     for measure in surface.measures:
-        yield _measure_line(measure)
+        ratios = (
+            one / other for one, other in zip(measure.measured, measure.expected, strict=True)
+        )
+        name, unit = _MEASURES[measure.order]
+        rms = _in_unit(unit, measure.rms.value, measure.rms.low, measure.rms.high)
+        scales, compared = (
+            _span(measure.shortest, measure.longest),
+            ", ".join(map("{:.2f}".format, ratios)),
+        )
+        yield f"  rms of {name:16}{rms:40}{scales:22}{compared}"
 
 
-def _measure_line(measure: RmsMeasure) -> str:
-    """Line of a measure."""
-    compared = ", ".join(
-        f"{found / expected:.2f}"
-        for found, expected in zip(measure.measured, measure.expected, strict=True)
-    )
-    unit, rms = _UNITS[measure.order], measure.rms
-    plain = f"{rms.value:.3g} ({rms.low:.3g} to {rms.high:.3g}) {unit}".strip()
-    shown = _shown(unit, rms) if unit == "m" else plain
-    scales = _span(measure.shortest, measure.longest)
-    return f"  rms of {_ORDER_NAMES[measure.order]:16}{shown:40}{scales:22}{compared}"
+def _in_unit(unit: str, value: float, low: float, high: float) -> str:
+    """A number with its interval; lengths have a prefix, powers of lengths have none."""
+    if unit == "m":
+        return prefixed(unit, value, low, high)
+    return f"{value:.3g} ({low:.3g} to {high:.3g}) {unit}".removesuffix(" 1")
 
 
 def _prediction_lines(item: Prediction) -> Iterator[str]:

@@ -53,22 +53,14 @@ _SHORT_SIZE = 30.0
 
 @dataclass(frozen=True, slots=True)
 class SimulationPlan:
-    """What is simulated for a prediction.
-
-    Attributes
-    ----------
-    simulations : tuple of Simulation
-        One a surface.
-    correction : float
-        k by the law over that for the simulated springs, where these are shorter than those of the
-        sphere; else 1.
-    remark : str
-        What is run in place of spheres, and why; empty where spheres are.
-    """
+    """What is simulated for a prediction."""
 
     simulations: tuple[Simulation, ...]
     correction: float = 1.0
+    """k by the law over that for the simulated springs, where these are shorter than those of the
+    sphere; else 1."""
     remark: str = ""
+    """What is run in place of spheres, and why; empty where spheres are."""
 
     @property
     def expected_seconds(self) -> float:
@@ -78,33 +70,21 @@ class SimulationPlan:
 
 @dataclass(frozen=True, slots=True)
 class Simulated:
-    """What simulations found, means over surfaces with 95% intervals.
-
-    Attributes
-    ----------
-    realisations : int
-        Surfaces with a value.
-    w_appr, w_retr, hysteresis : Estimate of a number
-        Works of adhesion; without an interval (NaN) where there is one surface.
-        (Units: J / m^2)
-    k : Estimate of a number
-        Their k.
-    numerical_error : float
-        Standard error of k that the numerics leave.
-    failed : tuple of str
-        Why surfaces have no value.
-    remark : str
-        As of :class:`SimulationPlan`.
-    """
+    """What simulations found, means over surfaces with 95% intervals."""
 
     realisations: int
+    """Surfaces with a value."""
     w_appr: Estimate[float]
     w_retr: Estimate[float]
     hysteresis: Estimate[float]
+    """Works of adhesion; without an interval (NaN) where there is one surface. (Units: J / m^2)"""
     k: Estimate[float]
     numerical_error: float
+    """Standard error of k that the numerics leave."""
     failed: tuple[str, ...]
+    """Why surfaces have no value."""
     remark: str
+    """As of :class:`SimulationPlan`."""
 
 
 def prediction_plan(

@@ -41,38 +41,25 @@ _MOST_UNSURE = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """A condition of the theory, in SI units.
-
-    Attributes
-    ----------
-    name : str
-        What must be.
-    found : str
-        What is compared with what, in words with numbers.
-    reason : str
-        What is wrong near the limit and beyond.
-    value : float
-        What is compared.
-    doubtful, limit : float
-        Values up to which the condition holds, and up to which it is in doubt; where `rising`,
-        down to which.
-    units : str
-        Of all three.
-    rising : bool
-        Whether the value must be above the limit, not below.
-    remedies : tuple of str
-        What would bring the value to the limit, one change alone; empty where it holds.
-    """
+    """A condition of the theory, in SI units."""
 
     name: str
+    """What must be."""
     found: str
+    """What is compared with what, in words with numbers."""
     reason: str
+    """What is wrong near the limit and beyond."""
     value: float
     doubtful: float
     limit: float
+    """Values up to which the condition holds, and up to which it is in doubt; where `rising`, down
+    to which."""
     units: str
+    """Of all three."""
     rising: bool = False
+    """Whether the value must be above the limit, not below."""
     remedies: tuple[str, ...] = ()
+    """What would bring the value to the limit, one change alone; empty where it holds."""
 
     @property
     def standing(self) -> Standing:
@@ -95,21 +82,14 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether the theory applies.
-
-    Attributes
-    ----------
-    conditions : tuple of Condition
-        All that were looked at.
-    reservations : tuple of str
-        What is in doubt, one sentence each.
-    assumption : str
-        What was assumed of the range of attraction; empty where it was named.
-    """
+    """Whether the theory applies."""
 
     conditions: tuple[Condition, ...]
+    """All that were looked at."""
     reservations: tuple[str, ...]
+    """What is in doubt, one sentence each."""
     assumption: str
+    """What was assumed of the range of attraction; empty where it was named."""
 
     @property
     def outcome(self) -> Outcome:
@@ -134,17 +114,14 @@ def verdict(
     attraction_range: float | None = None,
     factors: SphereFactors | None = None,
 ) -> Verdict:
-    """Whether the theory applies to a surface under a sphere.
+    """Whether the theory applies to a surface under a sphere, of scales in SI units.
 
     Parameters
     ----------
-    surface : MeasuredSurface
-        What was measured.
-    scales : Scales
-        The scene, in SI units.
+    surface, scales : MeasuredSurface and Scales
+        What is pressed on what.
     attraction_range : float, optional
-        Distance over which surfaces attract each other; by default that of van der Waals forces.
-        (Units: m)
+        Distance over which they attract each other, by default :data:`ASSUMED_RANGE`. (Units: m)
     factors : SphereFactors, optional
         Factors k by the law, which may not have been measured there.
     """

@@ -13,13 +13,8 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.topography.bands import scan as scan_of
-from crackfront.topography.densities import (
-    cosine_window,
-    periodogram,
-    profile_density,
-    topography,
-)
-from crackfront.topography.instruments import surface_library
+from crackfront.topography.densities import cosine_window, periodogram, profile_density
+from crackfront.topography.instruments import library_scan, surface_library
 from crackfront.topography.measures import measured_mean_square, measured_surface
 from crackfront.topography.options import ReadingOptions, parsed_options
 from crackfront.topography.reading import Measurement, read_measurements
@@ -127,7 +122,7 @@ def test_the_measures_of_a_periodic_map_are_ours_and_the_librarys(rng):
     heights = gaussian_field(SPECTRUM, 128, SIDE, rng)
     measurement = periodic_measurement(heights)
     pixel = SIDE / 128
-    library = topography(measurement)
+    library = library_scan(heights, measurement.size, periodic=True)
     found = [measured_mean_square(scan_of(measurement), order) for order in (0.0, 0.5, 1.0)]
     assert found[0] == pytest.approx(np.mean(heights**2), rel=1e-9)
     assert found[0] == pytest.approx(library.moment_power_spectrum(order=0), rel=1e-9)
@@ -139,7 +134,7 @@ def test_the_measures_of_a_periodic_map_are_ours_and_the_librarys(rng):
 
 def test_our_density_of_profiles_is_the_librarys(rng):
     heights = gaussian_field(SPECTRUM, 128, SIDE, rng)
-    library = topography(periodic_measurement(heights))
+    library = library_scan(heights, (SIDE, SIDE), periodic=True)
     _, density = library.power_spectrum_from_profile(resampling_method=None, reliable=False)
     ours = profile_periodogram(heights, SIDE / 128)
     assert ours == pytest.approx(density[1:], rel=1e-9, abs=1e-9 * ours.max())
