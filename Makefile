@@ -152,7 +152,7 @@ lock:  ## Resolve requirements.in and pyproject.toml anew into requirements.lock
 clean:  ## Remove .venv and caches, never results
 	rm -rf .venv .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache build *.egg-info \
 	  docs/_build docs/api docs/examples
-	find crackfront tests workflow -type d -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
+	find crackfront studies tests workflow -type d -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
 help:  ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile

@@ -32,7 +32,7 @@ MEASURED = Path(__file__).with_name("law.csv")
 """Straight fronts that the law of the package is fitted to."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Means:
     """e_el and k of one spectrum and amplitude, with standard errors over realisations."""
 
@@ -72,8 +72,9 @@ def measured_cells() -> tuple[LawCell, ...]:
 
 def csv_rows(text: str, kind: type[Row]) -> tuple[Row, ...]:
     """Records of texts, whole numbers and numbers from comma-separated values."""
+    record: Any = kind
     numbers = {"int": int, "float": float}
-    types = {name: numbers.get(kind_of, str) for name, kind_of in kind.__annotations__.items()}
+    types = {item.name: numbers.get(str(item.type), str) for item in fields(record)}
     return tuple(
         kind(**{name: read(row[name]) for name, read in types.items()})
         for row in csv.DictReader(text.splitlines())

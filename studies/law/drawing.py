@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import cycle
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,7 +19,6 @@ from crackfront.analysis.law import (
     LEAST_SIZE,
     TYPICAL_BREADTH,
     WEAKEST,
-    Law,
     infinite_ratio,
     law_value,
     shipped_law,
@@ -30,7 +31,7 @@ from studies.law.cells import LawCell
 Array = NDArray[np.float64]
 
 _LARGE = 3.0
-"""Sizes g above which points are shown extrapolated: their gain is small, and its error smaller."""
+"""Size g above which points are extrapolated: their gain is small, and its error smaller."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,7 @@ class LawPoints:
     Attributes
     ----------
     name : str
-        What the legend calls them.
+        Their name in the legend.
     disorder, size : (n,) array
         s and g.
     factor, error : (n,) array
@@ -66,13 +67,10 @@ def spectra_points(cells: Sequence[LawCell]) -> tuple[LawPoints, ...]:
             np.array([getattr(cell, item) for cell in rows])
             for item in ("disorder", "size", "both", "error", "breadth")
         )
-        found.append(LawPoints(_front_label(name), *columns))
+        # h08-chemical is H = 0.8, chemical.
+        label = ", ".join(re.sub(r"^h(\d)(\d)", r"$H=\1.\2$", name).split("-"))
+        found.append(LawPoints(label, *columns))
     return tuple(found)
-
-
-def _front_label(name: str) -> str:
-    """Name of a spectrum, its Hurst exponent in figures: h08-chemical is H = 0.8, chemical."""
-    return ", ".join(re.sub(r"^h(\d)(\d)", r"$H=\1.\2$", name).split("-"))
 
 
 def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
@@ -85,14 +83,18 @@ def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
     spheres : LawPoints
         Spheres, to which nothing is adjusted.
     """
+    styles = [
+        _style(colour, marker)
+        for _, colour, marker in zip(fronts, cycle(COLOURS), cycle(MARKERS), strict=False)
+    ]
+    drawn = [*zip(fronts, styles, strict=True), (spheres, _style(BLACK, "o", is_open=True))]
     with house_style():
         figure = blank_figure(PAGE, 0.49 * PAGE)
         left, right = figure.subplots(1, 2, width_ratios=(1.2, 1))
-        draw_collapse(left, fronts, spheres)
+        _draw_collapse(left, drawn)
         draw_infinite_law(right)
-        for index, points in enumerate(fronts):
-            _draw_extrapolated(right, points, *_style(index))
-        _draw_extrapolated(right, spheres, BLACK, "o", face="none")
+        for points, style in drawn:
+            _draw_extrapolated(right, points, style)
         right.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
         right.legend(loc="lower left")
         for axes, letter in ((left, "a"), (right, "b")):
@@ -106,16 +108,28 @@ def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
         return figure
 
 
-def _style(index: int) -> tuple[str, str]:
-    """Colour and marker of a spectrum."""
-    return COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
+def _style(colour: str, marker: str, *, is_open: bool = False) -> dict[str, Any]:
+    """Look of small points with thin bars."""
+    return {
+        "linestyle": "none",
+        "marker": marker,
+        "color": colour,
+        "markerfacecolor": "none" if is_open else colour,
+        "markeredgecolor": colour if is_open else "white",
+        "markeredgewidth": 0.6 if is_open else 0.25,
+        "markersize": 3.6 if is_open else 2.8,
+        "elinewidth": 0.4,
+        "capsize": 0,
+        "zorder": 4 if is_open else 3,
+    }
 
 
-def draw_collapse(axes: Axes, fronts: Sequence[LawPoints], spheres: LawPoints) -> None:
+def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]) -> None:
     """Draw k freed of its fall with s against g / (1 + c s^d), and the law, then one curve."""
     law = shipped_law()
-    highest = max(float(np.max(_collapsed(law, one)[0])) for one in (*fronts, spheres))
-    abscissa = np.geomspace(LEAST_SIZE / 4, 2 * highest, 200)
+    k_0, *_, a, b, c, d, e = law.coefficients
+    largest = max(float(np.max(one.size / (1 + c * one.disorder**d))) for one, _ in drawn)
+    abscissa = np.geomspace(LEAST_SIZE / 4, 2 * largest, 200)
     axes.plot(
         abscissa,
         law_value(law.coefficients, 0.0, abscissa),
@@ -124,10 +138,15 @@ def draw_collapse(axes: Axes, fronts: Sequence[LawPoints], spheres: LawPoints) -
         label=f"law (rms departure {100 * law.rms:.2g}% for $g>1$)",
         zorder=2,
     )
-    for index, points in enumerate(fronts):
-        _draw_points(axes, *_collapsed(law, points), points.name, *_style(index))
-    _draw_points(axes, *_collapsed(law, spheres), spheres.name, BLACK, "o", face="none")
-    k_0 = law.coefficients[0]
+    for points, style in drawn:
+        rise = 1 + a * points.disorder**b * (TYPICAL_BREADTH / points.breadth) ** e
+        axes.errorbar(
+            points.size / (1 + c * points.disorder**d),
+            points.factor * rise,
+            yerr=REACH * points.error * rise,
+            label=points.name,
+            **style,
+        )
     axes.axhline(k_0, color="0.5", linewidth=0.5, zorder=1)
     axes.annotate(
         rf"$k_0={k_0:.2f}$, weak disorder in the infinite contact",
@@ -145,21 +164,8 @@ def draw_collapse(axes: Axes, fronts: Sequence[LawPoints], spheres: LawPoints) -
     axes.legend(loc="lower right")
 
 
-def _collapsed(law: Law, points: LawPoints) -> tuple[Array, Array, Array]:
-    """Size, k and half of its interval, freed of the dependence on disorder."""
-    a, b, c, d, e = law.coefficients[4:]
-    rise = 1 + a * points.disorder**b * (TYPICAL_BREADTH / points.breadth) ** e
-    return (
-        points.size / (1 + c * points.disorder**d),
-        points.factor * rise,
-        REACH * points.error * rise,
-    )
-
-
-def _draw_extrapolated(
-    axes: Axes, points: LawPoints, colour: str, marker: str, face: str = ""
-) -> None:
-    """Points of large g, times what the law gains from there to the infinite contact."""
+def _draw_extrapolated(axes: Axes, points: LawPoints, style: dict[str, Any]) -> None:
+    """Draw points of large g, times what the law gains from there to the infinite contact."""
     large = points.size > _LARGE
     gains = [
         infinite_ratio(max(float(s), WEAKEST), float(g), float(breadth))
@@ -170,35 +176,4 @@ def _draw_extrapolated(
     gain = np.array([one.value for one in gains])
     error = np.array([one.standard_error for one in gains]) * points.factor[large]
     reach = REACH * np.hypot(gain * points.error[large], error)
-    _draw_points(
-        axes, points.disorder[large], points.factor[large] * gain, reach, "", colour, marker, face
-    )
-
-
-def _draw_points(
-    axes: Axes,
-    abscissa: Array,
-    ordinate: Array,
-    reach: Array,
-    name: str,
-    colour: str,
-    marker: str,
-    face: str = "",
-) -> None:
-    """Small points with thin bars."""
-    axes.errorbar(
-        abscissa,
-        ordinate,
-        yerr=reach,
-        linestyle="none",
-        marker=marker,
-        color=colour,
-        markerfacecolor=face or colour,
-        markeredgecolor=colour if face else "white",
-        markeredgewidth=0.6 if face else 0.25,
-        markersize=3.6 if face else 2.8,
-        elinewidth=0.4,
-        capsize=0,
-        label=name or None,
-        zorder=4 if face else 3,
-    )
+    axes.errorbar(points.disorder[large], points.factor[large] * gain, yerr=reach, **style)

@@ -25,12 +25,9 @@ from studies.law.drawing import LawPoints
 from studies.pages import markdown_table
 
 
-@dataclass(frozen=True, slots=True)
-class SphereRow:
-    """k of a sphere as simulated: a row of `spheres.csv` or `held-out.csv`.
-
-    The numbers from `elastic_energy` on are those of :class:`studies.law.cells.Means`.
-    """
+@dataclass(frozen=True)
+class Sphere:
+    """Surface and contact of spheres that were simulated."""
 
     spectrum: str
     kind: FieldKind
@@ -38,20 +35,16 @@ class SphereRow:
     roll_off: float
     hurst: float
     contact_radius: float
-    elastic_energy: float
-    realisations: int
-    approach: float
-    approach_error: float
-    retraction: float
-    retraction_error: float
-    both: float
-    both_error: float
-    numerical_error: float
 
     @property
     def shape(self) -> SelfAffineSpectrum:
         """Spectrum of the surface."""
         return SelfAffineSpectrum(self.short_cutoff, self.roll_off, self.hurst)
+
+
+@dataclass(frozen=True)
+class SphereRow(Means, Sphere):
+    """k of spheres as simulated: a row of `spheres.csv` or `held-out.csv`."""
 
 
 def read_spheres(paths: Sequence[Path]) -> list[SphereRow]:
