@@ -101,7 +101,7 @@ class Found:
 
 
 def _filtered(transfer: Callable[[Array], Array]) -> Distortion:
-    """What an optic does, whose transfer of heights depends on the wavevector."""
+    """Distortion by an optic that transfers each wave of the heights by a factor."""
 
     def distorted(heights: Array, rng: np.random.Generator) -> Array:
         along = 2 * np.pi * np.fft.fftfreq(len(heights), PIXEL)
@@ -135,23 +135,23 @@ def _tip(radius: float) -> Distortion:
 
 
 def _noise(heights: Array, rng: np.random.Generator) -> Array:
-    """White noise of a tenth of the heights, above short waves."""
+    """White noise of a tenth of the rms height, more than short waves have."""
     return heights + 0.1 * heights.std() * rng.standard_normal(heights.shape)
 
 
 def _rows(heights: Array, rng: np.random.Generator) -> Array:
-    """Rows that are shifted, each by itself."""
+    """An offset of every row, a tenth of the rms height."""
     return heights + 0.1 * heights.std() * rng.standard_normal((1, heights.shape[1]))
 
 
 def _bow(heights: Array, rng: np.random.Generator) -> Array:
-    """Tilt, and a bow that a paraboloid takes off."""
+    """Tilt and a bow, which levelling by a paraboloid removes."""
     x = np.linspace(-1, 1, len(heights))
     return heights + 40 * heights.std() * (x[:, None] - x[:, None] ** 2 + 0.7 * x**2)
 
 
 def _form(heights: Array, rng: np.random.Generator) -> Array:
-    """Tilt, and a bow that no paraboloid takes off."""
+    """Tilt and a bow of higher orders, which levelling leaves in part."""
     x = np.linspace(-1, 1, len(heights))
     return heights + 40 * heights.std() * (x[:, None] + x**3 - x[:, None] ** 4)
 
@@ -166,7 +166,7 @@ def _holes(heights: Array, rng: np.random.Generator) -> Array:
 
 
 def _two_slopes(first: float, then: float) -> TabulatedSpectrum:
-    """A spectrum with two Hurst exponents, of long and of short waves."""
+    """Spectrum whose long and short waves have a Hurst exponent each."""
     lengths = SIDE / 8, SIDE / 32, 2 * PIXEL
     middle = 4.0 ** (-2 - 2 * first)
     last = middle * (lengths[1] / lengths[2]) ** (-2 - 2 * then)
@@ -213,7 +213,7 @@ def found_scan(kind: Kind, number: int) -> Found:
 
 
 def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
-    """Surface of a map."""
+    """Measured surface of a distorted map, cut from a larger one."""
     whole = kind.tile * N_POINT
     heights = gaussian_field(kind.truth, whole, kind.tile * SIDE, rng)
     if kind.distortion in (_bow, _form, _holes):
@@ -225,7 +225,7 @@ def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
 
 
 def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
-    """Surface of lines."""
+    """Measured surface of parallel line scans."""
     whole = 2 * _LINE_POINTS
     heights = gaussian_field(kind.truth, whole, whole * PIXEL, rng)[:_LINE_POINTS]
     places = PIXEL * np.arange(_LINE_POINTS)

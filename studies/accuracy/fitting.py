@@ -77,15 +77,13 @@ def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[Law]:
 
 
 def _avalanche(study: SceneErrors) -> float:
-    """Size of the avalanches that make the scatter of k, where settings leave little of it.
-
-    Of rare avalanches the ratio of the fourth moment to the second one is its square.
-    """
+    """Typical size of an avalanche in k, from settings that leave little scatter."""
     deviations = np.concatenate([_knob_errors(study, knob)[1] for knob in KNOBS])
     deviations = deviations - deviations.mean(axis=1, keepdims=True)
     few = np.mean(deviations**2, axis=1, keepdims=True) < _FEW**2
     kept = np.where(few, deviations, 0.0)
     total = float(np.sum(kept**2))
+    # Of rare avalanches the ratio of the fourth moment to the second is the square of their size.
     return float(np.sqrt(np.sum(kept**4) / total)) if total > 0 else 0.0
 
 
@@ -122,11 +120,11 @@ def _laws(study: SceneErrors, knob: Knob, avalanche: float) -> Iterator[Law]:
 
 
 def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
-    """Line of logarithms, at least as steep as a given slope, by the likelihood of a variance.
+    """Likeliest line ln(value) = c_0 + c_1 x whose slope is at least a given one.
 
-    That of a gamma distribution about the line, of a spread that is the same everywhere. Values
-    stand from the coarsest to the finest; of those too small at its end the first counts.
+    Squares of values, from the coarsest to the finest, have a gamma distribution about the line.
     """
+    # Of the values at the end that are too small the first counts.
     counted = 2 + np.max(np.flatnonzero(values >= _LEAST), initial=0)
     x, square = x[:counted], np.maximum(values[:counted], _LEAST) ** 2
 

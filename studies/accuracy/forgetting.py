@@ -73,7 +73,7 @@ def differing(scene: Scene, direction: Direction, n_realisation: int) -> tuple[i
 
 
 def forgetting_table() -> str:
-    """States of all surfaces that still know their start, by branch."""
+    """Numbers of states that depend on their start, for every surface and branch."""
     branches: tuple[tuple[Direction, str], ...] = ((1, "approach"), (-1, "retraction"))
     rows = [
         (scene.name, name, *map(str, differing(scene, direction, N_REALISATION)))

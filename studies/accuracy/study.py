@@ -113,7 +113,7 @@ def setting_seconds(scene: Scene, settings: list[Setting]) -> float:
 def scene_errors(
     scene: Scene, settings: list[Setting], surfaces: range, progress: Progress = lambda line: None
 ) -> SceneErrors:
-    """Errors of settings of the numerics on surfaces of a scene, which have numbers."""
+    """Errors of settings of the numerics on numbered surfaces of a scene."""
     exact = [measured_branches(scene, scene.reference, number) for number in surfaces]
     study = SceneErrors(
         scene=scene,
@@ -202,7 +202,7 @@ def branch_record(
 
 
 def front_difference(fronts: Array, exact: Array) -> Array:
-    """Difference of fronts, trigonometric between their sites, at those of finer ones.
+    """Difference of fronts from finer ones, interpolated by a trigonometric polynomial.
 
     Arrays are of the shapes (..., n_angle) and (..., n_fine), the difference of the latter.
     """
@@ -215,7 +215,7 @@ def rms(values: Array) -> float:
 
 
 def pareto_front(seconds: Array, error: Array) -> NDArray[np.intp]:
-    """Positions of settings that no other one beats in time and in error, the fastest first."""
+    """Indices of settings that no other one beats in time and in error, the fastest first."""
     order = np.lexsort((error, seconds))
     best = np.minimum.accumulate(error[order])
     first = np.concatenate([[True], error[order][1:] < best[:-1]])

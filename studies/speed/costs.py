@@ -82,7 +82,7 @@ def held_out() -> Iterator[Simulation]:
 
 
 def measured(simulation: Simulation, held: bool) -> Measured:
-    """What one simulation costs on this machine."""
+    """Measured cost of one simulation."""
     result = run_simulation(simulation)
     return Measured(
         name=simulation.label,
@@ -96,7 +96,7 @@ def measured(simulation: Simulation, held: bool) -> Measured:
 def least_of_passes(
     simulations: Iterator[Simulation], held: bool, progress: Callable[[str], None]
 ) -> list[Measured]:
-    """What simulations cost on this machine, each the least of the passes through all."""
+    """Measured costs of simulations, each the least of several passes through all of them."""
     least: dict[Simulation, Measured] = {}
     for one in [*simulations] * _PASSES:
         known = least.get(one)

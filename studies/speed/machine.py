@@ -20,7 +20,7 @@ def in_fresh_process(function: Callable[..., Result], *arguments: Any) -> Result
 
 
 def restart_peak() -> float:
-    """Forget what this process held before, where the system can; return what it holds, in MB."""
+    """Reset the peak of this process's memory, where the system can; return its memory in MB."""
     forget = Path("/proc/self/clear_refs")
     if forget.exists():
         forget.write_text("5", encoding="utf-8")
@@ -28,11 +28,11 @@ def restart_peak() -> float:
 
 
 def peak_memory() -> float:
-    """Largest resident memory of this process since then, in MB."""
+    """Largest resident memory of this process since the last reset, in MB."""
     status = Path("/proc/self/status")
     lines = status.read_text(encoding="utf-8").splitlines() if status.exists() else []
     marks = [int(line.split()[1]) for line in lines if line.startswith("VmHWM")]
     if marks:
         return marks[0] * 1024 / 1e6
-    # This mark cannot be restarted, and a process may inherit that of its parent; macOS: in bytes.
+    # This peak cannot be reset, and a process may inherit that of its parent; macOS: in bytes.
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
