@@ -1,23 +1,28 @@
-"""Averages over the surfaces of a validation by amplitude, and their limit of no range."""
+"""Averages of the hysteresis over surfaces, and their limit of no range."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from itertools import groupby
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
 from crackfront.analysis.estimate import Estimate, student_estimate
 from crackfront.analysis.validity import ValidityRow
-from studies.boundary_elements.amplitudes import SurfaceComparison
+from studies.boundary_elements.hysteresis import Hysteresis
 
-Value = Callable[[SurfaceComparison], float]
-Model = Literal["boundary", "front"]
+Value = Callable[[Hysteresis], float]
 
-_ORDER = 3
-"""Order of the differences in the range, where surfaces are rough."""
+ORDER = 3
+"""Power of the range with which the hysteresis of boundary elements nears that of no range.
+
+Measured, docs/validation.md: where a range was halved in two steps, the second changed the
+hysteresis by a third of the first. The length of the cohesive zone would suggest its square.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,14 +31,14 @@ class Setting:
 
     Attributes
     ----------
-    rows : tuple of SurfaceComparison
+    rows : tuple of Hysteresis
         The surfaces.
-    coarse : tuple of SurfaceComparison
+    coarse : tuple of Hysteresis
         Where the rows are extrapolated: a longer range on them and on further surfaces.
     """
 
-    rows: tuple[SurfaceComparison, ...]
-    coarse: tuple[SurfaceComparison, ...] = ()
+    rows: tuple[Hysteresis, ...]
+    coarse: tuple[Hysteresis, ...] = ()
 
     @property
     def surfaces(self) -> int:
@@ -44,17 +49,10 @@ class Setting:
         """Mean of a quantity over the surfaces."""
         return self._estimate(lambda mean: mean, value)
 
-    def hysteresis(self, model: Model) -> Estimate:
-        """Mean hysteresis of a model over the surfaces (Units: w_int)."""
-        return self.mean(lambda row: float(getattr(row, f"{model}_hysteresis")))
-
     def hysteresis_ratio(self) -> Estimate:
         """Hysteresis of the front over that of the boundary elements, means over the surfaces."""
-        return self._estimate(
-            lambda front, boundary: front / boundary,
-            lambda row: row.front_hysteresis,
-            lambda row: row.boundary_hysteresis,
-        )
+        models = attrgetter("front_hysteresis"), attrgetter("boundary_hysteresis")
+        return self._estimate(lambda front, boundary: front / boundary, *models)
 
     def _estimate(self, function: Callable[..., float], *values: Value) -> Estimate:
         """Function of means, with the standard error of the jackknife over the surfaces.
@@ -80,15 +78,13 @@ class Setting:
         return student_estimate(found(), error, len(fine) - 1)
 
 
-def settings(rows: Iterable[SurfaceComparison]) -> tuple[Setting, ...]:
+def settings(rows: Iterable[Hysteresis]) -> tuple[Setting, ...]:
     """Surfaces that are averaged together, by resolution, spectrum and amplitude."""
-    alike: dict[tuple[float, ...], list[SurfaceComparison]] = {}
-    for row in rows:
-        alike.setdefault(row.setting, []).append(row)
-    return tuple(Setting(tuple(alike[key])) for key in sorted(alike))
+    ordered = sorted(rows, key=attrgetter("setting"))
+    return tuple(Setting(tuple(alike)) for _, alike in groupby(ordered, attrgetter("setting")))
 
 
-def limit_settings(rows: Sequence[SurfaceComparison]) -> tuple[Setting, ...]:
+def limit_settings(rows: Sequence[Hysteresis]) -> tuple[Setting, ...]:
     """The limit of no range at every spectrum and amplitude that has one.
 
     The longer range that all of its surfaces have, and most others, is averaged with it.
@@ -103,40 +99,33 @@ def limit_settings(rows: Sequence[SurfaceComparison]) -> tuple[Setting, ...]:
     return tuple(found)
 
 
-def range_limits(rows: Sequence[SurfaceComparison]) -> list[SurfaceComparison]:
-    """The two shortest ranges of every surface, extrapolated to a vanishing one.
+def range_limits(rows: Iterable[Hysteresis]) -> list[Hysteresis]:
+    """Works of adhesion and hysteresis at a vanishing range, from the two shortest of a surface.
 
-    Works of adhesion and hysteresis by the cube of the range: where it was halved in two steps,
-    the second changed them by a third of the first. Everything else is that of the shorter range.
+    Everything else is that of the shorter range.
     """
-    alike: dict[tuple[float, ...], list[SurfaceComparison]] = {}
-    for row in rows:
-        alike.setdefault((*row.scene, row.seed, row.step), []).append(row)
+
+    def surface(row: Hysteresis) -> tuple[float, ...]:
+        return (*row.scene, row.seed, row.step)
+
     limits = []
-    for found in alike.values():
-        found.sort(key=lambda row: (row.interaction_range, -row.n_point))
-        fine = found[0]
-        longer = [row for row in found if row.interaction_range > fine.interaction_range]
-        if not longer:
-            continue
-        coarse = longer[0]
-        share = 1 / ((coarse.interaction_range / fine.interaction_range) ** _ORDER - 1)
-        names = (f"boundary_{name}" for name in ("approach", "retraction", "hysteresis"))
-        limits.append(
-            replace(
-                fine,
-                interaction_range=0.0,
-                **{
-                    name: (1 + share) * getattr(fine, name) - share * getattr(coarse, name)
-                    for name in names
-                },
-                zone_approach=fine.front_approach,
-                zone_retraction=fine.front_retraction,
-                zone_hysteresis=fine.front_hysteresis,
-                zone_dissipated=fine.front_dissipated,
-            )
-        )
+    ordered = sorted(rows, key=lambda row: (surface(row), row.interaction_range, -row.n_point))
+    for _, alike in groupby(ordered, surface):
+        fine, *others = alike
+        longer = [row for row in others if row.interaction_range > fine.interaction_range]
+        if longer:
+            ratio = (longer[0].interaction_range / fine.interaction_range) ** ORDER
+            changes: dict[str, Any] = {"interaction_range": 0.0}
+            for name in ("boundary_approach", "boundary_retraction", "boundary_hysteresis"):
+                near, far = getattr(fine, name), getattr(longer[0], name)
+                changes[name] = near + (near - far) / (ratio - 1)
+            limits.append(replace(fine, **changes))
     return limits
+
+
+def rough_settings(found: Iterable[Setting]) -> list[Setting]:
+    """Settings without the smooth spheres."""
+    return [one for one in found if one.rows[0].asked_energy > 0]
 
 
 def validity_row(setting: Setting, short_cutoff: float) -> ValidityRow:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -24,7 +25,6 @@ def commands() -> None:
 @commands.command(
     epilog=examples(
         "python -m studies boundary-elements validate config/validation.yaml",
-        "python -m studies boundary-elements validate config/validation-512.yaml",
         "python -m studies boundary-elements validate config/validation-strong.yaml --finished",
     )
 )
@@ -35,43 +35,56 @@ def validate(configuration: Path, output: Path | None, finished: bool) -> None:
     """Run rough spheres by boundary elements and by the crack front, and compare them.
 
     Every load step of the boundary elements is on disk at once: a run that is killed goes on with
-    the next one. With `elastic_energies` in the configuration the hysteresis of both models is
-    compared by amplitude, and the tables grow with every finished case.
+    the next one. The tables grow with every finished case.
     """
     from crackfront.data.provenance import provenance
     from crackfront.sweep.configuration import results_folder
-    from studies.boundary_elements.amplitude_report import write_amplitudes
-    from studies.boundary_elements.costs import expected_seconds
-    from studies.boundary_elements.parameters import (
-        AmplitudeParameters,
-        amplitude_cases,
-        load_validation,
-        validation_cases,
+    from studies.boundary_elements.parameters import load_validation, validation_cases
+    from studies.boundary_elements.study import (
+        expected_seconds,
+        refuse_missing_libraries,
+        write_validation,
     )
-    from studies.boundary_elements.report import write_validation
-    from studies.boundary_elements.study import refuse_missing_libraries
 
     parameters = load_validation(configuration)
-    if finished and not isinstance(parameters, AmplitudeParameters):
-        raise click.UsageError(
-            f"--finished is for configurations with elastic_energies; {configuration} has cases"
-        )
     folder = output or results_folder(configuration)
     refuse_missing_libraries()
     refuse_unwritable(folder)
     origin = provenance(configuration.read_text(encoding="utf-8"))
     if not finished:
-        cases = (
-            amplitude_cases(parameters)
-            if isinstance(parameters, AmplitudeParameters)
-            else validation_cases(parameters)
-        )
-        announce_cost(expected_seconds(cases, folder))
+        announce_cost(expected_seconds(validation_cases(parameters), folder))
     announce_compilation()
     try:
-        if isinstance(parameters, AmplitudeParameters):
-            write_amplitudes(folder, parameters, origin, click.echo, compute=not finished)
-        else:
-            write_validation(folder, parameters, origin, click.echo)
+        write_validation(folder, parameters, origin, click.echo, compute=not finished)
     except KeyboardInterrupt as error:
         raise StoppedError("the same command goes on with the next load step") from error
+
+
+@commands.command()
+@click.argument("configuration", type=FILE, default="config/validation.yaml")
+def minimiser(configuration: Path) -> None:
+    """Time a load step of the rough cases of a configuration, and by NuMPI's minimiser.
+
+    At the disorder of the case, and at that of the paper's nanodiamond film, e_el/w_int = 0.177.
+    """
+    from studies.boundary_elements.benchmarks import MINIMISER, minimiser_row
+    from studies.boundary_elements.parameters import load_validation, validation_cases
+    from studies.boundary_elements.report import table
+
+    rows = (
+        minimiser_row(replace(case, elastic_energy=energy))
+        for case in validation_cases(load_validation(configuration))
+        if case.elastic_energy > 0
+        for energy in (case.elastic_energy, 0.177)
+    )
+    click.echo("\n".join(table("Products and seconds of a load step.", MINIMISER, rows)))
+
+
+@commands.command()
+def rotated() -> None:
+    """Time the mapping whose crack turns with the angle, and the plain sum over all modes."""
+    from studies.boundary_elements.benchmarks import ROTATED, TILES, rotated_row
+    from studies.boundary_elements.report import table
+
+    rows = (rotated_row(*tile) for tile in TILES)
+    click.echo("\n".join(table("Processor time of the mapping.", ROTATED, rows)))

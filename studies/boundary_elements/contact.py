@@ -5,10 +5,8 @@ the extra `bem`; only the products with the elastic operators are those of scipy
 
 The nearest stable state is found as by NuMPI's `tr_newton_bounded` (a trust region, Steihaug's
 conjugate gradients on the free variables, projection on the bounds), but with the elastic operator
-as the measure of a step and as the preconditioner, which makes the number of products nearly
-independent of the grid. A step halfway along which the energy is found to rise is shortened, so
-that none jumps over a barrier; where nothing is out of balance no curvature may be negative, so
-that none ends on one.
+as the measure of a step and as the preconditioner: the number of products hardly depends on the
+grid. No step may jump over a barrier of the energy, and no state is one of negative curvature.
 """
 
 from __future__ import annotations
@@ -32,17 +30,12 @@ Values = TypeVar("Values", NDArray[np.float64], NDArray[np.float32])
 _STRONGEST = 1.2
 """Work of adhesion, in units of w_int, of the largest contact that a domain must hold."""
 
-_ACCEPTED = 0.1
-"""Gain, relative to that of the model, of a step that is taken."""
+_ACCEPTED, _POOR = 0.1, 0.25
+"""Gains, relative to that of the model, of a step that is taken, and of one that shrinks the trust
+radius by as much."""
 
-_POOR = 0.25
-"""Gain below which the trust radius shrinks; and by how much it does."""
-
-_FORCING = 0.3
-"""Largest residual of the conjugate gradients, relative to that at their start."""
-
-_MOST_PRODUCTS = 200
-"""Products of one step."""
+_FORCING, _MOST_PRODUCTS = 0.3, 200
+"""Largest residual of the conjugate gradients, relative to their start, and products of a step."""
 
 _ROUND_OFF = 10 * float(np.finfo(float).eps)
 """Changes of the energy that have no meaning, relative to it."""
@@ -106,11 +99,7 @@ class HalfSpaceContact:
     def evaluate(
         self, displacement: Array, penetration: float, elastic: Array | None = None
     ) -> tuple[float, Array]:
-        """Energy per area of a pixel, and its derivative in the displacements.
-
-        The elastic pressures may be given where they are known.
-        (Units: reduced pressure * vertical length; reduced pressure)
-        """
+        """Energy per area of a pixel, and its derivative; the elastic pressures if not given."""
         pressure = self.elastic_pressure(displacement) if elastic is None else elastic
         gradient = pressure.copy()
         energy = 0.5 * float(np.vdot(displacement, gradient))
@@ -121,10 +110,7 @@ class HalfSpaceContact:
         return energy + float(np.sum(attraction)), gradient
 
     def softening(self, displacement: Array, penetration: float) -> Array:
-        """Second derivative of the energy of attraction, on the sphere's grid; never positive.
-
-        (Units: reduced pressure / vertical length)
-        """
+        """Second derivative of the energy of attraction, on the sphere's grid; never positive."""
         gap = self.gap(displacement, penetration)
         return self.system.interaction.evaluate(gap, potential=False, curvature=True)[2]
 
@@ -151,9 +137,7 @@ def half_space_contact(
 
     References
     ----------
-    .. [1] Sanner, Pastewka, J. Mech. Phys. Solids (2022), "Crack-front model for adhesion of soft
-       elastic spheres with chemical heterogeneity"; Sanner et al., Sci. Adv. (2024), supplement,
-       Sec. III.
+    .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. III.
     """
     refuse_unresolved(pixel, len(roughness), interaction_range, max_penetration)
     try:
@@ -185,10 +169,7 @@ def half_space_contact(
 def refuse_unresolved(
     pixel: float, n_point: int, interaction_range: float, max_penetration: float
 ) -> None:
-    """Raise if the grid is too coarse for the attraction, or the domain too small.
-
-    As of :func:`half_space_contact`, whose grid has `n_point` points along a side.
-    """
+    """Raise if a grid is too coarse for the attraction, or its domain too small."""
     largest = 2 * (interaction_range / 3) ** 2
     side = pixel * n_point
     if not pixel <= largest * (1 + 1e-12):
@@ -224,23 +205,18 @@ class Equilibrium:
     ----------
     displacement : (2 n_point, 2 n_point) array
         Displacement into the half-space. (Units: reduced vertical length)
-    iterations, products : int
-        Steps of the method, and conjugate-gradient products in all of them.
-    residual : float
-        Largest pressure that is not in balance, relative to the largest tension.
-    radius : float
-        Trust radius to begin the next load step with.
+    products, barriers, saddles : int
+        Conjugate-gradient products; steps that were shortened before a rise of the energy;
+        unstable states without forces that were left.
+    residual, radius : float
+        Largest pressure out of balance, relative to the largest tension; trust radius for the next
+        load step.
     energy, released : float
         Energy per area of a pixel, and how far it fell at this penetration; it never rises.
         (Units: reduced pressure * vertical length)
-    barriers : int
-        Steps that would have passed over a rise of the energy, and were shortened.
-    saddles : int
-        States without forces whose energy falls to both sides, and which were left.
     """
 
     displacement: Array
-    iterations: int
     products: int
     residual: float
     radius: float
@@ -279,16 +255,18 @@ def equilibrium(
 
     References
     ----------
-    .. [1] Steihaug, SIAM J. Numer. Anal. 20, 626 (1983).
-    .. [2] Nocedal, Wright, Numerical Optimization, 2nd ed., Algorithms 4.1 and 7.2.
+    .. [1] Nocedal, Wright, Numerical Optimization, 2nd ed., Algorithms 4.1 and 7.2 (Steihaug).
     """
-    lowest = contact.surface + penetration
+    lowest, side = contact.surface + penetration, contact.n_point
     state = _above(displacement.copy(), lowest)
     elastic = contact.elastic_pressure(state)
     energy, gradient = contact.evaluate(state, penetration, elastic)
     began, products, barriers, saddles, relative = energy, 0, 0, 0, math.inf
-    for iteration in range(max_iterations):
-        model = _linearised(contact, state, gradient, lowest, penetration)
+    for _ in range(max_iterations):
+        closed = (state[:side, :side] <= lowest) & (gradient[:side, :side] >= 0)
+        softening = contact.softening(state, penetration)
+        model = _Linearised(contact, closed, gradient.copy(), softening)
+        model.free(model.gradient)
         relative = float(np.max(np.abs(model.gradient))) / contact.largest_tension
         if relative > tolerance:
             step = _truncated_step(model, radius, forcing=min(_FORCING, math.sqrt(relative)))
@@ -297,7 +275,6 @@ def equilibrium(
             if model.decrease(step.values) <= _ROUND_OFF * (1 + abs(energy)):
                 return Equilibrium(
                     displacement=state,
-                    iterations=iteration,
                     products=products + step.products,
                     residual=relative,
                     radius=radius,
@@ -351,7 +328,7 @@ def _above(displacement: Array, lowest: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class _Linearised:
-    """Quadratic model of the energy where closed surfaces stay closed."""
+    """Quadratic model of the energy; surfaces that are closed and pressed together stay so."""
 
     contact: HalfSpaceContact
     closed: NDArray[np.bool_]
@@ -376,17 +353,6 @@ class _Linearised:
         return -float(np.vdot(self.gradient, step) + 0.5 * np.vdot(step, curved))
 
 
-def _linearised(
-    contact: HalfSpaceContact, state: Array, gradient: Array, lowest: Array, penetration: float
-) -> _Linearised:
-    """Model around a state; surfaces that are closed and pressed together stay so."""
-    side = contact.n_point
-    closed = (state[:side, :side] <= lowest) & (gradient[:side, :side] >= 0)
-    model = _Linearised(contact, closed, gradient.copy(), contact.softening(state, penetration))
-    model.free(model.gradient)
-    return model
-
-
 def _gain(before: float, after: float, predicted: float) -> float:
     """Decrease of the energy relative to the predicted one; one where both are round-off."""
     if predicted <= 0:
@@ -399,7 +365,7 @@ def _gain(before: float, after: float, predicted: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """A step within the trust region, its elastic norm, and how it was found."""
+    """A step within the trust region, and its elastic norm."""
 
     values: NDArray[np.float32]
     norm: float
@@ -408,10 +374,7 @@ class _Step:
 
 
 def _truncated_step(model: _Linearised, radius: float, forcing: float) -> _Step:
-    """Steihaug's conjugate gradients, preconditioned; the norm is that of the preconditioner.
-
-    In single precision: a step need not be more exact than its forcing.
-    """
+    """Steihaug's conjugate gradients in single precision, in the preconditioner's norm."""
     residual = model.gradient.astype(np.float32)
     step = np.zeros_like(residual)
     relaxed = model.free(model.contact.elastic_displacement(residual))
@@ -446,13 +409,9 @@ def _truncated_step(model: _Linearised, radius: float, forcing: float) -> _Step:
 
 
 def _downward_step(model: _Linearised, radius: float) -> _Step:
-    """Step along a direction of negative curvature, or none where no curvature is negative.
-
-    Conjugate gradients for forces where surfaces attract each other: what else is in their space
-    has the curvature of the half-space alone. They come upon a negative curvature as soon as it is
-    in the space of their directions.
-    """
+    """Step along a direction of negative curvature, or none where no curvature is negative."""
     side = len(model.closed)
+    # Forces where surfaces attract each other: elsewhere the curvature is that of the half-space.
     residual = np.zeros_like(model.gradient, dtype=np.float32)
     noise = np.random.default_rng(0).standard_normal((side, side))
     residual[:side, :side] = model.softening * noise

@@ -1,32 +1,43 @@
-"""SI Fig. cf-bem: forces and contacts of one case by boundary elements and by the front."""
+"""Figures: SI Fig. cf-bem of one case, and the hysteresis of both models against e_el."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from crackfront.analysis.estimate import Estimate
 from crackfront.core.variables import FORCE, LATERAL, VERTICAL, variable
+from crackfront.plots.fronts import closed_front, label_plane
 from crackfront.plots.parts import FORCE_LABEL, HEIGHT_LABEL, PENETRATION_LABEL, label_panel
-from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
-from studies.boundary_elements.cycle import N_ANGLE, BoundaryCycle
-from studies.boundary_elements.front import FrontCycle, perimeter_at
-from studies.boundary_elements.parameters import Case
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from crackfront.plots.style import (
+    BLACK,
+    BLUE,
+    COLOURS,
+    MARKERS,
+    PAGE,
+    VERMILION,
+    blank_figure,
+    house_style,
+)
+from studies.boundary_elements.averages import Setting, limit_settings, rough_settings, settings
+from studies.boundary_elements.cases import Case
+from studies.boundary_elements.cycle import N_ANGLE, PRESSURE, BoundaryCycle
+from studies.boundary_elements.front import FrontCycle, shown_states
+from studies.boundary_elements.hysteresis import Hysteresis
 
 Array = NDArray[np.float64]
 
-_MOST_POINTS = 320
-"""Points along a side of the part that is kept."""
-
-_MARGIN = 0.15
-"""What is shown beyond the contact (Units: reduced lateral length)."""
-
+_MOST_POINTS, _MARGIN = 320, 0.15
+"""Points along a side of the part that is kept, and its margin around the contact."""
 
 _TENSION = "#009E7300", "#009E73C0", "#003D2C"
 """Colours from no tension, which is transparent, to the largest."""
@@ -40,33 +51,23 @@ _BRANCHES = ((1, "approach", BLUE), (-1, "retraction", VERMILION))
 class ValidationPicture:
     """Force against penetration of both models, and their contacts at one penetration."""
 
-    n_point: int = variable("points along a side of the grid", "1")
-    interaction_range: float = variable("gap at which the attraction ends", VERTICAL)
-    elastic_energy: float = variable("energy of full conformity that was asked for", "w_int")
     short_cutoff: float = variable("shortest wavelength", LATERAL)
     boundary_penetration: Array = variable("penetration", VERTICAL, "boundary")
-    boundary_direction: NDArray[np.int64] = variable("+1 in approach, else -1", "1", "boundary")
+    boundary_direction: Array = variable("+1 in approach, else -1", "1", "boundary")
     boundary_force: Array = variable("force, boundary elements", FORCE, "boundary")
     boundary_area: Array = variable("contact area", f"({LATERAL})^2", "boundary")
     front_penetration: Array = variable("penetration", VERTICAL, "front")
-    front_direction: NDArray[np.int64] = variable("+1 in approach, else -1", "1", "front")
+    front_direction: Array = variable("+1 in approach, else -1", "1", "front")
     front_force: Array = variable("force, crack front", FORCE, "front")
-    front_area: Array = variable("contact area", f"({LATERAL})^2", "front")
     front_end: float = variable("penetration at which the front loses contact", VERTICAL)
     shown_penetration: float = variable("penetration of the contacts", VERTICAL)
     angle: Array = variable("angle of a ray", "rad", "angle")
-    boundary_radius: Array = variable(
-        "perimeters, approach and retraction", LATERAL, "branch", "angle"
-    )
-    front_radius: Array = variable("fronts, approach and retraction", LATERAL, "branch", "angle")
-    fixed_radius: Array = variable(
-        "fronts whose crack does not turn, approach and retraction", LATERAL, "branch", "angle"
-    )
+    boundary_radius: Array = variable("perimeters of both branches", LATERAL, "branch", "angle")
+    front_radius: Array = variable("fronts of both branches", LATERAL, "branch", "angle")
+    fixed_radius: Array = variable("the same, crack does not turn", LATERAL, "branch", "angle")
     position: Array = variable("distance from the apex", LATERAL, "x")
-    heights: NDArray[np.float32] = variable("roughness", VERTICAL, "x", "y")
-    pressure: NDArray[np.float32] = variable(
-        "pressure in approach", f"{FORCE} / ({LATERAL})^2", "x", "y"
-    )
+    heights: Array = variable("roughness", VERTICAL, "x", "y")
+    pressure: Array = variable("pressure in approach", PRESSURE, "x", "y")
 
 
 def validation_picture(
@@ -74,23 +75,13 @@ def validation_picture(
 ) -> ValidationPicture:
     """Picture of one case by boundary elements and by fronts whose crack turns, and does not."""
     states = front.states
-    shown, turning, still = (
-        np.stack([perimeter_at(case.shown_penetration, sign, *model) for sign in (1, -1)])
-        for model in (
-            (boundary, boundary.radius),
-            (states, front.radius),
-            (fixed.states, fixed.radius),
-        )
-    )
+    shown = boundary.radius[shown_states(case, boundary)]
     reach = float(np.max(shown)) + _MARGIN
     position: Array = np.arange(float(case.n_point)) * case.pixel - case.side / 2
     inside = np.flatnonzero(np.abs(position) <= reach)
     kept = inside[:: max(1, -(-inside.size // _MOST_POINTS))]
     part = np.ix_(kept, kept)
     return ValidationPicture(
-        n_point=case.n_point,
-        interaction_range=case.interaction_range,
-        elastic_energy=case.elastic_energy,
         short_cutoff=case.short_cutoff,
         boundary_penetration=boundary.penetration,
         boundary_direction=boundary.direction,
@@ -99,15 +90,14 @@ def validation_picture(
         front_penetration=states.penetration,
         front_direction=states.direction,
         front_force=states.force,
-        front_area=states.contact_area,
         front_end=front.end,
-        shown_penetration=case.shown_penetration,
+        shown_penetration=case.loads.shown_penetration,
         angle=2 * np.pi * np.arange(N_ANGLE) / N_ANGLE,
         boundary_radius=shown,
-        front_radius=turning,
-        fixed_radius=still,
+        front_radius=front.radius[shown_states(case, states)],
+        fixed_radius=fixed.radius[shown_states(case, fixed.states)],
         position=position[kept],
-        heights=case.heights()[part].astype(np.float32),
+        heights=case.heights()[part],
         pressure=boundary.shown_pressure[0][part],
     )
 
@@ -116,15 +106,10 @@ def validation_figure(picture: ValidationPicture) -> Figure:
     """Force against penetration with its jumps, and the contacts at one penetration."""
     with house_style():
         figure = blank_figure(PAGE, 0.5 * PAGE)
-        grid = figure.add_gridspec(1, 2, width_ratios=[1, 1.06])
-        parts = grid[0].subgridspec(2, 1, height_ratios=[3.2, 1])
-        upper = figure.add_subplot(parts[0])
-        lower = figure.add_subplot(parts[1], sharex=upper)
-        contact = figure.add_subplot(grid[1])
-        _draw_forces(upper, picture)
-        _draw_differences(lower, picture)
+        forces, contact = figure.subplots(1, 2, width_ratios=[1, 1.06])
+        _draw_forces(forces, picture)
         _draw_contact(contact, picture)
-        label_panel(upper, "a")
+        label_panel(forces, "a")
         label_panel(contact, "b")
         return figure
 
@@ -149,68 +134,33 @@ def _draw_forces(axes: Axes, picture: ValidationPicture) -> None:
         )
         here = np.isclose(penetration, picture.shown_penetration, atol=1e-9)
         axes.plot(penetration[here], force[here], "o", color=colour, markersize=3.6, zorder=4)
-    for dashed, (place, start, end) in _jumps(picture):
-        axes.annotate(
-            "",
-            xy=(place, end),
-            xytext=(place, start),
-            arrowprops={
-                "arrowstyle": "-|>",
-                "color": "0.25",
-                "linewidth": 0.8,
-                "linestyle": (0, _DASHES) if dashed else "-",
-                "mutation_scale": 7,
-                "shrinkA": 0,
-                "shrinkB": 0,
-            },
-        )
-    axes.tick_params(labelbottom=False)
-    axes.set_ylabel(FORCE_LABEL)
+    _draw_jumps(axes, picture)
+    axes.set(xlabel=PENETRATION_LABEL, ylabel=FORCE_LABEL)
     axes.legend(loc="upper left")
     low = min(picture.boundary_force.min(), picture.front_force.min())
     axes.set_ylim(1.1 * low, max(0.75, 1.2 * picture.boundary_force.max()))
 
 
-def _jumps(picture: ValidationPicture) -> list[tuple[bool, tuple[float, float, float]]]:
-    """Penetration, force before and force after the first and the last jump of both models."""
-    touching = np.flatnonzero(picture.boundary_area > 0)
-    first, last = touching[0], touching[-1]
-    end = min(last + 1, picture.boundary_penetration.size - 1)
-    return [
-        (False, (picture.boundary_penetration[first], 0.0, picture.boundary_force[first])),
-        (False, (picture.boundary_penetration[end], picture.boundary_force[last], 0.0)),
-        (True, (picture.front_penetration[0], 0.0, picture.front_force[0])),
-        (True, (picture.front_end, picture.front_force[-1], 0.0)),
-    ]
-
-
-def _draw_differences(axes: Axes, picture: ValidationPicture) -> None:
-    """Differences of the forces where both models have contact."""
-    from matplotlib.ticker import MaxNLocator
-
-    axes.axhline(0.0, color="0.7", linewidth=0.4, zorder=1)
-    for sign, _, colour in _BRANCHES:
-        mine = picture.front_direction == sign
-        other = (picture.boundary_direction == sign) & (picture.boundary_area > 0)
-        shared, here, there = np.intersect1d(
-            np.round(picture.boundary_penetration[other], 9),
-            np.round(picture.front_penetration[mine], 9),
-            return_indices=True,
-        )
-        difference = picture.boundary_force[other][here] - picture.front_force[mine][there]
-        axes.plot(shared, difference, color=colour, linewidth=0.8)
-    axes.set_xlabel(PENETRATION_LABEL)
-    axes.set_ylabel("difference /\n$\\pi w_\\mathrm{int} R$", fontsize=7)
-    axes.yaxis.set_major_locator(MaxNLocator(3, symmetric=True))
+def _draw_jumps(axes: Axes, picture: ValidationPicture) -> None:
+    """Arrows for the first and the last jump of both models, dashed for the front, in a loop."""
+    first, last = np.flatnonzero(picture.boundary_area > 0)[[0, -1]]
+    end = last + 1
+    if end == picture.boundary_penetration.size:
+        return
+    theirs, ours = picture.boundary_force, picture.front_force
+    for dashed, place, start, force in (
+        (False, picture.boundary_penetration[first], 0.0, theirs[first]),
+        (False, picture.boundary_penetration[end], theirs[last], 0.0),
+        (True, picture.front_penetration[0], 0.0, ours[0]),
+        (True, picture.front_end, ours[-1], 0.0),
+    ):
+        style = {"linewidth": 0.8, "linestyle": (0, _DASHES) if dashed else "-", "color": "0.25"}
+        arrow = {"arrowstyle": "-|>", "mutation_scale": 7, "shrinkA": 0, "shrinkB": 0}
+        axes.annotate("", xy=(place, force), xytext=(place, start), arrowprops=style | arrow)
 
 
 def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
     """Topography, tension in approach, and the fronts of both branches."""
-    from matplotlib.colors import LinearSegmentedColormap
-    from matplotlib.lines import Line2D
-
-    from crackfront.plots.fronts import closed_front, label_plane
-
     reach = float(picture.position[-1])
     extent = (float(picture.position[0]), reach, float(picture.position[0]), reach)
     relief = axes.imshow(
@@ -249,6 +199,52 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
     )
     label = HEIGHT_LABEL.format("roughness")
     axes.figure.colorbar(relief, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
-    axes.set_xlim(extent[:2])
-    axes.set_ylim(extent[2:])
+    axes.set(xlim=extent[:2], ylim=extent[2:])
     label_plane(axes)
+
+
+def hysteresis_figure(rows: Sequence[Hysteresis]) -> Figure:
+    """Extrapolated hysteresis of both models against e_el, and the ratio of the two.
+
+    Ratios at the ranges that were computed are small and open.
+    """
+    found, limits = (rough_settings(one) for one in (settings(rows), limit_settings(rows)))
+    with house_style():
+        figure = blank_figure(PAGE, 0.42 * PAGE)
+        both = figure.subplots(1, 2)
+        for part, grey in ((0.25, "0.93"), (0.10, "0.85")):
+            both[1].axhspan(1 - part, 1 + part, color=grey, linewidth=0, zorder=0)
+        for number, shape in enumerate(sorted({one.rows[0].scene[:2] for one in limits})):
+            near, far = (
+                [one for one in many if one.rows[0].scene[:2] == shape] for many in (found, limits)
+            )
+            name = rf"$\lambda_r = {shape[0]:g}$, $H = {shape[1]:g}$"
+            style = {"color": COLOURS[number], "marker": MARKERS[number], "linewidth": 0.8}
+            filled, hollow = {"label": name}, {"markerfacecolor": "white"}
+            theirs, ours = (
+                [one.mean(attrgetter(f"{model}_hysteresis")) for one in far]
+                for model in ("boundary", "front")
+            )
+            _draw_estimates(both[0], far, theirs, **style, **filled)
+            _draw_estimates(both[0], far, ours, **style, **hollow, linestyle="--")
+            for many, look in ((near, hollow | {"markersize": 2.4}), (far, filled)):
+                ratios = [one.hysteresis_ratio() for one in many]
+                _draw_estimates(both[1], many, ratios, **style, **look, linestyle="none")
+        names = "hysteresis / $w_\\mathrm{int}$", "hysteresis, front / boundary elements"
+        for axes, panel, name in zip(both, "ab", names, strict=True):
+            axes.set(xlim=(0.0, None), xlabel=r"$e_\mathrm{el}/w_\mathrm{int}$", ylabel=name)
+            axes.legend(loc="upper left")
+            label_panel(axes, panel)
+        return figure
+
+
+def _draw_estimates(
+    axes: Axes, found: Sequence[Setting], estimates: Sequence[Estimate], **style: Any
+) -> None:
+    """Values with their standard errors against e_el."""
+    axes.errorbar(
+        [float(one.mean(attrgetter("elastic_energy")).value) for one in found],
+        [float(one.value) for one in estimates],
+        yerr=[np.nan_to_num(float(one.standard_error)) for one in estimates],
+        **style,
+    )

@@ -1,234 +1,201 @@
-"""The files of a validation: its numbers, its figure, and its tables as a person reads them."""
+"""Tables of a validation, as a person reads them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from operator import attrgetter
+from typing import Any
 
-import numpy as np
-
-from crackfront.analysis.validity import ValidityRow, validity_text
-from crackfront.data.files import write_text
-from crackfront.data.provenance import Provenance
-from crackfront.data.records import write_record, write_records
-from crackfront.plots.style import save_figure
-from studies.boundary_elements.comparison import Comparison
-from studies.boundary_elements.parameters import ValidationParameters
-from studies.boundary_elements.picture import ValidationPicture, validation_figure
-from studies.boundary_elements.study import Progress, RotationEffect, Speed, validation
+from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.validity import validity_sentence
+from studies.boundary_elements.averages import (
+    ORDER,
+    Setting,
+    limit_settings,
+    rough_settings,
+    settings,
+    validity_row,
+)
+from studies.boundary_elements.differences import Differences
+from studies.boundary_elements.hysteresis import Hysteresis
 
 _PULL_OFF = 1.5
 """Magnitude of the pull-off force of a smooth sphere (Units: pi w_int R)."""
 
 
-def write_validation(
-    folder: Path, parameters: ValidationParameters, origin: Provenance, progress: Progress
-) -> None:
-    """Compute what a folder does not hold of a validation, and write all that it finds."""
-    found = validation(parameters, folder, origin, progress)
-    for name, rows, along in (
-        ("differences", found.differences, "case"),
-        ("speed", found.speeds, "case"),
-        ("rotation", found.effects, "surface"),
-        ("jumps-boundary", [boundary for boundary, _ in found.jumps], "jump"),
-        ("jumps-front", [front for _, front in found.jumps], "jump"),
-    ):
-        if rows:
-            write_records(folder / f"{name}.nc", rows, along, origin)
-    if found.picture is not None:
-        write_record(folder / "picture.nc", found.picture, origin)
-        for path in save_figure(validation_figure(found.picture), folder / "validation"):
-            progress(f"figure: {path}")
-        write_text(folder / "validity.csv", validity_text([loop_validity(found.picture)]))
-    report = validation_report(found.differences, found.speeds, found.effects)
-    write_text(folder / "validation.md", report, sealed=True)
-    progress(f"tables: {folder / 'validation.md'}")
-
-
-def loop_validity(picture: ValidationPicture) -> ValidityRow:
-    """What the front's hysteresis is worth on a flat surface, by the work between the branches.
-
-    That of the force from b = 0 on, where both models have both branches.
-    """
-    work = []
-    for penetration, direction, force in (
-        (picture.boundary_penetration, picture.boundary_direction, picture.boundary_force),
-        (picture.front_penetration, picture.front_direction, picture.front_force),
-    ):
-        approach, retraction = (
-            np.flatnonzero((direction == sign) & (penetration > -1e-9))[::sign] for sign in (1, -1)
-        )
-        back = np.interp(penetration[approach], penetration[retraction], force[retraction])
-        # The deepest state is that of both branches.
-        back[-1] = force[approach[-1]]
-        work.append(float(np.trapezoid(force[approach] - back, penetration[approach])))
-    return ValidityRow(
-        roll_off=1.0,
-        hurst=1.0,
-        elastic_energy=picture.elastic_energy,
-        ratio=work[1] / work[0],
-        error=math.nan,
-        surfaces=1,
-        fine=1,
-        n_point=picture.n_point,
-        interaction_range=picture.interaction_range,
-    )
-
-
 def validation_report(
-    differences: Sequence[Comparison],
-    speeds: Sequence[Speed],
-    effects: Sequence[RotationEffect],
+    rows: Sequence[Hysteresis], loops: Sequence[Differences], short_cutoff: float
 ) -> str:
-    """Markdown tables; of differences, those without a range of attraction are extrapolated."""
+    """Markdown tables of what is finished.
+
+    Parameters
+    ----------
+    rows : sequence of Hysteresis
+        Every case.
+    loops : sequence of Differences
+        Whole loops, twice where a crack that does not turn is compared too.
+    short_cutoff : float
+        Shortest wavelength of the roughness. (Units: reduced lateral length)
+    """
+    found, limits = settings(rows), limit_settings(rows)
+    told = [validity_row(one, short_cutoff) for one in rough_settings(limits)]
     parts = [
         ["# Crack front against boundary elements", ""],
-        _difference_rows(differences),
-        _jump_rows([row for row in differences if row.elastic_energy > 0]),
-        _trend_rows(differences),
-        _speed_rows(speeds),
-        _rotation_rows(effects),
+        [validity_sentence(told), ""] if told else [],
+        _hysteresis_table([*found, *limits]),
+        _resolution_table(rows),
+        _run_table(found),
+        _difference_table(loops),
+        _jump_table([row for row in loops if row.elastic_energy > 0]),
     ]
     return "\n".join(line for part in parts for line in part)
 
 
-def _case(row: Comparison) -> str:
+def table(text: str, header: str, lines: Iterable[str]) -> list[str]:
+    """A paragraph and its table, or nothing where the table has no lines."""
+    cells = [f"| {line} |" for line in lines]
+    rule = "|" + " --: |" * (1 + header.count(" | "))
+    return [text, "", f"| {header} |", rule, *cells, ""] if cells else []
+
+
+_SETTING = "roll-off | e_el | points | range | step"
+
+
+def _setting(row: Hysteresis, energy: float) -> str:
     """First cells of a row."""
-    crack = "turns" if row.rotated else "fixed"
-    return f"| {row.n_point} | {row.interaction_range:g} | {row.elastic_energy:.4f} | {crack}"
+    grid = f"{row.n_point} | {row.interaction_range:g} | {row.step:g}"
+    return f"{row.roll_off:g} | {energy:.4f} | {grid}"
 
 
-def _relative(force: float) -> str:
-    """A force relative to the pull-off force."""
-    return f"{100 * force / _PULL_OFF:.2f}%"
+def _cells(found: Setting, *names: str) -> list[str]:
+    """Cells of the setting, of the number of surfaces, and of means over them by their fields."""
+    energy = float(found.mean(attrgetter("elastic_energy")).value)
+    means = (_shown(found.mean(attrgetter(name))) for name in names)
+    return [_setting(found.rows[0], energy), f"{found.surfaces}", *means]
 
 
-def _difference_rows(differences: Sequence[Comparison]) -> list[str]:
+def _shown(found: Estimate, digits: int = 4) -> str:
+    """A value and its standard error, if it has one."""
+    value, error = float(found.value), float(found.standard_error)
+    return f"{value:.{digits}f}" + (f" ({error:.{digits}f})" if math.isfinite(error) else "")
+
+
+def _hysteresis_table(found: Sequence[Setting]) -> list[str]:
+    """Works of adhesion and hysteresis of both models."""
+    models = [
+        f"{model}_{name}"
+        for name in ("approach", "retraction", "hysteresis")
+        for model in ("boundary", "front")
+    ]
+    return table(
+        "Works of adhesion of the smooth sphere with the same force at the same penetration, in "
+        "w_int; boundary elements first, then the front on the same surfaces; in brackets standard "
+        "errors over surfaces. Hysteresis: the energy that either branch loses per area that it "
+        "sweeps, summed; k is half of it over e_el. Ratio: front over boundary elements. Range 0 "
+        f"is extrapolated by the range to the power {ORDER} from the two shortest of a surface: "
+        "the mean of the longest over all surfaces, and that of what extrapolation changes on "
+        "those that have a shorter one.",
+        f"{_SETTING} | surfaces | w_appr | front | w_retr | front | hysteresis | front | ratio",
+        (
+            " | ".join(
+                [
+                    *_cells(one, *models),
+                    _shown(one.hysteresis_ratio(), 2) if one.rows[0].asked_energy else "",
+                ]
+            )
+            for one in found
+        ),
+    )
+
+
+def _resolution_table(rows: Sequence[Hysteresis]) -> list[str]:
+    """Hysteresis of the boundary elements on one surface at every resolution."""
+    lines = []
+    for scene in sorted({(*row.scene, row.seed) for row in rows if row.asked_energy > 0}):
+        alike = [row for row in rows if (*row.scene, row.seed) == scene]
+        alike.sort(key=lambda row: (-row.interaction_range, row.n_point, -row.step))
+        for row in alike if len(alike) > 1 else ():
+            change = row.boundary_hysteresis / alike[0].boundary_hysteresis - 1
+            lines.append(
+                f"{_setting(row, row.elastic_energy)} | {row.boundary_approach:.4f} | "
+                f"{row.boundary_retraction:.4f} | {row.boundary_hysteresis:.4f} | "
+                f"{change:+.1%} | {row.front_hysteresis:.4f}"
+            )
+    return table(
+        "One surface by boundary elements at several resolutions: hysteresis, and its change from "
+        "the coarsest.",
+        f"{_SETTING} | w_appr | w_retr | hysteresis | change | front",
+        lines,
+    )
+
+
+def _run_table(found: Sequence[Setting]) -> list[str]:
+    """Areas, what the minimiser did, and the processor time."""
+    hours = sum(row.boundary_seconds for one in found for row in one.rows) / 3600
+    names = "repelling", "open_inside", "closed_outside"
+    return table(
+        "Part of the surface that repels the front; areas within the front beyond the perimeter of "
+        "the boundary elements, and the other way round, relative to the front's. Products of a "
+        "load step; steps that would have passed a barrier and were shortened; states without "
+        "forces that were no minimum and were left; least fall of the energy at a penetration. "
+        f"Seconds of one core for a surface; boundary elements took {hours:.2f} core hours in all.",
+        f"{_SETTING} | surfaces | repels | open inside | closed outside | products | barriers "
+        "| saddles | least fall | s | front, s",
+        (
+            " | ".join(_cells(one, *names))
+            + f" | {one.mean(lambda row: row.products).value:.0f} | "
+            f"{sum(row.barriers for row in one.rows)} | {sum(row.saddles for row in one.rows)} | "
+            f"{min(row.least_released for row in one.rows):.1e} | "
+            f"{one.mean(lambda row: row.boundary_seconds).value:.0f} | "
+            f"{one.mean(lambda row: row.front_seconds).value:.1f}"
+            for one in found
+        ),
+    )
+
+
+_CRACK = "points | range | e_el | crack"
+_CRACK_CELLS = "{n_point} | {interaction_range:g} | {elastic_energy:.4f} | {crack}"
+
+
+def _cell_values(row: Differences) -> dict[str, Any]:
+    """Values of a row, with forces relative to the pull-off force and the name of the crack."""
+    known = asdict(row)
+    forces = {name: value / _PULL_OFF for name, value in known.items() if "force" in name}
+    return known | forces | {"crack": "turns" if row.rotated else "fixed"}
+
+
+def _difference_table(loops: Sequence[Differences]) -> list[str]:
     """Forces, areas and perimeters."""
-    return [
+    cells = (
+        f"{_CRACK_CELLS} | {{force_mean:.2%}} | {{force_median:.2%}} | "
+        "{force_rms:.2%} | {force_largest:.2%} | {area_mean:.2%} | {area_rms:.2%} | "
+        "{perimeter_approach:.4f} | {perimeter_retraction:.4f} | {perimeter_all:.4f}"
+    )
+    return table(
         "Boundary elements minus front, in all states in which both have contact; in approach from "
         "the penetration b on at which the boundary elements have left, everywhere, the perimeter "
         "with which they jumped into contact. Forces in units of the smooth pull-off force, areas "
         "relative, distances of perimeters in short cutoffs: in approach and retraction at the "
-        "shown penetration, and the mean over all states. Range 0 is extrapolated.",
-        "",
-        "| points | range | e_el | crack | from b | force, mean | median size | rms | largest "
-        "| area, mean | rms | perimeter, appr. | retr. | all |",
-        "| --: | --: | --: | --- " + "| --: " * 10 + "|",
-        *(
-            f"{_case(row)} | {row.begin:.2f} | {_relative(row.force_mean)} "
-            f"| {_relative(row.force_median)} | {_relative(row.force_rms)} "
-            f"| {_relative(row.force_largest)} "
-            f"| {100 * row.area_mean:.2f}% | {100 * row.area_rms:.2f}% "
-            f"| {row.perimeter_approach:.4f} | {row.perimeter_retraction:.4f} "
-            f"| {row.perimeter_all:.4f} |"
-            for row in differences
-        ),
-        "",
-    ]
+        "shown penetration, and the mean over all states.",
+        f"{_CRACK} | force, mean | median size | rms | largest | area, mean | rms "
+        "| perimeter, appr. | retr. | all",
+        (cells.format(**_cell_values(row)) for row in loops),
+    )
 
 
-def _jump_rows(differences: Sequence[Comparison]) -> list[str]:
+def _jump_table(loops: Sequence[Differences]) -> list[str]:
     """Jumps and the end of contact."""
-    return [
-        "## Jumps",
-        "",
+    cells = (
+        f"{_CRACK_CELLS} | {{jumps_boundary}} | {{jumps_front}} | {{jumps_shared}} | "
+        "{jump_shift:.4f} | {jump_spread:.4f} | {pull_off_force:.2%} | {pull_off_penetration:.3f}"
+    )
+    return table(
         "Arcs of the perimeter that move a quarter of a short cutoff or more in one load step; of "
         "the front's, those for which the boundary elements jump at the same place within 0.1 of "
         "penetration; their penetrations, boundary elements minus front.",
-        "",
-        "| points | range | e_el | crack | boundary | front | shared | mean shift | rms shift "
-        "| pull-off force | end of contact |",
-        "| --: | --: | --: | --- " + "| --: " * 7 + "|",
-        *(
-            f"{_case(row)} | {row.jumps_boundary} | {row.jumps_front} | {row.jumps_shared} "
-            f"| {row.jump_shift:.4f} | {row.jump_spread:.4f} | {_relative(row.pull_off_force)} "
-            f"| {row.pull_off_penetration:.3f} |"
-            for row in differences
-            if row.interaction_range > 0
-        ),
-        "",
-    ]
-
-
-def _trend_rows(differences: Sequence[Comparison]) -> list[str]:
-    """Orders in the range of the attraction and in the energy of full conformity."""
-    smooth = [row for row in differences if row.elastic_energy == 0 and row.interaction_range > 0]
-    rough = [row for row in differences if row.elastic_energy > 0 and row.rotated]
-    limits = [row for row in rough if row.interaction_range == 0]
-    rms, mean = ("rms force", "force_rms"), ("mean force", "force_mean")
-    others = ("median force", "force_median"), ("perimeter", "perimeter_all")
-    lines = []
-    for what, rows, key, ordinates in (
-        ("Smooth sphere, order in the range", smooth, "interaction_range", (rms, mean)),
-        ("Extrapolated, order in e_el", limits, "elastic_energy", (rms, *others)),
-    ):
-        abscissa = [getattr(row, key) for row in rows]
-        if len(set(abscissa)) > 1:
-            orders = (
-                f"{name} {power_of(abscissa, [getattr(row, ordinate) for row in rows]):.2f}"
-                for name, ordinate in ordinates
-            )
-            lines += [f"{what}: {', '.join(orders)}.", ""]
-    return ["## Trends", "", *lines] if lines else []
-
-
-def power_of(abscissa: Sequence[float], ordinate: Sequence[float]) -> float:
-    """Exponent of the power law through points, by least squares of the logarithms.
-
-    Examples
-    --------
-    >>> round(power_of([1, 2, 4], [3, 12, -48]), 12)
-    2.0
-    """
-    return float(np.polyfit(np.log(abscissa), np.log(np.abs(ordinate)), 1)[0])
-
-
-def _speed_rows(speeds: Sequence[Speed]) -> list[str]:
-    """Costs at equal error."""
-    if not speeds:
-        return []
-    return [
-        "## Cost of one cycle at equal error of the force",
-        "",
-        "Rms errors in units of the smooth pull-off force: of the boundary elements on the smooth "
-        "sphere, where JKR is exact; of the front against one of many more sites. Seconds of one "
-        "core, the front's with its field.",
-        "",
-        "| points | range | error | s | sites of the front | error | s | faster |",
-        "| --: " * 8 + "|",
-        *(
-            f"| {row.n_point} | {row.interaction_range:g} | {_relative(row.boundary_error)} "
-            f"| {row.boundary_seconds:.0f} | {row.n_angle} | {_relative(row.front_error)} "
-            f"| {row.front_seconds:.2f} | {row.boundary_seconds / row.front_seconds:.0f} |"
-            for row in speeds
-        ),
-        "",
-    ]
-
-
-def _rotation_rows(effects: Sequence[RotationEffect]) -> list[str]:
-    """Averages with and without the rotation."""
-    if not effects:
-        return []
-    rows = (
-        ("w_appr", [row.approach for row in effects], [row.approach_fixed for row in effects]),
-        ("w_retr", [row.retraction for row in effects], [row.retraction_fixed for row in effects]),
+        f"{_CRACK} | boundary | front | shared | mean shift | rms shift | pull-off force "
+        "| end of contact",
+        (cells.format(**_cell_values(row)) for row in loops),
     )
-    return [
-        "## The rotation of the crack and averages",
-        "",
-        f"Works of adhesion, in w_int, of {len(effects)} surfaces with a crack that turns and with "
-        "one that does not: means, and mean and standard error of the paired difference.",
-        "",
-        "| | turns | fixed | difference | standard error |",
-        "| --- " + "| --: " * 4 + "|",
-        *(
-            f"| {name} | {np.mean(turned):.5f} | {np.mean(fixed):.5f} "
-            f"| {np.mean(np.subtract(turned, fixed)):.5f} "
-            f"| {np.std(np.subtract(turned, fixed), ddof=1) / math.sqrt(len(effects)):.5f} |"
-            for name, turned, fixed in rows
-        ),
-        "",
-    ]

@@ -15,10 +15,9 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import fft2, fftfreq, fftshift
+from scipy.fft import fft2, fftfreq
 
 from crackfront.core.adhesion import rough_adhesion
-from crackfront.core.field.fields import RayField, polar_field
 from crackfront.core.optional_libraries import MissingExtraError
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
@@ -26,57 +25,6 @@ Array = NDArray[np.float64]
 
 _PRECISION = 1e-13
 """Precision of the transforms, relative to the sum of the amplitudes."""
-
-
-def rotated_field(
-    heights: Array,
-    pixel: float,
-    n_angle: int,
-    spacing: float,
-    largest_radius: float,
-    *,
-    rotated: bool = True,
-) -> RayField:
-    """Field of a front whose crack turns with the angle, cubic between samples.
-
-    Parameters
-    ----------
-    heights : (n_x, n_y) array
-        Periodic roughness, positive at peaks; the apex is the tile's centre. (Units: reduced
-        vertical length)
-    pixel : float
-        Grid spacing. (Units: reduced lateral length)
-    n_angle : int
-        Number of sites of the front.
-    spacing : float
-        Distance of samples along a ray. (Units: reduced lateral length)
-    largest_radius : float
-        Radius that the front must not leave. (Units: reduced lateral length)
-    rotated : bool, optional
-        Whether the crack turns; if not, it is parallel to y everywhere, as in the paper's
-        statistics (SI II).
-
-    Raises
-    ------
-    ValueError
-        As :func:`crackfront.core.field.fields.tile_field`, if full conformity is not possible, or
-        if FINUFFT is missing.
-
-    References
-    ----------
-    .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. I B, C and III.
-    .. [2] Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41, C479 (2019).
-    """
-    if not 0 < spacing < largest_radius / 2 < math.inf:
-        raise ValueError(
-            f"sample spacing {spacing} must be positive and below half the largest radius "
-            f"{largest_radius}"
-        )
-    n_sample = math.ceil(largest_radius / spacing)
-    radii = spacing * np.arange(1.0, n_sample + 1)
-    angles = 2 * np.pi * np.arange(n_angle) / n_angle
-    values = adhesion_on_rays(heights, pixel, angles, spacing, n_sample, rotated=rotated)
-    return polar_field(radii, values, "cubic")
 
 
 def adhesion_on_rays(
@@ -92,8 +40,11 @@ def adhesion_on_rays(
 
     Parameters
     ----------
-    heights, pixel
-        As in :func:`rotated_field`.
+    heights : (n_x, n_y) array
+        Periodic roughness without waves of two pixels, positive at peaks; the apex is the tile's
+        centre. (Units: reduced vertical length)
+    pixel : float
+        Grid spacing. (Units: reduced lateral length)
     angles : (n_angle,) array
         Angles of the rays. (Units: rad)
     spacing : float
@@ -102,12 +53,23 @@ def adhesion_on_rays(
     n_sample : int
         Points of a ray.
     rotated : bool, optional
-        As in :func:`rotated_field`.
+        Whether the crack turns; if not, it is parallel to y everywhere, as in the paper's
+        statistics (SI II).
 
     Returns
     -------
     (n_sample, n_angle) array
         w_loc. (Units: reduced energy / area, w_int = 1/pi)
+
+    Raises
+    ------
+    ValueError
+        If full conformity is not possible, or FINUFFT is missing.
+
+    References
+    ----------
+    .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. I B, C and III.
+    .. [2] Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41, C479 (2019).
     """
     try:
         from finufft import nufft1d1
@@ -139,15 +101,8 @@ def _modes(heights: Array, pixel: float) -> tuple[Array, Array, NDArray[np.compl
     tile's centre.
     """
     n_x, n_y = heights.shape
-    amplitude = fftshift(fft2(heights, norm="forward"))
-    along = [2 * np.pi * fftshift(fftfreq(count, pixel)) for count in (n_x, n_y)]
-    for axis, count in enumerate((n_x, n_y)):
-        if count % 2 == 0:
-            # The Nyquist mode stands for both signs of its wavevector.
-            first = np.take(amplitude, [0], axis=axis) / 2
-            amplitude = np.concatenate([amplitude, first], axis=axis)
-            amplitude[(slice(None),) * axis + (0,)] /= 2
-            along[axis] = np.append(along[axis], -along[axis][0])
+    amplitude = fft2(heights, norm="forward")
+    along = (2 * np.pi * fftfreq(count, pixel) for count in (n_x, n_y))
     q_x, q_y = np.meshgrid(*along, indexing="ij")
     floor = np.finfo(float).eps * float(np.max(np.abs(amplitude), initial=0.0))
     kept = ((q_x > 0) | ((q_x == 0) & (q_y > 0))) & (np.abs(amplitude) > floor)

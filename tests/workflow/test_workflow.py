@@ -338,13 +338,11 @@ VALIDATION = """
 seed: 5
 short_cutoff: 0.6
 side: 5.12
-max_penetration: 0.3
-step: 0.15
-shown_penetration: 0.15
 tolerance: 1.0e-3
+loads: {max_penetration: 0.45, step: 0.15, shown_penetration: 0.15}
 front: {n_angle: 32, spacing: 0.1}
 cases:
-  - {n_point: 48, interaction_range: 0.70, elastic_energy: 0.02}
+  - {n_point: 48, interaction_range: 0.70, elastic_energies: [0.02]}
 """
 
 
@@ -354,6 +352,6 @@ def test_the_workflow_validates_the_model_by_boundary_elements(tmp_path):
     done = snakemake(tmp_path, f"validation={configuration}", "--", "validation")
     assert done.returncode == 0, done.stderr
     made = {path.name for path in (tmp_path / "results/tiny").iterdir()}
-    assert {"validation.md", "validation.pdf", "differences.nc", "picture.nc"} <= made
+    assert {"validation.md", "validation.pdf", "hysteresis.nc", "picture.nc"} <= made
     assert sum(name.startswith("n48-g0.7-e0.02-") for name in made) == 1
     assert not (tmp_path / "results/test").exists()

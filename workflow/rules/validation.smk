@@ -8,7 +8,7 @@ VALIDATED = str(results_folder(Path(VALIDATION)))
 
 rule validation:
     input:
-        f"{VALIDATED}/differences.nc",
+        f"{VALIDATED}/hysteresis.nc",
         f"{VALIDATED}/picture.nc",
         multiext(f"{VALIDATED}/validation", ".md", ".pdf", ".png"),
 
@@ -16,14 +16,11 @@ rule validation:
 rule validate:
     output:
         f"{VALIDATED}/validation.md",
-        f"{VALIDATED}/differences.nc",
+        f"{VALIDATED}/hysteresis.nc",
         f"{VALIDATED}/picture.nc",
         multiext(f"{VALIDATED}/validation", ".pdf", ".png"),
     params:
-        sources=fingerprint(
-            "studies.boundary_elements.report.write_validation",
-            "studies.boundary_elements.amplitude_report.write_amplitudes",
-        ),
+        sources=fingerprint("studies.boundary_elements.study.write_validation"),
         settings=lambda wildcards: repr(load_validation(Path(VALIDATION))),
     shell:
         "python -m studies boundary-elements validate {VALIDATION:q} --output {VALIDATED:q}"

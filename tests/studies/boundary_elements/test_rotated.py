@@ -7,18 +7,12 @@ import numpy as np
 import pytest
 
 from crackfront.core.adhesion import rough_adhesion
-from crackfront.core.field.fields import polar_field
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
-from studies.boundary_elements.rotated import adhesion_on_rays, rotated_field
+from studies.boundary_elements.rotated import adhesion_on_rays
 
 PIXEL = 0.3
-
-
-def signs(number, count):
-    """A wavenumber, or both signs of the Nyquist one."""
-    return (number, -number) if 2 * number == -count else (number,)
 
 
 def brute_force(heights, angle, radius):
@@ -32,18 +26,16 @@ def brute_force(heights, angle, radius):
     place = radius * along + PIXEL * np.array([n_x, n_y]) / 2
     stress = 0.0
     for k, m in itertools.product(
-        range(-(n_x // 2), (n_x + 1) // 2), range(-(n_y // 2), (n_y + 1) // 2)
+        range(-(n_x // 2), n_x // 2 + 1), range(-(n_y // 2), n_y // 2 + 1)
     ):
-        pairs = list(itertools.product(signs(k, n_x), signs(m, n_y)))
-        for pair in pairs:
-            q = 2 * np.pi * np.array(pair) / (PIXEL * np.array([n_x, n_y]))
-            kernel = -CONTACT_MODULUS / np.sqrt(2) * np.sqrt(1j * (q @ along) + abs(q @ across))
-            stress += (kernel * modes[k, m] * np.exp(1j * (q @ place))).real / len(pairs)
+        q = 2 * np.pi * np.array([k, m]) / (PIXEL * np.array([n_x, n_y]))
+        kernel = -CONTACT_MODULUS / np.sqrt(2) * np.sqrt(1j * (q @ along) + abs(q @ across))
+        stress += (kernel * modes[k, m] * np.exp(1j * (q @ place))).real
     energy = rough_adhesion(heights, PIXEL).e_el * WORK_OF_ADHESION
     return WORK_OF_ADHESION - energy - np.sqrt(2 * WORK_OF_ADHESION / CONTACT_MODULUS) * stress
 
 
-@pytest.mark.parametrize("shape", [(12, 12), (9, 9), (8, 11)])
+@pytest.mark.parametrize("shape", [(9, 9), (7, 11)])
 def test_every_angle_has_the_kernel_of_its_own_crack_to_round_off(rng, shape):
     heights = 1e-3 * rng.standard_normal(shape)
     angles = np.array([0.0, 0.3, 2.2, 4.0])
@@ -56,7 +48,8 @@ def test_every_angle_has_the_kernel_of_its_own_crack_to_round_off(rng, shape):
 
 
 def test_a_crack_that_does_not_turn_has_the_field_of_the_tile(rng):
-    heights = 1e-3 * rng.standard_normal((16, 16))
+    spectrum = SelfAffineSpectrum(1.0, 2.0, hurst=0.8).with_elastic_energy(0.02)
+    heights = gaussian_field(spectrum, 16, 16 * PIXEL, rng)
     tile = rough_adhesion(heights, PIXEL).work_of_adhesion
     found = adhesion_on_rays(heights, PIXEL, np.array([0, np.pi / 2]), PIXEL, 7, rotated=False)
     np.testing.assert_allclose(found[:, 0], tile[9:, 8], atol=1e-13)
@@ -85,21 +78,6 @@ def test_turning_the_crack_changes_single_places_and_no_statistics():
     assert np.corrcoef(one.ravel(), other.ravel())[0, 1] < 0.95
     assert one.std() == pytest.approx(other.std(), rel=0.02)
     assert one.mean() == pytest.approx(other.mean(), rel=0.01)
-
-
-def test_a_front_is_given_the_samples_of_its_rays(rng):
-    heights = 1e-3 * rng.standard_normal((16, 16))
-    field = rotated_field(heights, PIXEL, 8, 0.1, 1.0)
-    angles = 2 * np.pi * np.arange(8) / 8
-    values = adhesion_on_rays(heights, PIXEL, angles, 0.1, 10)
-    expected = polar_field(0.1 * np.arange(1, 11), values, "cubic")
-    for mine, theirs in zip(field, expected, strict=True):
-        np.testing.assert_allclose(mine, theirs, rtol=1e-12)
-
-
-def test_a_spacing_that_gives_no_samples_is_refused():
-    with pytest.raises(ValueError, match=r"sample spacing 0.6 must be positive and below half"):
-        rotated_field(np.ones((8, 8)), PIXEL, 8, 0.6, 1.0)
 
 
 def test_a_missing_transform_is_refused_with_the_command_that_installs_it(monkeypatch):

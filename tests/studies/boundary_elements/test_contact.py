@@ -1,8 +1,6 @@
-"""The boundary elements: against their libraries, against JKR, and a cycle that is resumed."""
+"""The boundary elements: against their libraries and against JKR."""
 
-import subprocess
 import sys
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,43 +9,16 @@ from NuMPI.Optimization import tr_newton_bounded
 from scipy.optimize import brentq
 
 from crackfront.core import jkr
-from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
-from studies.boundary_elements.contact import (
-    HalfSpaceContact,
-    equilibrium,
-    half_space_contact,
-)
-from studies.boundary_elements.cycle import (
-    EDGE,
-    LOST_CONTACT,
-    boundary_cycle,
-    contact_loads,
-    perimeter,
-)
-from studies.boundary_elements.parameters import Case
+from studies.boundary_elements.contact import HalfSpaceContact, equilibrium, half_space_contact
+from studies.boundary_elements.cycle import EDGE, perimeter
 
 SIDE, RANGE = 5.12, 0.61
 """Domain, and the range of attraction that 64 points resolve."""
 
 
-CASE = Case(
-    seed=5,
-    short_cutoff=0.4,
-    side=SIDE,
-    shown_penetration=0.15,
-    tolerance=1e-4,
-    n_point=64,
-    interaction_range=RANGE,
-    elastic_energy=0.03,
-    schedule=LoadSchedule(0.3, 0.15),
-)
-
-
 @pytest.fixture(scope="module")
-def rough():
-    return CASE.contact()
+def rough(small):
+    return small.contact()
 
 
 @pytest.fixture(scope="module")
@@ -163,17 +134,6 @@ def test_a_state_without_forces_that_is_no_minimum_is_left():
     assert found.released > 0.1
 
 
-def test_the_energy_never_rises_at_a_penetration_and_no_load_step_ends_on_a_saddle(
-    cycle_and_parts,
-):
-    cycle, _ = cycle_and_parts
-    assert np.all(cycle.released >= -1e-12)
-    work = np.diff(cycle.penetration) * (cycle.force[1:] + cycle.force[:-1]) / 2
-    jumped = work - np.diff(cycle.energy)
-    assert np.sum(jumped) == pytest.approx(np.sum(work), abs=1e-6)
-    assert np.all(cycle.energy[[0, -1]] == pytest.approx(0, abs=1e-8))
-
-
 def test_a_coarse_smooth_sphere_has_the_force_and_the_radius_of_jkr(smooth):
     displacement = at_rest(smooth, 0.0).displacement
     for penetration in (0.5, 0.0):
@@ -184,84 +144,6 @@ def test_a_coarse_smooth_sphere_has_the_force_and_the_radius_of_jkr(smooth):
         found = perimeter(smooth.gap(displacement, penetration), smooth.pixel, EDGE * RANGE)
         assert found.mean() == pytest.approx(radius, rel=0.02)
         assert np.ptp(found) < smooth.pixel
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("n_point", "interaction_range", "bound"), [(128, 0.43, 0.02), (256, 0.30, 0.012)]
-)
-def test_the_force_of_a_smooth_sphere_is_that_of_jkr_to_a_part_of_the_pull_off_force(
-    n_point, interaction_range, bound
-):
-    smooth = replace(
-        CASE,
-        n_point=n_point,
-        interaction_range=interaction_range,
-        elastic_energy=0.0,
-        shown_penetration=0.5,
-        schedule=LoadSchedule(1.0, 0.1),
-    )
-    found = boundary_cycle(smooth)
-    stable = (found.penetration > -0.75) & (found.force < -1e-9) & (found.penetration >= -0.2)
-    expected = [
-        float(jkr.equilibrium_force(jkr.equilibrium_radius(b))) for b in found.penetration[stable]
-    ]
-    assert np.max(np.abs(found.force[stable] - expected)) < bound * 1.5
-
-
-def test_the_perimeter_of_a_disc_is_its_circle():
-    pixel = 0.05
-    position = pixel * (np.arange(64) - 32)
-    gap = np.maximum(np.hypot(position[:, None], position) - 1.0, 0.0)
-    np.testing.assert_allclose(perimeter(gap, pixel, 0.1), 1.1, atol=pixel / 20)
-    assert not np.any(perimeter(gap + 1, pixel, 0.1))
-
-
-def test_loads_begin_before_the_surfaces_attract_each_other():
-    loads = contact_loads(LoadSchedule(0.2, 0.1), 0.25)
-    visited = [next(loads) for _ in range(8)]
-    assert [load.value for load in visited] == pytest.approx(
-        [-0.3, -0.2, -0.1, 0, 0.1, 0.2, 0.1, 0]
-    )
-    assert [load.direction for load in visited] == [1, 1, 1, 1, 1, 1, -1, -1]
-
-
-@pytest.fixture(scope="module")
-def cycle_and_parts():
-    parts = []
-    cycle = boundary_cycle(CASE, keep=parts.append)
-    return cycle, parts
-
-
-def test_a_cycle_begins_and_ends_without_contact(cycle_and_parts):
-    cycle, _ = cycle_and_parts
-    assert cycle.status == LOST_CONTACT
-    assert cycle.force[0] == 0
-    assert cycle.force[-1] == pytest.approx(0, abs=1e-7)
-    assert not np.any(cycle.radius[-1])
-    assert cycle.force.min() < -1.3
-    assert np.all(cycle.residual <= 1e-4)
-    assert np.all(cycle.contact_area >= cycle.closed_area)
-    shown = np.flatnonzero(np.isclose(cycle.penetration, 0.15))
-    forces = np.sum(cycle.shown_pressure, axis=(1, 2)) * cycle.pixel**2
-    np.testing.assert_allclose(forces, cycle.force[shown], rtol=1e-4)
-
-
-def test_a_cycle_goes_on_from_the_file_of_any_load_step(cycle_and_parts, tmp_path):
-    whole, parts = cycle_and_parts
-    path = tmp_path / "part.nc"
-    write_record(path, parts[4], provenance())
-    part = read_record(path, type(whole))
-    again = boundary_cycle(CASE, resume=part)
-    np.testing.assert_array_equal(again.penetration, whole.penetration)
-    np.testing.assert_allclose(again.force, whole.force, atol=1e-3)
-    assert again.status == whole.status
-
-
-def test_a_cycle_of_another_load_is_not_resumed(cycle_and_parts):
-    _, parts = cycle_and_parts
-    with pytest.raises(ValueError, match=r"penetration -0.75 where -0.7 is asked for"):
-        boundary_cycle(replace(CASE, schedule=LoadSchedule(0.3, 0.1)), resume=parts[0])
 
 
 @pytest.mark.parametrize(
@@ -284,14 +166,3 @@ def test_a_missing_extra_is_refused_with_the_command_that_installs_it(monkeypatc
     monkeypatch.setitem(sys.modules, "Adhesion.Interactions", None)
     with pytest.raises(ValueError, match=r"need Adhesion, .* pip install '.\[bem\]'"):
         half_space_contact(np.zeros((64, 64)), SIDE / 64, RANGE, max_penetration=1.0)
-
-
-def test_nobody_who_runs_a_sweep_imports_the_boundary_elements():
-    program = (
-        "import sys, crackfront.cli, crackfront.sweep.configuration, crackfront.sweep.parallel\n"
-        "print({'ContactMechanics', 'Adhesion', 'NuMPI', 'finufft'} & set(sys.modules))"
-    )
-    run = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
-    assert run.stdout.strip() == "set()"

@@ -1,0 +1,194 @@
+"""Cases of a validation: a surface, how it is loaded, and the grid and attraction it is given."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from crackfront.core import jkr
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.schedule import LoadSchedule, loads
+from crackfront.core.fingerprint import fingerprint
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.data.bounds import NUMBER, Range
+from crackfront.data.section import Positive, Section, refusal, within
+from studies.boundary_elements.contact import HalfSpaceContact, half_space_contact
+
+Array = NDArray[np.float64]
+
+_STEADY = (0.25, 0.75)
+"""Where the branches of a whole loop are steady, relative to the largest penetration."""
+
+
+class SteadyBranches(Section):
+    """First and last penetration of the approach, and of the retraction, where they are steady."""
+
+    first: Positive
+    last: Positive
+    turned: Positive
+    end: Positive
+
+
+class Loads(Section):
+    """Approach and retraction: a whole loop, or the steady parts of both branches alone.
+
+    A whole loop begins where the surfaces do not attract each other yet and ends with pull-off. An
+    approach that is steady from its start makes contact there, far from the apex; the contact is
+    then pressed to the largest penetration, and back in one step, so that its edge has turned
+    everywhere.
+
+    Attributes
+    ----------
+    max_penetration, step, shown_penetration : float
+        Largest penetration, load step, and the penetration at which contacts are compared and
+        drawn. (Units: reduced vertical length)
+    steady : SteadyBranches, optional
+        The steady parts; without them the loop is whole.
+
+    Examples
+    --------
+    >>> steady = SteadyBranches(first=0.5, last=1.0, turned=1.0, end=0.5)
+    >>> branches = Loads(max_penetration=2.0, step=0.5, shown_penetration=0.5, steady=steady)
+    >>> [(load.value, load.direction) for load in branches.loads(interaction_range=0.3)]
+    [(0.5, 1), (1.0, 1), (2.0, 1), (1.0, -1), (0.5, -1)]
+    """
+
+    max_penetration: Positive
+    step: Positive
+    shown_penetration: Annotated[float, within(Range(-NUMBER.most, NUMBER.most))]
+    steady: SteadyBranches | None = None
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Loads:
+        low, high, most = -math.inf, math.inf, self.max_penetration
+        if self.steady is not None:
+            low = max(self.steady.first, self.steady.end)
+            high = min(self.steady.last, self.steady.turned)
+            if not low < high <= max(self.steady.last, self.steady.turned) < most:
+                raise refusal(
+                    f"the steady parts are {self.steady}; first must be below last, end below "
+                    f"turned, all below max_penetration {most:g}, and both parts must overlap"
+                )
+        if not (low <= self.shown_penetration <= high and self.shown_penetration < most):
+            raise refusal(
+                f"shown_penetration {self.shown_penetration:g} is not on both branches; it must "
+                f"be below max_penetration {most:g}, and on both steady parts if there are any"
+            )
+        return self
+
+    def refuse_step(self) -> None:
+        """Raise if the step is too large, or leads past penetrations that are compared."""
+        steady = self.steady.model_dump() if self.steady else {}
+        if self.steady is None and self.step > self.max_penetration / 3 * (1 + 1e-9):
+            raise ValueError(
+                f"step {self.step:g} is above a third of max_penetration "
+                f"{self.max_penetration:g}; lower it, so that branches have steady parts"
+            )
+        for name, value in {"shown_penetration": self.shown_penetration, **steady}.items():
+            if abs(value / self.step - round(value / self.step)) > 1e-9:
+                raise ValueError(
+                    f"{name} {value:g} is no multiple of the step {self.step:g}; take a step that "
+                    "leads to it"
+                )
+
+    def loads(self, interaction_range: float) -> Iterator[Load]:
+        """Penetrations in their order; those of a whole loop have no end."""
+        if self.steady is None:
+            for count in range(math.ceil(interaction_range / self.step), 0, -1):
+                yield Load(-count * self.step, 1)
+            yield from loads(LoadSchedule(self.max_penetration, self.step))
+        else:
+            counts = {name: round(b / self.step) for name, b in self.steady.model_dump().items()}
+            for count in range(counts["first"], counts["last"] + 1):
+                yield Load(count * self.step, 1)
+            yield Load(self.max_penetration, 1)
+            for count in range(counts["turned"], counts["end"] - 1, -1):
+                yield Load(count * self.step, -1)
+
+    @property
+    def n_load(self) -> float:
+        """Number of load steps; a whole loop ends near the pull-off of a smooth sphere."""
+        if self.steady is None:
+            return (2 * self.max_penetration - jkr.pull_off_penetration()) / self.step
+        return len([*self.loads(0.0)])
+
+    def are_steady(self, penetration: Array) -> NDArray[np.bool_]:
+        """Whether states at these penetrations are on the steady part of their branch."""
+        if self.steady is not None:
+            return penetration < self.max_penetration - 1e-9
+        low, high = (part * self.max_penetration for part in _STEADY)
+        return (penetration > low - 1e-9) & (penetration < high + 1e-9)
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """Everything that determines one cycle by boundary elements.
+
+    Attributes
+    ----------
+    seed, short_cutoff, roll_off, hurst, elastic_energy
+        Of the surface: its spectrum, flat where the roll-off is the short cutoff, and the energy of
+        full conformity, 0 for a smooth sphere. (Units: reduced lateral length, w_int)
+    side, n_point, interaction_range, tolerance, loads
+        Of the boundary elements: side of the periodic domain and points along it, gap at which the
+        attraction ends, and largest pressure out of balance, relative to the largest tension.
+        (Units: reduced lateral length, reduced vertical length)
+    """
+
+    seed: int
+    short_cutoff: float
+    roll_off: float
+    hurst: float
+    side: float
+    n_point: int
+    interaction_range: float
+    elastic_energy: float
+    tolerance: float
+    loads: Loads
+
+    @property
+    def pixel(self) -> float:
+        """Grid spacing (Units: reduced lateral length)."""
+        return self.side / self.n_point
+
+    @property
+    def surface(self) -> tuple[object, ...]:
+        """What determines the front: not the grid, as the noise belongs to wavevectors."""
+        return self.seed, self.roll_off, self.hurst, self.elastic_energy, self.loads
+
+    @property
+    def label(self) -> str:
+        """Name of the case in messages, and of its file before the key."""
+        shape = "" if self.roll_off == self.short_cutoff else f"-r{self.roll_off:g}"
+        return f"n{self.n_point}-g{self.interaction_range:g}-e{self.elastic_energy:g}{shape}"
+
+    @property
+    def stem(self) -> str:
+        """Name of its file, which changes with anything that determines the result."""
+        here = "studies.boundary_elements"
+        digest = fingerprint(f"{here}.contact", f"{here}.cycle")
+        known = asdict(self) | {"loads": self.loads.model_dump()}
+        text = json.dumps([known, digest], sort_keys=True, allow_nan=False)
+        return f"{self.label}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
+
+    def heights(self) -> Array:
+        """Roughness of the sphere, (n_point, n_point) (Units: reduced vertical length)."""
+        spectrum = SelfAffineSpectrum(self.short_cutoff, self.roll_off, self.hurst)
+        rng = np.random.default_rng(np.random.SeedSequence(self.seed))
+        unit = gaussian_field(spectrum.with_elastic_energy(1.0), self.n_point, self.side, rng)
+        return unit * math.sqrt(self.elastic_energy)
+
+    def contact(self) -> HalfSpaceContact:
+        """Contact of the sphere with the half-space, on a grid that resolves its attraction."""
+        return half_space_contact(
+            self.heights(), self.pixel, self.interaction_range, self.loads.max_penetration
+        )

@@ -1,0 +1,152 @@
+"""Hysteresis of the crack front and of boundary elements on the same surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core import jkr
+from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
+from studies.boundary_elements.cases import Case
+from studies.boundary_elements.cycle import BoundaryCycle
+from studies.boundary_elements.front import FrontCycle, States, shared_states
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Hysteresis:
+    """Both models over the steady parts of both branches on one surface.
+
+    Works of adhesion are means over the states of a branch, of the smooth sphere that has the same
+    force at the same penetration. The hysteresis is the energy that either branch loses per area
+    that it sweeps, summed: it does not depend on where on the surface the branches are. Areas are
+    means over the states, relative to that of the front.
+    """
+
+    seed: int = variable("seed of the surface", "1")
+    n_point: int = variable("points along a side of the grid", "1")
+    interaction_range: float = variable("gap at which the attraction ends", VERTICAL)
+    step: float = variable("load step", VERTICAL)
+    roll_off: float = variable("roll-off wavelength", LATERAL)
+    hurst: float = variable("Hurst exponent", "1")
+    asked_energy: float = variable("energy of full conformity that was asked for", ADHESION)
+    elastic_energy: float = variable("energy of full conformity on the tile", ADHESION)
+    repelling: float = variable("part of the surface whose work of adhesion is negative", "1")
+    boundary_approach: float = variable("w_appr of the boundary elements", ADHESION)
+    boundary_retraction: float = variable("w_retr of the boundary elements", ADHESION)
+    boundary_hysteresis: float = variable("energy that they lose per area swept", ADHESION)
+    front_approach: float = variable("w_appr of the front", ADHESION)
+    front_retraction: float = variable("w_retr of the front", ADHESION)
+    front_hysteresis: float = variable("energy that it loses per area swept", ADHESION)
+    open_inside: float = variable(
+        "area within the front, beyond the perimeter of the boundary elements", "1"
+    )
+    closed_outside: float = variable("area within their perimeter, beyond the front", "1")
+    barriers: int = variable("steps that were shortened before a barrier", "1")
+    saddles: int = variable("unstable states without forces that were left", "1")
+    least_released: float = variable("least fall of the energy at a penetration", ENERGY)
+    products: float = variable("conjugate-gradient products of a load step", "1")
+    boundary_seconds: float = variable("processor time of the boundary elements", "s")
+    front_seconds: float = variable("processor time of the front and its field", "s")
+
+    @property
+    def setting(self) -> tuple[float, ...]:
+        """What surfaces share that are averaged: grid, range, load step, spectrum, amplitude."""
+        return (*self.resolution, *self.scene)
+
+    @property
+    def resolution(self) -> tuple[float, ...]:
+        """Grid, range of the attraction, load step; where there is no range no grid is told."""
+        return self.n_point if self.interaction_range else 0, self.interaction_range, self.step
+
+    @property
+    def scene(self) -> tuple[float, ...]:
+        """Spectrum and amplitude."""
+        return self.roll_off, self.hurst, self.asked_energy
+
+
+def hysteresis(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Hysteresis:
+    """Hysteresis of both models on one surface, and where their contacts differ."""
+    theirs, ours = _steady_states(case, boundary, front)
+    closed, inside = boundary.radius[theirs] ** 2, front.radius[ours] ** 2
+    adhesion = rough_adhesion(case.heights(), case.pixel)
+    return Hysteresis(
+        seed=case.seed,
+        n_point=case.n_point,
+        interaction_range=case.interaction_range,
+        step=case.loads.step,
+        roll_off=case.roll_off,
+        hurst=case.hurst,
+        asked_energy=case.elastic_energy,
+        elastic_energy=adhesion.e_el,
+        repelling=float(np.mean(adhesion.work_of_adhesion < 0)),
+        **_branches("boundary", boundary, boundary.energy, theirs),
+        **_branches("front", front.states, front.energy, ours),
+        open_inside=_mean_part(inside - closed, inside),
+        closed_outside=_mean_part(closed - inside, inside),
+        barriers=int(np.sum(boundary.barriers)),
+        saddles=int(np.sum(boundary.saddles)),
+        least_released=float(np.min(boundary.released)),
+        products=float(np.mean(boundary.products)),
+        boundary_seconds=float(np.sum(boundary.seconds)),
+        front_seconds=front.seconds,
+    )
+
+
+def apparent_adhesion(force: Array, penetration: Array) -> Array:
+    """Work of adhesion of the smooth sphere that has a force at a penetration (Units: w_int).
+
+    Of the two radii of F = 3 a b / 2 - a^3 / 2 the larger one has an open edge.
+
+    Examples
+    --------
+    >>> radius = np.array([1.2, 1.7])
+    >>> penetration = jkr.equilibrium_penetration(radius, 0.8)
+    >>> apparent_adhesion(jkr.equilibrium_force(radius, 0.8), penetration).round(12).tolist()
+    [0.8, 0.8]
+    """
+    radius = [
+        float(np.max(np.real(np.roots([1.0, 0.0, -3 * b, 2 * load]))))
+        for load, b in zip(force.tolist(), penetration.tolist(), strict=True)
+    ]
+    return jkr.apparent_work_of_adhesion(radius, penetration)
+
+
+def _mean_part(excess: Array, whole: Array) -> float:
+    """Mean over states of what is positive, relative to the whole, both by their angles."""
+    return float(np.mean(np.sum(np.maximum(excess, 0), axis=1) / np.sum(whole, axis=1)))
+
+
+def _steady_states(
+    case: Case, boundary: BoundaryCycle, front: FrontCycle
+) -> tuple[Indices, Indices]:
+    """Indices of the shared states on the steady parts of both branches."""
+    theirs, ours = shared_states(boundary, front.states)
+    kept = case.loads.are_steady(boundary.penetration[theirs])
+    return theirs[kept], ours[kept]
+
+
+def _branches(name: str, states: States, energy: Array, kept: Indices) -> dict[str, float]:
+    """Works of adhesion and hysteresis of a model.
+
+    In a load step it loses the work of the force, by the trapezoidal rule, less the energy's rise.
+    """
+    works, lost = [], 0.0
+    for sign in (1, -1):
+        branch = kept[states.direction[kept] == sign]
+        force, area = states.force[branch], states.contact_area[branch]
+        works.append(float(np.mean(apparent_adhesion(force, states.penetration[branch]))))
+        work = np.diff(states.penetration[branch]) * (force[1:] + force[:-1]) / 2
+        part = float(np.sum(work - np.diff(energy[branch])))
+        lost += part / abs(float(area[-1] - area[0])) / WORK_OF_ADHESION
+    return {
+        f"{name}_approach": works[0],
+        f"{name}_retraction": works[1],
+        f"{name}_hysteresis": lost,
+    }

@@ -1,0 +1,100 @@
+"""Configurations of a validation, and the cases that they stand for."""
+
+from pathlib import Path
+
+import pytest
+
+from crackfront.data.section import ConfigurationError
+from studies.boundary_elements.cases import Loads
+from studies.boundary_elements.parameters import load_validation, validation_cases
+
+CONFIGURATIONS = Path(__file__).parents[3] / "config"
+
+
+@pytest.mark.parametrize("path", sorted(CONFIGURATIONS.glob("validation*.yaml")))
+def test_every_configuration_of_the_validation_is_valid(path):
+    assert validation_cases(load_validation(path))
+
+
+def test_cases_are_smooth_spheres_and_then_surface_after_surface(branches):
+    cases = validation_cases(load_validation(branches))
+    listed = [(case.n_point, case.elastic_energy, case.roll_off) for case in cases]
+    first, second = (48, 0.4, 0.6), (48, 0.4, 0.9)
+    assert listed == [(48, 0, 0.6), first, second, (64, 0.4, 0.6), first, second]
+    seeds = [case.seed for case in cases]
+    assert len({*seeds[:4]}) == len({*seeds[4:]}) == 1
+    assert seeds[3] != seeds[4]
+
+
+def test_a_surface_that_is_not_counted_has_the_seed_of_the_file(loops):
+    assert {case.seed for case in validation_cases(load_validation(loops))} == {5}
+
+
+def test_files_of_cases_have_names_of_what_determines_them(branches, case):
+    stems = {one.stem for one in validation_cases(load_validation(branches))}
+    assert len(stems) == 6
+    assert case.stem.startswith("n48-g0.7-e0.02-")
+
+
+def test_a_loop_begins_before_the_surfaces_attract_each_other():
+    loads = Loads(max_penetration=0.2, step=0.1, shown_penetration=0.1).loads(0.25)
+    visited = [next(loads) for _ in range(8)]
+    assert [load.value for load in visited] == pytest.approx(
+        [-0.3, -0.2, -0.1, 0, 0.1, 0.2, 0.1, 0]
+    )
+    assert [load.direction for load in visited] == [1, 1, 1, 1, 1, 1, -1, -1]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("n_point: 64", "n_point: 40", r"cases\[1\]: pixel is 0.128; an attraction of range 0.61"),
+        ("side: 5.12", "side: 2.56", r"cases\[0\]: domain of side 2.56 is too small"),
+        (
+            "short_cutoff: 0.6",
+            "short_cutoff: 0.1",
+            r"cases\[0\]: short_cutoff 0.1 is not above two",
+        ),
+        (
+            "shown_penetration: 0.3",
+            "shown_penetration: 0.4",
+            r"cases\[0\]: shown_penetration 0.4 is",
+        ),
+        (
+            "shown_penetration: 0.3",
+            "shown_penetration: 0.45",
+            r"must be below max_penetration 0.45",
+        ),
+        ("step: 0.15", "step: 0.3", r"step 0.3 is above a third of max_penetration 0.45"),
+        ("tolerance: 1.0e-4", "tolerance: 0", r"tolerance is 0.*greater than 0"),
+        ("seed: 5", "sead: 5", r"unknown key sead; did you mean seed"),
+    ],
+)
+def test_loops_that_cannot_be_run_are_refused_with_a_sentence(tmp_path, loops, old, new, sentence):
+    path = tmp_path / "wrong.yaml"
+    path.write_text(loops.read_text().replace(old, new))
+    with pytest.raises(ConfigurationError, match=sentence):
+        load_validation(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("first: 0.2", "first: 0.5", r"steady parts are first=0.5 last=0.4"),
+        ("max_penetration: 0.6", "max_penetration: 0.4", r"all below max_penetration 0.4"),
+        ("shown_penetration: 0.2", "shown_penetration: 0.4", r"0.4 is not on both branches"),
+        ("roll_off: 0.9", "roll_off: 0.3", r"cases\[1\]: roll_off 0.3 is shorter"),
+        (
+            "step: 0.1",
+            "step: 0.15",
+            r"cases\[0\]: shown_penetration 0.2 is no multiple of the step",
+        ),
+    ],
+)
+def test_branches_that_cannot_be_run_are_refused_with_a_sentence(
+    tmp_path, branches, old, new, sentence
+):
+    path = tmp_path / "wrong.yaml"
+    path.write_text(branches.read_text().replace(old, new))
+    with pytest.raises(ConfigurationError, match=sentence):
+        load_validation(path)

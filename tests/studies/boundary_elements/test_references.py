@@ -1,0 +1,91 @@
+"""The comparisons that are kept, the page that quotes them, and the table that is shipped."""
+
+from operator import attrgetter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crackfront.analysis.validity import (
+    largest_energy,
+    shipped_validity,
+    validity_sentence,
+    validity_text,
+)
+from crackfront.data.files import read_attributes
+from crackfront.data.records import read_record, read_records
+from studies.boundary_elements.averages import limit_settings, rough_settings, validity_row
+from studies.boundary_elements.differences import Differences
+from studies.boundary_elements.hysteresis import Hysteresis
+from studies.boundary_elements.parameters import load_validation, validation_cases
+from studies.boundary_elements.picture import ValidationPicture
+from studies.boundary_elements.report import validation_report
+
+ROOT = Path(__file__).parents[3]
+REFERENCES = ROOT / "docs/reference/validation"
+BOUNDARY = attrgetter("boundary_hysteresis")
+
+
+@pytest.fixture(scope="module")
+def kept():
+    path = REFERENCES / "hysteresis-strong.nc"
+    told = read_attributes(path)
+    assert told["command"] == "crackfront validate config/validation-strong.yaml --finished"
+    assert "dirty" not in told["git_commit"]
+    return read_records(path, Hysteresis, "case")
+
+
+def test_the_shipped_table_and_sentence_are_those_of_the_kept_surface(kept):
+    limits = rough_settings(limit_settings(kept))
+    assert validity_text(shipped_validity()) == validity_text(
+        [validity_row(one, 0.15) for one in limits]
+    )
+    counts = [(row.surfaces, row.fine) for row in shipped_validity()]
+    assert counts == [(24, 5), *[(12, 5)] * 3, (48, 5), *[(24, 5)] * 3]
+    for one in limits:
+        found = one.mean(BOUNDARY)
+        assert float(found.standard_error) < 0.101 * float(found.value)
+    assert largest_energy(shipped_validity(), 0.1) == 0
+    assert largest_energy(shipped_validity(), 0.25) == pytest.approx(0.1, rel=0.05)
+    assert "at worst it is 1.5 ± 0.1 times theirs" in validity_sentence()
+
+
+def test_the_documentation_has_the_extrapolated_rows_and_the_sentence(kept):
+    page = (ROOT / "docs/validation.md").read_text()
+    report = validation_report(kept, [], 0.15)
+    told = [line for line in report.splitlines() if "512 | 0 |" in line or "1024 | 0 |" in line]
+    assert len(told) == 9
+    assert "\n".join(told[1:]) in page
+    assert validity_sentence() in page
+
+
+def test_the_kept_comparison_has_the_cases_of_its_configuration_and_no_energy_rose(kept):
+    cases = validation_cases(load_validation(ROOT / "config/validation-strong.yaml"))
+    asked = {
+        (case.seed, case.n_point, case.interaction_range, case.loads.step, case.roll_off)
+        for case in cases
+        if case.elastic_energy
+    }
+    known = {
+        (row.seed, row.n_point, row.interaction_range, row.step, row.roll_off)
+        for row in kept
+        if row.asked_energy
+    }
+    assert known == asked
+    assert all(row.least_released > 0 and row.barriers == 0 for row in kept)
+
+
+def test_the_kept_loops_differ_little_and_more_with_a_crack_that_does_not_turn():
+    rows = read_records(REFERENCES / "differences-512.nc", Differences, "case")
+    found, held = (row for row in rows if row.elastic_energy > 0)
+    assert (found.n_point, found.interaction_range) == (512, 0.24)
+    assert found.force_rms < 0.02 * 1.5
+    assert 4 * found.perimeter_approach < held.perimeter_approach
+    assert found.jumps_shared >= 0.95 * found.jumps_front
+    assert held.jumps_shared < 0.7 * held.jumps_front
+    picture = read_record(REFERENCES / "picture-512.nc", ValidationPicture)
+    lowest = picture.boundary_force.min() - picture.front_force.min()
+    assert lowest == pytest.approx(found.pull_off_force)
+    apart = np.mean(np.abs(picture.boundary_radius - picture.front_radius), axis=1)
+    expected = np.array([found.perimeter_approach, found.perimeter_retraction])
+    np.testing.assert_allclose(apart / picture.short_cutoff, expected, rtol=1e-9)

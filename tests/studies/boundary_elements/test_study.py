@@ -1,0 +1,180 @@
+"""Validations by the command: what they write, tell, find again and refuse."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from crackfront.analysis.validity import validity_of, validity_sentence
+from crackfront.core import jkr
+from crackfront.data.records import read_record, read_records
+from studies.boundary_elements.averages import limit_settings
+from studies.boundary_elements.benchmarks import minimiser_row, rotated_row
+from studies.boundary_elements.commands import commands
+from studies.boundary_elements.differences import Differences
+from studies.boundary_elements.hysteresis import Hysteresis, apparent_adhesion
+from studies.boundary_elements.parameters import load_validation, validation_cases
+from studies.boundary_elements.picture import ValidationPicture, validation_figure
+from studies.boundary_elements.report import validation_report
+
+
+def run(configuration, *options):
+    output = ["--output", str(configuration.parent / "results")]
+    arguments = ["validate", str(configuration), *(output if "--output" not in options else [])]
+    return CliRunner().invoke(commands, [*arguments, *options])
+
+
+def results(configuration):
+    outcome = run(configuration)
+    assert outcome.exit_code == 0, outcome.output
+    return configuration.parent / "results"
+
+
+@pytest.fixture(scope="module")
+def loop_results(loops):
+    return results(loops)
+
+
+@pytest.fixture(scope="module")
+def branch_results(branches):
+    return results(branches)
+
+
+def test_loops_are_compared_state_by_state_with_a_crack_that_turns_and_one_that_does_not(
+    loop_results,
+):
+    rows = read_records(loop_results / "differences.nc", Differences, "case")
+    assert [(row.n_point, row.rotated, row.elastic_energy > 0) for row in rows] == [
+        (48, 1, False),
+        (48, 1, True),
+        (48, 0, True),
+        (64, 1, True),
+        (64, 0, True),
+    ]
+    assert all(0 < row.force_rms < 0.1 for row in rows if row.rotated)
+    for turning, fixed in ((rows[1], rows[2]), (rows[3], rows[4])):
+        assert 3 * turning.perimeter_all < fixed.perimeter_all < 0.5
+    found = read_records(loop_results / "hysteresis.nc", Hysteresis, "case")
+    assert [row.n_point for row in found] == [48, 48, 64]
+    text = (loop_results / "validation.md").read_text()
+    assert text.startswith(validation_report(found, rows, 0.6))
+
+
+def test_the_figure_shows_the_forces_and_the_contact(loop_results):
+    picture = read_record(loop_results / "picture.nc", ValidationPicture)
+    force, contact = validation_figure(picture).axes[:2]
+    assert len(force.get_legend().get_texts()) == 4
+    assert len(force.texts) == 5  # an arrow for every jump, and the name of the panel
+    assert (len(contact.images), len(contact.lines)) == (2, 4)
+    assert (loop_results / "validation.png").stat().st_size > 10_000
+
+
+def test_both_models_find_the_smooth_sphere_and_the_hysteresis_of_a_rough_one(branch_results):
+    smooth, *rough = read_records(branch_results / "hysteresis.nc", Hysteresis, "case")
+    assert smooth.front_approach == pytest.approx(1, abs=2e-3)
+    assert smooth.front_retraction == pytest.approx(1, abs=2e-3)
+    assert smooth.boundary_approach == pytest.approx(1, abs=0.05)
+    assert smooth.boundary_retraction == pytest.approx(1, abs=0.05)
+    assert abs(smooth.front_hysteresis) < 1e-3
+    assert smooth.open_inside + smooth.closed_outside < 0.05
+    for row in rough:
+        assert row.boundary_approach < 0.9 * smooth.boundary_approach
+        assert row.hurst < 1 or row.front_hysteresis > 0.02
+        assert row.least_released >= -1e-12
+
+
+def test_tables_figures_and_sentence_are_those_of_the_rows(branch_results):
+    rows = read_records(branch_results / "hysteresis.nc", Hysteresis, "case")
+    text = (branch_results / "validation.md").read_text()
+    assert text.startswith(validation_report(rows, [], 0.6))
+    told = validity_of((branch_results / "validity.csv").read_text())
+    limits = limit_settings(rows)
+    assert [[row.n_point for row in one.rows] for one in limits] == [[64]]
+    assert [row.ratio for row in told] == pytest.approx(
+        [float(one.hysteresis_ratio().value) for one in limits], rel=1e-4
+    )
+    assert [(row.surfaces, row.fine) for row in told] == [(2, 1)]
+    assert validity_sentence(told) in text
+    for name in ("validation", "hysteresis"):
+        assert (branch_results / f"{name}.png").stat().st_size > 5_000
+
+
+def test_finished_cases_are_compared_and_no_other_is_computed(branches, branch_results):
+    lost = min(branch_results.glob("n64-*.nc"))
+    kept = lost.read_bytes()
+    lost.unlink()
+    outcome = run(branches, "--finished")
+    lost.write_bytes(kept)
+    assert outcome.exit_code == 0, outcome.output
+    assert "approach to" not in outcome.output
+    assert len(read_records(branch_results / "hysteresis.nc", Hysteresis, "case")) == 5
+
+
+def test_finished_is_refused_where_nothing_is_finished(tmp_path, branches):
+    outcome = run(branches, "--finished", "--output", str(tmp_path))
+    assert "holds no finished case" in str(outcome.exception)
+
+
+def test_a_validation_that_is_repeated_computes_no_cycle_again(loops, loop_results):
+    outcome = run(loops)
+    assert outcome.exit_code == 0
+    assert "approach to" not in outcome.output
+
+
+@pytest.mark.slow
+def test_a_damaged_cycle_is_told_set_aside_and_computed_anew_and_no_other(loops, loop_results):
+    path = min(loop_results.glob("n48-*.nc"))
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    outcome = run(loops)
+    assert outcome.exit_code == 0
+    assert f"{path} is damaged" in outcome.output
+    assert f"computed anew, and set aside as {path.name}.damaged" in outcome.output
+    lines = outcome.output.splitlines()
+    assert len({line.split(":")[0] for line in lines if "approach to" in line}) == 1
+
+
+def test_the_cost_of_a_validation_is_told_before_it_is_computed(tmp_path, monkeypatch):
+    def computed(*_, **__):
+        raise ValueError("computed")
+
+    monkeypatch.setattr("studies.boundary_elements.study.write_validation", computed)
+    path = Path(__file__).parents[3] / "config/validation-512.yaml"
+    assert run(path, "--output", str(tmp_path)).stderr == "about 46.8 min of processor time\n"
+    [_, rough] = validation_cases(load_validation(path))
+    (tmp_path / f"{rough.stem}.nc").touch()
+    assert run(path, "--output", str(tmp_path)).stderr == "about 7.81 min of processor time\n"
+
+
+@pytest.mark.parametrize("name", ["ContactMechanics", "finufft"])
+def test_a_validation_without_its_extra_is_refused_before_it_computes(
+    monkeypatch, tmp_path, loops, name
+):
+    monkeypatch.setitem(sys.modules, name, None)
+    outcome = run(loops, "--output", str(tmp_path / "x"))
+    assert f"need {name}, which is not installed" in str(outcome.exception)
+    assert "pip install '.[bem]'" in str(outcome.exception)
+    assert not (tmp_path / "x").exists()
+
+
+def test_a_load_step_of_numpis_optimiser_ends_in_the_same_state(case):
+    cells = minimiser_row(case).split(" | ")
+    assert float(cells[-1]) < 1e-2  # apart, relative to the range
+    assert int(cells[3]) < int(cells[5])  # products
+
+
+def test_a_point_of_a_ray_costs_less_than_the_sum_over_its_modes():
+    cells = rotated_row(256, 0.05).split(" | ")
+    assert int(cells[2]) == round(np.pi * (5.12 / 0.05) ** 2 / 2)
+    assert float(cells[4]) < float(cells[5])
+
+
+def test_the_work_of_adhesion_of_a_force_is_that_of_the_open_edge():
+    radius = np.array([0.9, 1.3, 1.8])
+    for work in (0.5, 1.0, 1.5):
+        penetration = jkr.equilibrium_penetration(radius, work)
+        force = jkr.equilibrium_force(radius, work)
+        assert apparent_adhesion(force, penetration) == pytest.approx([work] * 3)
