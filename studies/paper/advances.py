@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import find_objects, label
 
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.geometry.sphere import ContactState
-
-Array = NDArray[np.float64]
+from studies.paper.figure import Array
 
 _MOST_SITES = 4096
 """Sites of a perimeter that are kept for drawing."""
@@ -63,28 +61,12 @@ def advances(before: Array, after: Array, threshold: float) -> list[Advance]:
 class Perimeters:
     """What is kept of the fronts of an approach after jump-in: an observer of its states.
 
-    A state does not depend on the load step that led there (no passing), so that every second state
-    is what twice the step would find.
-
-    Parameters
-    ----------
-    passed : float
-        Distance that all sites have travelled after jump-in, and beyond which a site has jumped.
-        (Units: reduced lateral length)
-    highest : float
-        Force up to which fronts are looked at. (Units: pi w_int R)
-    every : int
-        Load steps between the fronts in `lines`.
-    strides : sequence of int
-        Multiples of the load step over which advances are found.
-
-    Attributes
-    ----------
-    widest, extents : dict
-        For each multiple the widest advance, without sites where there was none, and the widths of
-        all.
-    states, lines, angle : list, list of (n_site,) array, (n_site,) array
-        States and radii of some fronts, at few enough angles for a drawing.
+    All sites have then travelled by more than `passed`; a site that advances by more has jumped.
+    Fronts up to the force `highest` count; `every` so many load steps one is kept in `lines`, with
+    its state in `states`, at few enough angles for a drawing. For each of `strides`, multiples of
+    the load step, `widest` has the widest advance and `extents` the widths of all. A state does not
+    depend on the load step that led there (no passing), so that every second state is what twice
+    the step would find.
     """
 
     def __init__(self, passed: float, highest: float, every: int, strides: Sequence[int]) -> None:

@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
 from crackfront.core import jkr
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
+from crackfront.plots.fronts import closed_front, draw_field
 from crackfront.plots.parts import FORCE_LABEL, PENETRATION_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.run import compile_solver
-from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.drawing import BRANCHES, Animation
+from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rough import RoughCycleParameters, patch_of, whole_cycle
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-
-    from crackfront.plots.animation import Animation
-
-Array = NDArray[np.float64]
 
 _STATE, _ANGLE, _X, _Y = "state", "angle", "x", "y"
 
@@ -40,7 +35,7 @@ class AnimatedCycle:
     status: str = variable("what ended the cycle", "1")
     elastic_energy: float = variable("energy of full conformity on the tile", ADHESION)
     end_penetration: float = variable("penetration at which contact was lost", VERTICAL)
-    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    direction: Integers = variable("+1 in approach, -1 in retraction", "1", _STATE)
     penetration: Array = variable("rigid body penetration", VERTICAL, _STATE)
     mean_radius: Array = variable("mean contact radius", LATERAL, _STATE)
     force: Array = variable("normal force", FORCE, _STATE)
@@ -54,13 +49,7 @@ class AnimatedCycle:
 
 
 def motion(parameters: RoughCycleParameters, progress: Progress) -> AnimatedCycle:
-    """A full cycle with all its fronts.
-
-    Raises
-    ------
-    ValueError
-        If the cycle does not end by losing contact.
-    """
+    """A full cycle with all its fronts."""
     simulation = parameters.simulation()
     adhesion = simulation_adhesion(simulation)
     field = simulation_field(simulation, adhesion)
@@ -76,12 +65,8 @@ def motion(parameters: RoughCycleParameters, progress: Progress) -> AnimatedCycl
         status=record.status.value,
         elastic_energy=adhesion.e_el,
         end_penetration=record.end_load,
-        direction=record.states.direction,
-        penetration=record.states.penetration,
-        mean_radius=record.states.mean_radius,
-        force=record.states.force,
-        dissipated_energy=record.dissipated_energy,
-        pull_off_energy=record.pull_off_energy,
+        **values_of(record.states, "direction", "penetration", "mean_radius", "force"),
+        **values_of(record, "dissipated_energy", "pull_off_energy"),
         angle=2 * np.pi * np.arange(record.fronts.shape[1]) / record.fronts.shape[1],
         front=record.fronts,
         x=axis,
@@ -150,9 +135,6 @@ def motion_figure(shown: AnimatedCycle) -> Drawing:
 
 def motion_animation(shown: AnimatedCycle) -> Animation:
     """The front over the field beside the loop: one frame a state, and some without contact."""
-    from crackfront.plots.animation import Animation
-    from crackfront.plots.fronts import closed_front, draw_field
-
     with house_style():
         figure = blank_figure(PAGE, 0.47 * PAGE)
         left, right = figure.subplots(1, 2)
@@ -162,8 +144,8 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
         (line,) = left.plot([], [], linewidth=1.2)
         title = left.set_title(f"{PENETRATION_LABEL} = $+0.00$")
         branches = {
-            direction: right.plot([], [], color=colour, label=label)[0]
-            for direction, colour, label in ((1, BLUE, "approach"), (-1, VERMILION, "retraction"))
+            direction: right.plot([], [], color=colour, label=name)[0]
+            for direction, name, _, colour in BRANCHES
         }
         (point,) = right.plot([], [], "o", color=BLACK, zorder=4, label="state of the front beside")
         right.legend(loc="upper left")
@@ -186,10 +168,8 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
 
 def _draw_axes(axes: Axes, shown: AnimatedCycle) -> None:
     """Axes that hold the whole loop."""
-    for values, setter, above in (
-        (shown.mean_radius, axes.set_xlim, 0.06),
-        (shown.force, axes.set_ylim, 0.2),
-    ):
+    limits = (shown.mean_radius, axes.set_xlim, 0.06), (shown.force, axes.set_ylim, 0.2)
+    for values, setter, above in limits:
         low, high = values.min(), values.max()
         setter(low - 0.06 * (high - low), high + above * (high - low))
     axes.set_xlabel(f"mean {RADIUS_LABEL}")

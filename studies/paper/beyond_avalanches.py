@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FixedLocator, LogLocator
 
 from crackfront.analysis.estimate import with_error
 from crackfront.core.adhesion import force_correlation_length
@@ -16,11 +19,12 @@ from crackfront.core.cycle.instabilities import resolved_motion, swept_clusters
 from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
-from studies.law.power_law import PowerLaw, truncated_power_law
+from studies.paper.drawing import DASHED, ON_WHITE, THEORY, label_plain_numbers, name_panels
 from studies.paper.events import (
     SIZE_EXPONENT,
     EventParameters,
     EventRecord,
+    binned_density,
     draw_cutoffs,
     draw_depths,
     draw_events,
@@ -28,7 +32,8 @@ from studies.paper.events import (
     event_record,
     logarithmic_edges,
 )
-from studies.paper.figure import Check, Figure, Progress
+from studies.paper.figure import Array, Check, Figure, Integers, Progress, values_of
+from studies.paper.power_law import PowerLaw, truncated_power_law
 from studies.paper.rough import (
     STRONG,
     WEAK,
@@ -39,13 +44,6 @@ from studies.paper.rough import (
 )
 from studies.paper.straight import Springs
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-    from matplotlib.legend import Legend
-
-Array = NDArray[np.float64]
-
 _DISORDER, _AVALANCHE = "disorder", "avalanche"
 
 
@@ -54,34 +52,16 @@ class AvalancheParameters(RetractionParameters):
 
     The closer the penetrations are to pull-off, the softer is the circle, and the larger may
     avalanches become.
-
-    Attributes
-    ----------
-    load_step : float
-        Penetrations that are visited in any case. (Units: reduced vertical length)
-    travel : float
-        Largest motion of a site in a smooth step, over the short cutoff.
-    precision : float
-        Penetration to which an avalanche is located; avalanches that are closer come out as one.
-        (Units: reduced vertical length)
-    smallest_area : float
-        Where the power law begins, over the Larkin length times the correlation length of the
-        force.
-    line : EventParameters
-        Straight fronts, and how their events are told apart.
-    springs : tuple of float
-        Their L_kappa, over the Larkin length.
-    n_tile : int
-        Tiles of each spring; each front goes over a whole period.
     """
 
-    load_step: Positive
-    travel: Positive
-    precision: Positive
+    load_step: Positive  # penetrations that are visited in any case (reduced vertical length)
+    travel: Positive  # largest motion of a site in a smooth step, over the short cutoff
+    precision: Positive  # penetration to which an avalanche is located; closer ones come out as one
+    # Where the power law begins, over the Larkin length times the correlation length of the force.
     smallest_area: Positive
-    line: EventParameters
+    line: EventParameters  # straight fronts, and how their events are told apart
     springs: Springs
-    n_tile: Count
+    n_tile: Count  # of each spring; each front goes over a whole period
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,17 +80,16 @@ class AvalancheRecord(EventRecord):
         "perimeter over the stiffness of the circle, a dG/da / w_int", LATERAL, _DISORDER
     )
     smooth_area: Array = variable("share of the area left in smooth steps", "1", _DISORDER)
-    disorder_index: NDArray[np.int64] = variable("which disorder", "1", _AVALANCHE)
-    surface: NDArray[np.int64] = variable("number of the surface", "1", _AVALANCHE)
+    disorder_index: Integers = variable("which disorder", "1", _AVALANCHE)
+    surface: Integers = variable("number of the surface", "1", _AVALANCHE)
     penetration: Array = variable("penetration of the avalanche", VERTICAL, _AVALANCHE)
     area: Array = variable("area that it sweeps", f"({LATERAL})^2", _AVALANCHE)
     extent: Array = variable("width of its largest patch, area over depth", LATERAL, _AVALANCHE)
-    n_patch: NDArray[np.int64] = variable("patches that do not touch", "1", _AVALANCHE)
+    n_patch: Integers = variable("patches that do not touch", "1", _AVALANCHE)
     energy: Array = variable("energy that it dissipates", ENERGY, _AVALANCHE)
 
 
-@dataclass(frozen=True, slots=True)
-class _Avalanche:
+class _Avalanche(NamedTuple):
     """One instability."""
 
     surface: int
@@ -137,7 +116,8 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
     line, springs = parameters.line, parameters.springs
     whole = event_record(line, springs, parameters.n_tile, parameters.seed, progress)
     surfaces: list[list[_Surface]] = []
-    for name, energy in (("strong", parameters.strong), ("weak", parameters.weak)):
+    energies = parameters.strong, parameters.weak
+    for name, energy in zip(("strong", "weak"), energies, strict=True):
         surfaces.append([])
         for realisation in range(parameters.n_surface):
             surfaces[-1].append(_surface(parameters, energy, realisation))
@@ -147,29 +127,20 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
     larkin = surface_means(surfaces, "larkin_length")
     unit = larkin * force_correlation_length("roughness", spectrum)
     events = [[event for one in kind for event in one.avalanches] for kind in surfaces]
-
-    def each(name: str) -> NDArray[Any]:
-        return np.array([getattr(event, name) for kind in events for event in kind])
-
+    columns = (np.array(column) for column in zip(*itertools.chain(*events), strict=True))
+    avalanches: dict[str, Any] = dict(zip(_Avalanche._fields, columns, strict=True))
     return AvalancheRecord(
-        **{one.name: getattr(whole, one.name) for one in fields(whole)},
-        short_cutoff=parameters.short_cutoff,
+        **values_of(whole, *(one.name for one in fields(whole))),
+        **values_of(parameters, "short_cutoff", "precision", "seed"),
         correlation_length=spectrum.correlation_length,
-        precision=parameters.precision,
-        seed=parameters.seed,
-        elastic_energy=np.array([parameters.strong, parameters.weak]),
-        rms=surface_means(surfaces, "rms"),
+        elastic_energy=np.array(energies),
         larkin_length=larkin,
         smallest_area=parameters.smallest_area * unit,
+        rms=surface_means(surfaces, "rms"),
         circle_length=surface_means(surfaces, "circle_length"),
         smooth_area=surface_means(surfaces, "smooth_area"),
         disorder_index=np.repeat([STRONG, WEAK], [len(kind) for kind in events]),
-        surface=each("surface"),
-        penetration=each("penetration"),
-        area=each("area"),
-        extent=each("extent"),
-        n_patch=each("n_patch"),
-        energy=each("energy"),
+        **avalanches,
     )
 
 
@@ -233,17 +204,12 @@ def size_law(record: AvalancheRecord, index: int) -> PowerLaw:
 
 def avalanche_checks(record: AvalancheRecord) -> tuple[Check, ...]:
     """Exponents, and the lengths between which avalanches lie."""
-    checks = [*event_checks(record)]
-    checks += [
-        check
-        for index, name in ((STRONG, "strong"), (WEAK, "weak"))
-        for check in _checks(record, index, name)
-    ]
-    smallest = [
-        float(np.quantile(record.extent[record.disorder_index == index], 0.1))
-        for index in (STRONG, WEAK)
-    ]
-    checks.append(
+    extents = [record.extent[record.disorder_index == index] for index in (STRONG, WEAK)]
+    smallest = [float(np.quantile(extent, 0.1)) for extent in extents]
+    return (
+        *event_checks(record),
+        *_checks(record, STRONG, "strong"),
+        *_checks(record, WEAK, "weak"),
         Check(
             "sphere: the smallest extent grows for weaker disorder",
             "> 1",
@@ -252,9 +218,8 @@ def avalanche_checks(record: AvalancheRecord) -> tuple[Check, ...]:
             f"tenth percentiles {smallest[STRONG]:.3g} and {smallest[WEAK]:.3g}; Larkin lengths "
             f"{record.larkin_length[STRONG]:.3g} and {record.larkin_length[WEAK]:.3g}, correlation "
             f"length {record.correlation_length:.3g}",
-        )
+        ),
     )
-    return tuple(checks)
 
 
 def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
@@ -296,8 +261,6 @@ _KINDS = ((STRONG, "strong", BLUE, "o"), (WEAK, "weak", VERMILION, "s"))
 
 def avalanche_figure(record: AvalancheRecord) -> Drawing:
     """Whole events of the line above, and below densities of the sphere."""
-    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
-
     with house_style():
         figure = blank_figure(PAGE, 0.76 * PAGE)
         grid = figure.add_gridspec(2, 1)
@@ -312,19 +275,13 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
         energies = record.energy / (record.short_cutoff**2 / np.pi)
         label = r"dissipated energy $/\,w_\mathrm{int}\lambda_\mathrm{s}^2$"
         _draw_densities(panels[2], record, energies, label)
-        for axes, letter in zip([*lines, *panels], "abcdef", strict=True):
-            axes.set_xscale("log")
-            axes.set_yscale("log")
-            axes.set_title(letter, loc="left", fontweight="bold")
+        for axes in (*lines, *panels):
+            axes.set(xscale="log", yscale="log")
+        name_panels((*lines, *panels), "abcdef")
         # Less than two decades: powers of ten alone would be too few.
-        for axis, places in (
-            (lines[1].xaxis, FixedLocator(record.spring.tolist())),
-            (lines[1].yaxis, LogLocator(subs=(1.0, 2.0, 5.0))),
-            (lines[2].yaxis, LogLocator(subs=(1.0, 2.0, 5.0))),
-        ):
-            axis.set_major_locator(places)
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(NullFormatter())
+        label_plain_numbers(lines[1].xaxis, FixedLocator(record.spring.tolist()))
+        for axes in lines[1:]:
+            label_plain_numbers(axes.yaxis, LogLocator(subs=(1.0, 2.0, 5.0)))
         # The last one is the law of the theory, which the panel names.
         handles, labels = (part[:-1] for part in lines[0].get_legend_handles_labels())
         title = "straight front on springs"
@@ -339,15 +296,13 @@ def _draw_densities(axes: Axes, record: AvalancheRecord, values: Array, what: st
     edges = logarithmic_edges(values)
     for index, name, colour, marker in _KINDS:
         chosen = values[record.disorder_index == index]
-        counts, _ = np.histogram(chosen, edges)
-        filled = counts > 0
-        density = counts / np.diff(edges) / chosen.size
+        middle, density, counts = binned_density(chosen, edges)
         disorder = rf"$w_\mathrm{{rms}} = {record.rms[index]:.2f}\,w_\mathrm{{int}}$"
         axes.errorbar(
-            np.sqrt(edges[1:] * edges[:-1])[filled],
-            density[filled],
+            middle,
+            density,
             # A bar that reached zero would have no end on a logarithmic axis.
-            yerr=0.98 * (density / np.sqrt(np.maximum(counts, 1)))[filled],
+            yerr=0.98 * (density / np.sqrt(counts)),
             linestyle="none",
             marker=marker,
             markersize=2.6,
@@ -376,14 +331,8 @@ def _draw_areas(axes: Axes, record: AvalancheRecord) -> None:
     start = record.smallest_area[STRONG] / unit
     ends = start * np.array([1.0, 40.0])
     level = 4 * float(size_law(record, STRONG).density(record.smallest_area[STRONG])) * unit
-    axes.plot(
-        ends,
-        level * (ends / start) ** -SIZE_EXPONENT,
-        color="0.35",
-        linewidth=0.7,
-        dashes=(4, 2),
-        label=rf"$\tau = {SIZE_EXPONENT:.2f}$",
-    )
+    theory = level * (ends / start) ** -SIZE_EXPONENT
+    axes.plot(ends, theory, label=rf"$\tau = {SIZE_EXPONENT:.2f}$", **THEORY)
     _legend_of(axes, "tau")
 
 
@@ -392,35 +341,19 @@ def _draw_extents(axes: Axes, record: AvalancheRecord) -> None:
     unit, label = record.short_cutoff, r"extent along the perimeter $/\lambda_\mathrm{s}$"
     _draw_densities(axes, record, record.extent / unit, label)
     for index, _, colour, _ in _KINDS:
-        axes.axvline(
-            record.larkin_length[index] / unit,
-            color=colour,
-            linewidth=0.8,
-            linestyle=(0, (1, 1.5)),
-            zorder=0,
-            label=r"Larkin length $\ell$" if index == STRONG else None,
-        )
-    axes.axvline(
-        record.correlation_length / unit,
-        color="0.5",
-        linewidth=0.7,
-        dashes=(4, 2),
-        zorder=0,
-        label=r"correlation length of $w_\mathrm{loc}$",
-    )
-    legend = _legend_of(axes, "length")
-    legend.set_frame_on(True)
-    legend.get_frame().set(facecolor="white", alpha=1.0, edgecolor="none")
+        place, first = record.larkin_length[index] / unit, index == STRONG
+        name, dots = r"Larkin length $\ell$" if first else None, (0, (1, 1.5))
+        axes.axvline(place, color=colour, linewidth=0.8, linestyle=dots, zorder=0, label=name)
+    place, label = record.correlation_length / unit, r"correlation length of $w_\mathrm{loc}$"
+    axes.axvline(place, color="0.5", zorder=0, label=label, **DASHED)
+    _legend_of(axes, "length", **ON_WHITE)
 
 
-def _legend_of(axes: Axes, word: str) -> Legend:
+def _legend_of(axes: Axes, word: str, **style: Any) -> None:
     """Legend of what bears a word in its label."""
-    lines = [
-        (handle, label)
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
-        if word in label
-    ]
-    return axes.legend(*zip(*lines, strict=True), loc="lower left")
+    entries = zip(*axes.get_legend_handles_labels(), strict=True)
+    handles, labels = zip(*(entry for entry in entries if word in entry[1]), strict=True)
+    axes.legend(handles, labels, loc="lower left", **style)
 
 
 FIGURE = Figure(

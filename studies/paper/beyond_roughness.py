@@ -7,19 +7,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FixedLocator
 from pydantic import model_validator
 from scipy.fft import rfft
+from scipy.stats import t as student
 
 from crackfront.analysis.estimate import with_error
 from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.parts import legend_entries
 from crackfront.plots.style import BLUE, GREEN, PAGE, PURPLE, VERMILION, blank_figure, house_style
-from studies.paper.figure import Check, Figure, Progress
+from studies.paper.drawing import ON_WHITE, label_plain_numbers, name_panels
+from studies.paper.figure import Array, Check, Figure, Integers, Progress
 from studies.paper.rough import (
     STRONG,
     WEAK,
@@ -28,12 +32,6 @@ from studies.paper.rough import (
     surface_means,
 )
 from studies.paper.straight import StraightParameters
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-
-Array = NDArray[np.float64]
 
 _DISORDER, _SURFACE, _MODE, _LAG = "disorder", "surface", "mode", "lag"
 
@@ -48,50 +46,31 @@ share of a tile's period over which its fronts are taken."""
 
 
 class LineParameters(StraightParameters):
-    """Straight fronts on one spring and the range of their fit.
+    """Straight fronts on one spring and the range of their fit."""
 
-    Attributes
-    ----------
-    spring : float
-        L_kappa over the Larkin length.
-    fit_from, fit_to : float
-        Wavelengths of the fit, over the Larkin length.
-    """
-
-    spring: Positive
-    fit_from: Positive
+    spring: Positive  # L_kappa over the Larkin length
+    fit_from: Positive  # wavelengths of the fit, over the Larkin length
     fit_to: Positive
 
     @model_validator(mode="after")
     def _usable(self) -> LineParameters:
-        if self.fit_from >= self.fit_to:
-            raise refusal(
-                f"fit_from is {self.fit_from:g}; it must be below fit_to, {self.fit_to:g}"
-            )
+        low, high = self.fit_from, self.fit_to
+        if low >= high:
+            raise refusal(f"fit_from is {low:g}; it must be below fit_to, {high:g}")
         return self
 
 
 class RoughnessParameters(RetractionParameters):
-    """Fronts to take and ranges to fit.
+    """Fronts to take and ranges to fit."""
 
-    Attributes
-    ----------
-    n_front : int
-        Fronts on each surface, at equal distances in penetration; of a line, in load.
-    strong_from, strong_to, weak_from, weak_to : float
-        Wavelengths of the fits, over the short cutoff.
-    strong_line, weak_line : LineParameters
-        Straight fronts, on as many tiles as the sphere has surfaces.
-    """
-
-    n_front: Count
+    n_front: Count  # on each surface, at equal distances in penetration; of a line, in load
     first_penetration: Positive
     last_penetration: Positive
-    strong_from: Positive
+    strong_from: Positive  # wavelengths of the fits, over the short cutoff
     strong_to: Positive
     weak_from: Positive
     weak_to: Positive
-    strong_line: LineParameters
+    strong_line: LineParameters  # straight fronts, on as many tiles as the sphere has surfaces
     weak_line: LineParameters
 
     @model_validator(mode="after")
@@ -123,7 +102,7 @@ class RoughnessRecord:
     )
     longest: Array = variable("longest wavelength of the fit", LATERAL, _DISORDER)
     shortest: Array = variable("shortest wavelength of the fit", LATERAL, _DISORDER)
-    mode: NDArray[np.int64] = variable("waves around the perimeter", "1", _MODE)
+    mode: Integers = variable("waves around the perimeter", "1", _MODE)
     power: Array = variable(
         "power spectral density along the front, mean of the fronts of a surface",
         f"({LATERAL})^3",
@@ -169,10 +148,9 @@ def roughness_record(parameters: RoughnessParameters, progress: Progress) -> Rou
     return RoughnessRecord(
         short_cutoff=cutoff,
         elastic_energy=np.array([*spheres, *(line.elastic_energy for line in lines)]),
-        rms=surface_means(measured, "rms"),
         larkin_length=larkin,
         radius=radius,
-        ring_stiffness=surface_means(measured, "ring_stiffness"),
+        **{name: surface_means(measured, name) for name in ("rms", "ring_stiffness")},
         longest=units * longest,
         shortest=units * shortest,
         mode=mode,
@@ -212,9 +190,8 @@ def _tile(parameters: RoughnessParameters, line: LineParameters, realisation: in
 def _surface(parameters: RoughnessParameters, energy: float, realisation: int) -> _Surface:
     """Mean power of the fronts on one surface."""
     contact = parameters.contact(energy, 1e-6, realisation)
-    loads = np.linspace(
-        parameters.first_penetration, parameters.last_penetration, parameters.n_front
-    )
+    ends = parameters.first_penetration, parameters.last_penetration
+    loads = np.linspace(*ends, parameters.n_front)
     front, taken = contact.touched(parameters.max_penetration), []
     for load in loads:
         front = contact.moved(front, float(load), -1)
@@ -236,7 +213,7 @@ def _power(fronts: Array, radius: Array | float) -> Array:
     return np.asarray(np.mean(2 * np.pi * radius * np.abs(modes) ** 2, axis=0))
 
 
-def _difference(power: Array, circle: float, mode: NDArray[np.int64], lag: Array) -> Array:
+def _difference(power: Array, circle: float, mode: Integers, lag: Array) -> Array:
     """Root mean square difference of the radius at two points of a front."""
     angle = 2 * np.pi * lag / circle
     return np.sqrt(4 * (1 - np.cos(np.outer(angle, mode))) @ (power / circle))
@@ -274,8 +251,6 @@ def fitted_roughness(record: RoughnessRecord, index: int) -> _Fit:
 
     Least squares of the logarithm, each surface by itself, all octaves of the same weight.
     """
-    from scipy.stats import t as student
-
     wavelength = 2 * np.pi * record.radius[index] / record.mode
     used = (wavelength >= record.shortest[index]) & (wavelength <= record.longest[index])
     wavevector = stiffness_wavevector(record, index)[used]
@@ -298,11 +273,6 @@ def fitted_roughness(record: RoughnessRecord, index: int) -> _Fit:
 
 def roughness_checks(record: RoughnessRecord) -> tuple[Check, ...]:
     """Exponents above and below the Larkin length."""
-    if record.radius.size != len(_EXPONENTS):
-        raise ValueError(
-            f"the data of the roughness of fronts hold {record.radius.size} kinds of fronts, not "
-            f"{len(_EXPONENTS)}; an earlier version made them, so compute them again"
-        )
     fits = [fitted_roughness(record, index) for index in range(len(_EXPONENTS))]
     strong, weak = (fits[index] for index in _SPHERE)
     claims = (
@@ -357,8 +327,6 @@ _BINS_A_DECADE = 12
 
 def roughness_figure(record: RoughnessRecord) -> Drawing:
     """Spectra with their fits, over those of perturbation theory, differences, straight fronts."""
-    from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
-
     with house_style():
         figure = blank_figure(PAGE, 0.74 * PAGE)
         panels = figure.subplots(2, 2).ravel()
@@ -366,14 +334,11 @@ def roughness_figure(record: RoughnessRecord) -> Drawing:
         _draw_compensated(panels[1], record)
         _draw_differences(panels[2], record)
         _draw_lines(panels[3], record)
-        for axes, letter in zip(panels, "abcd", strict=True):
-            axes.set_xscale("log")
-            axes.set_yscale("log")
-            axes.set_title(letter, loc="left", fontweight="bold")
+        for axes in panels:
+            axes.set(xscale="log", yscale="log")
+        name_panels(panels, "abcd")
         for axes in panels[[1, 3]]:
-            axes.yaxis.set_major_locator(FixedLocator([0.1, 0.2, 0.3, 0.5, 1.0, 2.0]))
-            axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axes.yaxis.set_minor_formatter(NullFormatter())
+            label_plain_numbers(axes.yaxis, FixedLocator([0.1, 0.2, 0.3, 0.5, 1.0, 2.0]))
         handles, labels = legend_entries(panels[0])
         figure.legend(handles, labels, loc="outside upper center", ncols=4, columnspacing=1.2)
         return figure
@@ -387,13 +352,9 @@ def _draw_spectra(axes: Axes, record: RoughnessRecord) -> None:
         label = f"{name} disorder, {disorder}"
         _draw_points(axes, record, index, cutoff**3, label=label)
         fit = fitted_roughness(record, index)
-        axes.plot(
-            fit.wavevector * cutoff / (2 * np.pi),
-            fit.power / cutoff**3,
-            color=colour,
-            linewidth=1.2,
-            label=rf"fit ({name}), $\zeta = {fit.exponent:.3f} \pm {fit.reach:.3f}$",
-        )
+        line = fit.wavevector * cutoff / (2 * np.pi), fit.power / cutoff**3
+        label = rf"fit ({name}), $\zeta = {fit.exponent:.3f} \pm {fit.reach:.3f}$"
+        axes.plot(*line, color=colour, linewidth=1.2, label=label)
     axes.set_xlabel(r"stiffness $\kappa\lambda_\mathrm{s}/2\pi$")
     axes.set_ylabel(r"spectrum of the front $C/\lambda_\mathrm{s}^3$")
 
@@ -412,7 +373,7 @@ def _draw_compensated(axes: Axes, record: RoughnessRecord) -> None:
     for index, exponent in enumerate(_EXPONENTS[:STRONG_LINE]):
         _draw_law(axes, index, ends, (ends / end) ** (1 - 2 * exponent), zorder=0)
     axes.set_ylim(0.3, 2.5)
-    axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
+    axes.legend(loc="upper left", **ON_WHITE)
     axes.set_xlabel(r"stiffness $\kappa\lambda_\mathrm{s}/2\pi$")
     axes.set_ylabel(r"$C\,\kappa^2$ (relative)")
 
@@ -429,7 +390,7 @@ def _draw_differences(axes: Axes, record: RoughnessRecord) -> None:
         _draw_law(axes, index, lag[part], law)
         place = record.larkin_length[index] / cutoff
         _draw_larkin_length(axes, index, place, r"Larkin length $\ell$")
-    axes.legend(loc="lower right", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
+    axes.legend(loc="lower right", **ON_WHITE)
     axes.set_xlabel(r"distance along the front $s/\lambda_\mathrm{s}$")
     axes.set_ylabel(r"rms difference of radii $/\lambda_\mathrm{s}$")
 
@@ -442,13 +403,9 @@ def _draw_lines(axes: Axes, record: RoughnessRecord) -> None:
         fit, larkin = fitted_roughness(record, index), float(record.larkin_length[index])
         label = rf"{name} $\ell$, $\zeta = {fit.exponent:.3f} \pm {fit.reach:.3f}$"
         _draw_points(axes, record, index, unit / larkin, 2, label, larkin)
-        axes.plot(
-            fit.wavevector * larkin / (2 * np.pi),
-            fit.power * fit.wavevector**2 * larkin / unit,
-            color=_COLOURS[index],
-            linewidth=1.2,
-        )
-    axes.axvline(1 / (2 * np.pi), color="0.35", linewidth=0.7, linestyle=(0, (1, 1.5)), zorder=0)
+        line = fit.wavevector * larkin / (2 * np.pi), fit.power * fit.wavevector**2 * larkin / unit
+        axes.plot(*line, color=_COLOURS[index], linewidth=1.2)
+    axes.axvline(1 / (2 * np.pi), color="0.35", **_AT_LENGTH)
     axes.legend(loc="lower right")
     axes.set_xlabel(r"stiffness $\kappa\ell/2\pi$")
     axes.set_ylabel(r"$C\,\kappa^2\ell$ of straight fronts (relative)")
@@ -497,16 +454,13 @@ def _draw_law(axes: Axes, index: int, abscissa: Array, ordinate: Array, zorder: 
     )
 
 
+_AT_LENGTH: dict[str, Any] = {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "zorder": 0}
+
+
 def _draw_larkin_length(axes: Axes, index: int, place: float, label: str) -> None:
     """Where the Larkin length of one disorder lies; the first line has the label of both."""
-    axes.axvline(
-        place,
-        color=_COLOURS[index],
-        linewidth=0.7,
-        linestyle=(0, (1, 1.5)),
-        zorder=0,
-        label=label if index == STRONG else None,
-    )
+    name = label if index == STRONG else None
+    axes.axvline(place, color=_COLOURS[index], label=name, **_AT_LENGTH)
 
 
 FIGURE = Figure(

@@ -7,7 +7,7 @@ import time
 from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import Any, get_args
 
 import click
 
@@ -21,9 +21,12 @@ from crackfront.cli.report import (
     refuse_unwritable,
 )
 from crackfront.cli.results import fit_of_sweep
-
-if TYPE_CHECKING:
-    from studies.paper.figure import Figure
+from crackfront.data.files import read_attributes, write_text
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.plots.style import save_figure, save_picture
+from studies.paper.drawing import save_animation
+from studies.paper.figure import FIGURES, SCALES, Figure, Result, checks_table, figure, load_figure
 
 
 @click.group()
@@ -39,35 +42,31 @@ _output = click.option(
     help="Folder of all figures.",
 )
 
-_GALLERY = (
-    "# Gallery",
-    "",
-    "Every computed figure of the paper, beside what the paper states or what must be true. `make",
-    "figures` computes all of them, `python -m studies paper gallery` writes this page. A check",
-    "agrees; or it differs from the paper as [the law of k](law.md) says, with the law's number",
-    "beside it; or it",
-    "fails, and then the difference has no explanation.",
-)
+_GALLERY = """\
+# Gallery
+
+Every computed figure of the paper, beside what the paper states or what must be true. `make
+figures` computes all of them, `python -m studies paper gallery` writes this page. A check agrees;
+or it differs from the paper as [the law of k](law.md) says, with the law's number beside it; or it
+fails, and then the difference has no explanation.
+"""
 
 
 @commands.command(
-    epilog=examples("python -m studies paper figure config/figures/main-2.yaml --scale paper")
+    "figure",
+    epilog=examples("python -m studies paper figure config/figures/main-2.yaml --scale paper"),
 )
 @click.argument("configuration", type=FILE)
 @click.option(
     "--scale",
-    type=click.Choice(["quick", "paper"]),
+    type=click.Choice(SCALES),
     default="quick",
     show_default=True,
     help="Coarser lengths, minutes on two cores; or those of the paper.",
 )
 @_output
-def figure(configuration: Path, scale: str, output: Path) -> None:
+def compute_figure(configuration: Path, scale: str, output: Path) -> None:
     """Compute the data of one figure, named as its file in config/figures."""
-    from crackfront.data.provenance import provenance
-    from crackfront.data.records import write_record
-    from studies.paper.figure import figure, load_figure
-
     started = time.perf_counter(), time.process_time()
     parameters = load_figure(configuration, scale)
     shown = figure(configuration.stem)
@@ -87,15 +86,11 @@ def figure(configuration: Path, scale: str, output: Path) -> None:
 
 
 @commands.command(
-    "draw",
-    epilog=examples("python -m studies paper draw results/figures/quick/main-3ab.nc"),
+    "draw", epilog=examples("python -m studies paper draw results/figures/quick/main-3ab.nc")
 )
 @click.argument("data", type=FILE)
 def draw_figure(data: Path) -> None:
     """Draw a figure from its data, beside them, and its animation where it has one."""
-    from crackfront.plots.animation import save_animation
-    from crackfront.plots.style import save_figure
-
     shown, record = _figure_and_record(data)
     for path in save_figure(shown.draw(record), data.with_suffix("")):
         click.echo(f"figure: {path}")
@@ -106,46 +101,35 @@ def draw_figure(data: Path) -> None:
 
 @commands.command(
     "check",
-    epilog=examples(
-        "python -m studies paper check",
-        "python -m studies paper check --json",
-    ),
+    epilog=examples("python -m studies paper check", "python -m studies paper check --json"),
 )
 @_output
 @as_json
 def check_figures(output: Path, as_json: bool) -> None:
     """Compare the data of all figures with what the paper states, in checks.md."""
-    from crackfront.data.files import write_text
-    from studies.paper.figure import FIGURES, SCALES, Result, checks_table
-
     lines: list[str] = []
     found: list[dict[str, Any]] = []
-    counts: Counter[str] = Counter()
-    paths = [(scale, output / scale / f"{name}.nc") for scale in SCALES for name in FIGURES]
-    for scale, path in paths:
-        if not path.exists():
-            continue
-        shown, record = _figure_and_record(path)
-        checks = shown.checks(record)
-        counts.update(check.result for check in checks)
-        found += [
-            {"figure": path.stem, "scale": scale, **asdict(check), "result": check.result}
-            for check in checks
-        ]
-        lines += ["", f"## {shown.title} ({scale})", "", *checks_table(checks)]
+    for scale in SCALES:
+        for path in _data_of_figures(output / scale):
+            shown, record = _figure_and_record(path)
+            checks = shown.checks(record)
+            of = {"figure": path.stem, "scale": scale}
+            found += [{**of, **asdict(check), "result": check.result} for check in checks]
+            lines += ["", f"## {shown.title} ({scale})", "", *checks_table(checks)]
     if not found:
-        raise ValueError(f"{output} has no data of figures; run python -m studies paper figure")
-    agree, foretold, fail = (counts[result] for result in get_args(Result))
-    said = (
-        f"{agree} of {len(found)} agree, {foretold} differ from the paper as the law of k says "
+        raise _no_data(output)
+    counts = Counter(one["result"] for one in found)
+    agree, predicted, fail = (counts[result] for result in get_args(Result))
+    told = (
+        f"{agree} of {len(found)} agree, {predicted} differ from the paper as the law of k says "
         f"(docs/law.md), {fail} fail"
     )
-    lines = ["# Checks of the figures", "", f"{said}.", *lines, ""]
+    lines = ["# Checks of the figures", "", f"{told}.", *lines, ""]
     write_text(output / "checks.md", "\n".join(lines), sealed=True)
     if as_json:
         echo_json(found)
         return
-    click.echo(f"checks: {output / 'checks.md'}, {said}")
+    click.echo(f"checks: {output / 'checks.md'}, {told}")
 
 
 @commands.command(epilog=examples("python -m studies paper gallery --page docs/gallery.md"))
@@ -159,46 +143,47 @@ def gallery(output: Path, page: Path) -> None:
     The pictures, for a screen, stand in `figures/` beside the page; an animation is that of the
     results.
     """
-    from crackfront.data.files import read_attributes, write_text
-    from crackfront.plots.style import save_picture
-    from studies.paper.figure import FIGURES, checks_table
-
-    parts = []
-    for name in FIGURES:
-        paths = [output / scale / f"{name}.nc" for scale in ("paper", "quick")]
-        data = next((path for path in paths if path.exists()), None)
-        if data is None:
-            continue
-        shown, record = _figure_and_record(data)
+    known = {path.stem: path for scale in SCALES for path in _data_of_figures(output / scale)}
+    if not known:
+        raise _no_data(output)
+    parts = [_GALLERY]
+    for name in filter(known.__contains__, FIGURES):
+        shown, record = _figure_and_record(known[name])
         picture = page.parent / "figures" / f"{name}.{'gif' if shown.animate else 'png'}"
         picture.parent.mkdir(parents=True, exist_ok=True)
         if shown.animate:
-            shutil.copyfile(data.with_suffix(".gif"), picture)
+            shutil.copyfile(known[name].with_suffix(".gif"), picture)
         else:
             save_picture(shown.draw(record), picture)
-        told = read_attributes(data)
+        origin = read_attributes(known[name])
         parts += [
             f"## {shown.title}",
             "",
             f"![{shown.title}](figures/{picture.name})",
             "",
-            f"Scale {told['scale']}, {float(told['cpu_seconds']):.0f} s of one core, commit "
-            f"{str(told['git_commit'])[:12]}: `{told['command']}`",
+            f"Scale {origin['scale']}, {float(origin['cpu_seconds']):.0f} s of one core, commit "
+            f"{str(origin['git_commit'])[:12]}: `{origin['command']}`",
             "",
             *checks_table(shown.checks(record)),
             "",
         ]
-    if not parts:
-        raise ValueError(f"{output} has no data of figures; run python -m studies paper figure")
-    write_text(page, "\n".join([*_GALLERY, "", *parts]))
+    write_text(page, "\n".join(parts))
     click.echo(f"gallery: {page}")
+
+
+def _data_of_figures(folder: Path) -> list[Path]:
+    """Files of a folder that hold data of figures."""
+    paths = [folder / f"{name}.nc" for name in FIGURES]
+    return [path for path in paths if path.exists()]
+
+
+def _no_data(output: Path) -> ValueError:
+    """Refusal of a folder without data of figures."""
+    return ValueError(f"{output} has no data of figures; run python -m studies paper figure")
 
 
 def _figure_and_record(path: Path) -> tuple[Figure, Any]:
     """Figure that data are of, and the data."""
-    from crackfront.data.records import read_record
-    from studies.paper.figure import FIGURES, figure
-
     if path.stem not in FIGURES:
         raise ValueError(
             f"{path} is no data of a figure; their files are named {', '.join(FIGURES)}"

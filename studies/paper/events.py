@@ -9,25 +9,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
 
 from crackfront.analysis.estimate import with_error
 from crackfront.core.cycle.instabilities import resolved_motion, swept_areas, swept_clusters
 from crackfront.core.variables import variable
 from crackfront.data.section import Positive
 from crackfront.plots.style import BLACK, COLOURS, MARKERS
-from studies.law.power_law import JointPowerLaw, cutoff_scale, joint_power_law
-from studies.paper.figure import Check, Progress, close_to
+from studies.paper.figure import Array, Check, Integers, Progress, close_to
+from studies.paper.power_law import JointPowerLaw, cutoff_scale, joint_power_law
 from studies.paper.rough import surface_means
 from studies.paper.straight import StraightParameters
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 _SPRING, _EVENT, _PATCH = "spring", "event", "patch"
 
@@ -39,25 +34,12 @@ class EventParameters(StraightParameters):
 
     The unit of their loads is what moves a front by the area of L_kappa times the correlation
     length of the force, so that about as many events lie between loads whatever the spring.
-
-    Attributes
-    ----------
-    load_step : float
-        Loads that are visited in any case, in the unit of loads.
-    travel : float
-        Largest motion of a site in a smooth step, in correlation lengths of the force.
-    precision : float
-        Load to which an event is located, in the unit of loads; events that are closer come out as
-        one.
-    smallest_area : float
-        Where the power law begins, over the Larkin length times the correlation length of the
-        force.
     """
 
-    load_step: Positive
-    travel: Positive
-    precision: Positive
-    smallest_area: Positive
+    load_step: Positive  # loads that are visited in any case, in their unit
+    travel: Positive  # of a site in a smooth step at most, in correlation lengths of the force
+    precision: Positive  # load to which an event is located; those that are closer come out as one
+    smallest_area: Positive  # where the power law begins, over Larkin length times the other
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,14 +54,14 @@ class EventRecord:
         "area that the fronts sweep, over that of the way of their load", "1", _SPRING
     )
     smooth_event_area: Array = variable("share of that left in smooth steps", "1", _SPRING)
-    event_spring: NDArray[np.int64] = variable("which spring", "1", _EVENT)
+    event_spring: Integers = variable("which spring", "1", _EVENT)
     event_area: Array = variable("area that the event sweeps", _AREA, _EVENT)
     event_extent: Array = variable(
         "its extent, the square of the mean motion over the mean square, times the period",
         _EXTENT,
         _EVENT,
     )
-    patch_spring: NDArray[np.int64] = variable("which spring", "1", _PATCH)
+    patch_spring: Integers = variable("which spring", "1", _PATCH)
     patch_area: Array = variable("area of a connected part of an event", _AREA, _PATCH)
 
 
@@ -125,8 +107,8 @@ def _events(parameters: EventParameters, spring: float, seed: int, tile: int) ->
             extents.append(area**2 / float(np.sum(each**2)) / sites)
             parts = swept_clusters(step.before, step.after, travel, geometry)
             patches += [part.area / whole for part in parts]
-    loaded = geometry.length * pulled.period / whole
-    return _Events(areas, extents, patches, sum(swept) / loaded, swept[0] / sum(swept), sites)
+    total, loaded = sum(swept), geometry.length * pulled.period / whole
+    return _Events(areas, extents, patches, total / loaded, swept[0] / total, sites)
 
 
 def event_record(
@@ -136,19 +118,7 @@ def event_record(
     seed: int,
     progress: Progress,
 ) -> EventRecord:
-    """Whole events of straight fronts over one period of each tile.
-
-    Parameters
-    ----------
-    parameters : EventParameters
-        Fronts, and how their events are told apart.
-    springs : sequence of float
-        L_kappa of the fronts, over the Larkin length.
-    n_tile, seed : int
-        Tiles of each spring, and their seed.
-    progress : callable
-        As of a figure.
-    """
+    """Whole events of straight fronts on several springs, over one period of each of the tiles."""
     fronts: list[list[_Events]] = []
     for spring in springs:
         fronts.append([_events(parameters, spring, seed, tile) for tile in range(n_tile)])
@@ -158,7 +128,7 @@ def event_record(
     def each(name: str) -> Array:
         return np.array([value for one in fronts for tile in one for value in getattr(tile, name)])
 
-    def owners(name: str) -> NDArray[np.int64]:
+    def owners(name: str) -> Integers:
         counts = [sum(len(getattr(tile, name)) for tile in one) for one in fronts]
         return np.repeat(np.arange(len(fronts)), counts)
 
@@ -194,19 +164,7 @@ def event_law(record: EventRecord) -> JointPowerLaw:
     return _joint(record, record.event_area, record.event_spring, 2)
 
 
-def patch_law(record: EventRecord) -> JointPowerLaw:
-    """Power law of the areas of the patches of events, all springs together."""
-    return _joint(record, record.patch_area, record.patch_spring, 3)
-
-
-def extent_law(record: EventRecord) -> JointPowerLaw:
-    r"""Power law of :math:`l^{1 + \zeta}`, that of the areas if extents l scale."""
-    return _joint(record, record.event_extent ** (1 + _ROUGHNESS), record.event_spring, 4)
-
-
-def _joint(
-    record: EventRecord, values: Array, springs: NDArray[np.int64], key: int
-) -> JointPowerLaw:
+def _joint(record: EventRecord, values: Array, springs: Integers, key: int) -> JointPowerLaw:
     """Power law of what was measured on all springs."""
     rng = np.random.default_rng(np.random.SeedSequence(key))
     samples = [values[springs == index] for index in range(record.spring.size)]
@@ -259,7 +217,11 @@ _N_BOOTSTRAP, _NORMAL = 200, 1.96
 
 def event_checks(record: EventRecord) -> Iterator[Check]:
     """Claims about whole events."""
-    area, extent, patch = event_law(record), extent_law(record), patch_law(record)
+    whole, growth = "whole events of a straight front: ", 1 + _ROUGHNESS
+    area = event_law(record)
+    patch = _joint(record, record.patch_area, record.patch_spring, 3)
+    # If extents scale, their power 1 + zeta has the law of the areas.
+    extent = _joint(record, record.event_extent**growth, record.event_spring, 4)
     cutoff, depth = cutoff_slope(record), depth_slope(record)
     later = event_law(replace(record, smallest_event=2 * record.smallest_event))
     decades = np.log10(area.scales / area.smallest)
@@ -269,7 +231,6 @@ def event_checks(record: EventRecord) -> Iterator[Check]:
         f"Larkin lengths; {decades.min():.1f} to {decades.max():.1f} decades up to the cut-off"
     )
     shape = f"C = {area.shoulder:.2f}, B = {area.tail:.2f}, delta = {area.steepness:.2f}"
-    whole, growth = "whole events of a straight front: ", 1 + _ROUGHNESS
     yield _exponent_check(
         whole + "exponent tau of their areas",
         area.exponent,
@@ -342,21 +303,12 @@ def draw_events(axes: Axes, record: EventRecord) -> None:
     law = event_law(record)
     for index, spring in enumerate(record.spring):
         areas = record.event_area[record.event_spring == index]
-        edges = logarithmic_edges(areas)
-        counts, _ = np.histogram(areas, edges)
-        density, middle = counts / np.diff(edges) / areas.size, np.sqrt(edges[1:] * edges[:-1])
-        colour = COLOURS[index % len(COLOURS)]
-        axes.plot(
-            middle[counts > 0],
-            density[counts > 0],
-            linestyle="none",
-            marker=MARKERS[index % len(MARKERS)],
-            markersize=2.6,
-            color=colour,
-            label=rf"$L_\kappa = {spring:g}\,\ell$, {areas.size} events",
-        )
+        middle, density, _ = binned_density(areas, logarithmic_edges(areas))
+        label = rf"$L_\kappa = {spring:g}\,\ell$, {areas.size} events"
+        axes.plot(middle, density, label=label, **_points(index))
         places = np.geomspace(law.smallest, areas.max(), 100)
         share = law.n_value[index] / areas.size
+        colour = COLOURS[index % len(COLOURS)]
         axes.plot(places, law.density(places, index) * share, color=colour, linewidth=0.9)
     ends = law.smallest * np.array([1.0, 100.0])
     level = 3 * float(law.density(law.smallest, 0)) * law.n_value[0]
@@ -395,13 +347,7 @@ def draw_depths(axes: Axes, record: EventRecord) -> None:
             for bin in np.unique(place)
             if np.sum(place == bin) >= _FEWEST_IN_A_BIN
         ]
-        axes.plot(
-            *np.transpose(means),
-            linestyle="none",
-            marker=MARKERS[index % len(MARKERS)],
-            markersize=2.6,
-            color=COLOURS[index % len(COLOURS)],
-        )
+        axes.plot(*np.transpose(means), **_points(index))
     ends = np.array([record.smallest_event ** (1 / (1 + _ROUGHNESS)), record.spring.max()])
     fit = np.exp(slope.level) * ends**slope.exponent
     axes.plot(ends, fit, color=BLACK, linewidth=0.9)
@@ -423,13 +369,20 @@ def logarithmic_edges(values: Array) -> Array:
     return np.asarray(edges)
 
 
-def _draw_theory(
-    axes: Axes,
-    abscissa: Array,
-    ordinate: Array,
-    name: str,
-    place: Literal["lower right", "upper right"],
-) -> None:
+def binned_density(values: Array, edges: Array) -> tuple[Array, Array, Integers]:
+    """Geometric middles of the bins that hold values, the density there, and counts."""
+    counts, _ = np.histogram(values, edges)
+    density, middle = counts / np.diff(edges) / values.size, np.sqrt(edges[1:] * edges[:-1])
+    return middle[counts > 0], density[counts > 0], counts[counts > 0]
+
+
+def _points(index: int) -> dict[str, Any]:
+    """Style of the points of a spring."""
+    colour, marker = COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
+    return {"linestyle": "none", "marker": marker, "markersize": 2.6, "color": colour}
+
+
+def _draw_theory(axes: Axes, abscissa: Array, ordinate: Array, name: str, place: Any) -> None:
     """Power law of the theory, named in a legend of its own."""
     dashes, name = (4, 2), f"${name}$"
     (line,) = axes.plot(abscissa, ordinate, color="0.35", linewidth=0.8, dashes=dashes, label=name)

@@ -12,16 +12,19 @@ import importlib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.figure import Figure as Drawing
+from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import with_error
 from crackfront.core.fingerprint import fingerprint
 from crackfront.data.section import ConfigurationError, Section, content_of, validated
+from studies.paper.drawing import Animation
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Drawing
-
-    from crackfront.plots.animation import Animation
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 Progress = Callable[[str], None]
 """Called with a line when a part of a computation is done."""
@@ -29,34 +32,18 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One claim and whether it holds.
+    """One claim and whether it holds."""
 
-    Attributes
-    ----------
-    claim : str
-        What the paper states, or what must be true.
-    expected : str
-        Its number, with the tolerance.
-    found : str
-        What the figure's data say.
-    passed : bool
-        Whether they agree.
-    remark : str
-        Where the difference comes from, or what the number rests on.
-    law : str
-        What the law of k says in place of the paper, where what was found agrees with it.
-    """
-
-    claim: str
-    expected: str
-    found: str
+    claim: str  # what the paper states, or what must be true
+    expected: str  # its number, with the tolerance
+    found: str  # what the data of the figure say
     passed: bool
-    remark: str = ""
-    law: str = ""
+    remark: str = ""  # where the difference comes from, or what the number rests on
+    law: str = ""  # number of the law of k, where what was found agrees with it
 
     @property
     def result(self) -> Result:
-        """One of three: a difference that the law of k foretells is none that wants a cause."""
+        """How the check ends; a difference that the law of k predicts is no failure."""
         if self.passed:
             return "agrees"
         return "differs as the law of k says" if self.law else "FAIL"
@@ -78,25 +65,7 @@ def close_to(
 ) -> Check:
     """Check that a number lies within an absolute tolerance of another.
 
-    Parameters
-    ----------
-    claim : str
-        What is compared.
-    found, expected : float
-        The numbers.
-    tolerance : float
-        Largest difference, in the same units.
-    units : str, optional
-        Their units.
-    remark : str, optional
-        What the number rests on.
-    law : tuple of float, optional
-        The number that the law of k gives, and the half of its interval.
-
-    Examples
-    --------
-    >>> close_to("pull-off", -1.5001, -1.5, 1e-3).passed
-    True
+    `law` is the number that the law of k gives, and the half of its interval.
     """
     after = f" {units}" if units else ""
     said = ""
@@ -113,13 +82,7 @@ def close_to(
 
 
 def checks_table(checks: Iterable[Check]) -> Iterator[str]:
-    """Lines of a Markdown table.
-
-    Parameters
-    ----------
-    checks : iterable of Check
-        Its rows.
-    """
+    """Lines of a Markdown table, one row a check."""
     yield "| claim | expected | found | result | remark |"
     yield "| --- | --- | --- | --- | --- |"
     for check in checks:
@@ -128,69 +91,43 @@ def checks_table(checks: Iterable[Check]) -> Iterator[str]:
             result = f"**{result}**"
         elif check.law and not check.passed:
             result = f"{result}: {check.law}"
-        yield (f"| {check.claim} | {check.expected} | {check.found} | {result} | {check.remark} |")
+        yield f"| {check.claim} | {check.expected} | {check.found} | {result} | {check.remark} |"
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One figure: what it needs and nothing else.
-
-    Attributes
-    ----------
-    title : str
-        Which figure of the paper, and what it shows.
-    parameters : type
-        Section that its configuration fills; refuses values that cannot be computed.
-    record : type
-        Dataclass of its data.
-    compute : callable
-        From the parameters, and a function for progress, to the record; where the parameters
-        name a sweep, with the fit of its results as a third argument.
-    checks : callable
-        From the record to the claims about it.
-    draw : callable
-        From the record to its drawing; matplotlib is imported there and not before.
-    animate : callable or None
-        From the record to its animation, where it has one; the drawing is then the last frame.
-    seconds : callable
-        From the parameters to the processor time that the computation is expected to take,
-        roughly; none where that is never a minute. (Units: s)
-    """
+    """One figure: what it needs and nothing else."""
 
     title: str
-    parameters: type[Section]
-    record: type[Any]
-    compute: Callable[..., Any]
+    parameters: type[Section]  # what its configuration fills; refuses what cannot be computed
+    record: type[Any]  # dataclass of its data
+    compute: Callable[..., Any]  # of parameters, progress and, if they name a sweep, its fit
     checks: Callable[[Any], tuple[Check, ...]]
     draw: Callable[[Any], Drawing]
-    animate: Callable[[Any], Animation] | None = None
+    animate: Callable[[Any], Animation] | None = None  # the drawing is its last frame
+    # Expected processor time in seconds; 0 if it is never a minute.
     seconds: Callable[[Any], float] = lambda parameters: 0.0
+
+
+def values_of(source: Any, *names: str) -> dict[str, Any]:
+    """Attributes of an object by their names."""
+    return {name: getattr(source, name) for name in names}
 
 
 _GROUPS = ("main", "si", "beyond")
 
 FIGURES = tuple(
-    sorted(
-        (
-            path.stem.replace("_", "-")
-            for path in Path(__file__).parent.glob("*_*.py")
-            if path.stem.split("_")[0] in _GROUPS
-        ),
-        key=lambda name: (_GROUPS.index(name.split("-")[0]), name),
-    )
+    path.stem.replace("_", "-")
+    for group in _GROUPS
+    for path in sorted(Path(__file__).parent.glob(f"{group}_*.py"))
 )
 """Names of all figures, those of the main text first."""
 
 
 def figure(name: str) -> Figure:
     """Figure of a name in :data:`FIGURES`."""
-    found: Figure = importlib.import_module(_module(name)).FIGURE
+    found: Figure = importlib.import_module(f"studies.paper.{name.replace('-', '_')}").FIGURE
     return found
-
-
-def _module(name: str) -> str:
-    """Module of a figure."""
-    return f"studies.paper.{name.replace('-', '_')}"
 
 
 @functools.cache
@@ -205,7 +142,7 @@ def drawing_fingerprint(name: str) -> str:
     """Twelve hexadecimal digits that change with the drawing and the animation of a figure."""
     found = figure(name)
     parts = [found.record, found.draw, *([found.animate] if found.animate else [])]
-    saved = "crackfront.plots.style.save_figure", "crackfront.plots.animation.save_animation"
+    saved = "crackfront.plots.style.save_figure", "studies.paper.drawing.save_animation"
     return fingerprint(*_full_names(*parts), *saved)
 
 
@@ -224,32 +161,15 @@ SCALES = ("quick", "paper")
 
 
 def load_figure(path: Path, scale: str) -> Section:
-    """Parameters of a figure.
+    """Parameters of a figure at a scale, from the YAML file that bears its name.
 
-    Parameters
-    ----------
-    path : Path
-        YAML file that bears the figure's name. It has the mappings `parameters` (what holds for
-        all scales), `quick` and `paper`.
-    scale : str
-        A name in :data:`SCALES`.
-
-    Returns
-    -------
-    Section
-        Parameters as the figure defines them.
-
-    Raises
-    ------
-    ConfigurationError
-        If there is no such figure, the file cannot be read, or anything in it is unknown, missing
-        or out of range; one sentence for each.
+    The file has the mappings `parameters` (what holds for all scales), `quick` and `paper`. A
+    ConfigurationError says what is unknown, missing or out of range.
     """
     if path.stem not in FIGURES:
         raise ConfigurationError(
             f"there is no figure {path.stem!r}; the names of the files are {', '.join(FIGURES)}"
         )
-    section_type = figure(path.stem).parameters
     content = content_of(path)
     sections = ("parameters", *SCALES)
     for key in content.keys() ^ set(sections):
@@ -264,22 +184,12 @@ def load_figure(path: Path, scale: str) -> Section:
                 f"{path}: {key} stands in parameters and in {section}; remove one"
             )
         given |= content[section]
-    return validated(path, given, section_type)
+    return validated(path, given, figure(path.stem).parameters)
 
 
 def settings_fingerprint(path: Path, scale: str) -> str:
-    """Twelve hexadecimal digits that change with the parameters of a figure.
-
-    So they do with the content of the files that these name.
-
-    Parameters
-    ----------
-    path, scale
-        As in :func:`load_figure`.
-    """
+    """Twelve hexadecimal digits that change with the parameters, and the files that they name."""
     parameters = load_figure(path, scale)
     files = [value for _, value in parameters if isinstance(value, Path) and value.is_file()]
-    digest = hashlib.sha256(repr(parameters).encode())
-    for file in files:
-        digest.update(file.read_bytes())
-    return digest.hexdigest()[:12]
+    content = b"".join(file.read_bytes() for file in files)
+    return hashlib.sha256(repr(parameters).encode() + content).hexdigest()[:12]

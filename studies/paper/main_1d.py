@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
 from pydantic import model_validator
 
 from crackfront.core import jkr
@@ -20,14 +20,9 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Positive, Section, refusal
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL, draw_arrow
-from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
-from studies.paper.figure import Check, Figure, Progress, close_to
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-
-Array = NDArray[np.float64]
+from crackfront.plots.style import COLUMN, VERMILION, blank_figure, house_style
+from studies.paper.drawing import BRANCHES, DOTTED, draw_jump, write_beside
+from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
 
 _STATE = "state"
 
@@ -39,19 +34,11 @@ TOLERANCE = 1e-13
 
 
 class SmoothLoopParameters(Section):
-    """What Fig. 1d shows.
+    """What Fig. 1d shows."""
 
-    Attributes
-    ----------
-    approach, retraction : float
-        Works of adhesion of the two branches. (Units: w_int)
-    max_penetration, step : float
-        Penetrations to visit. (Units: reduced vertical length)
-    """
-
-    approach: Positive
+    approach: Positive  # works of adhesion of the two branches (w_int)
     retraction: Positive
-    max_penetration: Positive
+    max_penetration: Positive  # penetrations to visit (reduced vertical length)
     step: Positive
 
     @model_validator(mode="after")
@@ -70,7 +57,7 @@ class SmoothLoop:
 
     approach: float = variable("work of adhesion in approach", ADHESION)
     retraction: float = variable("work of adhesion in retraction", ADHESION)
-    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    direction: Integers = variable("+1 in approach, -1 in retraction", "1", _STATE)
     penetration: Array = variable("rigid body penetration", VERTICAL, _STATE)
     radius: Array = variable("contact radius", LATERAL, _STATE)
     force: Array = variable("normal force", FORCE, _STATE)
@@ -95,8 +82,7 @@ def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothL
         progress(f"work of adhesion {adhesion:g}: contact radius {front[0]:.4f} at the end")
     directions, visited, radii = (np.array(column) for column in zip(*states, strict=True))
     return SmoothLoop(
-        approach=parameters.approach,
-        retraction=parameters.retraction,
+        **values_of(parameters, "approach", "retraction"),
         direction=directions,
         penetration=visited,
         radius=radii,
@@ -110,16 +96,18 @@ def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
     largest = loop.radius[~retracting].max()
     smooth = [jkr.equilibrium_radius(b, loop.approach) for b in loop.penetration[~retracting]]
     receding = [jkr.equilibrium_radius(b, loop.retraction) for b in loop.penetration[retracting]]
+    advancing = np.abs(loop.radius[~retracting] - smooth)
+    leaving = np.abs(loop.radius[retracting] - np.minimum(receding, largest))
     return (
         close_to(
             "radii in approach: the stable JKR radius, largest difference",
-            _largest(loop.radius[~retracting] - smooth),
+            float(np.max(advancing)),
             0.0,
             1e-9,
         ),
         close_to(
             "radii in retraction: the JKR radius, or that at the turn while the edge is pinned",
-            _largest(loop.radius[retracting] - np.minimum(receding, largest)),
+            float(np.max(leaving)),
             0.0,
             1e-9,
         ),
@@ -140,11 +128,6 @@ def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
     )
 
 
-def _largest(difference: Array) -> float:
-    """Largest magnitude."""
-    return float(np.max(np.abs(difference)))
-
-
 def _constant(adhesion: float, parameters: SmoothLoopParameters) -> RayField:
     """Field of a smooth sphere, large enough for the whole loop."""
     largest = jkr.equilibrium_radius(parameters.max_penetration, parameters.retraction)
@@ -161,18 +144,15 @@ def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
     with house_style():
         figure = blank_figure(COLUMN, 0.8 * COLUMN)
         axes = figure.add_subplot()
-        for direction, colour, name, short, adhesion in (
-            (1, BLUE, "approach", "appr", loop.approach),
-            (-1, VERMILION, "retraction", "retr", loop.retraction),
-        ):
+        works = (loop.approach, loop.retraction)
+        for (direction, name, short, colour), adhesion in zip(BRANCHES, works, strict=True):
             branch = loop.direction == direction
             radius, force = loop.radius[branch], loop.force[branch]
             label = rf"{name}, $w_\mathrm{{{short}}} = {adhesion:g}\,w_\mathrm{{int}}$"
             axes.plot(radius, force, color=colour, label=label)
             middle = radius.size // 2
-            draw_arrow(
-                axes, radius[middle - 1 : middle + 1], force[middle - 1 : middle + 1], colour
-            )
+            near = slice(middle - 1, middle + 1)
+            draw_arrow(axes, radius[near], force[near], colour)
             end = 0 if direction > 0 else -1
             _draw_jump(axes, direction, float(radius[end]), float(force[end]), colour)
         _draw_pull_off(axes, loop)
@@ -186,27 +166,13 @@ def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
 
 def _draw_jump(axes: Axes, direction: int, radius: float, force: float, colour: str) -> None:
     """Thin dashed arrow between no contact and the first or last state."""
-    ends = ((0.0, 0.0), (radius, force))
-    start, end = ends[::direction]
-    axes.annotate(
-        "",
-        xy=end,
-        xytext=start,
-        arrowprops={
-            "arrowstyle": "-|>",
-            "color": colour,
-            "linewidth": 0.7,
-            "linestyle": (0, (4, 2)),
-            "mutation_scale": 6,
-            "shrinkA": 0,
-            "shrinkB": 0,
-        },
-    )
-    axes.annotate(
+    start, end = ((0.0, 0.0), (radius, force))[::direction]
+    draw_jump(axes, start, end, colour, linewidth=0.7, mutation_scale=6, linestyle=(0, (4, 2)))
+    write_beside(
+        axes,
         "jump into contact" if direction > 0 else "jump out\nof contact",
         (radius / 2, force / 2),
-        xytext=(4 * direction, 4 * direction),
-        textcoords="offset points",
+        (4 * direction, 4 * direction),
         ha="left" if direction > 0 else "right",
         va="bottom" if direction > 0 else "top",
         color=colour,
@@ -217,13 +183,10 @@ def _draw_pull_off(axes: Axes, loop: SmoothLoop) -> None:
     """Lowest force of all states, the pull-off force where the force is controlled."""
     lowest = int(np.argmin(loop.force))
     radius, force = loop.radius[lowest], loop.force[lowest]
-    axes.plot([_LEFT, radius], [force, force], color="0.3", linewidth=0.6, dashes=(1.5, 1.5))
+    axes.plot([_LEFT, radius], [force, force], color="0.3", **DOTTED)
     axes.plot(radius, force, "o", color=VERMILION, markersize=3.6, zorder=5)
-    axes.annotate(
-        r"pull-off force, $-\frac{3}{2}\,\pi w_\mathrm{retr}R$",
-        (0.0, force),
-        xytext=(0, 2),
-        textcoords="offset points",
+    write_beside(
+        axes, r"pull-off force, $-\frac{3}{2}\,\pi w_\mathrm{retr}R$", (0.0, force), (0, 2)
     )
 
 

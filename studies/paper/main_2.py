@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
@@ -39,14 +41,9 @@ from crackfront.plots.style import (
     explain,
     house_style,
 )
-from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.drawing import BRANCHES, write_beside
+from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rings import INNERMOST, Rings, first_stops, folds
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-
-Array = NDArray[np.float64]
 
 _STATE, _LOOP, _CASE = "state", "loop", "case"
 
@@ -60,37 +57,17 @@ Amplitude = Annotated[float, Field(gt=0, lt=1)]
 
 
 class RingsParameters(Section):
-    """What Fig. 2 shows.
+    """What Fig. 2 shows, on rings of w_loc(a) = 1 + delta sin(2 pi a / d) in units of w_int."""
 
-    Attributes
-    ----------
-    amplitude : float
-        Amplitude delta of w_loc(a) = 1 + delta sin(2 pi a / d). (Units: w_int)
-    wavelengths : tuple of two float
-        The long and the short wavelength d. (Units: reduced lateral length)
-    max_penetration, step : float
-        Penetrations to visit. (Units: reduced vertical length)
-    samples : int
-        Samples of the field a wavelength.
-    case_amplitude : float
-        Amplitude of the cases that are compared with numbers known beforehand. (Units: w_int)
-    case_wavelengths : tuple of float
-        Their wavelengths. (Units: reduced lateral length)
-    case_window : tuple of two float
-        Penetrations between which their hysteresis is averaged. (Units: reduced vertical length)
-    case_step : float
-        Distance of these penetrations. (Units: reduced vertical length)
-    """
-
-    amplitude: Amplitude
-    wavelengths: tuple[Positive, Positive]
-    max_penetration: Positive
+    amplitude: Amplitude  # delta
+    wavelengths: tuple[Positive, Positive]  # the long and the short d (reduced lateral length)
+    max_penetration: Positive  # penetrations to visit (reduced vertical length)
     step: Positive
-    samples: Count
-    case_amplitude: Amplitude
+    samples: Count  # of the field a wavelength
+    case_amplitude: Amplitude  # of the cases that are compared with numbers known beforehand
     case_wavelengths: tuple[Positive, ...]
-    case_window: tuple[Positive, Positive]
-    case_step: Positive
+    case_window: tuple[Positive, Positive]  # penetrations between which hysteresis is averaged
+    case_step: Positive  # distance of these penetrations
 
     @model_validator(mode="after")
     def _usable(self) -> RingsParameters:
@@ -112,13 +89,13 @@ class RingLoops:
 
     amplitude: float = variable("amplitude of the work of adhesion", ADHESION)
     wavelength: Array = variable("wavelength of the rings", LATERAL, _LOOP)
-    loop: NDArray[np.int64] = variable("index of the loop", "1", _STATE)
-    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    loop: Integers = variable("index of the loop", "1", _STATE)
+    direction: Integers = variable("+1 in approach, -1 in retraction", "1", _STATE)
     penetration: Array = variable("rigid body penetration", VERTICAL, _STATE)
     radius: Array = variable("contact radius", LATERAL, _STATE)
     force: Array = variable("normal force", FORCE, _STATE)
     adhesion: Array = variable("energy release rate of the front", ADHESION, _STATE)
-    jump: NDArray[np.int64] = variable("1 where an instability led to the state", "1", _STATE)
+    jump: Integers = variable("1 where an instability led to the state", "1", _STATE)
     case_amplitude: float = variable("amplitude of the cases", ADHESION)
     case_lowest: float = variable("lowest penetration of the averages", VERTICAL)
     case_highest: float = variable("highest penetration of the averages", VERTICAL)
@@ -152,9 +129,9 @@ def ring_loops(parameters: RingsParameters, progress: Progress) -> RingLoops:
         for wavelength in parameters.case_wavelengths
     ]
     progress(f"{len(cases)} cases with an amplitude of {parameters.case_amplitude:g}")
-    means = np.array(cases)
+    case_approach, case_retraction = np.array(cases).T
     return RingLoops(
-        amplitude=parameters.amplitude,
+        **values_of(parameters, "amplitude", "case_amplitude"),
         wavelength=np.array(parameters.wavelengths),
         loop=loop.astype(np.int64),
         direction=direction.astype(np.int64),
@@ -163,12 +140,11 @@ def ring_loops(parameters: RingsParameters, progress: Progress) -> RingLoops:
         force=jkr.force(radius, penetration),
         adhesion=jkr.apparent_work_of_adhesion(radius, penetration),
         jump=jump.astype(np.int64),
-        case_amplitude=parameters.case_amplitude,
         case_lowest=parameters.case_window[0],
         case_highest=parameters.case_window[1],
         case_wavelength=np.array(parameters.case_wavelengths),
-        case_approach=means[:, 0],
-        case_retraction=means[:, 1],
+        case_approach=case_approach,
+        case_retraction=case_retraction,
     )
 
 
@@ -192,10 +168,8 @@ def _mean_adhesion(parameters: RingsParameters, rings: Rings) -> tuple[float, fl
     window = low + (high - low) * (np.arange(count) + 0.5) / count
     # From there on every front of the retraction rests on a ring that it had not reached before.
     turn = float(jkr.equilibrium_penetration(rings.outermost(high), 1 - rings.amplitude))
-    visited = [
-        *(Load(float(b), 1) for b in [*window, turn]),
-        *(Load(float(b), -1) for b in window[::-1]),
-    ]
+    visited = [Load(float(b), 1) for b in [*window, turn]]
+    visited += [Load(float(b), -1) for b in window[::-1]]
     field = _field(rings, turn, parameters.samples)
     adhesion = rings.adhesion([step.front[0] for step in _steps(field, visited)])
     return float(adhesion[:count].mean()), float(adhesion[count + 1 :].mean())
@@ -234,7 +208,7 @@ def _loop_checks(loops: RingLoops) -> Iterator[Check]:
     """Radii, pull-off, and the states A and B of every loop."""
     for index, wavelength in enumerate(loops.wavelength):
         rings, start = loops.rings(index), INNERMOST
-        for direction, name in ((1, "approach"), (-1, "retraction")):
+        for direction, name, *_ in BRANCHES:
             branch = loops.branch(index, direction)
             radius, penetration = loops.radius[branch], loops.penetration[branch]
             stops = first_stops(rings, penetration, direction, start)
@@ -266,7 +240,7 @@ def _limit_checks(loops: RingLoops) -> Iterator[Check]:
     """The short rings of the figure against JKR with the extremes of their work of adhesion."""
     index = int(np.argmin(loops.wavelength))
     wavelength = loops.wavelength[index]
-    for direction, name in ((1, "approach"), (-1, "retraction")):
+    for direction, name, *_ in BRANCHES:
         # The steady part: between the first and the last instability, whole rings.
         states = np.flatnonzero(loops.branch(index, direction))
         jumps = states[loops.jump[states] > 0]
@@ -300,9 +274,8 @@ def _limit_checks(loops: RingLoops) -> Iterator[Check]:
 def _case_checks(loops: RingLoops) -> Iterator[Check]:
     """Mean hysteresis of the cases, known beforehand or in a limit."""
     delta, low, high = loops.case_amplitude, loops.case_lowest, loops.case_highest
-    radii = [jkr.equilibrium_radius(b) for b in np.linspace(low, high, 21)]
-    stiffness = float(np.mean(_stiffness(np.array(radii))))
-    softest = float(np.min(_stiffness(np.array(radii))))
+    radii = np.array([jkr.equilibrium_radius(b) for b in np.linspace(low, high, 21)])
+    stiffness, softest = float(np.mean(_stiffness(radii))), float(np.min(_stiffness(radii)))
     for wavelength, approach, retraction in zip(
         loops.case_wavelength, loops.case_approach, loops.case_retraction, strict=True
     ):
@@ -334,7 +307,6 @@ def _stiffness(radius: Array, adhesion: float = 1.0) -> Array:
     return np.asarray(np.sqrt(6 * adhesion * radius) - adhesion / radius)
 
 
-_BRANCHES = ((1, "approach", "appr"), (-1, "retraction", "retr"))
 _COLOURS = ({1: BLUE, -1: VERMILION}, {1: SKY, -1: ORANGE})
 """Of both branches, dark for the long and light for the short rings."""
 
@@ -417,18 +389,12 @@ def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float,
     axes.plot(radius, adhesion, color="0.72", label=f"{label}, $d={loops.wavelength[index]:g}$")
     release = jkr.apparent_work_of_adhesion(radius, 0.0)
     axes.plot(radius, release, color=BLACK, linewidth=0.8, label=r"$G_\mathrm{JKR}(b=0,a)$")
-    for direction, name, short in _BRANCHES:
+    for direction, name, short, _ in BRANCHES:
         _draw_branch(axes, loops, index, direction, jkr.apparent_work_of_adhesion, name)
         level = 1 - direction * loops.amplitude
         axes.axhline(level, color="0.3", linewidth=0.6, dashes=(4, 2), zorder=1)
-        axes.annotate(
-            rf"$w_\mathrm{{{short}}}$",
-            (limits[1], level),
-            xytext=(-3, -3 * direction),
-            textcoords="offset points",
-            ha="right",
-            va="top" if direction > 0 else "bottom",
-        )
+        label, below = rf"$w_\mathrm{{{short}}}$", "top" if direction > 0 else "bottom"
+        write_beside(axes, label, (limits[1], level), (-3, -3 * direction), ha="right", va=below)
         if index == 0:
             contact = loops.radius_at_zero(0, direction)
             place = contact, float(jkr.apparent_work_of_adhesion(contact, 0.0))
@@ -444,14 +410,14 @@ def _draw_forces(axes: Axes, loops: RingLoops) -> None:
     """Force against radius of both loops between the JKR curves of the extremes."""
     radius = np.linspace(0.0, _REACH, 400)
     for index in (1, 0):
-        for direction, name, _ in _BRANCHES:
+        for direction, name, *_ in BRANCHES:
             label = rf"{name}, $d={loops.wavelength[index]:g}$"
             _draw_branch(axes, loops, index, direction, jkr.force, label)
             if index == 0:
                 contact = loops.radius_at_zero(0, direction)
                 place = contact, float(jkr.force(contact, 0.0))
                 _draw_state(axes, direction, place, (7, 3) if direction > 0 else (2, -8))
-    for direction, _, short in _BRANCHES:
+    for direction, _, short, _ in BRANCHES:
         adhesion = 1 - direction * loops.amplitude
         axes.plot(
             radius,
@@ -476,16 +442,8 @@ def _draw_state(
     """State at b = 0 of the long rings, with its letter beside it."""
     colour = _COLOURS[0][direction]
     axes.plot(*place, "o", color=colour, markersize=3, zorder=5)
-    axes.annotate(
-        "A" if direction > 0 else "B",
-        place,
-        xytext=aside,
-        textcoords="offset points",
-        ha="center",
-        va="center",
-        color=colour,
-        fontweight="bold",
-    )
+    letter, middle = "A" if direction > 0 else "B", {"ha": "center", "va": "center"}
+    write_beside(axes, letter, place, aside, color=colour, fontweight="bold", **middle)
 
 
 def _draw_branch(

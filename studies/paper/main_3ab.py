@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure as Drawing
 from pydantic import model_validator
 
 from crackfront.core import jkr
@@ -22,9 +23,11 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.outcome import Direction
 from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive, refusal
+from crackfront.plots.instabilities import ENERGY_LABEL, draw_patches, energy_shades
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
-from crackfront.plots.style import BLUE, PAGE, PURPLE, VERMILION, blank_figure, explain, house_style
-from studies.paper.figure import Check, Figure, Progress, close_to
+from crackfront.plots.style import PAGE, PURPLE, VERMILION, blank_figure, explain, house_style
+from studies.paper.drawing import BRANCHES, draw_jump, name_panels, write_beside
+from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to
 from studies.paper.rough import (
     STRONG,
     WEAK,
@@ -33,35 +36,16 @@ from studies.paper.rough import (
     flat_spectrum,
 )
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.figure import Figure as Drawing
-
-Array = NDArray[np.float64]
-
 _DISORDER, _EVENT, _ANGLE, _STATE = "disorder", "instability", "angle", "state"
 
 
 class InstabilityParameters(DisorderParameters):
-    """What Fig. 3a and b show.
+    """What Fig. 3a and b show."""
 
-    Attributes
-    ----------
-    load_step : float
-        Penetrations that are visited in any case. (Units: reduced vertical length)
-    travel : float
-        Largest motion of a site in a smooth step, over the short cutoff.
-    precision : float
-        Penetration to which an instability is located. (Units: reduced vertical length)
-    least_angles : int
-        Fewest sites of the front.
-    """
-
-    load_step: Positive
-    travel: Positive
-    precision: Positive
-    least_angles: Count
+    load_step: Positive  # penetrations that are visited in any case (reduced vertical length)
+    travel: Positive  # largest motion of a site in a smooth step, over the short cutoff
+    precision: Positive  # penetration to which an instability is located
+    least_angles: Count  # fewest sites of the front
 
     @model_validator(mode="after")
     def _ordered(self) -> InstabilityParameters:
@@ -87,13 +71,13 @@ class InstabilityRecord:
     work: Array = variable("work of the load in retraction", ENERGY, _DISORDER)
     energy_change: Array = variable("change of energy in retraction", ENERGY, _DISORDER)
     smooth_energy: Array = variable("energy lost in the smooth steps", ENERGY, _DISORDER)
-    disorder_index: NDArray[np.int64] = variable("which disorder", "1", _EVENT)
+    disorder_index: Integers = variable("which disorder", "1", _EVENT)
     penetration: Array = variable("penetration of the instability", VERTICAL, _EVENT)
     energy: Array = variable("energy that the instability dissipates", ENERGY, _EVENT)
     extent: Array = variable("width of its largest patch", LATERAL, _EVENT)
     before: Array = variable("front before the instability", LATERAL, _EVENT, _ANGLE)
     after: Array = variable("front after the instability", LATERAL, _EVENT, _ANGLE)
-    state_direction: NDArray[np.int64] = variable("+1 approach, -1 retraction", "1", _STATE)
+    state_direction: Integers = variable("+1 approach, -1 retraction", "1", _STATE)
     state_penetration: Array = variable("penetration of a state", VERTICAL, _STATE)
     state_radius: Array = variable("mean radius of a state", LATERAL, _STATE)
     state_force: Array = variable("normal force of a state", FORCE, _STATE)
@@ -114,7 +98,8 @@ class _Branch:
     @property
     def smooth_energy(self) -> float:
         """Energy lost in the other steps, each taken at fixed penetration."""
-        field, smooth = self.contact.field, (step for step in self.steps if not step.unstable)
+        smooth = [step for step in self.steps if not step.unstable]
+        field = self.contact.field
         return float(
             np.sum([dissipated_energy(step.before, step.after, step.end, field) for step in smooth])
         )
@@ -134,23 +119,15 @@ class _Branch:
 
     @property
     def energy_change(self) -> float:
-        """By how much the energy of the contact changed, of its first and last front alone."""
+        """Change of the energy of the contact, from its first and last front alone."""
         first, last = self.steps[0], self.steps[-1]
-        held = jkr.stored_energy(first.before, last.end) - jkr.stored_energy(
-            first.before, first.start
-        )
+        start, end = (jkr.stored_energy(first.before, one) for one in (first.start, last.end))
         fall = dissipated_energy(first.before, last.after, last.end, self.contact.field)
-        return float(np.mean(held)) - fall
+        return float(np.mean(end - start)) - fall
 
 
 def instability_record(parameters: InstabilityParameters, progress: Progress) -> InstabilityRecord:
-    """Retraction of both surfaces until contact is lost, and the approach of the stronger one.
-
-    Raises
-    ------
-    ValueError
-        If the two surfaces need different numbers of sites.
-    """
+    """Retraction of both surfaces until contact is lost, and the approach of the stronger one."""
     contacts = _contacts(parameters)
     approach = _branch(parameters, contacts[STRONG], 1)
     progress(f"approach: {len(approach.jumps)} instabilities")
@@ -173,15 +150,13 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
         elastic_energy=np.array([parameters.strong, parameters.weak]),
         rms=np.array([contact.w_rms for contact in contacts]),
         shortest=np.array([shortest_instability(correlation, one.w_rms) for one in contacts]),
-        work=np.array([branch.work for branch in retractions]),
-        energy_change=np.array([branch.energy_change for branch in retractions]),
-        smooth_energy=np.array([branch.smooth_energy for branch in retractions]),
+        **{
+            name: np.array([getattr(branch, name) for branch in retractions])
+            for name in ("work", "energy_change", "smooth_energy")
+        },
         disorder_index=np.repeat([STRONG, WEAK], [one.penetration.size for one in found]),
-        penetration=both("penetration"),
         energy=both("dissipated_energy"),
-        extent=both("extent"),
-        before=both("before"),
-        after=both("after"),
+        **{name: both(name) for name in ("penetration", "extent", "before", "after")},
         state_direction=np.repeat([1, -1], [one.shape[1] for one in states]),
         state_penetration=penetration,
         state_radius=radius,
@@ -303,21 +278,9 @@ _FINER = 4
 _GAP = 0.05
 """Distance of the two quarters from the middle between them."""
 
-_ARROW = {
-    "arrowstyle": "-|>",
-    "color": PURPLE,
-    "linewidth": 0.9,
-    "mutation_scale": 7,
-    "shrinkA": 0,
-    "shrinkB": 0,
-}
-"""Of a jump in or out of contact."""
-
 
 def instability_figure(record: InstabilityRecord) -> Drawing:
     """Patches of both retractions, and force against radius of the cycle."""
-    from crackfront.plots.instabilities import ENERGY_LABEL, energy_shades
-
     with house_style():
         figure = blank_figure(PAGE, 0.45 * PAGE)
         left, right = figure.subplots(1, 2, width_ratios=(1.6, 1))
@@ -326,16 +289,11 @@ def instability_figure(record: InstabilityRecord) -> Drawing:
             _draw_quarter(left, record, index, shades)
             _draw_shortest(left, record, index)
         _finish_quarters(left, record)
-        bar = figure.colorbar(
-            shades,
-            cax=left.inset_axes((0.42, 0.155, 0.5, 0.028)),
-            orientation="horizontal",
-            extend="min",
-        )
+        place = left.inset_axes((0.42, 0.155, 0.5, 0.028))
+        bar = figure.colorbar(shades, cax=place, orientation="horizontal", extend="min")
         bar.set_label(ENERGY_LABEL, labelpad=1)
         _draw_cycle(right, record)
-        left.set_title("a", loc="left", fontweight="bold")
-        right.set_title("b", loc="left", fontweight="bold")
+        name_panels((left, right), "ab")
         explain(
             figure,
             "a: areas swept by single instabilities, outlined by the fronts before and after; "
@@ -349,13 +307,10 @@ def _draw_quarter(
     axes: Axes, record: InstabilityRecord, index: int, shades: ScalarMappable
 ) -> None:
     """Patches of one disorder on its quarter of the contact, outlined by the pinned fronts."""
-    from crackfront.plots.instabilities import draw_patches
-
     chosen, apex = record.disorder_index == index, _GAP if index == WEAK else -_GAP
     fronts = [_quarter(values[chosen], index) for values in (record.before, record.after)]
-    angle = np.pi / 2 * np.linspace(0, 1, fronts[0].shape[1]) + (
-        np.pi / 2 if index == STRONG else 0
-    )
+    first = np.pi / 2 if index == STRONG else 0
+    angle = np.pi / 2 * np.linspace(0, 1, fronts[0].shape[1]) + first
     angle = np.broadcast_to(angle, fronts[0].shape)
     draw_patches(axes, angle, fronts, record.energy[chosen], record.travel, shades, apex)
 
@@ -382,14 +337,8 @@ def _draw_shortest(axes: Axes, record: InstabilityRecord, index: int) -> None:
         linewidth=2.5,
         solid_capstyle="butt",
     )
-    axes.annotate(
-        r"$\ell_0$",
-        (side * _GAP + radius * np.cos(middle), radius * np.sin(middle)),
-        xytext=(6 * side, 4),
-        textcoords="offset points",
-        ha="center",
-        color=VERMILION,
-    )
+    place = side * _GAP + radius * np.cos(middle), radius * np.sin(middle)
+    write_beside(axes, r"$\ell_0$", place, (6 * side, 4), ha="center", color=VERMILION)
 
 
 def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
@@ -400,14 +349,13 @@ def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
     axes.set_aspect("equal")
     axes.set_axis_off()
     for index, name, side in ((STRONG, "strong", -1), (WEAK, "weak", 1)):
-        axes.annotate(
+        text = (
             f"{name} disorder\n"
             rf"$w_\mathrm{{rms}} = {record.rms[index]:.2f}\,w_\mathrm{{int}}$" + "\n"
-            rf"shortest jump $\ell_0 = {record.shortest[index]:.3f}$",
-            (side * reach, 1.28 * reach),
-            ha="left" if side < 0 else "right",
-            va="top",
+            rf"shortest jump $\ell_0 = {record.shortest[index]:.3f}$"
         )
+        place = side * reach, 1.28 * reach
+        axes.annotate(text, place, ha="left" if side < 0 else "right", va="top")
     axes.plot(
         [-reach, 0.5 - reach], [-0.12, -0.12], color="black", linewidth=1.2, solid_capstyle="butt"
     )
@@ -416,24 +364,21 @@ def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
 
 def _draw_cycle(axes: Axes, record: InstabilityRecord) -> None:
     """Force against radius of the stronger disorder."""
-    for direction, colour, name in ((1, BLUE, "approach"), (-1, VERMILION, "retraction")):
+    for direction, name, _, colour in BRANCHES:
         branch = record.state_direction == direction
         radius, force = record.state_radius[branch], record.state_force[branch]
         axes.plot(radius, force, color=colour, linewidth=0.8, label=name)
         end = 0 if direction > 0 else -1
         start, stop = ((0.0, 0.0), (radius[end], force[end]))[::direction]
-        axes.annotate("", xy=stop, xytext=start, arrowprops=_ARROW)
+        draw_jump(axes, start, stop, PURPLE, linewidth=0.9, mutation_scale=7)
     axes.plot([], [], color=PURPLE, linewidth=0.9, label="jumps in and out")
     radius = np.linspace(0.0, 1.6, 200)
-    axes.plot(
-        radius, jkr.force(radius, 0.0), color="black", linewidth=0.7, label="$b = 0$", zorder=1
-    )
+    force = jkr.force(radius, 0.0)
+    axes.plot(radius, force, color="black", linewidth=0.7, label="$b = 0$", zorder=1)
     for letter, place, aside in zip("AB", _radii_at_zero(record), ((-9, -7), (4, 1)), strict=True):
-        force = float(jkr.force(place, 0.0))
-        axes.plot(place, force, "o", color="black", markersize=2.8, zorder=5)
-        axes.annotate(
-            letter, (place, force), xytext=aside, textcoords="offset points", fontweight="bold"
-        )
+        state = place, float(jkr.force(place, 0.0))
+        axes.plot(*state, "o", color="black", markersize=2.8, zorder=5)
+        write_beside(axes, letter, state, aside, fontweight="bold")
     axes.set_xlim(0.0, 1.08 * record.state_radius.max())
     axes.set_ylim(1.25 * record.state_force.min(), 0.1)
     axes.legend(loc="lower left")

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 from pydantic import Field
 
@@ -22,11 +24,14 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Positive
+from crackfront.plots.fronts import label_plane
+from crackfront.plots.loop import draw_loop
 from crackfront.plots.parts import ADHESION_LABEL, field_colours
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import stated_error
-from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.drawing import name_panels
+from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rough import (
     ONE_DIGIT,
     RoughCycleParameters,
@@ -36,12 +41,6 @@ from studies.paper.rough import (
     rough_spectrum,
     whole_cycle,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-
-Array = NDArray[np.float64]
 
 _STATE, _ANGLE, _FRONT, _X, _Y = "state", "angle", "front", "x", "y"
 
@@ -56,21 +55,11 @@ _PATCH_POINTS = 600
 
 
 class PinnedLoopParameters(RoughCycleParameters):
-    """What Fig. 3c and 3d show.
+    """What Fig. 3c and 3d show."""
 
-    Attributes
-    ----------
-    roll_off : float
-        Roll-off wavelength of the spectrum. (Units: reduced lateral length)
-    hurst : float
-        Its Hurst exponent.
-    patch_side : float
-        Side of the part of the field that is shown. (Units: reduced lateral length)
-    """
-
-    roll_off: Positive
+    roll_off: Positive  # of the spectrum (reduced lateral length)
     hurst: Annotated[float, Field(gt=0, le=1)]
-    patch_side: Positive
+    patch_side: Positive  # of the part of the field that is shown (reduced lateral length)
 
     @property
     def spectrum(self) -> SelfAffineSpectrum:
@@ -87,7 +76,7 @@ class PinnedLoop:
     roll_off: float = variable("roll-off wavelength lambda_r", LATERAL)
     hurst: float = variable("Hurst exponent", "1")
     elastic_energy: float = variable("energy of full conformity on the tile", ADHESION)
-    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    direction: Integers = variable("+1 in approach, -1 in retraction", "1", _STATE)
     penetration: Array = variable("rigid body penetration", VERTICAL, _STATE)
     mean_radius: Array = variable("mean contact radius", LATERAL, _STATE)
     force: Array = variable("normal force", FORCE, _STATE)
@@ -107,13 +96,7 @@ class PinnedLoop:
 
 
 def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedLoop:
-    """One full cycle of a finely rough sphere.
-
-    Raises
-    ------
-    ValueError
-        If the cycle ends before both fronts at b = 0 were found, or has no steady branches.
-    """
+    """One full cycle of a finely rough sphere, with both fronts at b = 0."""
     simulation = parameters.simulation()
     adhesion = simulation_adhesion(simulation)
     progress(f"surface: e_el {adhesion.e_el:.4f}, w_rms {adhesion.w_rms:.4f} w_int")
@@ -139,20 +122,14 @@ def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedL
     x = across + np.mean([front[0, 0], front[1, 0]])
     return PinnedLoop(
         status=record.status.value,
-        short_cutoff=parameters.short_cutoff,
-        roll_off=parameters.roll_off,
-        hurst=parameters.hurst,
+        **values_of(parameters, "short_cutoff", "roll_off", "hurst"),
         elastic_energy=adhesion.e_el,
-        direction=record.states.direction,
-        penetration=record.states.penetration,
-        mean_radius=record.states.mean_radius,
-        force=record.states.force,
+        **values_of(record.states, "direction", "penetration", "mean_radius", "force"),
         approach=steady.w_appr,
         retraction=steady.w_retr,
         approach_error=math.hypot(steady.w_appr_error, numerical[0]),
         retraction_error=math.hypot(steady.w_retr_error, numerical[1]),
-        lowest_radius=steady.lowest_radius,
-        highest_radius=steady.highest_radius,
+        **values_of(steady, "lowest_radius", "highest_radius"),
         angle=2 * np.pi * np.arange(front.shape[1]) / front.shape[1],
         front=front,
         front_adhesion=np.stack([front_adhesion(line, field) for line in front]) / WORK_OF_ADHESION,
@@ -172,14 +149,12 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
     """Works of adhesion of both branches (main Fig. 3c)."""
     energy = loop.elastic_energy
     factor = (loop.retraction - loop.approach) / (2 * energy)
-    factor_error = math.hypot(loop.approach_error, loop.retraction_error) / (2 * energy)
-    spread = 3 * math.hypot(loop.approach_error, loop.retraction_error) / 2
+    error = math.hypot(loop.approach_error, loop.retraction_error)
     spectrum = SelfAffineSpectrum(loop.short_cutoff, loop.roll_off, loop.hurst)
-    law = sphere_factors(
-        "roughness", spectrum, energy, (loop.lowest_radius + loop.highest_radius) / 2
-    )
+    radius = (loop.lowest_radius + loop.highest_radius) / 2
+    law = sphere_factors("roughness", spectrum, energy, radius)
     numbers = (
-        f"k of this loop is {with_error(factor, factor_error)}, by the law at its size "
+        f"k of this loop is {with_error(factor, error / (2 * energy))}, by the law at its size "
         f"{law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f}); tolerance: "
         f"what one digit of k leaves, {ONE_DIGIT:g} e_el, with {energy:.4f} w_int on the tile"
     )
@@ -195,10 +170,10 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
                 remark=numbers,
                 law=(
                     1 - energy + side * branch.factor.value * energy,
-                    REACH * math.hypot(branch.factor.standard_error * energy, error),
+                    REACH * math.hypot(branch.factor.standard_error * energy, left),
                 ),
             )
-            for name, sign, side, found, error, branch in (
+            for name, sign, side, found, left, branch in (
                 ("w_appr", "-", -1, loop.approach, loop.approach_error, law.approach),
                 ("w_retr", "+", 1, loop.retraction, loop.retraction_error, law.retraction),
             )
@@ -207,7 +182,7 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
             "the branches lie symmetrically about w_int - e_el",
             (loop.approach + loop.retraction) / 2,
             1 - energy,
-            spread,
+            3 * error / 2,
             units=ADHESION,
             remark="tolerance: three standard errors, of the states and of the numerics",
         ),
@@ -254,24 +229,19 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
 
 def pinned_loop_figure(loop: PinnedLoop) -> Drawing:
     """The loop beside the fronts of both branches at b = 0."""
-    from crackfront.plots.loop import draw_loop
-
     with house_style():
         figure = blank_figure(PAGE, 0.46 * PAGE)
-        left, right = figure.subplots(1, 2, width_ratios=[1, 1])
+        left, right = figure.subplots(1, 2)
         works, window = (loop.approach, loop.retraction), (loop.lowest_radius, loop.highest_radius)
         draw_loop(left, loop, works, window, elastic_energy=loop.elastic_energy)
         _draw_fronts(right, loop)
-        for axes, letter in ((left, "c"), (right, "d")):
-            axes.set_title(letter, loc="left", fontweight="bold")
+        name_panels((left, right), "cd")
         explain(figure, "arrows: the direction of motion; d: the fronts at b = 0")
         return figure
 
 
 def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
     """The part of the fronts that crosses the patch of the field."""
-    from crackfront.plots.fronts import label_plane
-
     mean, reach = 1 - loop.elastic_energy, 4 * np.sqrt(loop.elastic_energy)
     image = axes.imshow(
         loop.patch.T,
@@ -294,14 +264,8 @@ def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
     ):
         radius = np.roll(loop.front[line], half)
         near = np.abs(angle) < 2 * loop.y[-1] / loop.x[0]
-        axes.plot(
-            (radius * np.cos(angle))[near],
-            (radius * np.sin(angle))[near],
-            color=colour,
-            linestyle=style,
-            linewidth=1.0,
-            label=label,
-        )
+        x, y = (radius * np.cos(angle))[near], (radius * np.sin(angle))[near]
+        axes.plot(x, y, color=colour, linestyle=style, linewidth=1.0, label=label)
     axes.set_xlim(loop.x[0], loop.x[-1])
     axes.set_ylim(loop.y[0], loop.y[-1])
     label_plane(axes)

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from scipy.fft import fft2, fftfreq
@@ -21,13 +24,9 @@ from crackfront.core.variables import ADHESION, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.plots.parts import HEIGHT_LABEL, LENGTH_LABEL, label_panel
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain, house_style
-from studies.paper.figure import Check, Figure, Progress, close_to
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-
-Array = NDArray[np.float64]
+from studies.paper.drawing import DOTTED, write_beside
+from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to
+from studies.paper.rough import rough_spectrum
 
 _X, _Y, _BAND, _PLACE = "x", "y", "band", "coordinate"
 
@@ -39,40 +38,20 @@ _FEWEST_MODES = 100
 
 
 class MappingParameters(Section):
-    """What Fig. 4 shows.
+    """What Fig. 4 shows."""
 
-    Attributes
-    ----------
-    seed : int
-        Seed of the surface.
-    short_cutoff, roll_off, hurst : float
-        Spectrum of the heights. (Units: reduced lateral length, the last 1)
-    elastic_energy : float
-        Energy of full conformity. (Units: w_int)
-    side : float
-        Side of the periodic tile. (Units: reduced lateral length)
-    patch : float
-        Side of the part that is shown. (Units: reduced lateral length)
-    n_point : int
-        Points along a side of the tile.
-    """
-
-    seed: Seed
-    short_cutoff: Positive
+    seed: Seed  # of the surface
+    short_cutoff: Positive  # spectrum of the heights (reduced lateral length, the last 1)
     roll_off: Positive
     hurst: Annotated[float, Field(gt=0, le=1)]
-    elastic_energy: Energy
-    side: Positive
-    patch: Positive
-    n_point: Count
+    elastic_energy: Energy  # of full conformity (w_int)
+    side: Positive  # of the periodic tile (reduced lateral length)
+    patch: Positive  # side of the part that is shown
+    n_point: Count  # points along a side of the tile
 
     @model_validator(mode="after")
     def _usable(self) -> MappingParameters:
-        if self.roll_off < self.short_cutoff:
-            raise refusal(
-                f"roll_off {self.roll_off:g} is shorter than short_cutoff {self.short_cutoff:g}; "
-                "lower the cutoff or raise the roll-off"
-            )
+        _ = self.spectrum  # refuses a roll-off below the cutoff
         if not 4 * self.short_cutoff <= self.patch <= self.side:
             raise refusal(
                 f"patch is {self.patch:g}; it must have at least four short cutoffs "
@@ -88,7 +67,7 @@ class MappingParameters(Section):
     @property
     def spectrum(self) -> SelfAffineSpectrum:
         """Spectrum of the heights, in reduced units."""
-        shape = SelfAffineSpectrum(self.short_cutoff, self.roll_off, self.hurst)
+        shape = rough_spectrum(self.short_cutoff, self.roll_off, self.hurst)
         return shape.with_elastic_energy(self.elastic_energy)
 
 
@@ -99,8 +78,8 @@ class Mapping:
     position: Array = variable("distance from a corner of the patch", LATERAL, _X)
     heights: Array = variable("height, positive at peaks", VERTICAL, _X, _Y)
     adhesion: Array = variable("local work of adhesion", ADHESION, _X, _Y)
-    peak: NDArray[np.int64] = variable("indices of the highest point shown", "1", _PLACE)
-    valley: NDArray[np.int64] = variable("indices of the lowest point shown", "1", _PLACE)
+    peak: Integers = variable("indices of the highest point shown", "1", _PLACE)
+    valley: Integers = variable("indices of the lowest point shown", "1", _PLACE)
     asked_energy: float = variable("energy of full conformity of the spectrum", ADHESION)
     mode_energy: float = variable("expected energy of the modes of the tile", ADHESION)
     energy_error: float = variable("standard deviation of the energy of a tile", ADHESION)
@@ -110,7 +89,7 @@ class Mapping:
     peak_mean: float = variable("mean work of adhesion at all maxima of the heights", ADHESION)
     valley_mean: float = variable("mean work of adhesion at all minima of the heights", ADHESION)
     band_wavelength: Array = variable("middle of a band of wavelengths", LATERAL, _BAND)
-    band_modes: NDArray[np.int64] = variable("modes of the band", "1", _BAND)
+    band_modes: Integers = variable("modes of the band", "1", _BAND)
     band_correlation: Array = variable(
         "correlation of the heights' half-derivative and the work of adhesion in the band",
         "1",
@@ -131,7 +110,7 @@ def mapping(parameters: MappingParameters, progress: Progress) -> Mapping:
     # From a mean square half-derivative to an energy of full conformity.
     stiffness = spectrum.elastic_energy / spectrum.mean_square(0.5)
     expected, deviation = tile_mean_square(spectrum, parameters.side, 0.5)
-    wavelength, modes, correlation = _band_correlations(heights, tile, spectrum)
+    bands = _band_correlations(heights, tile, spectrum)
     return Mapping(
         position=np.asarray(pixel * np.arange(len(patch)), dtype=float),
         heights=patch,
@@ -146,16 +125,14 @@ def mapping(parameters: MappingParameters, progress: Progress) -> Mapping:
         mean=float(adhesion.mean()),
         peak_mean=float(adhesion[_maxima(heights)].mean()),
         valley_mean=float(adhesion[_maxima(-heights)].mean()),
-        band_wavelength=wavelength,
-        band_modes=modes,
-        band_correlation=correlation,
+        band_wavelength=bands[0],
+        band_modes=bands[1].astype(np.int64),
+        band_correlation=bands[2],
     )
 
 
-def _band_correlations(
-    heights: Array, tile: AdhesionMap, spectrum: SelfAffineSpectrum
-) -> tuple[Array, NDArray[np.int64], Array]:
-    """Middle wavelength, modes and correlation of the octaves below the short cutoff's."""
+def _band_correlations(heights: Array, tile: AdhesionMap, spectrum: SelfAffineSpectrum) -> Array:
+    """Middle wavelength, modes and correlation of the octaves above the short cutoff, in rows."""
     n_point = len(heights)
     along = 2 * np.pi * fftfreq(n_point, tile.pixel)
     wavevector = np.hypot(along[:, None], along)
@@ -169,11 +146,9 @@ def _band_correlations(
         band = (wavevector > low) & (wavevector <= high * (1 + 1e-12))
         shared = np.sum((one[band] * np.conj(other[band])).real)
         norms = np.sum(np.abs(one[band]) ** 2) * np.sum(np.abs(other[band]) ** 2)
-        rows.append(
-            (2 * np.pi / math.sqrt(low * high), np.count_nonzero(band), shared / norms**0.5)
-        )
-    middle, modes, correlation = np.array(rows).T
-    return middle, modes.astype(np.int64), correlation
+        middle = 2 * np.pi / math.sqrt(low * high)
+        rows.append((middle, np.count_nonzero(band), shared / norms**0.5))
+    return np.array(rows).T
 
 
 def _maxima(heights: Array) -> NDArray[np.bool_]:
@@ -181,7 +156,7 @@ def _maxima(heights: Array) -> NDArray[np.bool_]:
     return np.asarray(heights == maximum_filter(heights, size=3, mode="wrap"))
 
 
-def _highest(patch: Array) -> NDArray[np.int64]:
+def _highest(patch: Array) -> Integers:
     """Indices of the highest point away from the rim, where a profile along x has room."""
     margins = len(patch) // 5, len(patch) // 20
     inner = patch[tuple(slice(margin, len(patch) - margin) for margin in margins)]
@@ -272,30 +247,18 @@ def mapping_figure(record: Mapping) -> Drawing:
 
 def _draw_map(axes: Axes, record: Mapping, values: Array, colours: str, label: str) -> None:
     """Map with the places of the two profiles."""
-    from matplotlib.ticker import MaxNLocator
-
     side = float(record.position[-1])
+    whole = (0, side, 0, side)
     image = axes.imshow(
-        values.T,
-        extent=(0, side, 0, side),
-        origin="lower",
-        cmap=colours,
-        interpolation="bilinear",
+        values.T, cmap=colours, interpolation="bilinear", extent=whole, origin="lower"
     )
     reach = _reach(record)
     for place, marker, _ in _PLACES:
         x, y = record.position[getattr(record, place)]
         axes.plot([x - reach, x + reach], [y, y], color="white", linewidth=0.8)
         axes.plot(x, y, marker, color="white", markeredgecolor="black", markersize=5)
-        axes.annotate(
-            place,
-            (x, y),
-            xytext=(0, 6),
-            textcoords="offset points",
-            ha="center",
-            color="black",
-            bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0, "alpha": 0.8},
-        )
+        box = {"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0, "alpha": 0.8}
+        write_beside(axes, place, (x, y), (0, 6), ha="center", color="black", bbox=box)
     axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(4))
@@ -305,8 +268,6 @@ def _draw_map(axes: Axes, record: Mapping, values: Array, colours: str, label: s
 
 def _draw_profile(upper: Axes, lower: Axes, record: Mapping, place: str, colour: str) -> None:
     """Heights and work of adhesion along x through a peak or a valley."""
-    from matplotlib.ticker import MaxNLocator
-
     index = getattr(record, place)
     distance = record.position - record.position[index[0]]
     heights, adhesion = record.heights[:, index[1]], record.adhesion[:, index[1]]
@@ -315,20 +276,14 @@ def _draw_profile(upper: Axes, lower: Axes, record: Mapping, place: str, colour:
     lower.plot(distance, adhesion, color=colour)
     lower.axhline(record.mean, color="0.2", linewidth=0.6, dashes=(4, 2), zorder=1)
     for axes in (upper, lower):
-        axes.axvline(0.0, color=colour, linewidth=0.6, dashes=(1.5, 1.5), zorder=1)
+        axes.axvline(0.0, color=colour, zorder=1, **DOTTED)
     reach = _reach(record)
     upper.set_xlim(-reach, reach)
     for axes, every, room in ((upper, record.heights, 0.1), (lower, record.adhesion, 0.05)):
         low, high = float(every.min()), float(every.max())
         axes.set_ylim(low - room * (high - low), high + room * (high - low))
-    lower.annotate(
-        r"$w_\mathrm{int}-e_\mathrm{el}$",
-        (reach, record.mean),
-        xytext=(3, 0),
-        textcoords="offset points",
-        va="center",
-        annotation_clip=False,
-    )
+    mean, end = r"$w_\mathrm{int}-e_\mathrm{el}$", (reach, record.mean)
+    write_beside(lower, mean, end, (3, 0), va="center", annotation_clip=False)
     lower.xaxis.set_major_locator(MaxNLocator(5))
     upper.tick_params(labelbottom=False)
     upper.set_ylabel(HEIGHT_LABEL.format("$h$").replace(" / ", " /\n"))

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
 from pydantic import model_validator
 
 from crackfront.core.variables import variable
@@ -30,14 +30,9 @@ from crackfront.plots.style import (
     explain,
     house_style,
 )
-from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.drawing import write_beside
+from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
 from studies.paper.film import FilmParameters, conformity_energy, shown_wavevectors
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-
-Array = NDArray[np.float64]
 
 _WAVE, _ORDER, _POINT = "wavevector", "order", "point"
 
@@ -50,18 +45,10 @@ _NO_DATA = "ideal spectrum of the paper's fit; the measured one is not part of t
 
 
 class FilmScalesParameters(FilmParameters):
-    """What Fig. 5a shows.
+    """What Fig. 5a shows."""
 
-    Attributes
-    ----------
-    work_of_adhesion : float
-        w_int. (Units: J / m^2)
-    longest : float
-        Longest wavelength that is shown. (Units: m)
-    """
-
-    work_of_adhesion: Positive
-    longest: Positive
+    work_of_adhesion: Positive  # w_int (J / m^2)
+    longest: Positive  # wavelength that is shown (m)
 
     @model_validator(mode="after")
     def _long_enough(self) -> FilmScalesParameters:
@@ -100,9 +87,7 @@ def film_scales(parameters: FilmScalesParameters, progress: Progress) -> FilmSca
     ranges = np.array([spectrum.dominant_wavelengths(order, _SHARE) for order in _ORDERS])
     progress(f"{wavevector.size} wavevectors, {points.wavevector.size} measured points")
     return FilmScales(
-        contact_modulus=parameters.contact_modulus,
-        work_of_adhesion=parameters.work_of_adhesion,
-        roll_off=parameters.roll_off,
+        **values_of(parameters, "contact_modulus", "work_of_adhesion", "roll_off"),
         wavevector=wavevector,
         isotropic=isotropic,
         profile=spectrum.profile_density(wavevector),
@@ -149,9 +134,8 @@ def film_scales_checks(record: FilmScales) -> tuple[Check, ...]:
         ),
     ]
     if record.measured_wavevector.size:
-        found = conformity_energy(
-            record.measured_wavevector, record.measured_profile, record.contact_modulus
-        )
+        measured = record.measured_wavevector, record.measured_profile
+        found = conformity_energy(*measured, record.contact_modulus)
         name = "e_el of the measured profiles, over their wavevectors"
         checks.append(close_to(name, 1e3 * found, 1e3 * energy, 1.0, units="mJ/m2"))
     return tuple(checks)
@@ -163,11 +147,8 @@ def _range_check(record: FilmScales, index: int) -> Check:
     shown = q ** (2 + 2 * order) * record.isotropic / (2 * np.pi)
     steps = np.diff(np.log(q)) * (shown[1:] + shown[:-1]) / 2
     until = np.r_[0.0, np.cumsum(steps)]
-    low, high = np.interp(
-        np.log(2 * np.pi / np.array([record.longest[index], record.shortest[index]])),
-        np.log(q),
-        until,
-    )
+    ends = 2 * np.pi / np.array([record.longest[index], record.shortest[index]])
+    low, high = np.interp(np.log(ends), np.log(q), until)
     return close_to(
         f"share of the mean square of order {order:g} in its range, by quadrature",
         float((high - low) / record.mean_square[index]),
@@ -206,18 +187,10 @@ def _draw_roll_off(axes: Axes, record: FilmScales) -> None:
     """Line at the roll-off with its wavelength."""
     place = 2 * np.pi / record.roll_off
     # Up to the density, so that it crosses no bar and no name.
-    axes.vlines(
-        place, axes.get_ylim()[0], record.isotropic[0], color="0.6", linewidth=0.6, zorder=1
-    )
-    axes.annotate(
-        f"roll-off {1e6 * record.roll_off:.3g} µm",
-        (place, 0.03),
-        xycoords=axes.get_xaxis_transform(),
-        xytext=(-3, 0),
-        textcoords="offset points",
-        ha="right",
-        color="0.35",
-    )
+    ends = axes.get_ylim()[0], record.isotropic[0]
+    axes.vlines(place, *ends, color="0.6", linewidth=0.6, zorder=1)
+    text, lower = f"roll-off {1e6 * record.roll_off:.3g} µm", axes.get_xaxis_transform()
+    write_beside(axes, text, (place, 0.03), (-3, 0), xycoords=lower, ha="right", color="0.35")
 
 
 FIGURE = Figure(

@@ -7,9 +7,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
@@ -26,13 +29,13 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.data.section import InputFile, Plateau, Positive, refusal
-from crackfront.plots.style import BLACK, BLUE, ORANGE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.plots.style import BLACK, ORANGE, PAGE, blank_figure, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import Simulation
 from studies.paper.advances import Perimeters
-from studies.paper.figure import Check, Figure, Progress, close_to
-from studies.paper.film import fitted_adhesion
-from studies.paper.measured import ForceRadius, read_force_radius
+from studies.paper.drawing import BRANCHES, name_panels
+from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.measured import ForceRadius, fitted_adhesion, read_force_radius
 from studies.paper.rough import (
     ONE_DIGIT,
     RoughParameters,
@@ -40,12 +43,6 @@ from studies.paper.rough import (
     recorded,
     rough_spectrum,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-
-Array = NDArray[np.float64]
 
 _STATE, _POINT = "state", "point"
 _LINE, _ANGLE = "line", "angle"
@@ -67,40 +64,23 @@ _EVERY_WAVELENGTH = 1e-6
 
 
 class NanodiamondParameters(RoughParameters):
-    """What Fig. 5b and 5c show, in SI units.
+    """What Fig. 5b and 5c show, in SI units."""
 
-    Attributes
-    ----------
-    young_modulus, poisson_ratio, radius, work_of_adhesion : float
-        Sphere and w_int. (Units: Pa, 1, m, J / m^2)
-    roll_off, short_cutoff, hurst, plateau : float
-        Spectrum of the heights. (Units: m, m, 1, m^4)
-    largest_force, shown_force : float
-        Where the approach turns, and up to where its perimeters are shown. (Units: N)
-    step, retraction_step, line_step : float
-        Penetration between states of the approach and of the retraction, and between the shown
-        perimeters. (Units: m)
-    factor : float
-        The factor k with which w_int is found from an approach.
-    measured : Path or None
-        CSV file as :func:`studies.paper.measured.read_force_radius` reads it.
-    """
-
-    young_modulus: Positive
+    young_modulus: Positive  # of the sphere (Pa)
     poisson_ratio: Annotated[float, Field(ge=0, le=0.5)]
-    radius: Positive
-    work_of_adhesion: Positive
-    roll_off: Positive
+    radius: Positive  # of the sphere (m)
+    work_of_adhesion: Positive  # w_int (J / m^2)
+    roll_off: Positive  # spectrum of the heights (m, m, 1, m^4)
     short_cutoff: Positive
     hurst: Annotated[float, Field(gt=0.5, le=1)]
     plateau: Plateau
-    largest_force: Positive
-    shown_force: Positive
-    step: Positive
-    retraction_step: Positive
-    line_step: Positive
-    factor: Positive = PAPER_FACTOR
-    measured: InputFile | None = None
+    largest_force: Positive  # where the approach turns (N)
+    shown_force: Positive  # up to which perimeters are shown (N)
+    step: Positive  # penetration between states of the approach (m)
+    retraction_step: Positive  # and of the retraction
+    line_step: Positive  # and between the shown perimeters
+    factor: Positive = PAPER_FACTOR  # the k with which w_int is found from an approach
+    measured: InputFile | None = None  # CSV file that `read_force_radius` reads
 
     @model_validator(mode="after")
     def _possible(self) -> NanodiamondParameters:
@@ -172,7 +152,7 @@ class NanodiamondContact:
     largest_force: float = variable("force at which the approach turns", "N")
     shown_force: float = variable("force up to which perimeters are shown", "N")
     jump_in: float = variable("penetration of the first state after jump-in", "m")
-    direction: NDArray[np.int64] = variable("+1 in approach, -1 in retraction", "1", _STATE)
+    direction: Integers = variable("+1 in approach, -1 in retraction", "1", _STATE)
     penetration: Array = variable("rigid body penetration", "m", _STATE)
     radius: Array = variable("mean contact radius", "m", _STATE)
     force: Array = variable("normal force", "N", _STATE)
@@ -193,7 +173,7 @@ class NanodiamondContact:
     measured_fit: Array = variable("w_int from the measured approach: value, low, high", *_FIT)
     measured_force: Array = variable("measured force", "N", _POINT)
     measured_radius: Array = variable("measured contact radius", "m", _POINT)
-    measured_direction: NDArray[np.int64] = variable("+1 in approach, -1 back", "1", _POINT)
+    measured_direction: Integers = variable("+1 in approach, -1 back", "1", _POINT)
     hurst: float | None = variable("Hurst exponent", "1", default=None)
 
     @property
@@ -219,14 +199,7 @@ class NanodiamondContact:
 def nanodiamond_contact(
     parameters: NanodiamondParameters, progress: Progress
 ) -> NanodiamondContact:
-    """Approach to the largest force, retraction until contact is lost, and the fits of w_int.
-
-    Raises
-    ------
-    ValueError
-        If the largest force is not reached, no perimeter is to be shown, or a branch has no steady
-        part.
-    """
+    """Approach to the largest force, retraction until contact is lost, and the fits of w_int."""
     scales, simulation = parameters.scales, parameters.simulation()
     adhesion = simulation_adhesion(simulation)
     passed = simulation.spectrum.correlation_length
@@ -245,30 +218,23 @@ def nanodiamond_contact(
         raise ValueError(steady.sentence)
     states, points, surface = record.states, parameters.points(), scales.work_of_adhesion
     energy, whole = adhesion.e_el * surface, parameters.whole_elastic_energy
-    simulated = ForceRadius(
-        states.force * scales.force, states.mean_radius * scales.lateral, states.direction
-    )
-    synthetic = _synthetic_points(parameters, simulated.radius)
+    radius, force = states.mean_radius * scales.lateral, states.force * scales.force
+    simulated = ForceRadius(force, radius, states.direction)
+    synthetic = _synthetic_points(parameters, radius)
     widest, first = perimeters.widest, _STRIDES[0]
     arc = widest[first]
     return NanodiamondContact(
         status=record.status.value,
         sphere_radius=scales.radius,
-        work_of_adhesion=surface,
-        contact_modulus=scales.contact_modulus,
-        factor=parameters.factor,
-        whole_elastic_energy=whole,
+        **values_of(scales, "work_of_adhesion", "contact_modulus"),
+        **values_of(parameters, "factor", "whole_elastic_energy", "short_cutoff", "roll_off"),
+        **values_of(parameters, "hurst", "largest_force", "shown_force"),
         elastic_energy=energy,
-        short_cutoff=parameters.short_cutoff,
-        roll_off=parameters.roll_off,
-        hurst=parameters.hurst,
-        largest_force=parameters.largest_force,
-        shown_force=parameters.shown_force,
         jump_in=perimeters.states[0].penetration * scales.vertical,
         direction=states.direction,
         penetration=states.penetration * scales.vertical,
-        radius=simulated.radius,
-        force=simulated.force,
+        radius=radius,
+        force=force,
         approach=surface * np.array([steady.w_appr, steady.w_appr_error]),
         retraction=surface * np.array([steady.w_retr, steady.w_retr_error]),
         angle=perimeters.angle,
@@ -302,8 +268,8 @@ def _loads(
         last = recorder.states[-1]
         if last.force * scales.force >= parameters.largest_force:
             break
-    progress(f"approach: mean radius {last.mean_radius * scales.lateral:.4g} m at the turn")
     penetration = last.penetration
+    progress(f"approach: mean radius {last.mean_radius * scales.lateral:.4g} m at the turn")
     while True:
         penetration -= parameters.retraction_step / scales.vertical
         yield Load(penetration, -1)
@@ -332,12 +298,8 @@ _SEVERAL_TENS = (20.0, 100.0)
 
 def nanodiamond_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     """Energies, hysteresis, instabilities and the fit."""
-    return (
-        *_surface_checks(contact),
-        *_hysteresis_checks(contact),
-        _instability_check(contact),
-        *_fit_checks(contact),
-    )
+    hysteresis, fits = _hysteresis_checks(contact), _fit_checks(contact)
+    return (*_surface_checks(contact), *hysteresis, _instability_check(contact), *fits)
 
 
 def _surface_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
@@ -471,18 +433,15 @@ def nanodiamond_figure(contact: NanodiamondContact) -> Drawing:
     """Perimeters of the approach beside the loop."""
     with house_style():
         figure = blank_figure(PAGE, 0.5 * PAGE)
-        left, right = figure.subplots(1, 2, width_ratios=[1, 1])
+        left, right = figure.subplots(1, 2)
         _draw_perimeters(left, contact)
         _draw_loop(right, contact)
-        for axes, letter in ((left, "b"), (right, "c")):
-            axes.set_title(letter, loc="left", fontweight="bold")
+        name_panels((left, right), "bc")
         return figure
 
 
 def _draw_perimeters(axes: Axes, contact: NanodiamondContact) -> None:
     """Perimeters in approach, and the area that the widest instability closes."""
-    from matplotlib.collections import LineCollection
-
     directions = np.stack([np.cos(contact.angle), np.sin(contact.angle)], axis=-1)
     lines = contact.line[..., None] * directions * _MICRO
     closed = np.concatenate([lines, lines[:, :1]], axis=1)
@@ -490,14 +449,9 @@ def _draw_perimeters(axes: Axes, contact: NanodiamondContact) -> None:
     axes.add_collection(LineCollection(list(closed), colors=BLACK, linewidths=0.3, label=label))
     around = np.concatenate([contact.arc_angle, contact.arc_angle[::-1]])
     radius = np.concatenate([contact.arc_inner, contact.arc_outer[::-1]]) * _MICRO
-    axes.fill(
-        radius * np.cos(around),
-        radius * np.sin(around),
-        color=ORANGE,
-        linewidth=0.6,
-        zorder=3,
-        label=f"widest instability:\n{contact.extent[0] * _MICRO:.0f} µm along the perimeter",
-    )
+    label = f"widest instability:\n{contact.extent[0] * _MICRO:.0f} µm along the perimeter"
+    outline = radius * np.cos(around), radius * np.sin(around)
+    axes.fill(*outline, color=ORANGE, linewidth=0.6, zorder=3, label=label)
     reach = 1.03 * float(np.abs(lines).max())
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-reach, reach)
@@ -509,8 +463,7 @@ def _draw_perimeters(axes: Axes, contact: NanodiamondContact) -> None:
 
 def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
     """Force against radius: simulation, its JKR curves, those of k = 3, and measured points."""
-    surface, energy = contact.work_of_adhesion, contact.elastic_energy
-    scales = contact.scales
+    surface, energy, scales = contact.work_of_adhesion, contact.elastic_energy, contact.scales
     shown = np.linspace(0, 1.08 * contact.radius.max(), 300)
     radius, force = contact.radius * _MICRO, contact.force * _MILLI
     place = shown * _MICRO
@@ -519,35 +472,25 @@ def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
         reduced = jkr.equilibrium_force(shown / scales.lateral, adhesion / surface)
         return reduced * scales.force * _MILLI
 
-    for direction, name, short, colour, adhesion in (
-        (1, "approach", "appr", BLUE, contact.approach[0]),
-        (-1, "retraction", "retr", VERMILION, contact.retraction[0]),
-    ):
+    works = contact.approach[0], contact.retraction[0]
+    for (direction, name, short, colour), adhesion in zip(BRANCHES, works, strict=True):
         branch = contact.direction == direction
         if direction > 0:
             branch &= contact.penetration >= contact.jump_in
         axes.plot(radius[branch], force[branch], color=colour, linewidth=1.4, label=name, zorder=3)
         label = rf"JKR, $w_\mathrm{{{short}}}$ = {adhesion * _MILLI:.1f} mJ/m$^2$"
-        axes.plot(
-            place, smooth(adhesion), color=colour, linewidth=0.7, dashes=(1, 1.2), label=label
-        )
+        style: dict[str, Any] = {"color": colour, "linewidth": 0.7}
+        axes.plot(place, smooth(adhesion), dashes=(1, 1.2), label=label, **style)
         theory = surface - energy - direction * PAPER_FACTOR * energy
-        axes.plot(
-            place,
-            smooth(max(theory, 0.0)),
-            color=colour,
-            linewidth=0.7,
-            dashes=(4, 2),
-            label=rf"JKR, $k = {PAPER_FACTOR:g}$: {theory * _MILLI:.1f} mJ/m$^2$",
-            zorder=1,
-        )
+        label = rf"JKR, $k = {PAPER_FACTOR:g}$: {theory * _MILLI:.1f} mJ/m$^2$"
+        axes.plot(place, smooth(max(theory, 0.0)), dashes=(4, 2), label=label, zorder=1, **style)
         measured = contact.measured_direction == direction
         if np.any(measured):
+            points = contact.measured_radius[measured], contact.measured_force[measured]
             axes.plot(
-                contact.measured_radius[measured] * _MICRO,
-                contact.measured_force[measured] * _MILLI,
-                linestyle="none",
-                marker="D",
+                points[0] * _MICRO,
+                points[1] * _MILLI,
+                "D",
                 color=colour,
                 markerfacecolor="white",
                 label=f"measured, {name}",

@@ -1,4 +1,4 @@
-"""Measured points from CSV files: read whole, or refused with the number of the line.
+"""Measured points from CSV files, read whole or refused with the number of the line; their fits.
 
 Two kinds of file are known: forces with contact radii, and spectral densities of profiles.
 """
@@ -7,24 +7,25 @@ from __future__ import annotations
 
 import csv
 import math
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import curve_fit
 
+from crackfront.analysis.estimate import Estimate, student_estimate
+from crackfront.core import jkr
+from crackfront.core.units import Scales
 from crackfront.data.section import refusal
-from studies.paper.force import FEWEST_POINTS
+from studies.paper.figure import Array, Integers
 
-Array = NDArray[np.float64]
+_FEWEST_POINTS = 3
+"""Points that a fit with an interval needs."""
 
-_HEADER = re.compile(r"^(?P<name>[^()]*?)\s*(\((?P<unit>[^()]*)\))?$")
 
-
-@dataclass(frozen=True, slots=True)
-class Quantity:
+class Quantity(NamedTuple):
     """A column of numbers: `name (unit)` in the header, with units that lead to SI by a factor."""
 
     name: str
@@ -32,11 +33,10 @@ class Quantity:
     positive: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class MeasuredTable:
+class MeasuredTable(NamedTuple):
     """Rows of a file: their lines, (n_row,), and a row a column that was asked for, in SI units."""
 
-    lines: NDArray[np.int64]
+    lines: Integers
     numbers: Array
     words: NDArray[np.str_]
 
@@ -46,74 +46,65 @@ def read_measured(
 ) -> MeasuredTable:
     """Columns of a CSV file; empty lines, those that begin with # and other columns are left out.
 
-    Raises
-    ------
-    PydanticCustomError
-        If the file cannot be read, a column is missing or stands twice, a unit is missing or not
-        understood, a value is missing or no finite number, or there is no row.
+    A refusal says if the file cannot be read, a column is missing or stands twice, a unit or a
+    value is missing or not understood, or there is no row.
     """
     rows = _rows(path)
-    place, header = next(rows, (1, []))
-    if not header:
-        raise refusal(f"{path} is empty; it needs a header and rows")
-    top = f"{path}, line {place}"
-    columns = [_column(top, header, item) for item in quantities]
-    places = [_position(top, header, name) for name in words]
+    top, header = f"{path}, line {rows[0][0]}", [_name_and_unit(title) for title in rows[0][1]]
+    names = [name for name, _ in header]
+    for name in (*(item.name for item in quantities), *words):
+        if names.count(name) != 1:
+            what = "stands twice; remove one" if name in names else "is missing"
+            raise refusal(f"{top}: column {name} {what}; the header has {', '.join(names)}")
+    units = dict(header)
+    for name, known, _ in quantities:
+        if (unit := units[name]) not in known:
+            what = f"is in {unit}" if unit else "has no unit"
+            raise refusal(
+                f"{top}: {name} {what}; write {name} (unit) with one of {', '.join(known)}"
+            )
+    if len(rows) == 1:
+        raise refusal(f"{path} has a header but no rows; add the points")
     lines, numbers, texts = [], [], []
-    for number, row in rows:
-        where = f"{path}, line {number}"
+    for line, row in rows[1:]:
+        where = f"{path}, line {line}"
         if len(row) != len(header):
             raise refusal(f"{where} has {len(row)} values for {len(header)} columns; complete it")
-        numbers.append([_number(where, row[index], item, si) for index, item, si in columns])
-        texts.append([row[index].strip() for index in places])
-        lines.append(number)
-    if not lines:
-        raise refusal(f"{path} has a header but no rows; add the points")
+        given = dict(zip(names, row, strict=True))
+        numbers.append(
+            [_number(where, given[item.name], item, units[item.name]) for item in quantities]
+        )
+        texts.append([given[name].strip() for name in words])
+        lines.append(line)
     return MeasuredTable(np.array(lines), np.array(numbers).T, np.array(texts, dtype=str).T)
 
 
-def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Rows of a file with the numbers of their lines."""
+def _rows(path: Path) -> list[tuple[int, list[str]]]:
+    """Header and rows of a file with the numbers of their lines."""
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.reader(file, strict=True)
-            for row in reader:
-                if any(row) and not row[0].lstrip().startswith("#"):
-                    yield reader.line_num, row
+        text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise refusal(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise refusal(f"{path} is no UTF-8 text; save it as UTF-8") from error
+    lines = ("" if line.lstrip().startswith("#") else line for line in text.splitlines())
+    reader = csv.reader(lines, strict=True)
+    try:
+        rows = [(reader.line_num, row) for row in reader if any(row)]
     except csv.Error as error:
         raise refusal(f"{path}, line {reader.line_num}: {error}") from error
+    if not rows:
+        raise refusal(f"{path} is empty; it needs a header and rows")
+    return rows
 
 
-def _position(where: str, header: list[str], name: str) -> int:
-    """Place of a column in the header."""
-    names = [_parts(item)[0] for item in header]
-    if names.count(name) != 1:
-        what = "stands twice; remove one" if name in names else "is missing"
-        raise refusal(f"{where}: column {name} {what}; the header has {', '.join(names)}")
-    return names.index(name)
+def _name_and_unit(title: str) -> tuple[str, str]:
+    """Name and unit of a column, `name (unit)` or a name alone."""
+    name, _, unit = title.partition("(")
+    return name.strip(), unit.strip().removesuffix(")")
 
 
-def _column(where: str, header: list[str], item: Quantity) -> tuple[int, Quantity, float]:
-    """Place of a column of numbers, and the factor that leads to SI."""
-    index = _position(where, header, item.name)
-    unit, known = _parts(header[index])[1], ", ".join(item.units)
-    if unit not in item.units:
-        what = f"is in {unit}" if unit else "has no unit"
-        raise refusal(f"{where}: {item.name} {what}; write {item.name} (unit) with one of {known}")
-    return index, item, item.units[unit]
-
-
-def _parts(title: str) -> tuple[str, str]:
-    """Name and unit of a column."""
-    match = _HEADER.match(title.strip())
-    return (match["name"], match["unit"] or "") if match else (title, "")
-
-
-def _number(where: str, text: str, item: Quantity, factor: float) -> float:
+def _number(where: str, text: str, item: Quantity, unit: str) -> float:
     """A finite number in SI units."""
     try:
         value = float(text)
@@ -122,7 +113,7 @@ def _number(where: str, text: str, item: Quantity, factor: float) -> float:
     if not math.isfinite(value) or (item.positive and value <= 0):
         must = "a positive number" if item.positive else "a finite number"
         raise refusal(f"{where}: {item.name} is {text.strip()!r}; it must be {must}")
-    return value * factor
+    return value * item.units[unit]
 
 
 _BRANCHES = {"approach": 1, "retraction": -1}
@@ -131,55 +122,44 @@ _FORCE = Quantity("force", {"N": 1.0, "mN": 1e-3, "uN": 1e-6})
 _RADIUS = Quantity("radius", {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}, positive=True)
 
 
-@dataclass(frozen=True, slots=True)
-class ForceRadius:
+class ForceRadius(NamedTuple):
     """Forces (N), contact radii (m), and +1 in approach, -1 in retraction, of (n_point,) each."""
 
     force: Array
     radius: Array
-    direction: NDArray[np.int64]
+    direction: Integers
 
 
 def read_force_radius(path: Path | None) -> ForceRadius:
     """Points from a CSV file with the columns force (mN), radius (um) and branch, as measured.
 
     The units are N, mN or uN, and m, mm, um or nm; the branch is approach or retraction. Without a
-    file there are no points.
-
-    Raises
-    ------
-    PydanticCustomError
-        If it cannot be read or holds no such columns; if a branch is unknown, an approach follows
-        a retraction, the approach has fewer than three points, or ends at no larger force than it
-        begins. The sentence names the line.
+    file there are no points. Refused are other branches, an approach after a retraction, of less
+    than three points, or that ends at no larger force than it begins.
     """
     if path is None:
         return ForceRadius(np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
-    table = read_measured(path, (_FORCE, _RADIUS), words=("branch",))
-    for line, name in zip(table.lines, table.words[0], strict=True):
+    lines, (force, radius), (branches,) = read_measured(path, (_FORCE, _RADIUS), words=("branch",))
+    for line, name in zip(lines, branches, strict=True):
         if name not in _BRANCHES:
             raise refusal(
                 f"{path}, line {line}: branch is {str(name)!r}; it must be {' or '.join(_BRANCHES)}"
             )
-    direction = np.array([_BRANCHES[name] for name in table.words[0]])
-    force, radius = table.numbers
+    direction = np.array([_BRANCHES[name] for name in branches])
     back = np.flatnonzero(np.diff(direction) > 0)
     if back.size:
         raise refusal(
-            f"{path}, line {table.lines[back[0] + 1]}: an approach follows the retraction; the "
+            f"{path}, line {lines[back[0] + 1]}: an approach follows the retraction; the "
             "rows must be one approach and then its retraction"
         )
     approach = force[direction > 0]
-    last = table.lines[max(approach.size - 1, 0)]
-    if approach.size < FEWEST_POINTS:
-        raise refusal(
-            f"{path}, line {last}: the approach has {approach.size} points; the fit needs "
-            f"{FEWEST_POINTS}"
-        )
+    end = f"{path}, line {lines[max(approach.size - 1, 0)]}: the approach"
+    if approach.size < _FEWEST_POINTS:
+        raise refusal(f"{end} has {approach.size} points; the fit needs {_FEWEST_POINTS}")
     if approach[-1] <= approach[0]:
         raise refusal(
-            f"{path}, line {last}: the approach ends at {approach[-1]:g} N and begins at "
-            f"{approach[0]:g} N; its force must grow, so put the rows in the order of measurement"
+            f"{end} ends at {approach[-1]:g} N and begins at {approach[0]:g} N; its force must "
+            "grow, so put the rows in the order of measurement"
         )
     return ForceRadius(force, radius, direction)
 
@@ -188,8 +168,7 @@ _WAVEVECTOR = Quantity("q", {"1/m": 1.0, "1/um": 1e6, "1/nm": 1e9}, positive=Tru
 _DENSITY = Quantity("C1D", {"m^3": 1.0, "um^3": 1e-18, "nm^3": 1e-27}, positive=True)
 
 
-@dataclass(frozen=True, slots=True)
-class ProfileDensity:
+class ProfileDensity(NamedTuple):
     """Increasing wavevectors (1 / m) and C_1D (m^3) of profiles, of (n_point,) each."""
 
     wavevector: Array
@@ -200,25 +179,54 @@ def read_profile_density(path: Path | None) -> ProfileDensity:
     """Profile density from a CSV file with the columns q (1/m) and C1D (m^3).
 
     The units are 1/m, 1/um or 1/nm, and m^3, um^3 or nm^3. The mean square height is the integral
-    of C1D over q > 0, divided by pi. Without a file there are no points.
-
-    Raises
-    ------
-    PydanticCustomError
-        If it cannot be read, holds no such columns, units or numbers, has a single row, or if the
-        wavevectors do not increase. The sentence names the line.
+    of C1D over q > 0, divided by pi. Without a file there are no points. Refused are a single row
+    and wavevectors that do not increase.
     """
     if path is None:
         return ProfileDensity(np.empty(0), np.empty(0))
-    table = read_measured(path, (_WAVEVECTOR, _DENSITY))
-    wavevector, density = table.numbers
+    lines, (wavevector, density), _ = read_measured(path, (_WAVEVECTOR, _DENSITY))
     wrong = np.flatnonzero(np.diff(wavevector) <= 0)
     if wrong.size:
         before, here = wavevector[wrong[0] : wrong[0] + 2]
         raise refusal(
-            f"{path}, line {table.lines[wrong[0] + 1]}: q is {here:g} 1/m after {before:g} 1/m; "
+            f"{path}, line {lines[wrong[0] + 1]}: q is {here:g} 1/m after {before:g} 1/m; "
             "wavevectors must increase"
         )
     if wavevector.size < 2:
-        raise refusal(f"{path}, line {table.lines[0]} is the only row; a density needs two or more")
+        raise refusal(f"{path}, line {lines[0]} is the only row; a density needs two or more")
     return ProfileDensity(wavevector, density)
+
+
+def adhesion_from_forces(radius: Array, force: Array) -> Estimate:
+    """Work of adhesion (w_int) of the JKR curve that goes best through forces at radii.
+
+    Least squares; the errors of the forces (pi w_int R) count as equal and independent. A
+    ValueError says if there are less than three points.
+    """
+    if radius.size < _FEWEST_POINTS:
+        raise ValueError(
+            f"{radius.size} points are too few for a work of adhesion with its interval; give "
+            f"{_FEWEST_POINTS} or more"
+        )
+    found, covariance = curve_fit(
+        jkr.equilibrium_force, radius, force, p0=[1.0], bounds=(0.0, np.inf), xtol=1e-14, ftol=1e-14
+    )
+    return student_estimate(found[0], np.sqrt(covariance[0, 0]), radius.size - 1)
+
+
+def fitted_adhesion(
+    points: ForceRadius, scales: Scales, elastic_energy: float, factor: float
+) -> Array:
+    """Intrinsic work of adhesion of an approach, w_int = w_appr + (1 + k) e_el (J / m^2).
+
+    The JKR curve of w_appr is fitted; e_el (J / m^2) does not depend on w_int. After the value come
+    the ends of the interval that the scatter of the points leaves; all are NaN without points.
+    """
+    if points.force.size == 0:
+        return np.full(3, np.nan)
+    approach = points.direction > 0
+    fit = adhesion_from_forces(
+        points.radius[approach] / scales.lateral, points.force[approach] / scales.force
+    )
+    shift = (1 + factor) * elastic_energy
+    return np.array([fit.value, fit.low, fit.high]) * scales.work_of_adhesion + shift

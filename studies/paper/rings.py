@@ -6,12 +6,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from crackfront.core import jkr
-
-Array = NDArray[np.float64]
+from studies.paper.figure import Array
 
 INNERMOST = 1e-3
 """Radius at which contact is made."""
@@ -38,26 +37,11 @@ class Rings(NamedTuple):
 
 
 def first_stops(rings: Rings, penetration: Array, direction: int, start: float) -> Array:
-    """Radii at which a front on the rings first rests, from where b_eq(a) first reaches b.
+    """Radii at which a front on the rings first rests; NaN where no rest is left.
 
-    In approach that is the running maximum of b_eq from the start, in retraction its running
-    minimum: its folds are found first, then the root between two of them.
-
-    Parameters
-    ----------
-    rings : Rings
-        Where the front moves.
-    penetration : (n,) array
-        Rigid body penetrations b. (Units: reduced vertical length)
-    direction : {1, -1}
-        Outward or inward.
-    start : float
-        Radius from which the front moves. (Units: reduced lateral length)
-
-    Returns
-    -------
-    (n,) array
-        Radii; NaN where no rest is left. (Units: reduced lateral length)
+    In approach (direction 1) that is where the running maximum of b_eq from the start reaches each
+    penetration, in retraction (-1) its running minimum: its folds are found first, then the root
+    between two of them. All lengths are reduced.
     """
     largest = max(float(np.max(penetration)), 0.0)
     end = rings.outermost(largest) if direction > 0 else INNERMOST

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Protocol
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,9 +28,7 @@ from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error, simulation_of
-from studies.paper.figure import Check
-
-Array = NDArray[np.float64]
+from studies.paper.figure import Array, Check
 
 ONE_DIGIT = 0.5
 """How far k may be from a value that is given with one digit."""
@@ -43,32 +41,16 @@ _SIDE = 2.4
 
 
 class RoughParameters(Section):
-    """What the rough contact of a figure of whole cycles needs.
+    """What the rough contact of a figure of whole cycles needs."""
 
-    Attributes
-    ----------
-    seed : int
-        Seed of the surface.
-    error : float
-        Standard error of k that the numerics may leave.
-    tile_roll_offs : float
-        Side of the periodic tile in roll-off wavelengths; it has at least 200 short cutoffs.
-    """
-
-    seed: Seed
-    error: Annotated[float, Field(gt=0, lt=1)]
-    tile_roll_offs: Positive
+    seed: Seed  # of the surface
+    error: Annotated[float, Field(gt=0, lt=1)]  # standard error of k that the numerics may leave
+    tile_roll_offs: Positive  # side of the periodic tile, 200 short cutoffs or more
 
     def simulation_of(
         self, spectrum: SelfAffineSpectrum, elastic_energy: float, schedule: LoadSchedule
     ) -> Simulation:
-        """Simulation of the first surface of the seed.
-
-        Raises
-        ------
-        PydanticCustomError
-            If the finest numerics leave more than the asked error.
-        """
+        """Simulation of the first surface of the seed; refused if its numerics miss the error."""
         numerics = Numerics(self.error, self.tile_roll_offs)
         simulation = simulation_of(
             "roughness", spectrum, elastic_energy, schedule, numerics, seed=self.seed
@@ -79,31 +61,22 @@ class RoughParameters(Section):
             )
         return simulation
 
-
-class SimulatedParameters(Protocol):
-    """Parameters of a figure of one simulation."""
-
     def simulation(self) -> Simulation:
-        """The simulation."""
-        ...
+        """The simulation of the figure."""
+        raise NotImplementedError
+
+
+def expected_seconds(parameters: RoughParameters) -> float:
+    """Processor time that the one simulation of a figure is expected to take (Units: s)."""
+    return expected_cost(parameters.simulation()).seconds
 
 
 class RoughCycleParameters(RoughParameters):
-    """What a figure of one cycle needs beside the shape of its spectrum.
+    """What a figure of one cycle needs beside the shape of its spectrum."""
 
-    Attributes
-    ----------
-    short_cutoff : float
-        Shortest wavelength. (Units: reduced lateral length)
-    elastic_energy : float
-        Energy of full conformity. (Units: w_int)
-    max_penetration, step : float
-        Penetrations to visit. (Units: reduced vertical length)
-    """
-
-    short_cutoff: Positive
-    elastic_energy: Energy
-    max_penetration: Positive
+    short_cutoff: Positive  # shortest wavelength (reduced lateral length)
+    elastic_energy: Energy  # of full conformity (w_int)
+    max_penetration: Positive  # penetrations to visit (reduced vertical length)
     step: Positive
 
     @model_validator(mode="after")
@@ -127,28 +100,14 @@ class RoughCycleParameters(RoughParameters):
 
 
 class DisorderParameters(Section):
-    """What a figure needs that follows single fronts in strong and in weak disorder.
+    """What a figure needs that follows single fronts in strong and in weak disorder."""
 
-    Attributes
-    ----------
-    short_cutoff : float
-        Shortest wavelength of the flat spectrum. (Units: reduced lateral length)
-    strong, weak : float
-        e_el of the two kinds of surfaces. (Units: w_int)
-    max_penetration : float
-        Where a retraction begins. (Units: reduced vertical length)
-    error : float
-        Error of the factor k that the resolution may leave.
-    seed : int
-        Seed of the surfaces; both kinds have the same.
-    """
-
-    short_cutoff: Positive
-    strong: Energy
+    short_cutoff: Positive  # shortest wavelength of the flat spectrum (reduced lateral length)
+    strong: Energy  # e_el of the two kinds of surfaces (w_int)
     weak: Energy
-    max_penetration: Positive
-    error: Positive
-    seed: Count
+    max_penetration: Positive  # where a retraction begins (reduced vertical length)
+    error: Positive  # of the factor k, that the resolution may leave
+    seed: Count  # of the surfaces of both kinds
 
     def contact(
         self, elastic_energy: float, tolerance: float, realisation: int = 0, least_angles: int = 4
@@ -181,18 +140,10 @@ class DisorderParameters(Section):
 
 
 class RetractionParameters(DisorderParameters):
-    """What a figure needs that measures a part of the retraction on several surfaces.
+    """What a figure needs that measures a part of the retraction on several surfaces."""
 
-    Attributes
-    ----------
-    n_surface : int
-        Surfaces of each kind.
-    first_penetration, last_penetration : float
-        Between them the retraction is measured. (Units: reduced vertical length)
-    """
-
-    n_surface: Count
-    first_penetration: float
+    n_surface: Count  # surfaces of each kind
+    first_penetration: float  # between them it is measured (reduced vertical length)
     last_penetration: float
 
     @model_validator(mode="after")
@@ -208,24 +159,12 @@ class RetractionParameters(DisorderParameters):
 
 @dataclass(frozen=True, slots=True)
 class RoughContact:
-    """A sphere whose roughness has a flat spectrum.
-
-    Attributes
-    ----------
-    field : TileField
-        Work of adhesion along the rays.
-    solver : Solver
-        How its fronts are found.
-    w_rms : float
-        Measured on the tile. (Units: w_int)
-    larkin_length : float
-        Larkin length. (Units: reduced lateral length)
-    """
+    """A sphere whose roughness has a flat spectrum, and how its fronts are found."""
 
     field: TileField
     solver: Solver
-    w_rms: float
-    larkin_length: float
+    w_rms: float  # measured on the tile (w_int)
+    larkin_length: float  # (reduced lateral length)
 
     def touched(self, penetration: float) -> Array:
         """Front of an approach from first contact to a penetration."""
@@ -242,23 +181,9 @@ def surface_means(kinds: Sequence[Sequence[object]], name: str) -> Array:
 
 
 def circle_stiffness(radius: ArrayLike, penetration: ArrayLike) -> Array:
-    """Stiffness of a contact's circle at fixed penetration, a dG/da; mode n of the line adds n.
+    """Stiffness (w_int) of a contact's circle at fixed penetration, a dG/da.
 
-    Parameters
-    ----------
-    radius : array_like
-        Mean radius of a front. (Units: reduced lateral length)
-    penetration : array_like
-        Rigid body penetration, below radius^2. (Units: reduced vertical length)
-
-    Returns
-    -------
-    array
-        Stiffness. (Units: w_int)
-
-    Examples
-    --------
-    It vanishes where a smooth contact is pulled off:
+    That of mode n of the line is larger by n.
 
     >>> from crackfront.core.jkr import pull_off_penetration, pull_off_radius
     >>> abs(float(circle_stiffness(pull_off_radius(), pull_off_penetration()))) < 1e-9
@@ -277,34 +202,17 @@ def flat_spectrum(short_cutoff: float) -> SelfAffineSpectrum:
 def rough_spectrum(
     short_cutoff: float, roll_off: float, hurst: float, plateau: float = 1.0
 ) -> SelfAffineSpectrum:
-    """Spectrum of the parameters of a figure; a refusal says why there is none.
-
-    Parameters
-    ----------
-    short_cutoff, roll_off, hurst, plateau
-        As of :class:`crackfront.core.spectrum.SelfAffineSpectrum`.
-    """
+    """Self-affine spectrum of the parameters of a figure; a refusal says why there is none."""
     try:
         return SelfAffineSpectrum(short_cutoff, roll_off, hurst, plateau)
     except ValueError as error:
         raise refusal(str(error)) from error
 
 
-def expected_seconds(parameters: SimulatedParameters) -> float:
-    """Processor time that the one simulation of a figure is expected to take (Units: s)."""
-    return expected_cost(parameters.simulation()).seconds
-
-
 def recorded(
     simulation: Simulation, field: TileField, loads: Iterable[Load], recorder: Recorder
 ) -> CycleRecord:
-    """States of a front that begins in contact that is just made and follows loads.
-
-    Raises
-    ------
-    ValueError
-        If a smooth sphere would outgrow the field at the largest penetration.
-    """
+    """States of a front that begins in contact that is just made and follows loads."""
     assert not isinstance(simulation.schedule, LineSchedule), "loads are penetrations"
     refuse_outgrown(field, simulation.schedule.max_penetration)
     compile_solver(simulation.solver.name)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
+from scipy.stats import spearmanr
 
 from crackfront.analysis.estimate import REACH, Estimate, slope, with_error
 from crackfront.analysis.finding import PAPER_FACTOR
@@ -17,14 +19,11 @@ from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
 from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.data.section import Section
+from crackfront.plots.parts import legend_entries
 from crackfront.plots.style import PAGE, blank_figure, explain, house_style
-from studies.paper.figure import Check, Figure, Progress
+from studies.paper.drawing import name_panels
+from studies.paper.figure import Array, Check, Figure, Progress, values_of
 from studies.paper.rough import ONE_DIGIT
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Drawing
-
-Array = NDArray[np.float64]
 
 _SAME = 0.25
 """Relative spread of k among spectra that a plot over three decades shows as one line."""
@@ -34,15 +33,9 @@ _cell = (_spectrum, _amplitude, "realisation")
 
 
 class ParametricStudyParameters(Section):
-    """Which sweep the figure shows.
+    """Which sweep the figure shows; its results must stand in `results/`."""
 
-    Attributes
-    ----------
-    sweep : str
-        Its configuration; the results must stand in `results/`.
-    """
-
-    sweep: str
+    sweep: str  # its configuration
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,21 +68,15 @@ class ParametricStudy:
     @property
     def table(self) -> SweepTable:
         """The table of the sweep; without contact radii there is no k by the law."""
-        columns = _shared(self)
+        names = {one.name for one in fields(SweepTable)} & {one.name for one in fields(self)}
+        columns = values_of(self, *names)
         columns["spectrum"] = self.spectrum.astype(np.str_)
         if self.contact_radius is None:
             columns["contact_radius"] = np.full(self.e_el.shape, np.nan)
         return SweepTable(**columns, spring=np.full(self.e_el.shape[:2], np.nan))
 
 
-def _shared(record: ParametricStudy | SweepTable) -> dict[str, Any]:
-    """What the data of the figure and the table of a sweep have in common, by name."""
-    names = {item.name for item in fields(SweepTable)}
-    return {
-        item.name: getattr(record, item.name)
-        for item in fields(ParametricStudy)
-        if item.name in names
-    }
+_OF_FIT = ("kind", "lowest_elastic_energy", "highest_elastic_energy", "n_bootstrap", "seed")
 
 
 def parametric_study(
@@ -97,44 +84,25 @@ def parametric_study(
 ) -> ParametricStudy:
     """Data of the figure from the fit of a sweep."""
     progress(f"{parameters.sweep}: {fit.table.finite.sum()} simulations with a value")
-    return ParametricStudy(
-        **_shared(fit.table),
-        kind=fit.kind,
-        lowest_elastic_energy=fit.lowest_elastic_energy,
-        highest_elastic_energy=fit.highest_elastic_energy,
-        n_bootstrap=fit.n_bootstrap,
-        seed=fit.seed,
-    )
+    of_table = {one.name for one in fields(ParametricStudy)} - set(_OF_FIT)
+    return ParametricStudy(**values_of(fit.table, *of_table), **values_of(fit, *_OF_FIT))
 
 
 def study_fit(study: ParametricStudy) -> SweepFit:
     """The fit of a sweep once more, from the data of the figure."""
-    return fit_sweep(
-        study.table,
-        lowest_elastic_energy=study.lowest_elastic_energy,
-        highest_elastic_energy=study.highest_elastic_energy,
-        n_bootstrap=study.n_bootstrap,
-        seed=study.seed,
-        kind="roughness" if study.kind == "roughness" else "chemical",
-    )
+    return fit_sweep(study.table, **values_of(study, *_OF_FIT))
 
 
 def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
     """What the paper reads off the figure: k, the square law, one line, the onset."""
-    from scipy.stats import spearmanr
-
     fit = study_fit(study)
     factor, exponent = fit.pooled.factor, fit.pooled.exponent
     factors = fit.spectra.factor.value
     spread = float(np.ptp(factors) / np.mean(factors))
     onset = _onsets(fit)
     order = float(spearmanr(study.correlation_length, onset).statistic)
-    text = ", ".join(
-        f"{name} {length:.3g}: {energy:.2g}"
-        for name, length, energy in zip(
-            study.spectrum, study.correlation_length, onset, strict=True
-        )
-    )
+    rows = zip(study.spectrum, study.correlation_length, onset, strict=True)
+    text = ", ".join(f"{name} {length:.3g}: {energy:.2g}" for name, length, energy in rows)
     law = _by_law(fit)
     return (
         Check(
@@ -160,9 +128,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"at most {100 * _SAME:.0f}%",
             f"{100 * spread:.0f}%",
             spread <= _SAME,
-            ", ".join(
-                f"{name} {value:.2f}" for name, value in zip(study.spectrum, factors, strict=True)
-            ),
+            ", ".join(f"{one} {k:.2f}" for one, k in zip(study.spectrum, factors, strict=True)),
             law=_said(100 * spread, *law.spread, units="%"),
         ),
         Check(
@@ -189,10 +155,8 @@ def _by_law(fit: SweepFit) -> _ByLaw:
     Its errors are those of one amplitude of one spectrum, which count as independent where
     amplitudes or spectra are compared. Nothing where the law does not know every k.
     """
-    k, error = (
-        values[:, fit.in_range]
-        for values in (fit.cells.law_factor.value, fit.cells.law_factor.standard_error)
-    )
+    law = fit.cells.law_factor
+    k, error = law.value[:, fit.in_range], law.standard_error[:, fit.in_range]
     if not np.all(np.isfinite(k)):
         return _ByLaw(*[(math.nan, math.nan)] * 3)
     strength = np.log(fit.cells.w_rms[:, fit.in_range])
@@ -219,9 +183,8 @@ def _interval(estimate: Estimate) -> str:
 def _onsets(fit: SweepFit) -> Array:
     """e_el at which k rises to half of its mean over the range, or the least that was simulated."""
     found = []
-    for energies, factors, mean in zip(
-        fit.cells.e_el, fit.cells.factor.value, fit.spectra.factor.value, strict=True
-    ):
+    rows = fit.cells.e_el, fit.cells.factor.value, fit.spectra.factor.value
+    for energies, factors, mean in zip(*rows, strict=True):
         below = np.flatnonzero(factors < mean / 2)
         if below.size == 0:
             found.append(energies[0])
@@ -233,7 +196,6 @@ def _onsets(fit: SweepFit) -> Array:
 
 def parametric_study_figure(study: ParametricStudy) -> Drawing:
     """Hysteresis against disorder with the spectra, k against disorder, k against size."""
-    from crackfront.plots.parts import legend_entries
     from crackfront.plots.sweep import (
         POINTS_EXPLAINED,
         SHAPES_EXPLAINED,
@@ -261,8 +223,7 @@ def parametric_study_figure(study: ParametricStudy) -> Drawing:
             legend.remove()
         figure.legend(*legend_entries(panels["b"]), loc="outside upper center", ncols=3)
         explain(figure, f"{POINTS_EXPLAINED}; {SHIFTS_EXPLAINED} (b); {SHAPES_EXPLAINED} (c)")
-        for name, axes in panels.items():
-            axes.set_title(name, loc="left", fontweight="bold")
+        name_panels(panels.values(), "abc")
         return figure
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
 from pydantic import Field, model_validator
+from scipy.signal import periodogram
 
 from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.synthesis import gaussian_field, tile_mean_square
@@ -22,14 +24,9 @@ from crackfront.plots.densities import (
     set_density_scales,
 )
 from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
-from studies.paper.figure import Check, Figure, Progress, close_to
+from studies.paper.drawing import DOTTED, write_beside
+from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
 from studies.paper.film import POINTS_PER_DECADE, FilmParameters, shown_wavevectors
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-
-Array = NDArray[np.float64]
 
 _WAVE, _MODE, _POINT = "wavevector", "mode", "point"
 
@@ -41,25 +38,13 @@ _ROOM = 20
 
 
 class SyntheticFilmParameters(FilmParameters):
-    """What Fig. S-6 shows.
+    """What Fig. S-6 shows."""
 
-    Attributes
-    ----------
-    shortest : float
-        Shortest wavelength of the synthetic surfaces. (Units: m)
-    tile_roll_offs : float
-        Side of their tile in roll-off wavelengths.
-    longest : float
-        Longest wavelength that is shown. (Units: m)
-    realisations, seed : int
-        Number of surfaces that are averaged, and the seed of all.
-    """
-
-    shortest: Positive
-    tile_roll_offs: Annotated[float, Field(ge=2, allow_inf_nan=False)]
-    longest: Positive
-    realisations: Count
-    seed: Seed
+    shortest: Positive  # wavelength of the synthetic surfaces (m)
+    tile_roll_offs: Annotated[float, Field(ge=2, allow_inf_nan=False)]  # side of their tile
+    longest: Positive  # wavelength that is shown (m)
+    realisations: Count  # surfaces that are averaged
+    seed: Seed  # of all of them
 
     @model_validator(mode="after")
     def _inside(self) -> SyntheticFilmParameters:
@@ -112,9 +97,8 @@ def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> S
     included, stiffness = film.longer_than(parameters.shortest), parameters.contact_modulus / 4
     n_point = 2 * math.ceil(_PIXELS * side / parameters.shortest / 2)
     densities, halves, squares = [], [], []
-    for surface, seed in enumerate(
-        np.random.SeedSequence(parameters.seed).spawn(parameters.realisations), start=1
-    ):
+    seeds = np.random.SeedSequence(parameters.seed).spawn(parameters.realisations)
+    for surface, seed in enumerate(seeds, start=1):
         heights = gaussian_field(included, n_point, side, np.random.default_rng(seed))
         densities.append(profile_periodogram(heights, side / n_point))
         halves.append(half_derivative_mean_square(heights, side / n_point))
@@ -128,10 +112,7 @@ def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> S
     expected, deviation = tile_mean_square(included, side, 0.5)
     dominant = film.dominant_wavelengths(0.5)
     return SyntheticFilm(
-        contact_modulus=parameters.contact_modulus,
-        shortest=parameters.shortest,
-        side=side,
-        realisations=parameters.realisations,
+        **values_of(parameters, "contact_modulus", "shortest", "side", "realisations"),
         wavevector=wavevector,
         profile=film.profile_density(wavevector),
         converted=wavevector / np.pi * film.density(wavevector),
@@ -153,12 +134,9 @@ def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> S
 def profile_periodogram(heights: Array, pixel: float) -> Array:
     """Density of the lines along x of a periodic map, averaged over all of them.
 
-    The map is (n_x, n_y) with even n_x. C_1D stands at the wavevectors 2 pi m / (n_x pixel),
-    m = 1, 2, ..., below the Nyquist one; its sum times the spacing, divided by pi, is the mean
-    square height about the mean of a line.
+    The map is (n_x, n_y) with even n_x. C_1D stands at the wavevectors 2 pi m / (n_x pixel) below
+    the Nyquist one, from m = 1; its sum times the spacing over pi is the mean square height.
     """
-    from scipy.signal import periodogram
-
     _, density = periodogram(heights, fs=1 / pixel, axis=0, detrend=False)
     # One-sided in the frequency q / 2 pi; C_1D is one half of it.
     return np.asarray(density.mean(axis=1)[1 : len(heights) // 2] / 2)
@@ -166,8 +144,7 @@ def profile_periodogram(heights: Array, pixel: float) -> Array:
 
 def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
     """Whether the surfaces have the densities of their spectrum, and enough of its scales."""
-    spacing = 2 * math.pi / record.side
-    contributions = record.mode * record.synthetic
+    spacing, contributions = 2 * math.pi / record.side, record.mode * record.synthetic
     converted = record.contact_modulus / 8 * spacing * float(np.sum(contributions))
     wavelength = 2 * np.pi / record.mode
     dominant = (wavelength > record.dominant_shortest) & (wavelength < record.dominant_longest)
@@ -218,7 +195,7 @@ def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
         ),
         Check(
             "the included scales hold those that carry 80% of e_el",
-            f"{_micrometres(record.dominant_shortest, record.dominant_longest)}",
+            _micrometres(record.dominant_shortest, record.dominant_longest),
             f"within {_micrometres(record.shortest, record.side)}",
             record.shortest < record.dominant_shortest and record.dominant_longest < record.side,
             f"they carry {share:.3f} of e_el; the paper does not print its cutoff",
@@ -240,10 +217,8 @@ def synthetic_film_figure(record: SyntheticFilm) -> Drawing:
         axes.plot(q, record.profile, color=VERMILION, label="nanodiamond, ideal spectrum")
         axes.plot(q, record.converted, color="0.5", dashes=(4, 2), label=CONVERTED_LABEL)
         if record.measured_wavevector.size:
-            points, density = record.measured_wavevector, record.measured_profile
-            axes.plot(
-                points, density, ".", color=BLACK, markersize=2, label="nanodiamond, measured"
-            )
+            points, label = record.measured_wavevector, "nanodiamond, measured"
+            axes.plot(points, record.measured_profile, ".", color=BLACK, markersize=2, label=label)
         label = f"synthetic surfaces, mean of {record.realisations}"
         axes.plot(record.mode, record.synthetic, color=BLUE, linewidth=0.8, label=label)
         _draw_end(axes, f"tile {1e6 * record.side:.3g} µm", record.side, "left")
@@ -258,17 +233,10 @@ def synthetic_film_figure(record: SyntheticFilm) -> Drawing:
 
 def _draw_end(axes: Axes, name: str, length: float, alignment: Literal["left", "right"]) -> None:
     """Line at an end of the included scales, with a text inside them."""
-    axes.axvline(2 * np.pi / length, color=BLUE, linewidth=0.6, dashes=(1.5, 1.5))
-    axes.annotate(
-        name,
-        (2 * np.pi / length, 0.97),
-        xycoords=axes.get_xaxis_transform(),
-        xytext=(3 if alignment == "left" else -3, 0),
-        textcoords="offset points",
-        ha=alignment,
-        va="top",
-        color=BLUE,
-    )
+    place, inside = 2 * np.pi / length, 3 if alignment == "left" else -3
+    axes.axvline(place, color=BLUE, **DOTTED)
+    style = {"xycoords": axes.get_xaxis_transform(), "ha": alignment, "va": "top", "color": BLUE}
+    write_beside(axes, name, (place, 0.97), (inside, 0), **style)
 
 
 FIGURE = Figure(

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
@@ -22,9 +21,8 @@ from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineLoad
 from crackfront.simulate.simulation import Numerics, simulation_of
+from studies.paper.figure import Array
 from studies.paper.rough import flat_spectrum
-
-Array = NDArray[np.float64]
 
 _KIND: FieldKind = "roughness"
 
@@ -38,39 +36,21 @@ until then, in correlation lengths: those of config/line-weak.yaml."""
 _TILE_CUTOFFS = 60.0
 """Least sides of a tile."""
 
-
 Springs = Annotated[tuple[Positive, ...], Field(min_length=2, strict=False)]
 """Lengths of springs over the Larkin length."""
 
 
 class StraightParameters(Section):
-    """Straight fronts whose sites know nothing of each other.
+    """Straight fronts in the limit of weak disorder: sites pinned independently of each other."""
 
-    Attributes
-    ----------
-    elastic_energy : float
-        e_el, which decides how many sites are as long as the Larkin length. (Units: w_int)
-    pixels_per_cutoff : float
-        Points of the tile and sites of the front per short cutoff.
-    length : float
-        Period of a front over L_kappa.
-    """
-
-    elastic_energy: Positive
-    pixels_per_cutoff: Annotated[float, Field(ge=2, allow_inf_nan=False)]
-    length: Positive
+    elastic_energy: Positive  # which decides how many sites a Larkin length has (w_int)
+    pixels_per_cutoff: Annotated[float, Field(ge=2, allow_inf_nan=False)]  # and sites per cutoff
+    length: Positive  # period of a front over L_kappa
 
     def front(self, spring: float, seed: int, realisation: int, precision: float) -> StraightFront:
-        """Front that has forgotten its start, on one tile.
+        """Front that has forgotten its start, on one tile, on springs of L_kappa / Larkin length.
 
-        Parameters
-        ----------
-        spring : float
-            L_kappa over the Larkin length.
-        seed, realisation : int
-            Seed of the tiles, and number of this one.
-        precision : float
-            Load that the tolerance of the solver may cost, in correlation lengths of the force.
+        The tolerance of the solver may cost a load of `precision` correlation lengths of the force.
         """
         energy, pixels = self.elastic_energy, self.pixels_per_cutoff
         depth = force_correlation_length(_KIND, _SPECTRUM)
@@ -102,33 +82,18 @@ class StraightParameters(Section):
 
 @dataclass(frozen=True, slots=True)
 class StraightFront:
-    """A straight front at rest.
-
-    Attributes
-    ----------
-    field : TileField
-        Work of adhesion along the rays.
-    solver : Solver
-        How its fronts are found.
-    front : (n_site,) array
-        The front. (Units: short cutoff)
-    load : float
-        Its load. (Units: short cutoff)
-    period : float
-        Period of the tile along the motion: the front at the load further on by it is the same
-        again. (Units: short cutoff)
-    spring, larkin_length, force_length : float
-        L_kappa, Larkin length and correlation length of the force. (Units: short cutoff)
-    """
+    """A straight front at rest; the unit of all lengths is the short cutoff."""
 
     field: TileField
     solver: Solver
-    front: Array
+    front: Array  # (n_site,)
     load: float
-    period: float
-    spring: float
+    period: (
+        float  # of the tile along the motion: the front at the load further on by it is the same
+    )
+    spring: float  # L_kappa
     larkin_length: float
-    force_length: float
+    force_length: float  # correlation length of the force
 
     def moved(self, loads: Iterable[float]) -> Iterator[Array]:
         """Fronts at rest, one a load; a ValueError says why there is none."""

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import minimize, minimize_scalar
 
-Array = NDArray[np.float64]
+from studies.paper.figure import Array, Integers
 
 _FEWEST = 20
 """Values from which a law is told."""
@@ -17,31 +17,22 @@ _FEWEST = 20
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(100)
 """Gauss rule of the integral that normalises the density."""
 
-_N_BOOTSTRAP = 200
+_N_BOOTSTRAP, _N_JOINT_BOOTSTRAP = 200, 100
+
+Samples = Sequence[tuple[Array, Integers]]
+"""Values and their counts, of each sample."""
 
 
 @dataclass(frozen=True, slots=True)
 class PowerLaw:
-    r"""Density proportional to :math:`s^{-\tau} e^{-s/c}` above a smallest value.
+    r"""Density proportional to :math:`s^{-\tau} e^{-s/c}` above a smallest value."""
 
-    Attributes
-    ----------
-    exponent, low, high : float
-        tau and its 95% interval, by a bootstrap over the values.
-    cutoff : float
-        c. (Units: those of the values)
-    smallest : float
-        Where the law begins. (Units: those of the values)
-    n_value : int
-        Values above it.
-    """
-
-    exponent: float
-    low: float
+    exponent: float  # tau
+    low: float  # its 95% interval, by a bootstrap over the values
     high: float
-    cutoff: float
-    smallest: float
-    n_value: int
+    cutoff: float  # c, in the units of the values
+    smallest: float  # where the law begins
+    n_value: int  # values above it
 
     def density(self, values: ArrayLike) -> Array:
         """Density at values above the smallest, normalised there."""
@@ -52,25 +43,10 @@ class PowerLaw:
 
 
 def truncated_power_law(values: Array, smallest: float, rng: np.random.Generator) -> PowerLaw:
-    """Power law with exponential cut-off that makes values most likely.
+    """Power law with exponential cut-off that makes values from a smallest one on most likely.
 
-    Parameters
-    ----------
-    values : (n,) array
-        Sizes; those below the smallest have no part. (Units: any)
-    smallest : float
-        Where the law begins. (Units: those of the values)
-    rng : numpy.random.Generator
-        Source of the bootstrap, which takes the values as independent.
-
-    Raises
-    ------
-    ValueError
-        If fewer than 20 values lie above the smallest.
-
-    References
-    ----------
-    .. [1] Clauset, Shalizi, Newman, SIAM Rev. 51, 661 (2009).
+    The bootstrap takes the values as independent. A ValueError says if fewer than 20 are used.
+    After Clauset, Shalizi, Newman, SIAM Rev. 51, 661 (2009).
     """
     used = values[values >= smallest] / smallest
     if used.size < _FEWEST:
@@ -78,11 +54,8 @@ def truncated_power_law(values: Array, smallest: float, rng: np.random.Generator
             f"{used.size} values lie above {smallest:g}; a power law needs {_FEWEST}, so lower the "
             "smallest or take more surfaces"
         )
-    exponent, cutoff = _most_likely(used)
-    again = [
-        _most_likely(rng.choice(used, used.size), (exponent, cutoff))[0]
-        for _ in range(_N_BOOTSTRAP)
-    ]
+    exponent, cutoff = found = _most_likely(used)
+    again = [_most_likely(rng.choice(used, used.size), found)[0] for _ in range(_N_BOOTSTRAP)]
     low, high = np.quantile(again, [0.025, 0.975])
     return PowerLaw(exponent, float(low), float(high), cutoff * smallest, smallest, int(used.size))
 
@@ -124,35 +97,18 @@ class JointPowerLaw:
               - \frac{B}{4} \left(\frac{s}{s_m}\right)^\delta\right]
 
     above a smallest value, the cut-off of avalanches of an elastic line: before it ends, the
-    density lies above its power law.
-
-    Attributes
-    ----------
-    exponent, low, high : float
-        tau and its 95% interval, by a bootstrap over the values.
-    shoulder, tail, steepness : float
-        C, B and delta.
-    scales : (n_sample,) array
-        s_m of each sample, as of :func:`cutoff_scale`. (Units: those of the values)
-    smallest : float
-        Where the law begins. (Units: those of the values)
-    n_value : (n_sample,) array of int
-        Values above it.
-
-    References
-    ----------
-    .. [1] Rosso, Le Doussal, Wiese, Phys. Rev. B 80, 144204 (2009).
+    density lies above its power law (Rosso, Le Doussal, Wiese, Phys. Rev. B 80, 144204, 2009).
     """
 
-    exponent: float
-    low: float
+    exponent: float  # tau
+    low: float  # its 95% interval, by a bootstrap over the values
     high: float
-    shoulder: float
-    tail: float
-    steepness: float
-    scales: Array
-    smallest: float
-    n_value: NDArray[np.int64]
+    shoulder: float  # C
+    tail: float  # B
+    steepness: float  # delta
+    scales: Array  # s_m of each sample, as of `cutoff_scale`
+    smallest: float  # where the law begins
+    n_value: Integers  # values of each sample above it
 
     def density(self, values: ArrayLike, sample: int) -> Array:
         """Density of a sample at values above the smallest, normalised there."""
@@ -164,20 +120,13 @@ class JointPowerLaw:
         return np.asarray(np.exp(natural @ statistics) / norm)
 
 
-def cutoff_scale(values: Array, counts: NDArray[np.int64] | int = 1) -> float:
-    """Scale of the cut-off of a power law of exponent below 2, <s^2> / 2 <s>.
+def cutoff_scale(values: Array, counts: Integers | int = 1) -> float:
+    """Scale <s^2> / 2 <s> of the cut-off of a power law of exponent below 2.
 
-    Parameters
-    ----------
-    values : (n,) array
-        All values, the small ones as well, which hardly matter. (Units: any)
-    counts : (n,) array of int, optional
-        How often each occurs.
+    Small values hardly matter; `counts` says how often each value occurs.
     """
     return float(np.sum(counts * values**2) / np.sum(counts * values) / 2)
 
-
-_N_JOINT_BOOTSTRAP = 100
 
 _STEEPNESS = (1.0, 1.5)
 """Range of delta: 1 in mean field, 1.06 of a line of long range and 1.11 of one of short range to
@@ -192,19 +141,8 @@ def joint_power_law(
 ) -> JointPowerLaw:
     """Power law with the same exponent and shape of the cut-off that makes all samples most likely.
 
-    Parameters
-    ----------
-    samples : sequence of (n,) array
-        Sizes of each sample; those below the smallest decide the scale alone. (Units: any)
-    smallest : float
-        Where the law begins. (Units: those of the values)
-    rng : numpy.random.Generator
-        Source of the bootstrap, which takes the values as independent.
-
-    Raises
-    ------
-    ValueError
-        If fewer than 20 values of a sample lie above the smallest.
+    Values below the smallest decide the scale alone. The bootstrap takes the values as independent.
+    A ValueError says if fewer than 20 values of a sample lie above the smallest.
     """
     n_value = np.array([np.sum(sample >= smallest) for sample in samples])
     if n_value.min() < _FEWEST:
@@ -216,35 +154,22 @@ def joint_power_law(
     scales, natural, steepness = _most_likely_joint(binned, smallest)
     again = []
     for _ in range(_N_JOINT_BOOTSTRAP):
-        drawn = [
-            (values, rng.multinomial(counts.sum(), counts / counts.sum()))
-            for values, counts in binned
-        ]
+        drawn = [(values, rng.multinomial(n.sum(), n / n.sum())) for values, n in binned]
         again.append(_most_likely_joint(drawn, smallest)[1][0])
-    low, high = np.quantile(again, [0.025, 0.975])
-    return JointPowerLaw(
-        exponent=float(natural[0]),
-        low=float(low),
-        high=float(high),
-        shoulder=float(natural[1]),
-        tail=4 * float(natural[2]),
-        steepness=steepness,
-        scales=scales,
-        smallest=smallest,
-        n_value=n_value,
-    )
+    low, high = (float(end) for end in np.quantile(again, [0.025, 0.975]))
+    exponent, shoulder, quarter = (float(value) for value in natural)
+    shape = shoulder, 4 * quarter, steepness
+    return JointPowerLaw(exponent, low, high, *shape, scales, smallest, n_value)
 
 
-def _binned(sample: Array, smallest: float) -> tuple[Array, NDArray[np.int64]]:
+def _binned(sample: Array, smallest: float) -> tuple[Array, Integers]:
     """Geometric middles of filled bins, one edge of which is the smallest, and their counts."""
     place = np.floor(_BINS_A_DECADE * np.log10(sample / smallest))
     filled, counts = np.unique(place, return_counts=True)
     return smallest * 10 ** ((filled + 0.5) / _BINS_A_DECADE), counts
 
 
-def _most_likely_joint(
-    samples: Sequence[tuple[Array, NDArray[np.int64]]], smallest: float
-) -> tuple[Array, Array, float]:
+def _most_likely_joint(samples: Samples, smallest: float) -> tuple[Array, Array, float]:
     """Scales, (tau, C, B/4) and delta for binned samples."""
     scales = np.array([cutoff_scale(*sample) for sample in samples])
     used = [(values[values >= smallest], counts[values >= smallest]) for values, counts in samples]
@@ -252,15 +177,13 @@ def _most_likely_joint(
     def at(steepness: float) -> tuple[float, Array]:
         return _natural_parameters(used, scales, smallest, steepness)
 
-    options = {"xatol": 1e-2}
-    found = minimize_scalar(
-        lambda d: at(d)[0], bounds=_STEEPNESS, method="bounded", options=options
-    )
-    return scales, at(float(found.x))[1], float(found.x)
+    options = {"bounds": _STEEPNESS, "method": "bounded", "options": {"xatol": 1e-2}}
+    steepness = float(minimize_scalar(lambda value: at(value)[0], **options).x)
+    return scales, at(steepness)[1], steepness
 
 
 def _natural_parameters(
-    samples: Sequence[tuple[Array, NDArray[np.int64]]],
+    samples: Samples,
     scales: Array,
     smallest: float,
     steepness: float,

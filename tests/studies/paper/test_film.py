@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from pydantic import ValidationError
-from pydantic_core import PydanticCustomError
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
@@ -15,7 +14,6 @@ from crackfront.data.section import ConfigurationError
 from studies.paper.figure import figure, load_figure
 from studies.paper.film import conformity_energy
 from studies.paper.main_5a import FilmScalesParameters, film_scales
-from studies.paper.measured import read_profile_density
 from studies.paper.si_6 import (
     SyntheticFilmParameters,
     profile_periodogram,
@@ -141,26 +139,6 @@ def test_measured_profiles_are_drawn_and_give_their_own_energy(tmp_path):
     assert found == pytest.approx(11.14e-3, abs=0.05e-3)
     labels = figure("main-5a").draw(record).axes[1].get_legend_handles_labels()[1]
     assert "measured" in labels
-
-
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
-        ("q (1/m),C2D (m^4)\n1,1\n2,1\n", "line 1: column C1D is missing"),
-        ("q (1/m),C1D (m^4)\n1,1\n2,1\n", r"line 1: C1D is in m\^4; write C1D .unit. with one"),
-        ("q,C1D (m^3)\n1,1\n2,1\n", "line 1: q has no unit"),
-        ("q (1/m),C1D (m^3)\n1,1\n# note\n2,nan\n", "line 4: C1D is 'nan'; it must be a positive"),
-        ("q (1/m),C1D (m^3)\n1,1\n2,-1\n", "line 3: C1D is '-1'; it must be a positive number"),
-        ("q (1/m),C1D (m^3)\n1,1\n3,1\n2,1\n", "line 4: q is 2 1/m after 3 1/m; wavevectors must"),
-        ("q (1/m),C1D (m^3)\n1,1\n2\n", "line 3 has 1 values for 2 columns"),
-        ("q (1/m),C1D (m^3)\n1,1\n", "line 2 is the only row"),
-        ("q (1/m),C1D (m^3)\n", "has a header but no rows"),
-        ("", "is empty"),
-    ],
-)
-def test_a_wrong_file_of_profiles_is_refused_with_its_line(tmp_path, text, sentence):
-    with pytest.raises(PydanticCustomError, match=sentence):
-        read_profile_density(table(tmp_path, text))
 
 
 def test_a_configuration_with_a_wrong_file_is_refused_before_any_work(tmp_path):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from studies.law.power_law import (
+from studies.paper.power_law import (
     JointPowerLaw,
     PowerLaw,
     cutoff_scale,

@@ -9,10 +9,10 @@ import pytest
 from matplotlib.figure import Figure
 from pydantic import ValidationError
 
-from studies.law.power_law import joint_power_law
 from studies.paper.beyond_avalanches import AvalancheRecord, size_law
 from studies.paper.events import cutoff_slope, depth_slope, event_law, event_record
 from studies.paper.figure import figure, load_figure
+from studies.paper.power_law import joint_power_law
 from studies.paper.rough import STRONG
 
 CONFIGURATION = Path(__file__).parents[3] / "config" / "figures" / "beyond-avalanches.yaml"

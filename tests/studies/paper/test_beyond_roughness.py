@@ -139,9 +139,3 @@ def test_its_drawing_has_four_labelled_panels(record):
     assert isinstance(drawn, Figure)
     assert len(drawn.axes) == 4
     assert all(axes.get_xlabel() and axes.get_ylabel() for axes in drawn.axes)
-
-
-def test_data_of_fewer_kinds_of_fronts_are_refused(rng):
-    known = synthetic((0.4, 0.5), rng)
-    with pytest.raises(ValueError, match="hold 2 kinds of fronts, not 4; an earlier version made"):
-        SCENE.checks(replace(known, radius=known.radius[:2]))

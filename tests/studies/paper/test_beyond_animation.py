@@ -6,11 +6,11 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from crackfront.cli import main
 from crackfront.data.provenance import provenance
 from crackfront.data.records import write_record
-from crackfront.plots.animation import save_animation
-from studies.paper.figure import FIGURES, figure
+from studies.__main__ import main
+from studies.paper.drawing import save_animation
+from studies.paper.figure import figure
 from studies.paper.rough import RoughCycleParameters
 
 
@@ -50,13 +50,9 @@ def test_an_animation_has_a_frame_for_every_state(shown, tmp_path):
     assert path.stat().st_size < 3_000_000
 
 
-def test_animated_figures_are_those_that_have_an_animation():
-    assert [name for name in FIGURES if figure(name).animate] == ["beyond-animation"]
-
-
 def test_drawing_an_animated_figure_writes_its_gif(shown, tmp_path):
     path = tmp_path / "beyond-animation.nc"
     write_record(path, shown, provenance(), title="animation")
-    result = CliRunner().invoke(main, ["draw-figure", str(path)])
+    result = CliRunner().invoke(main, ["paper", "draw", str(path)])
     assert result.exit_code == 0, result.output
     assert {item.suffix for item in tmp_path.iterdir()} == {".nc", ".pdf", ".png", ".gif"}

@@ -1,0 +1,96 @@
+"""`python -m studies paper`: its figures from their configurations to the gallery."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from studies.__main__ import STUDIES, main
+from studies.paper.figure import figure
+
+CONFIGURATIONS = Path(__file__).parents[3] / "config" / "figures"
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, ["paper", *map(str, arguments)])
+
+
+def test_commands_compute_draw_and_check_a_figure(tmp_path):
+    output = tmp_path / "figures"
+    computed = run("figure", CONFIGURATIONS / "main-1d.yaml", "--output", output)
+    assert computed.exit_code == 0, computed.output
+    data = output / "quick" / "main-1d.nc"
+    assert run("draw", data).exit_code == 0
+    assert data.with_suffix(".pdf").stat().st_size > 1000
+    assert run("check", "--output", output).exit_code == 0
+    assert "4 of 4 agree, 0 differ" in (output / "checks.md").read_text()
+    found = json.loads(run("check", "--output", output, "--json").stdout)
+    assert [(one["figure"], one["scale"], one["passed"]) for one in found] == [
+        ("main-1d", "quick", True)
+    ] * 4
+    page = tmp_path / "docs" / "gallery.md"
+    assert run("gallery", "--output", output, "--page", page).exit_code == 0
+    assert "![Main Fig. 1d" in page.read_text()
+    assert (page.parent / "figures" / "main-1d.png").stat().st_size > 1000
+
+
+def test_the_studies_and_their_commands_are_listed():
+    def listed(*arguments):
+        command = [sys.executable, "-m", "studies", *arguments, "--help"]
+        folder = Path(__file__).parents[3]
+        return subprocess.run(
+            command, check=True, capture_output=True, text=True, cwd=folder
+        ).stdout
+
+    assert all(name in listed() for name in STUDIES)
+    assert all(name in listed("paper") for name in ("figure", "draw", "check", "gallery"))
+
+
+def test_the_cost_of_a_figure_is_told_before_it_is_computed(tmp_path, monkeypatch):
+    def computed(*_):
+        raise ValueError("computed")
+
+    shown = replace(figure("beyond-avalanches"), compute=computed)
+    monkeypatch.setattr("studies.paper.commands.figure", lambda name: shown)
+    configuration = CONFIGURATIONS / "beyond-avalanches.yaml"
+    result = run("figure", configuration, "--scale", "paper", "--output", tmp_path)
+    assert result.exit_code == 2
+    assert result.stderr == "about 31.4 min of processor time\nError: computed\n"
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
+    tmp_path, monkeypatch
+):
+    (tmp_path / "taken").write_text("a file")
+    shown = replace(figure("main-1d"), compute=None)
+    monkeypatch.setattr("studies.paper.commands.figure", lambda name: shown)
+    result = run("figure", CONFIGURATIONS / "main-1d.yaml", "--output", tmp_path / "taken")
+    assert result.exit_code == 2
+    assert "cannot be used: Not a directory" in result.output
+
+
+def test_the_figure_of_a_sweep_that_was_not_run_says_how_to_run_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "config").symlink_to(CONFIGURATIONS.parent)
+    result = run("figure", "config/figures/si-5.yaml")
+    assert result.exit_code == 2
+    assert "run the sweep first: make SWEEP=config/default.yaml" in result.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["draw", "other.nc"], "is no data of a figure"),
+        (["check", "--output", "."], "has no data of figures"),
+        (["gallery", "--output", "."], "has no data of figures"),
+    ],
+)
+def test_what_is_no_figure_is_refused(tmp_path, monkeypatch, arguments, sentence):
+    monkeypatch.chdir(tmp_path)
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert sentence in result.output

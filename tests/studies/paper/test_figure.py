@@ -1,0 +1,125 @@
+"""Figures of the paper: their configurations, data and checks."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crackfront.core.variables import variable
+from crackfront.data.files import UnreadableFileError, read_attributes
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from crackfront.data.section import ConfigurationError
+from studies.paper.figure import (
+    FIGURES,
+    SCALES,
+    Check,
+    checks_table,
+    close_to,
+    figure,
+    load_figure,
+)
+
+REPOSITORY = Path(__file__).parents[3]
+REFERENCES = REPOSITORY / "docs" / "reference"
+CONFIGURATIONS = REPOSITORY / "config" / "figures"
+
+
+def test_every_figure_has_a_configuration():
+    assert {path.stem for path in CONFIGURATIONS.glob("*.yaml")} == set(FIGURES)
+
+
+def test_figures_that_took_longer_than_a_minute_tell_about_how_long_they_take():
+    page = (REFERENCES.parent / "gallery.md").read_text(encoding="utf-8")
+    told = re.findall(r"Scale (\w+), (\d+) s of one core.*?config/figures/([\w-]+)\.yaml", page)
+    slow = [(name, scale, float(seconds)) for scale, seconds, name in told if float(seconds) > 60]
+    assert len(slow) >= 5
+    for name, scale, seconds in slow:
+        expected = figure(name).seconds(load_figure(CONFIGURATIONS / f"{name}.yaml", scale))
+        assert seconds / 4 < expected < 4 * seconds, name
+
+
+def test_a_figure_imports_no_other_figure_whose_changes_its_fingerprint_would_miss():
+    for name in FIGURES:
+        source = REPOSITORY / "studies" / "paper" / f"{name.replace('-', '_')}.py"
+        imported = re.findall(
+            r"studies\.paper\.((?:main|si|beyond)_\w+)", source.read_text("utf-8")
+        )
+        assert imported == []
+
+
+@pytest.mark.parametrize("scale", SCALES)
+@pytest.mark.parametrize("name", FIGURES)
+def test_every_configuration_is_valid_at_every_scale(name, scale):
+    parameters = load_figure(CONFIGURATIONS / f"{name}.yaml", scale)
+    assert isinstance(parameters, figure(name).parameters)
+
+
+GOOD = "{approach: 0.6, retraction: 1.4, max_penetration: 1.0, step: 0.1}"
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (f"parameters: {GOOD}\nquick: {{}}", "key paper is missing; the keys here are"),
+        (f"parameters: {GOOD}\nquick: {{}}\npaper: {{}}\nfine: {{}}", "unknown key fine"),
+        (f"parameters: {GOOD}\nquick: {{step: 1.0}}\npaper: {{}}", "stands in parameters and in"),
+        (f"parameters: {GOOD}\nquick: 3\npaper: {{}}", "quick must be a mapping"),
+        ("parameters: {}\nquick: {}\npaper: {}", "key approach is missing"),
+        (f"parameters: {GOOD}\nquick: {{stepp: 1.0}}\npaper: {{}}", "did you mean step"),
+        (f"parameters: {GOOD.replace('0.6', '1.6')}\nquick: {{}}\npaper: {{}}", "not be above"),
+        (f"parameters: {GOOD.replace('0.1', '-0.1')}\nquick: {{}}\npaper: {{}}", "step is -0.1"),
+    ],
+)
+def test_a_wrong_configuration_is_refused_with_a_sentence(tmp_path, text, sentence):
+    path = tmp_path / "main-1d.yaml"
+    path.write_text(text)
+    with pytest.raises(ConfigurationError, match=sentence):
+        load_figure(path, "quick")
+
+
+def test_a_figure_that_does_not_exist_is_refused():
+    with pytest.raises(ConfigurationError, match="there is no figure 'main-9'; the names"):
+        load_figure(Path("main-9.yaml"), "quick")
+
+
+@dataclass(frozen=True)
+class Short:
+    force: np.ndarray = variable("force", "1", "state")
+
+
+@dataclass(frozen=True)
+class Long(Short):
+    stiffness: float = variable("stiffness", "1")
+
+
+def test_a_file_that_lacks_data_is_refused(tmp_path):
+    path = tmp_path / "short.nc"
+    write_record(path, Short(np.arange(3.0)), provenance())
+    with pytest.raises(UnreadableFileError, match="holds no Long: stiffness is missing"):
+        read_record(path, Long)
+
+
+def test_a_check_that_fails_says_so():
+    assert "**FAIL**" in "\n".join(checks_table([close_to("a", 1.0, 2.0, 0.5)]))
+    assert "| agrees |" in "\n".join(checks_table([Check("a", "1", "1", passed=True)]))
+
+
+def test_a_difference_that_the_law_predicts_is_told_with_its_number():
+    predicted = close_to("k", 2.1, 3.0, 0.5, law=(2.2, 0.2))
+    assert predicted.result == "differs as the law of k says"
+    assert "differs as the law of k says: 2.20 ± 0.20 |" in "\n".join(checks_table([predicted]))
+    assert close_to("k", 2.9, 3.0, 0.5, law=(2.2, 0.2)).result == "agrees"
+    assert close_to("k", 1.9, 3.0, 0.5, law=(2.2, 0.2)).result == "FAIL"
+
+
+@pytest.mark.parametrize("path", sorted(REFERENCES.glob("*.nc")), ids=lambda path: path.stem)
+def test_the_kept_data_can_be_read_and_say_where_they_come_from(path):
+    scene = figure(path.stem)
+    assert any(check.passed for check in scene.checks(read_record(path, scene.record)))
+    origin = read_attributes(path)
+    assert origin["scale"] == "paper"
+    assert f"figure config/figures/{path.stem}.yaml --scale paper" in origin["command"]
+    assert "dirty" not in origin["git_commit"]

@@ -1,0 +1,34 @@
+"""Main Fig. 1d: the loop of a smooth sphere with two works of adhesion."""
+
+from dataclasses import replace
+
+import pytest
+
+from studies.paper.figure import figure
+from studies.paper.main_1d import SmoothLoopParameters
+
+SCENE = figure("main-1d")
+
+
+@pytest.fixture(scope="module")
+def smooth():
+    given = SmoothLoopParameters(approach=0.6, retraction=1.4, max_penetration=1.0, step=0.005)
+    return SCENE.compute(given, lambda line: None)
+
+
+def test_a_smooth_loop_follows_the_closed_forms(smooth):
+    assert all(check.passed for check in SCENE.checks(smooth))
+
+
+def test_a_wrong_smooth_loop_fails_its_checks(smooth):
+    wrong = replace(smooth, radius=smooth.radius * 1.01, force=smooth.force * 1.01)
+    assert [check.passed for check in SCENE.checks(wrong)] == [False, False, False, True]
+
+
+def test_its_drawing_names_its_jumps_and_the_pull_off_force(smooth):
+    axes = SCENE.draw(smooth).axes[0]
+    assert "force" in axes.get_ylabel()
+    texts = " ".join(text.get_text() for text in axes.texts).replace("\n", " ")
+    for name in ("jump into contact", "jump out of contact", "pull-off force"):
+        assert name in texts
+    assert axes.get_ylim()[0] < 1.1 * smooth.force.min()
