@@ -19,7 +19,7 @@ from crackfront.cli.report import StoppedError, examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
-from crackfront.sweep.parallel import ending_alike
+from crackfront.sweep.parallel import stopping_as_ctrl_c
 
 _OBJECTS = 100_000
 """New objects after which the process of a command looks for garbage."""
@@ -45,12 +45,12 @@ class Commands(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
         try:
-            with ending_alike():
+            with stopping_as_ctrl_c():
                 return super().invoke(ctx)
         except KeyboardInterrupt as error:
             raise StoppedError(
-                "nothing is half-written; the same command begins anew, or goes on from its last "
-                "checkpoint"
+                "Nothing is half-written; run the same command to continue from its last "
+                "checkpoint, or to begin anew where it has none"
             ) from error
         except BrokenPipeError:
             raise
@@ -116,8 +116,7 @@ Exit codes:
   2   the input cannot be used; one sentence says why, and nothing was computed
   3   predict: the theory applies with reservations, each of which is named
   4   predict: the theory does not apply, and what modulus, radius or roughness would do
-  75  told to end (Ctrl-C or SIGTERM) before it was done; the same command goes on,
-      or begins anew where it says so
+  75  interrupted (Ctrl-C or SIGTERM); run the same command to continue
 
 \b
 Examples:

@@ -28,7 +28,7 @@ from crackfront.cli.watch import Progress
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE
 from crackfront.data.bounds import COUNT, DENSITY, TOLERANCE, Range
 from crackfront.simulate.cases import CASES, Problem, Resolution
-from crackfront.sweep.parallel import heeding_notice, notice_is_given
+from crackfront.sweep.parallel import deferring_stops, stop_is_requested
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -199,7 +199,7 @@ def cycle(
     recorder = _recorder(problem, record, shown, keeper)
     announce_compilation(err=as_json)
     announce_cost(problem.seconds)
-    with heeding_notice():
+    with deferring_stops():
         recorder.run(problem.field, problem.front, problem.loads, solution)
     shown.finish()
     found = loop_dataset(recorder.record(), problem.measures, problem.field.geometry, problem.sites)
@@ -296,7 +296,7 @@ class _Keeper:
         from crackfront.data.provenance import provenance
         from crackfront.simulate.files import checkpoint_dataset
 
-        stop = notice_is_given()
+        stop = stop_is_requested()
         if not stop and time.monotonic() < self._next:
             return
         kept = checkpoint_dataset(recorder.checkpoint(), self._key, self._geometry)
@@ -305,7 +305,7 @@ class _Keeper:
         if stop:
             count = len(recorder.states)
             raise StoppedError(
-                f"{count} states are kept in {self.path}; the same command goes on from there"
+                f"{count} states are stored in {self.path}; run the same command to continue"
             )
 
 

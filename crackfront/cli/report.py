@@ -41,14 +41,14 @@ as_json = click.option(
 
 
 class StoppedError(click.ClickException):
-    """A command was told to end before it was done; what is kept, and how it goes on."""
+    """A command was interrupted; the message says what is stored and how to continue."""
 
     exit_code = 75
     """EX_TEMPFAIL of sysexits.h."""
 
     def show(self, file: Any = None) -> None:
         """Print the sentence."""
-        click.echo(f"Stopped as told: {self.message}", err=True)
+        click.echo(f"Interrupted. {self.message}", err=True)
 
 
 def examples(*lines: str) -> str:

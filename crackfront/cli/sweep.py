@@ -210,8 +210,8 @@ def simulate(
 ) -> None:
     """Run the simulations of a sweep that are not stored yet.
 
-    Ctrl-C and SIGTERM are taken as notice: running simulations are kept as far as they are, and
-    the exit code is 75. The same command then goes on from there.
+    Ctrl-C and SIGTERM store running simulations as far as they are, and the exit code is 75. Run
+    the same command to continue.
     """
     from crackfront.sweep import parallel
 
@@ -220,7 +220,7 @@ def simulate(
 
         set_threads(threads)
     if not parallel.is_manager(ranks):
-        with parallel.heeding_notice():
+        with parallel.deferring_stops():
             parallel.serve_tasks("crackfront.sweep.tasks")
         return
     sweep, store = sweep_and_store(configuration, output)
@@ -257,7 +257,7 @@ def simulate(
     try:
         fill_store(store, inventory.missing, configuration, checkpoint)
     except StoppedError as stopped:
-        if not parallel.launcher_is_told():
+        if not parallel.launcher_knows_of_stop():
             raise
         stopped.show()
         return
@@ -291,7 +291,7 @@ def fill_store(
 ) -> None:
     """Run what is missing and report every simulation as it ends."""
     from crackfront.data.provenance import provenance
-    from crackfront.sweep.parallel import heeding_notice
+    from crackfront.sweep.parallel import deferring_stops
     from crackfront.sweep.tasks import NOT_STORED, STOPPED, fill
 
     if missing:
@@ -299,7 +299,7 @@ def fill_store(
     started = time.monotonic()
     origin = provenance(configuration.read_text(encoding="utf-8"))
     outcomes = fill(store, missing, origin, checkpoint_seconds)
-    with heeding_notice(), closing(outcomes):
+    with deferring_stops(), closing(outcomes):
         for count, (line, finished) in enumerate(_reported(outcomes, len(missing))):
             if finished.status == NOT_STORED:
                 raise click.ClickException(
@@ -308,8 +308,8 @@ def fill_store(
                 )
             if finished.status == STOPPED:
                 raise StoppedError(
-                    f"{count} of {len(missing)} simulations were stored and the running ones "
-                    "kept; the same command continues with the others"
+                    f"{count} of {len(missing)} simulations are finished and stored, and running "
+                    "ones as far as they are; run the same command to continue"
                 )
     if missing:
         click.echo(f"{len(missing)} simulations in {time.monotonic() - started:.1f} s")

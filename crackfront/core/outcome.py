@@ -13,6 +13,10 @@ Direction = Literal[1, -1]
 """+1 lets the front advance, as a contact that grows does; -1 lets it recede."""
 
 
+class DefectError(RuntimeError):
+    """A solver found that its result is wrong: a defect of the program, none of the machine."""
+
+
 class Status(enum.Enum):
     """How a relaxation or a cycle ended; the value is the sentence that says it."""
 

@@ -31,6 +31,10 @@ DAMAGED_SUFFIX = ".damaged"
 """Ending of the name of a file that was set aside."""
 
 
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
+"""Numbers of the errors of a full disk and of a used-up quota."""
+
+
 class UnreadableFileError(ValueError):
     """A file that is missing, damaged, or not what its reader needs."""
 
@@ -137,7 +141,7 @@ def _refuse_full_disk(path: Path, error: Exception) -> None:
             probe.flush()
             os.fsync(probe.fileno())
     except OSError as full:
-        if full.errno in (errno.ENOSPC, errno.EDQUOT):
+        if full.errno in NO_ROOM:
             raise OSError(full.errno, os.strerror(full.errno), str(path)) from error
 
 
@@ -222,13 +226,10 @@ def integrities(folder: Path) -> Iterator[tuple[Path, Integrity]]:
             yield path, integrity(path)[0]
 
 
-def set_aside_damaged(folder: Path, but: Collection[str] = ()) -> Iterator[str]:
-    """Rename the damaged files of a folder, so that they are made anew; a sentence each.
-
-    Those of the folders in it whose names are given are left.
-    """
+def set_aside_damaged(folder: Path) -> Iterator[str]:
+    """Rename the damaged files of a folder, so that they are made anew; a sentence each."""
     for path, found in integrities(folder):
-        if found is Integrity.DAMAGED and path.relative_to(folder).parts[0] not in but:
+        if found is Integrity.DAMAGED:
             yield f"{path} is damaged; it is made anew, and set aside as {set_aside(path).name}"
 
 

@@ -1,4 +1,4 @@
-"""Journals, files to which one process each appends lines, and where in them the rows stand."""
+"""Journals, files to which one process each appends lines, and the index of the rows in them."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from crackfront.analysis.table import SweepRow
 from crackfront.data.digests import Integrity, integrity
+from crackfront.data.files import replace_atomically, set_aside
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.table import ROWS_AT_ONCE, row_fingerprint
 
@@ -50,7 +51,7 @@ class Entry:
     row : SweepRow or None
         Its row, where the simulation ended and a row is still that.
     digest : str
-        Digest of its file, empty where it has none or an earlier version wrote it.
+        Digest of its file, empty where it has none.
     """
 
     key: str
@@ -65,8 +66,7 @@ class Entry:
 class Journal:
     """The journal of this process in a folder; it is created with its first line.
 
-    While the process is at a simulation it holds a lock on the file, which the system takes from it
-    in whatever way it ends.
+    While a simulation runs the process holds a lock on the file, which ends with the process.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -94,11 +94,13 @@ class Journal:
                     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self._path))
             except OSError:
                 file.truncate(length)
+                if not length:
+                    self._path.unlink()
                 raise
         self._hold()
 
     def _hold(self) -> None:
-        """Lock the file, where the file system knows locks and nobody just looks at it."""
+        """Lock the file, where the file system has locks and no other process holds this one."""
         if self._held is None:
             with contextlib.ExitStack() as stack, contextlib.suppress(OSError):
                 file = stack.enter_context(self._path.open("rb"))
@@ -142,31 +144,38 @@ class Running:
 
 
 _SECONDS_TO_LIVE = 120.0
-"""Age of a journal, against the newest, from which its process has ended where no lock tells."""
+"""Age of a journal, against the newest, at which its process has ended if it has no lock."""
 
 _SECONDS_OF_CLOCKS = 600.0
-"""Age of the newest journal by this machine's clock from which no such process lives any more."""
+"""Age of the newest journal by this machine's clock at which all such processes have ended."""
 
 
 def running(folder: Path) -> list[Running]:
     """What the living processes of the journals of a folder have begun last."""
-    moments = {path: path.stat().st_mtime for path in journal_paths(folder)}
-    newest, now = max(moments.values(), default=0.0), time.time()
     found = []
-    for path, moment in moments.items():
-        alive = _is_alive(path)
-        if alive is None:
-            alive = newest - moment < _SECONDS_TO_LIVE and now - newest <= _SECONDS_OF_CLOCKS
-        entries = [entry for _, entry in read_journal(path, "")] if alive else []
+    for path in _living(folder):
+        entries = [entry for _, entry in read_journal(path, "")]
         if entries and not entries[-1].definition:
             host, process, _ = path.stem.rsplit("-", 2)
-            key, label = entries[-1].key, entries[-1].label
-            found.append(Running(key, label, host, process, max(0.0, now - moment)))
+            silent = max(0.0, time.time() - path.stat().st_mtime)
+            found.append(Running(entries[-1].key, entries[-1].label, host, process, silent))
     return found
 
 
-def _is_alive(path: Path) -> bool | None:
-    """Whether the process of a journal lives; None where its lock does not tell."""
+def _living(folder: Path) -> Iterator[Path]:
+    """Journals whose processes live, by their locks or, where these say nothing, by their dates."""
+    moments = {path: path.stat().st_mtime for path in journal_paths(folder)}
+    newest, now = max(moments.values(), default=0.0), time.time()
+    for path, moment in moments.items():
+        alive = _is_locked(path)
+        if alive is None:
+            alive = newest - moment < _SECONDS_TO_LIVE and now - newest <= _SECONDS_OF_CLOCKS
+        if alive:
+            yield path
+
+
+def _is_locked(path: Path) -> bool | None:
+    """Whether a process holds the lock on its journal; None where that cannot be known."""
     with path.open("rb") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -176,6 +185,37 @@ def _is_alive(path: Path) -> bool | None:
             return None  # a file system without locks
     # Locks of other machines may be unknown here.
     return False if path.stem.rsplit("-", 2)[0] == socket.gethostname() else None
+
+
+def renew_journals(folder: Path) -> list[str]:
+    """Set damaged journals of ended processes aside but for whole lines; a sentence each."""
+    found, living = [], set(_living(folder))
+    for path in journal_paths(folder):
+        lines, n_damaged = _whole_lines(path)
+        if n_damaged and path not in living:
+            # Another process may just do the same.
+            with contextlib.suppress(FileNotFoundError):
+                aside = set_aside(path).name
+                if lines:
+                    replace_atomically(
+                        path, functools.partial(Path.write_bytes, data=b"".join(lines))
+                    )
+                found.append(f"{path} is damaged; its whole lines stay, the rest is in {aside}")
+    return found
+
+
+def line_counts(path: Path) -> tuple[int, int]:
+    """Numbers of whole and of damaged lines of a journal; without a line, 0 and 1."""
+    lines, n_damaged = _whole_lines(path)
+    return len(lines), n_damaged
+
+
+def _whole_lines(path: Path) -> tuple[list[bytes], int]:
+    """Whole lines of a journal, and the number of others; 1 for an empty journal."""
+    with path.open("rb") as file:
+        lines = list(file)
+    whole = [line for line in lines if _text(line) is not None]
+    return whole, len(lines) - len(whole) if lines else 1
 
 
 def journal_paths(folder: Path) -> list[Path]:
@@ -204,10 +244,17 @@ def read_journal(path: Path, definition: str) -> Iterator[tuple[int, Entry]]:
             place += len(line)
 
 
-def _entry(line: bytes, definition: str) -> Entry | None:
-    """What a line says, if it is whole."""
+def _text(line: bytes) -> bytes | None:
+    """Text of a line that is whole, behind its checksum."""
     checksum, _, text = line.rstrip(b"\n").partition(b" ")
-    if not line.endswith(b"\n") or checksum != b"%08x" % zlib.crc32(text):
+    whole = line.endswith(b"\n") and checksum == b"%08x" % zlib.crc32(text)
+    return text if whole else None
+
+
+def _entry(line: bytes, definition: str) -> Entry | None:
+    """Entry of a line that is whole."""
+    text = _text(line)
+    if text is None:
         return None
     content = json.loads(text)
     row = content.pop("row")
@@ -215,10 +262,8 @@ def _entry(line: bytes, definition: str) -> Entry | None:
     return Entry(**content, row=SweepRow(**row) if known else None)
 
 
-class Ledger:
-    """Rows of all journals of a store as they are now, found by simulation.
-
-    It holds 28 bytes of every row; the rows themselves are read when they are asked for.
+class RowIndex:
+    """Where in the journals of a store the row of each simulation stands: 28 bytes a row.
 
     Parameters
     ----------
@@ -325,7 +370,7 @@ class Ledger:
             found, digest = integrity(path)
         except FileNotFoundError:
             return False
-        return found is not Integrity.DAMAGED and digest == entry.digest
+        return found is Integrity.WHOLE and digest == entry.digest
 
 
 def _hash(text: str) -> int:

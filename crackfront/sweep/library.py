@@ -1,4 +1,4 @@
-"""A sweep in the library: run or gone on with, one simulation after the other, to its table."""
+"""A sweep in the library: begun or continued, one simulation after the other, to its table."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crackfront.data.arguments import refuse_other_type
 from crackfront.data.files import read_dataset
 from crackfront.data.provenance import provenance
 from crackfront.sweep.configuration import load_configuration, results_folder
-from crackfront.sweep.parallel import heeding_notice
+from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.store import Store
 from crackfront.sweep.table import COMPLETE
 from crackfront.sweep.tasks import NOT_STORED, STOPPED, fill
@@ -54,7 +54,7 @@ def sweep(
     OSError
         If nothing can be stored.
     KeyboardInterrupt
-        After Ctrl-C or SIGTERM. What ran is kept as far as it was: the same call goes on.
+        After Ctrl-C or SIGTERM. Finished simulations are stored; the same call continues.
     """
     for name, given in (("configuration", configuration), ("output", output or "")):
         refuse_other_type(name, given, (str, PathLike), "the path of a file or folder")
@@ -63,7 +63,7 @@ def sweep(
     store = Store(results_folder(path) if output is None else Path(output))
     missing = store.inventory(found.simulations()).missing
     with (
-        heeding_notice(),
+        deferring_stops(),
         tqdm(
             total=len(missing),
             unit="simulation",
@@ -74,7 +74,7 @@ def sweep(
     ):
         for simulation, finished in outcomes:
             if finished.status == STOPPED:
-                raise KeyboardInterrupt("what ran is kept; the same call goes on")
+                raise KeyboardInterrupt("finished simulations are stored; the same call continues")
             if finished.status == NOT_STORED:
                 raise OSError(f"{simulation.label}: {finished.sentence}")
             bar.update()

@@ -1,9 +1,8 @@
-"""Tasks over MPI ranks, or one after the other without MPI, until notice is given that they end.
+"""Tasks over MPI ranks, or one after the other without MPI, until a stop is requested.
 
-This is the only importer of mpi4py. A batch system sends SIGTERM some time before it kills, a
-person presses Ctrl-C or closes the terminal. Launchers differ in whether they pass that on to their
-ranks or kill them, so that whoever started a launcher leaves the ranks a file instead: notice is
-one of these signals, or that file.
+This is the only importer of mpi4py. A stop is requested by SIGTERM, which a batch system sends some
+time before it kills, by Ctrl-C or by closing the terminal. Some launchers kill their ranks instead
+of passing signals on; the process that started a launcher therefore leaves its ranks a file.
 """
 
 from __future__ import annotations
@@ -28,33 +27,33 @@ from typing import TypeVar, cast
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
-_NOTICE_FILE = "CRACKFRONT_NOTICE"
-"""Environment variable that names the file of a notice."""
+_STOP_FILE = "CRACKFRONT_STOP"
+"""Environment variable that names the file by which ranks are requested to stop."""
 
 _ENDED = "ended"
-"""What the manager writes into it where it ended as told."""
+"""What the manager writes into it before it stops."""
 
 _SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE")
-"""Environment variables in which launchers tell processes how many of them they start."""
+"""Environment variables in which launchers state how many processes they start."""
 
 _SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
-"""Signals by which a process is told to end; one that was ignored at its start stays ignored."""
+"""Signals that request a stop; one that was ignored at the start of the process stays ignored."""
 
 _received = threading.Event()
 
 
-def notice_is_given() -> bool:
-    """Whether this process is to end."""
-    name = os.environ.get(_NOTICE_FILE)
+def stop_is_requested() -> bool:
+    """Whether this process is to store what it has and end."""
+    name = os.environ.get(_STOP_FILE)
     return _received.is_set() or (name is not None and Path(name).exists())
 
 
-def launcher_is_told() -> bool:
-    """Whether who launched this rank now knows from the file that it ended as told.
+def launcher_knows_of_stop() -> bool:
+    """Write into the file of the launcher that this rank stops on request; whether there is one.
 
-    The rank then ends with 0: MPI takes any other exit code for a failure, and says so.
+    The rank then ends with 0, as MPI reports any other exit code as a failure.
     """
-    name = os.environ.get(_NOTICE_FILE)
+    name = os.environ.get(_STOP_FILE)
     if name is None:
         return False
     try:
@@ -65,8 +64,8 @@ def launcher_is_told() -> bool:
 
 
 @contextlib.contextmanager
-def heeding_notice() -> Iterator[None]:
-    """Take what tells this process to end as the notice; a second Ctrl-C ends it at once."""
+def deferring_stops() -> Iterator[None]:
+    """Let signals only set :func:`stop_is_requested`; a second Ctrl-C ends the process at once."""
 
     def receive(number: int) -> None:
         if number == signal.SIGINT and _received.is_set():
@@ -74,34 +73,36 @@ def heeding_notice() -> Iterator[None]:
         _received.set()
 
     try:
-        with _when_told_to_end(receive):
+        with _on_stop_signal(receive):
             yield
     finally:
         _received.clear()
 
 
 @contextlib.contextmanager
-def ending_alike() -> Iterator[None]:
-    """Raise KeyboardInterrupt whatever tells this process to end, as Ctrl-C does."""
+def stopping_as_ctrl_c() -> Iterator[None]:
+    """Raise KeyboardInterrupt at every signal that requests a stop, as Ctrl-C does."""
 
     def receive(number: int) -> None:
         raise KeyboardInterrupt
 
-    with _when_told_to_end(receive):
+    with _on_stop_signal(receive):
         yield
 
 
 @contextlib.contextmanager
-def _when_told_to_end(act: Callable[[int], None]) -> Iterator[None]:
-    """Do something, given the number of the signal, where this process is told to end."""
+def _on_stop_signal(act: Callable[[int], None]) -> Iterator[None]:
+    """Call a function with the number of each signal that requests a stop."""
 
     def receive(number: int, frame: FrameType | None) -> None:
         act(number)
 
-    # Signals reach the main thread, and only that may say what becomes of them.
-    ours = threading.current_thread() is threading.main_thread()
-    heeded = [number for number in _SIGNALS if ours and signal.getsignal(number) != signal.SIG_IGN]
-    before = {number: signal.signal(number, receive) for number in heeded}
+    # Only the main thread receives signals and may set their handlers.
+    in_main = threading.current_thread() is threading.main_thread()
+    handled = [
+        number for number in _SIGNALS if in_main and signal.getsignal(number) != signal.SIG_IGN
+    ]
+    before = {number: signal.signal(number, receive) for number in handled}
     try:
         yield
     finally:
@@ -135,7 +136,7 @@ def is_manager(n_worker: int) -> bool:
     if world.size == n_worker + 1:
         return world.rank == 0
     if world.rank != 0:
-        # The first that exits ends them all; the manager has its say before.
+        # The first that exits ends them all; the manager prints its sentence before.
         time.sleep(5)
         sys.exit(2)
     raise ValueError(
@@ -217,10 +218,8 @@ def launch_ranks(
 ) -> int | None:
     """Exit code of a crackfront command that is run on a manager and a number of workers.
 
-    It is None where the manager ended as told.
-
-    What tells this process to end leaves the ranks the file of a notice; the second time it ends
-    the launcher.
+    It is None if the manager stopped on request. The first signal that requests a stop leaves the
+    ranks a file, the second ends the launcher.
 
     Parameters
     ----------
@@ -229,7 +228,7 @@ def launch_ranks(
     launcher : str or None
         Command that takes `-n` and a number, as in "srun -K1 --mpi=pmi2".
     folder : Path
-        Folder for the notice, which all ranks see.
+        Folder for that file, which all ranks see.
 
     Raises
     ------
@@ -243,8 +242,8 @@ def launch_ranks(
         *(sys.executable, "-m", "mpi4py", "-m", "crackfront"),
         *arguments,
     ]
-    file = folder / f".notice-{secrets.token_hex(8)}"
-    environment = {"OMP_NUM_THREADS": "1"} | dict(os.environ) | {_NOTICE_FILE: str(file)}
+    file = folder / f".stop-{secrets.token_hex(8)}"
+    environment = {"OMP_NUM_THREADS": "1"} | dict(os.environ) | {_STOP_FILE: str(file)}
     try:
         # A group of its own: Ctrl-C reaches this process alone, and not the launcher, which would
         # kill the ranks. From the background none of them may read the terminal.
@@ -256,14 +255,14 @@ def launch_ranks(
             f"launcher {command[0]!r} cannot be started ({error.strerror}); name another one"
         ) from error
 
-    def leave_notice(number: int) -> None:
+    def leave_file(number: int) -> None:
         try:
             file.touch(exist_ok=False)
         except OSError:  # the second time, or where nothing can be written
             process.terminate()
 
     try:
-        with _when_told_to_end(leave_notice):
+        with _on_stop_signal(leave_file):
             code = process.wait()
         ended = file.exists() and file.read_text(encoding="utf-8") == _ENDED
         return None if code == 0 and ended else code

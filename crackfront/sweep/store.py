@@ -25,7 +25,7 @@ from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.journal import Ledger, journal_paths, running
+from crackfront.sweep.journal import RowIndex, journal_paths, line_counts, renew_journals, running
 from crackfront.sweep.sweep import Shard, Sweep, shard_fingerprint
 from crackfront.sweep.table import (
     COMPLETE,
@@ -141,11 +141,11 @@ class Store:
         return self.folder / "checkpoints" / f"{simulation.stem}.nc"
 
     def holdings(
-        self, simulations: Iterable[Simulation], ledger: Ledger | None = None
+        self, simulations: Iterable[Simulation], index: RowIndex | None = None
     ) -> Iterator[Holding]:
-        """What is stored of simulations, by the journals or a ledger that was made of them."""
+        """What is stored of simulations, by the index of the rows or one that is given."""
         curves = _Curves(self.folder / "curves")
-        for simulation, row in (ledger or Ledger(self.folder)).rows(simulations):
+        for simulation, row in (index or RowIndex(self.folder)).rows(simulations):
             if row is not None or simulation not in curves or not self.path(simulation).is_file():
                 yield Holding(simulation, row)
                 continue
@@ -157,8 +157,8 @@ class Store:
 
     def inventory(self, simulations: Iterable[Simulation]) -> Inventory:
         """What is missing among simulations, and why."""
-        ledger = Ledger(self.folder)
-        absent = [one for one in self.holdings(simulations, ledger) if one.row is None]
+        index = RowIndex(self.folder)
+        absent = [one for one in self.holdings(simulations, index) if one.row is None]
         missing = tuple(one.simulation for one in absent)
         return Inventory(
             missing,
@@ -166,7 +166,7 @@ class Store:
             stale=tuple(
                 Stale(one.label, changed)
                 for one in missing
-                if (changed := _changed_parts(one, ledger.parts(one.label)))
+                if (changed := _changed_parts(one, index.parts(one.label)))
             ),
         )
 
@@ -177,12 +177,12 @@ class Store:
         of the sweep took.
         """
         begun = {one.key for one in running(self.journals)}
-        ledger = Ledger(self.folder, checked=False)
+        index = RowIndex(self.folder, checked=False)
         found, paces = [], []
         for item in sweep.spectra:
             counts: Counter[str] = Counter()
             seconds = 0.0
-            for held in self.holdings(sweep.simulations(item), ledger):
+            for held in self.holdings(sweep.simulations(item), index):
                 expected = expected_cost(held.simulation).seconds
                 if held.row is None:
                     counts["running" if held.simulation.key in begun else "waiting"] += 1
@@ -247,7 +247,8 @@ class Store:
         """
         if not self.folder.is_dir():
             return
-        yield from set_aside_damaged(self.folder, {"curves", "checkpoints"})
+        yield from set_aside_damaged(self.folder)
+        yield from renew_journals(self.journals)
         if any(self._lists()):
             if not self.configuration.is_file():
                 text = configuration.read_text(encoding="utf-8")
@@ -327,17 +328,18 @@ class Store:
             )
         left_out = {"checkpoints"} if curves else {"checkpoints", "curves"}
         found = {
-            file: state
+            file: state is Integrity.DAMAGED
             for file, state in integrities(self.folder)
             if file.relative_to(self.folder).parts[0] not in left_out
             and file.resolve() != path.resolve()
         }
-        if damaged := [file for file, state in found.items() if state is Integrity.DAMAGED]:
+        found |= {file: line_counts(file)[1] > 0 for file in journal_paths(self.journals)}
+        if damaged := [file for file, is_damaged in found.items() if is_damaged]:
             raise ValueError(
                 f"{len(damaged)} files of {self.folder} are damaged, the first is {damaged[0]}; "
                 "run make, which makes them anew, before it is archived"
             )
-        files = sorted([*found, *journal_paths(self.journals)])
+        files = sorted(found)
 
         def write(part: Path) -> None:
             root, sums = Path(self.folder.name), []

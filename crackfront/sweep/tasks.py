@@ -1,15 +1,18 @@
-"""Simulations as tasks: run, checkpointed, stored and told to the journal, the longest first."""
+"""Simulations as tasks: run, checkpointed and stored with a line in the journal, longest first."""
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from numba.core.errors import NumbaError
+
 from crackfront.core.cycle.period import LineSchedule
+from crackfront.core.outcome import DefectError
+from crackfront.data.bounds import TooLargeError
 from crackfront.data.files import leftover_parts, write_text
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
@@ -22,7 +25,7 @@ from crackfront.simulate.run import (
 )
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
-from crackfront.sweep.journal import Entry, Journal
+from crackfront.sweep.journal import Entry, Journal, renew_journals
 from crackfront.sweep.store import Store
 from crackfront.sweep.table import failed_row, row_fingerprint, sweep_row
 
@@ -35,7 +38,7 @@ SECONDS_BETWEEN_BEATS = 20.0
 
 @dataclass(frozen=True, slots=True)
 class Finished:
-    """How a task ended: the status of its row, or that without one; time; and what was wrong."""
+    """How a task ended: status of its row, or STOPPED or NOT_STORED; time; and what was wrong."""
 
     status: str
     seconds: float = 0.0
@@ -50,9 +53,9 @@ def fill(
 ) -> Generator[tuple[Simulation, Finished], None, None]:
     """Run simulations, the longest first, and store each as soon as it is finished.
 
-    Each is told with how it ended, in the order in which they end. The first that is stopped or
-    cannot be stored is the last. Whoever leaves before the end must close it: the ranks are
-    waited for.
+    Yields each simulation with how it ended, in the order in which they end. The first that is
+    stopped or cannot be stored is the last. Close the generator to leave it earlier: it waits for
+    the ranks.
 
     Raises
     ------
@@ -63,6 +66,7 @@ def fill(
         (store.folder / name).mkdir(parents=True, exist_ok=True)
         for part in leftover_parts(store.folder / name):
             part.unlink(missing_ok=True)
+    renew_journals(store.journals)
     write_text(store.configuration, origin.configuration, sealed=True)
     longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
     tasks = [_Task(one, store, origin, checkpoint_seconds) for one in longest_first]
@@ -91,16 +95,16 @@ class _Task:
 
 
 class _Keeper:
-    """What stores the checkpoints of a task, and ends it where notice was given."""
+    """Stores checkpoints of a task, and ends it with the last one when the process is to stop."""
 
     def __init__(self, task: _Task, journal: Journal) -> None:
         self._task, self._journal = task, journal
         self._written = self._beaten = time.monotonic()
 
     def result(self) -> tuple[SimulationResult, str]:
-        """Result of the task, from its checkpoint on if that is of use, and what is wrong with it.
+        """Result of the task, from its checkpoint on if there is one, and what is wrong with that.
 
-        A refusal is never that of a checkpoint: what it leads to is tried without it.
+        Where the checkpoint leads to an error, the task runs without it.
         """
         path, simulation = self._task.checkpoint, self._task.simulation
         wrong = ""
@@ -108,83 +112,71 @@ class _Keeper:
             try:
                 resume = read_checkpoint(path, simulation)
                 return run_simulation(simulation, resume=resume, keep=self.keep), ""
-            except (ValueError, ArithmeticError, RuntimeError, LookupError, TypeError) as error:
+            except (*_OF_PHYSICS, LookupError, TypeError) as error:
                 wrong = f"begun anew without its checkpoint: {error}"
         return run_simulation(simulation, keep=self.keep), wrong
 
     def keep(self, make: Callable[[], PartialRun]) -> None:
-        """Store a checkpoint where it is time to; end where notice was given."""
-        now, stop = time.monotonic(), parallel.notice_is_given()
+        """Store a checkpoint when it is time for one; leave when the process is to stop."""
+        now, stop = time.monotonic(), parallel.stop_is_requested()
         if stop or now - self._written >= self._task.checkpoint_seconds:
-            with _storing():
-                write_checkpoint(self._task.checkpoint, make(), self._task.origin)
+            write_checkpoint(self._task.checkpoint, make(), self._task.origin)
             self._written = time.monotonic()
         if stop:
-            raise _NoticeGivenError
+            raise _StopRequestedError
         if now - self._beaten >= SECONDS_BETWEEN_BEATS:
-            with _storing():
-                self._journal.beat()
+            self._journal.beat()
             self._beaten = now
 
 
 def _run_task(task: _Task) -> Finished:
-    """Run one simulation and store its result; one that cannot be done becomes a row as well."""
-    if parallel.notice_is_given():
+    """Run and store one simulation; what the machine could not do leaves nothing in the store."""
+    if parallel.stop_is_requested():
         return Finished(STOPPED)
     journal = _journal(task.store.journals)
     try:
         return _run(task, journal)
-    except _NoticeGivenError:
+    except _StopRequestedError:
         return Finished(STOPPED)
-    except MemoryError:
+    except (MemoryError, TooLargeError):
         return Finished(NOT_STORED, sentence="the memory does not suffice; start fewer ranks")
-    except _NotStoredError as error:
-        return Finished(NOT_STORED, sentence=str(error))
+    except (OSError, RuntimeError, SystemError, NumbaError) as error:
+        sentence = f"the machine could not compute or store it ({error}); free disk, memory or "
+        return Finished(NOT_STORED, sentence=f"{sentence}threads and run the same command again")
     finally:
         journal.let_go()
 
 
+_OF_PHYSICS = (ValueError, ArithmeticError, DefectError)
+"""What ends a simulation in the same way on every machine."""
+
+
 def _run(task: _Task, journal: Journal) -> Finished:
-    """Run one simulation; the journal tells that it began and how it ended."""
+    """Run one simulation, with a line in the journal when it begins and one when it ends."""
     simulation, keeper = task.simulation, _Keeper(task, journal)
     begun = Entry(simulation.key, simulation.label, simulation.parts)
-    with _storing():
-        journal.append(begun)
+    journal.append(begun)
     try:
         result, wrong = keeper.result()
-    except (ValueError, ArithmeticError, RuntimeError) as error:
+    except TooLargeError:
+        raise
+    except _OF_PHYSICS as error:
         # The surface or the load cannot be simulated, or the solver found a defect in itself.
         status = "refused" if isinstance(error, ValueError) else "defect"
         sentence = str(error) or type(error).__name__
         row, size, digest, seconds = failed_row(simulation, status, sentence), 0, "", 0.0
     else:
         curve = task.store.path(simulation)
-        with _storing():
-            digest = write_simulation(curve, result, task.origin)
-            size = curve.stat().st_size
+        digest = write_simulation(curve, result, task.origin)
+        size = curve.stat().st_size
         row, sentence, seconds = sweep_row(result), wrong, result.measures.seconds
-    ended = replace(begun, size=size, digest=digest, definition=row_fingerprint(), row=row)
-    with _storing():
-        journal.append(ended)
+    journal.append(replace(begun, size=size, digest=digest, definition=row_fingerprint(), row=row))
     task.checkpoint.unlink(missing_ok=True)
     return Finished(row.status, seconds, sentence)
 
 
-class _NoticeGivenError(Exception):
-    """A simulation was left because of the notice; what was reached is stored."""
-
-
-class _NotStoredError(Exception):
-    """What was computed cannot be written; the sentence says why."""
-
-
-@contextlib.contextmanager
-def _storing() -> Iterator[None]:
-    """Tell what prevents a file from being written from what prevents a simulation."""
-    try:
-        yield
-    except (OSError, RuntimeError) as error:
-        raise _NotStoredError(f"nothing can be stored ({error}); make room and repeat") from error
+class _StopRequestedError(Exception):
+    """A simulation was left as the process is to stop; its checkpoint is stored."""
 
 
 @functools.cache

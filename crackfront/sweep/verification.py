@@ -12,8 +12,8 @@ from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
 from crackfront.data.digests import Integrity, integrity
-from crackfront.data.files import UnreadableFileError, integrities, read_attributes
-from crackfront.sweep.journal import journal_paths, read_journal
+from crackfront.data.files import NO_ROOM, UnreadableFileError, integrities, read_attributes
+from crackfront.sweep.journal import journal_paths, line_counts, read_journal
 from crackfront.sweep.store import SUMS
 from crackfront.sweep.table import row_fingerprint
 
@@ -46,7 +46,7 @@ def verification(place: Path) -> Verification:
     Raises
     ------
     UnreadableFileError
-        If there is no such folder, or the archive cannot be read.
+        If there is no such folder or archive, or the folder is empty.
     """
     with _folder(place) as folder:
         named = _named_curves(folder)
@@ -56,6 +56,10 @@ def verification(place: Path) -> Verification:
             if group:
                 counts[group][state] += 1
         damaged = [name for _, name, state in found if state is Integrity.DAMAGED]
+        if place.is_file() and not (folder / SUMS).is_file():
+            damaged.append(place.name)  # the list is the last file of an archive
+        elif not found:
+            raise UnreadableFileError(f"{place} holds no file; name a folder of results")
         wanted = [*(f"curves/{name}" for name in named), *(name for name, _ in _listed(folder))]
         missing = [name for name in wanted if not (folder / name).is_file()]
     return Verification(dict(counts), tuple(dict.fromkeys(damaged)), tuple(dict.fromkeys(missing)))
@@ -73,10 +77,9 @@ def _files(folder: Path, named: dict[str, set[str]]) -> Iterator[tuple[str, str,
 def _lines(folder: Path) -> Iterator[tuple[str, str, Integrity]]:
     """The same of the lines of its journals."""
     for path in journal_paths(folder / "journals"):
-        with path.open("rb") as lines:
-            n_line = sum(1 for _ in lines)
-        n_whole = sum(1 for _ in read_journal(path, ""))
-        for state, count in ((Integrity.WHOLE, n_whole), (Integrity.DAMAGED, n_line - n_whole)):
+        for state, count in zip(
+            (Integrity.WHOLE, Integrity.DAMAGED), line_counts(path), strict=True
+        ):
             yield from [(LINES, str(path.relative_to(folder)), state)] * count
 
 
@@ -89,7 +92,7 @@ def _sums(folder: Path) -> Iterator[tuple[str, str, Integrity]]:
 
 @contextlib.contextmanager
 def _folder(place: Path) -> Iterator[Path]:
-    """A folder, or that which an archive holds."""
+    """A folder, or what can be unpacked of an archive of it."""
     if place.is_dir():
         yield place
         return
@@ -100,9 +103,8 @@ def _folder(place: Path) -> Iterator[Path]:
             with ZipFile(place) as archive:
                 archive.extractall(temporary)
         except (BadZipFile, EOFError, ValueError, OSError, NotImplementedError) as error:
-            raise UnreadableFileError(
-                f"{place} is no archive, or damaged ({error}); restore it or pack it again"
-            ) from error
+            if isinstance(error, OSError) and error.errno in NO_ROOM:
+                raise
         inner = list(Path(temporary).iterdir())
         yield inner[0] if len(inner) == 1 else Path(temporary)
 

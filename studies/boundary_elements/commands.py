@@ -57,7 +57,7 @@ def validate(configuration: Path, output: Path | None, finished: bool) -> None:
     try:
         write_validation(folder, parameters, origin, click.echo, compute=not finished)
     except KeyboardInterrupt as error:
-        raise StoppedError("the same command goes on with the next load step") from error
+        raise StoppedError("Run the same command to continue with the next load step") from error
 
 
 @commands.command()

@@ -221,7 +221,7 @@ def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_pa
     limit = int(used.split(":")[0]) + 1
     run(["scontrol", "update", f"JobId={number}", f"TimeLimit={limit}"])
     until(lambda: not run(["squeue", "--noheader", "--jobs", number]).stdout.strip())
-    assert "Stopped as told: 0 of 1" in next(tmp_path.glob("slurm-*.out")).read_text()
+    assert "Interrupted. 0 of 1" in next(tmp_path.glob("slurm-*.out")).read_text()
     [path] = (results / "checkpoints").glob("*.nc")
     checkpoint = xr.load_dataset(path)
     job = ["sbatch", "--wait", "--ntasks=3", "--wrap", command]

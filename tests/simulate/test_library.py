@@ -471,7 +471,7 @@ def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
         return len(asked) > 150
 
     with monkeypatch.context() as patched:
-        patched.setattr("crackfront.sweep.parallel.notice_is_given", notice)
+        patched.setattr("crackfront.sweep.parallel.stop_is_requested", notice)
         with pytest.raises(KeyboardInterrupt, match="what ran is kept; the same call goes on"):
             cf.sweep(TEST, tmp_path, progress=False)
     assert 0 < len(list((tmp_path / "curves").iterdir())) < 8

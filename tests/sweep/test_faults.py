@@ -50,6 +50,16 @@ def stored(folder):
     return {path.name: path.stat().st_mtime_ns for path in (folder / "curves").glob("[!.]*.nc")}
 
 
+def run_command(*arguments):
+    """Result of a command in this process."""
+    return CliRunner().invoke(main, [str(part) for part in arguments])
+
+
+def renewed(configuration, folder):
+    """Sentences about what the workflow sets aside before it plans."""
+    return list(Store(folder).renewed(load_configuration(configuration), configuration))
+
+
 def rerun(configuration, folder, *more):
     """Run again what is missing; the number of simulations that were run."""
     before = stored(folder)
@@ -193,21 +203,21 @@ def test_two_controllers_at_the_same_shard_do_no_harm(configuration, same, tmp_p
         pytest.param(2, signal.SIGHUP, marks=[pytest.mark.mpi, pytest.mark.slow]),
     ],
 )
-def test_notice_keeps_what_runs_and_ends_cleanly(configuration, same, tmp_path, ranks, told):
+def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_path, ranks, told):
     with running(configuration, tmp_path, "--ranks", str(ranks)) as process:
         found = children(process.pid)
         # As a terminal does it, which knows the group alone and not the ranks.
         os.killpg(process.pid, told)
         output = process.stdout.read()
     assert process.returncode == 75
-    assert output.count("Stopped as told: ") == 1
+    assert output.count("Interrupted. ") == 1
     assert not any(word in output for word in ("Error", "Traceback", "Abort"))
     assert gone(found)
     kept = len(stored(tmp_path))
     assert 3 <= kept < N_SIMULATION
     # A simulation that has not come to its first state, or just ends, leaves none.
     assert len(list((tmp_path / "checkpoints").iterdir())) <= ranks
-    assert not list(tmp_path.glob(".notice-*"))
+    assert not list(tmp_path.glob(".stop-*"))
     assert rerun(configuration, tmp_path) == N_SIMULATION - kept
     assert not any((tmp_path / "checkpoints").iterdir())
     assert same(tmp_path)
@@ -247,7 +257,7 @@ def small_disk(tmp_path):
 def test_a_full_disk_ends_the_run_and_room_lets_it_go_on(configuration, same, small_disk):
     done = run(*command(configuration, small_disk / "out"))
     assert done.returncode == 1
-    assert "nothing can be stored" in done.stderr
+    assert "the machine could not compute or store it" in done.stderr
     assert "No space left on device" in done.stderr
     assert "Traceback" not in done.stderr
     kept = len(stored(small_disk / "out"))
@@ -282,11 +292,67 @@ def test_truncated_files_are_computed_anew_and_no_others(configuration, same, co
     assert same(copied)
 
 
-def test_a_torn_last_line_of_a_journal_costs_nothing(configuration, same, copied):
+@pytest.mark.parametrize("left", [0, -50])
+def test_a_journal_that_is_emptied_or_torn_costs_nothing(configuration, same, copied, left):
     [journal] = (copied / "journals").iterdir()
-    journal.write_bytes(journal.read_bytes()[:-50])
+    journal.write_bytes(journal.read_bytes()[:left])
+    assert run_command("verify", copied).exit_code == 1
     assert rerun(configuration, copied) == 0
     assert same(copied)
+    assert run_command("verify", copied).exit_code == 0
+
+
+FILES = ("configuration.yaml", "hysteresis.nc", "fit.nc", "fit.json", "fit.md", "summary.html")
+FILES += ("figures/loop.png", "figures/factor.pdf", "shards/flat.json", "curves/*.nc")
+FILES += ("journals/*.jsonl",)
+HARM = {
+    "emptied": lambda content: b"",
+    "halved": lambda content: content[: len(content) // 2],
+    "zeroed": lambda content: bytes(len(content)),
+}
+
+
+@pytest.fixture(scope="module")
+def finished(undisturbed, tmp_path_factory):
+    """A folder with everything that is made of a sweep."""
+    configuration, alone = undisturbed
+    folder = shutil.copytree(alone, tmp_path_factory.mktemp("finished") / "sweep")
+    for name in ("aggregate", "fit", "figures", "summary"):
+        assert run_command(name, configuration, "--output", folder).exit_code == 0
+    return folder
+
+
+@pytest.mark.parametrize("harm", HARM)
+@pytest.mark.parametrize("name", FILES)
+def test_a_file_that_lost_its_content_is_found_not_archived_and_made_anew(
+    configuration, finished, tmp_path, name, harm
+):
+    folder = shutil.copytree(finished, tmp_path / "sweep")
+    assert {path.name for path in folder.glob("*.*")} <= set(FILES)
+    path = min(folder.glob(name))
+    path.write_bytes(HARM[harm](path.read_bytes()))
+    verified = run_command("verify", folder)
+    assert verified.exit_code == 1
+    assert f"damaged: {path.relative_to(folder)}" in verified.output
+    archived = run_command("archive", folder)
+    assert archived.exit_code == 2
+    assert f"the first is {path}" in archived.stderr
+    # What the workflow does before it plans, and the command of the file then.
+    assert any(str(path) in told for told in renewed(configuration, folder))
+    command = {"curves": "simulate", "shards": "simulate", "journals": "simulate"}
+    command |= {"fit": "fit", "hysteresis": "aggregate", "summary": "summary"}
+    made_by = command.get(path.relative_to(folder).parts[0].partition(".")[0], "figures")
+    assert run_command(made_by, configuration, "--output", folder).exit_code == 0
+    assert run_command("verify", folder).exit_code == 0
+    assert run_command("archive", folder).exit_code == 0
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\5\6" + bytes(18), b"text"])
+def test_an_archive_without_content_is_damaged(tmp_path, content):
+    (tmp_path / "sweep.zip").write_bytes(content)
+    found = run_command("verify", tmp_path / "sweep.zip")
+    assert found.exit_code == 1
+    assert "damaged: sweep.zip" in found.output
 
 
 @pytest.mark.parametrize("moment", [pytest.param(0, marks=pytest.mark.slow), 4e9])

@@ -14,8 +14,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
+from numba.core.errors import NumbaError
 
 from crackfront.cli import main
+from crackfront.core.outcome import DefectError
+from crackfront.data.bounds import TooLargeError
 from crackfront.data.comparison import comparison
 from crackfront.data.digests import Integrity
 from crackfront.data.files import leftover_parts, read_dataset
@@ -192,16 +195,35 @@ def test_a_simulation_that_cannot_be_done_is_a_row_and_is_not_tried_again(store)
         assert np.isnan(row.w_appr)
 
 
-def test_a_disk_that_is_full_ends_the_run_at_once_with_a_sentence(store, monkeypatch):
-    def fail(*_):
-        raise OSError(28, "No space left on device")
+OF_THE_MACHINE = {
+    "memory": MemoryError(),
+    "memory at hand": TooLargeError("tiles would need 1 TB of memory"),
+    "disk": OSError(28, "No space left on device"),
+    "quota": OSError(122, "Disk quota exceeded"),
+    "device": OSError(5, "Input/output error"),
+    "thread": RuntimeError("can't start new thread"),
+    "netCDF": RuntimeError("NetCDF: HDF error"),
+    "compiler": NumbaError("out of memory"),
+}
+
+
+@pytest.mark.parametrize("lacking", OF_THE_MACHINE)
+@pytest.mark.parametrize("place", ["run_simulation", "write_simulation"])
+def test_what_the_machine_could_not_do_is_never_stored_as_what_physics_did(
+    store, monkeypatch, lacking, place
+):
+    error = OF_THE_MACHINE[lacking]
+
+    def fail(*_, **__):
+        raise error
 
     with monkeypatch.context() as patched:
-        patched.setattr(tasks, "write_simulation", fail)
-        [(_, finished)] = fill(store, FLAT)
+        patched.setattr(tasks, place, fail)
+        [(_, finished)] = fill(store, FLAT[:2])
     assert finished.status == tasks.NOT_STORED
-    assert "No space left on device" in finished.sentence
-    assert store.inventory(FLAT).missing == FLAT
+    assert str(error) in finished.sentence or "start fewer ranks" in finished.sentence
+    assert store.inventory(FLAT[:2]).missing == FLAT[:2]
+    assert {finished.status for _, finished in fill(store, FLAT[:2])} == {"lost_contact"}
 
 
 def test_a_manifest_lists_the_files_of_a_shard(store):
@@ -306,24 +328,13 @@ def test_what_a_killed_process_left_half_written_is_removed_by_the_next_run(stor
 def test_a_defect_that_the_solver_finds_in_itself_is_a_row_and_the_others_run(store, monkeypatch):
     def defective(simulation, **options):
         if simulation == FLAT[1]:
-            raise RuntimeError("the solver moved a site past its equilibrium")
+            raise DefectError("the solver moved a site past its equilibrium")
         return run_simulation(simulation, **options)
 
     monkeypatch.setattr(tasks, "run_simulation", defective)
     ended = {one: (finished.status, finished.sentence) for one, finished in fill(store, FLAT[:3])}
     assert ended.pop(FLAT[1]) == ("defect", "the solver moved a site past its equilibrium")
     assert {status for status, _ in ended.values()} == {"lost_contact"}
-
-
-def test_memory_that_does_not_suffice_ends_the_run_and_leaves_no_row(store, monkeypatch):
-    def devour(*_, **__):
-        raise MemoryError
-
-    monkeypatch.setattr(tasks, "run_simulation", devour)
-    [(_, finished)] = fill(store, FLAT)
-    assert finished.status == tasks.NOT_STORED
-    assert "start fewer ranks" in finished.sentence
-    assert store.inventory(FLAT).missing == FLAT
 
 
 _STARTS = """
@@ -389,16 +400,6 @@ def test_a_valid_file_of_another_simulation_is_not_believed(store):
     inventory = store.inventory(FLAT[:2])
     assert inventory.missing == (FLAT[1],)
     assert "is not the result of" in inventory.unreadable[0]
-
-
-def test_files_of_an_earlier_version_without_digests_count(store):
-    fill(store, FLAT[:2])
-    for path in (store.folder / "curves").iterdir():
-        content = path.read_bytes()
-        path.write_bytes(content[: content.rindex(b"crackfront digest") - 1])
-    shutil.rmtree(store.journals)
-    assert store.inventory(FLAT[:2]).missing == ()
-    assert verification(store.folder).counts["curves"] == {Integrity.UNKNOWN: 2}
 
 
 def damaging(checkpoint):

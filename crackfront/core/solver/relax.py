@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.samples import SampleMemory, evaluate, make_memory
 from crackfront.core.geometry.base import lowest_place
-from crackfront.core.outcome import Direction, Relaxation, Status
+from crackfront.core.outcome import DefectError, Direction, Relaxation, Status
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE, forces
 from crackfront.core.solver.reference import rosso_krauth
 from crackfront.core.solver.threads import monotone_newton
@@ -136,7 +136,7 @@ def relax(
     ValueError
         If the front does not fit the field or is not finite, the direction is unknown, or the
         tolerance is below round-off.
-    RuntimeError
+    DefectError
         If the fast solver finds that it has passed an equilibrium, which is a defect.
 
     References
@@ -163,7 +163,7 @@ def relax(
         int(solver.max_sweeps),
     )
     if code == forces.TURNED:
-        raise RuntimeError(
+        raise DefectError(
             f"the {solver.name} solver moved a site past its equilibrium at penetration {load}; "
             "this is a defect, please report it and use the solver 'reference' meanwhile"
         )
