@@ -10,10 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core import jkr
-from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.steady import FEWEST_STATES, SteadySchedule, standard_error
+from crackfront.core.cycle.steady import FEWEST_STATES, standard_error
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import ADHESION, LATERAL, variable
 
@@ -69,27 +67,16 @@ class SteadyAdhesion(SteadyMeasures):
 
 
 def mean_adhesion(
-    record: CycleRecord,
-    schedule: LoadSchedule | SteadySchedule | LineSchedule,
-    mean: float,
-    correlation_length: float,
+    record: CycleRecord, correlation_length: float, n_period: int | None, mean: float
 ) -> SteadyAdhesion:
-    """Mean apparent work of adhesion of each branch, of a sphere or of a straight front.
+    """Mean apparent work of adhesion of each branch, over its steady part or over a period.
 
-    Parameters
-    ----------
-    record : CycleRecord
-        As of :func:`steady_adhesion`.
-    schedule : LoadSchedule, SteadySchedule or LineSchedule
-        Loads of the record.
-    mean : float
-        Mean work of adhesion of the tile, which a straight front is held against. (Units: w_int)
-    correlation_length : float
-        As of :func:`steady_adhesion`.
+    Arguments as of :func:`period_adhesion`, without a number of states in a period as of
+    :func:`steady_adhesion`.
     """
-    if isinstance(schedule, LineSchedule):
-        return period_adhesion(record, schedule.n_period, mean, correlation_length)
-    return steady_adhesion(record, correlation_length)
+    if n_period is None:
+        return steady_adhesion(record, correlation_length)
+    return period_adhesion(record, n_period, mean, correlation_length)
 
 
 def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdhesion:

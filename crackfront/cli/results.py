@@ -172,15 +172,13 @@ def fit_of_sweep(configuration: Path) -> SweepFit:
 def _fitted(sweep: Sweep, store: Store) -> SweepFit:
     """Fit of a sweep, always the same for the same table."""
     from crackfront.analysis.sweep import fit_sweep
-    from crackfront.simulate.lines import LineLoad
 
-    schedule = sweep.schedule
     return fit_sweep(
         store.table(sweep),
         **asdict(sweep.fit),
         seed=sweep.seed,
         kind=sweep.kind,
-        uncorrelated=isinstance(schedule, LineLoad) and schedule.uncorrelated,
+        uncorrelated=sweep.schedule.uncorrelated,
     )
 
 
@@ -189,8 +187,6 @@ def _loop(result: SimulationResult) -> Figure:
     import numpy as np
 
     from crackfront.analysis.steady import steady_adhesion
-    from crackfront.core.cycle.period import LineSchedule
-    from crackfront.core.cycle.steady import SteadySchedule
     from crackfront.plots.loop import loop_figure, pinning_figure, steady_loop_figure
 
     simulation, states = result.simulation, result.record.states
@@ -199,12 +195,12 @@ def _loop(result: SimulationResult) -> Figure:
         rf"{simulation.spectrum_name}, $e_\mathrm{{el}} = {simulation.elastic_energy:g}\,"
         rf"w_\mathrm{{int}}$, realisation {simulation.realisation}"
     )
-    if isinstance(schedule, LineSchedule):
+    if schedule.n_period is not None:
         return pinning_figure(states, schedule.n_period, elastic_energy=energy, title=title)
     steady = steady_adhesion(result.record, simulation.correlation_length)
     works = steady.w_appr, steady.w_retr
-    # A sweep of steady parts has no loop to draw but the one that they stand for.
-    whole = not isinstance(schedule, SteadySchedule) or not np.all(np.isfinite(works))
+    # Steady parts have no loop to draw but the one that they stand for.
+    whole = schedule.full_cycle or not np.all(np.isfinite(works))
     return (loop_figure if whole else steady_loop_figure)(
         states,
         works,

@@ -105,13 +105,13 @@ class SphereCase:
         from crackfront.core.adhesion import AdhesionMap
         from crackfront.core.contact import contact_field
         from crackfront.core.cycle.run import checked_touch
-        from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule, loads
+        from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
         from crackfront.simulate.costs import affordable_seconds
         from crackfront.simulate.tiles import tile_measures
 
         step = DEFAULT_STEP if self.step is None else self.step
         way, radius = (
-            loads(LoadSchedule(self.max_penetration, step)),
+            LoadSchedule(self.max_penetration, step).loads(),
             jkr.equilibrium_radius(self.max_penetration),
         )
         # A smooth sphere comes off there; a rough one goes somewhat further.

@@ -8,10 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
-from crackfront.core.contact import contact_field
-from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.field.fields import TileField
-from crackfront.core.geometry.line import line_field
 from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
 from crackfront.simulate.simulation import Simulation
 
@@ -22,11 +19,11 @@ def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
     The noise of a realisation is scaled to the amplitude, so that all amplitudes of a spectrum
     see the same surface.
     """
-    (points, sides), schedule = simulation.tile, simulation.schedule
+    points, sides = simulation.tile
     pixel = sides[1] / points[1]
     rng = np.random.default_rng(simulation.seed)
     unit = simulation.spectrum.with_elastic_energy(1.0)
-    if isinstance(schedule, LineSchedule) and schedule.uncorrelated:
+    if simulation.schedule.uncorrelated:
         return _uncorrelated_adhesion(simulation, points, pixel, rng)
     if simulation.kind == "roughness":
         heights = gaussian_field(unit, points, sides, rng)
@@ -56,24 +53,7 @@ def _uncorrelated_adhesion(
 
 def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None) -> TileField:
     """Field of a simulation, on its tile if that has been made already."""
-    sizes, schedule = simulation.resolution, simulation.schedule
     if adhesion is None:
         adhesion = simulation_adhesion(simulation)
-    if isinstance(schedule, LineSchedule):
-        return line_field(
-            adhesion,
-            schedule.spring,
-            (0.0, float(schedule.loads[-1])),
-            n_site=sizes.n_angle,
-            spacing=sizes.spacing,
-            interpolation=sizes.interpolation,
-            band_limited=not schedule.uncorrelated,
-        )
-    return contact_field(
-        adhesion,
-        schedule.max_penetration,
-        sizes.n_angle,
-        sizes.spacing,
-        sizes.interpolation,
-        band_limited=True,
-    )
+    sizes = simulation.resolution
+    return simulation.schedule.field(adhesion, sizes.n_angle, sizes.spacing, sizes.interpolation)

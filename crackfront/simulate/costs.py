@@ -27,7 +27,7 @@ from scipy.optimize import least_squares
 
 from crackfront.core import jkr
 from crackfront.core.cycle.period import LineSchedule
-from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
@@ -230,18 +230,7 @@ def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepe
 def features(simulation: Simulation) -> Features:
     """What the time of a simulation depends on."""
     sizes, spectrum, schedule = simulation.resolution, simulation.spectrum, simulation.schedule
-    length = simulation.correlation_length
-    if isinstance(schedule, LoadSchedule):
-        travel = schedule.step / jkr.penetration_slope(schedule.max_penetration) / length
-        # The hysteresis lifts w_retr by about twice e_el, and contact is lost that much later.
-        lost_at = jkr.pull_off_penetration(1 + 2 * simulation.elastic_energy)
-        n_state = (2 * schedule.max_penetration - lost_at) / schedule.step
-    elif isinstance(schedule, LineSchedule):
-        steps = math.ceil(schedule.lead_in / schedule.period * schedule.n_period)
-        travel, n_state = schedule.step / length, 2.0 * (steps + schedule.n_period + 1)
-    else:
-        travel = schedule.travel
-        n_state = _expected_steady(simulation, schedule, length)
+    travel, n_state = _expected_way(schedule, simulation)
     return Features(
         n_angle=sizes.n_angle,
         n_point=math.sqrt(math.prod(simulation.tile[0])),
@@ -249,7 +238,7 @@ def features(simulation: Simulation) -> Features:
         tolerance=simulation.solver.tolerance,
         breadth=spectrum.longest_feature / spectrum.short_cutoff,
         travel=travel,
-        full_cycle=isinstance(schedule, LoadSchedule),
+        full_cycle=schedule.full_cycle,
         n_state=n_state,
     )
 
@@ -265,14 +254,38 @@ def predicted_seconds(runs: Sequence[Measured]) -> Array:
     return _seconds(_coefficients(), *_terms([run.features for run in runs]))
 
 
-def _expected_steady(simulation: Simulation, schedule: SteadySchedule, length: float) -> float:
-    """Number of states that the steady parts of both branches are expected to have."""
+@functools.singledispatch
+def _expected_way(schedule: Schedule, simulation: Simulation) -> tuple[float, float]:
+    """Way of a smooth front from state to state, in correlation lengths, and number of states."""
+    raise NotImplementedError(f"no cost is known of {type(schedule).__name__}")
+
+
+@_expected_way.register
+def _(schedule: LoadSchedule, simulation: Simulation) -> tuple[float, float]:
+    travel = schedule.step / jkr.penetration_slope(schedule.max_penetration)
+    # The hysteresis lifts w_retr by about twice e_el, and contact is lost that much later.
+    lost_at = jkr.pull_off_penetration(1 + 2 * simulation.elastic_energy)
+    n_state = (2 * schedule.max_penetration - lost_at) / schedule.step
+    return travel / simulation.correlation_length, n_state
+
+
+@_expected_way.register
+def _(schedule: LineSchedule, simulation: Simulation) -> tuple[float, float]:
+    steps = math.ceil(schedule.lead_in / schedule.period * schedule.n_period)
+    travel = schedule.step / simulation.correlation_length
+    return travel, 2.0 * (steps + schedule.n_period + 1)
+
+
+@_expected_way.register
+def _(schedule: SteadySchedule, simulation: Simulation) -> tuple[float, float]:
+    length = simulation.correlation_length
     step = schedule.travel * length * jkr.penetration_slope(schedule.start)
     n_most = 1 + math.floor((schedule.max_penetration - schedule.start) / step)
     alike = length * integral_breadth(simulation)
     n_independent = 2 * math.pi * jkr.equilibrium_radius(schedule.start) / alike
     variance = _NOISE / ((simulation.elastic_energy + _SHARED * alike) * n_independent)
-    return 2 * min(n_most, max(_FEWEST_STEADY, _LEAD_IN + variance / schedule.standard_error**2))
+    n_least = max(_FEWEST_STEADY, _LEAD_IN + variance / schedule.standard_error**2)
+    return schedule.travel, 2 * min(n_most, n_least)
 
 
 def integral_breadth(simulation: Simulation) -> float:

@@ -10,13 +10,11 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.analysis.table import RunMeasures
-from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
 from crackfront.core.geometry.base import Geometry
-from crackfront.core.geometry.line import Line, LineState
+from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
-from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, STEP, Variable, variables
 from crackfront.data.arguments import refuse_other_type
 from crackfront.data.files import (
@@ -41,7 +39,7 @@ TURNING_FRONT = Variable("turning_front", ("angle",), LATERAL, "front at which i
 def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> str:
     """Write what one simulation of a sweep found and what it cost; the digest of the file."""
     simulation = result.simulation
-    dataset = cycle_dataset(result.record, _geometry(simulation))
+    dataset = cycle_dataset(result.record, simulation.geometry)
     dataset = dataset.assign(labelled_fields(result.measures))
     dataset.attrs |= {
         "simulation": simulation.label,
@@ -84,21 +82,13 @@ def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
 def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> None:
     """Write what a simulation needs to go on later."""
     simulation = partial.simulation
-    dataset = checkpoint_dataset(partial.checkpoint, simulation.key, _geometry(simulation))
+    dataset = checkpoint_dataset(partial.checkpoint, simulation.key, simulation.geometry)
     dataset.attrs |= {
         "simulation": simulation.label,
         "seconds": partial.seconds,
         "cpu_seconds": partial.cpu_seconds,
     }
     write_dataset(path, dataset, origin)
-
-
-def _geometry(simulation: Simulation) -> Geometry:
-    """Of the front of a simulation, whose springs do not pull at w_int."""
-    n_angle, schedule = simulation.resolution.n_angle, simulation.schedule
-    if not isinstance(schedule, LineSchedule):
-        return sphere(n_angle)
-    return Line(n_angle, schedule.length, WORK_OF_ADHESION / schedule.spring, WORK_OF_ADHESION)
 
 
 def checkpoint_dataset(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 from scipy.fft import next_fast_len
 
@@ -56,7 +56,11 @@ class LineLoad:
     step: float
     uncorrelated: bool = False
 
-    def schedule(
+    straight: ClassVar[bool] = True
+    full_cycle: ClassVar[bool] = False
+    max_penetration: ClassVar[float] = 0.0
+
+    def for_surface(
         self,
         kind: FieldKind,
         spectrum: Spectrum,

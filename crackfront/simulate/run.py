@@ -13,13 +13,9 @@ import numpy as np
 
 from crackfront.analysis.table import RunMeasures
 from crackfront.core.adhesion import chemical_adhesion
-from crackfront.core.contact import contact_field
-from crackfront.core.cycle.period import LineSchedule, run_period
+from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import Checkpoint, CycleRecord, Observer, Recorder
-from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.steady import run_steady
-from crackfront.core.geometry.line import line_field
+from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.solver.window import HALF_BAND
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
@@ -67,7 +63,7 @@ def run_simulation(
     ValueError
         If the realised surface does not allow full conformity, e_el >= w_int.
     """
-    compile_solver(simulation.solver.name, isinstance(simulation.schedule, LineSchedule))
+    compile_solver(simulation.solver.name, simulation.schedule.straight)
     before = (0.0, 0.0) if resume is None else (resume.seconds, resume.cpu_seconds)
     wall, cpu = time.perf_counter() - before[0], time.process_time() - before[1]
 
@@ -90,45 +86,34 @@ def run_simulation(
         observers=observers,
         resume=None if resume is None else resume.checkpoint,
     )
-    schedule, solver = simulation.schedule, simulation.solver
-    if isinstance(schedule, LoadSchedule):
-        record = run_cycle(field, schedule, solver, recorder)
-    elif isinstance(schedule, LineSchedule):
-        record = run_period(
-            field,
-            schedule,
-            elastic_energy=simulation.elastic_energy,
-            solver=solver,
-            recorder=recorder,
-        )
-    else:
-        record = run_steady(
-            field,
-            schedule,
-            correlation_length=simulation.correlation_length,
-            elastic_energy=simulation.elastic_energy,
-            solver=solver,
-            recorder=recorder,
-        )
+    record = simulation.schedule.run(
+        field,
+        simulation.solver,
+        recorder,
+        correlation_length=simulation.correlation_length,
+        elastic_energy=simulation.elastic_energy,
+    )
     measures = RunMeasures(*measured, *costs(), _peak_memory())
     return SimulationResult(simulation, record, measures)
 
 
+_SMALLEST: tuple[Schedule, ...] = (
+    LoadSchedule(0.0, 0.5),
+    LineSchedule(spring=1.0, length=4.0, period=1.0, lead_in=1.0, step=1.0),
+)
+"""Shortest loads of both geometries."""
+
+
 @functools.cache
-def compile_solver(name: str, line: bool = False) -> None:
+def compile_solver(name: str, straight: bool = False) -> None:
     """Compile what a simulation calls, or load it, once a process, on a tiny smooth tile.
 
     The front is longer than those that are left to the reference.
     """
-    smooth, n_site = chemical_adhesion(np.zeros((4, 4)), pixel=1.0), 4 * HALF_BAND
+    smooth, schedule = chemical_adhesion(np.zeros((4, 4)), pixel=1.0), _SMALLEST[straight]
+    field = schedule.field(smooth, 4 * HALF_BAND, 0.1, "cubic")
     solver, recorder = SOLVERS[name](1e-3), Recorder(energy=True)
-    if line:
-        field = line_field(smooth, spring=1.0, loads=(0.0, 2.0), n_site=n_site)
-        schedule = LineSchedule(spring=1.0, length=4.0, period=1.0, lead_in=1.0, step=1.0)
-        run_period(field, schedule, elastic_energy=0.0, solver=solver, recorder=recorder)
-        return
-    field = contact_field(smooth, max_penetration=0.0, n_angle=n_site, spacing=0.1)
-    run_cycle(field, LoadSchedule(0.0, 0.5), solver, recorder)
+    schedule.run(field, solver, recorder, correlation_length=1.0, elastic_energy=0.0)
 
 
 def _peak_memory() -> float:

@@ -8,27 +8,22 @@ import json
 import math
 from collections.abc import Collection
 from dataclasses import astuple, dataclass
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import numpy as np
 from scipy.fft import next_fast_len
 
 from crackfront.analysis.steady import SteadyAdhesion
-from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, correlation_length
 from crackfront.core.contact import n_site
-from crackfront.core.cycle.period import LineSchedule
-from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.fingerprint import fingerprint
+from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS
 from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error, usual_size
-
-Schedule = LoadSchedule | SteadySchedule | LineSchedule
-"""Loads of a simulation: a full cycle or its steady parts, or those of a straight front."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,29 +95,17 @@ def resolution(
     Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
     cutoff = spectrum.short_cutoff
-    sites = _front_length(schedule) / cutoff * knobs.angles_per_cutoff
-    side, one_a_row = numerics.tile_side(spectrum), False
-    spacing = cutoff / knobs.samples_per_cutoff
-    if isinstance(schedule, LineSchedule):
-        side, one_a_row = schedule.length, schedule.uncorrelated
-        # Whole samples, so that a period further on all is the same.
-        spacing = schedule.period / math.ceil(schedule.period / spacing)
+    sites = schedule.front_length / cutoff * knobs.angles_per_cutoff
+    side, spacing = schedule.fitted(numerics.tile_side(spectrum), cutoff / knobs.samples_per_cutoff)
     points = math.ceil(side / cutoff * knobs.pixels_per_cutoff * (1 - 1e-12))
     n_point = next_fast_len(points, real=True)
     return Resolution(
-        n_angle=n_point if one_a_row else knobs.angles or n_site(sites),
+        n_angle=n_point if schedule.uncorrelated else knobs.angles or n_site(sites),
         spacing=spacing,
         interpolation=knobs.interpolation,
         tile_side=side,
         n_point=n_point,
     )
-
-
-def _front_length(schedule: Schedule) -> float:
-    """Length of the longest front of a schedule that is smooth."""
-    if isinstance(schedule, LineSchedule):
-        return schedule.length
-    return 2 * math.pi * jkr.equilibrium_radius(schedule.max_penetration)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,9 +128,8 @@ class Simulation:
         Seed of the sweep.
     resolution : Resolution
         Sizes of the front and of the tile.
-    schedule : LoadSchedule, SteadySchedule or LineSchedule
-        Penetrations to visit, in a full cycle or in the steady parts of its branches; or a straight
-        front and its loads.
+    schedule : Schedule
+        Loads of a kind, such as penetrations of a full cycle, or those of a straight front.
     solver : Solver
         How its fronts are found.
     record_fronts, record_energy : bool
@@ -186,10 +168,10 @@ class Simulation:
             "realisation": self.realisation,
             "seed": self.sweep_seed,
             "resolution": astuple(self.resolution),
-            "load": astuple(self.schedule),
+            "load": astuple(cast(Any, self.schedule)),
             "numerics": (self.solver.tolerance, self.solver.max_sweeps, self.solver.name),
             "record": (self.record_fronts, self.record_energy),
-            "sources": simulation_fingerprint(),
+            "sources": simulation_fingerprint(type(self.schedule)),
         }
 
     @property
@@ -198,18 +180,14 @@ class Simulation:
         return correlation_length(self.kind, self.spectrum)
 
     @property
-    def spring(self) -> float:
-        """Length of the springs of a straight front (Units: reduced lateral length); else NaN."""
-        return self.schedule.spring if isinstance(self.schedule, LineSchedule) else math.nan
+    def geometry(self) -> Geometry:
+        """The contact, whose springs do not pull at w_int."""
+        return self.schedule.geometry(self.resolution.n_angle)
 
     @property
     def tile(self) -> tuple[tuple[int, int], tuple[float, float]]:
         """Points and sides of the tile, along x and y (Units: reduced lateral length)."""
-        sizes, schedule = self.resolution, self.schedule
-        if not isinstance(schedule, LineSchedule):
-            return (sizes.n_point, sizes.n_point), (sizes.tile_side, sizes.tile_side)
-        n_x = round(schedule.period * sizes.n_point / sizes.tile_side)
-        return (n_x, sizes.n_point), (schedule.period, sizes.tile_side)
+        return self.schedule.tile(self.resolution.n_point, self.resolution.tile_side)
 
     @property
     def label(self) -> str:
@@ -256,8 +234,7 @@ def simulation_of(
     The name is that of the spectrum, the numerics are how it is resolved and solved, and `record`
     is what is kept beside the curves; the rest is as in :class:`Simulation`.
     """
-    straight = isinstance(schedule, LineSchedule)
-    knobs = numerics.knobs_of(kind, spectrum, elastic_energy, straight=straight)
+    knobs = numerics.knobs_of(kind, spectrum, elastic_energy, straight=schedule.straight)
     return Simulation(
         spectrum_name=name,
         kind=kind,
@@ -297,14 +274,14 @@ def numerical_error(
     """
     sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
     if front_length is None:
-        front_length = _front_length(simulation.schedule)
+        front_length = simulation.schedule.front_length
     values: dict[Knob, float] = {
         "sites": sizes.n_angle * cutoff / front_length,
         sizes.interpolation: cutoff / sizes.spacing,
         "pixels": cutoff * sizes.n_point / sizes.tile_side,
         "tolerance": simulation.solver.tolerance,
     }
-    straight = isinstance(simulation.schedule, LineSchedule)
+    straight = simulation.schedule.straight
     return combined_error(
         simulation.kind,
         simulation.spectrum,
@@ -322,10 +299,10 @@ def stated_error(
 
     States closer than a correlation length of w_loc count as one.
     """
-    schedule, cutoff = simulation.schedule, simulation.spectrum.short_cutoff
-    if isinstance(schedule, LineSchedule):
-        size = schedule.length / cutoff * (1 + schedule.period / correlation_length)
-        return numerical_error(simulation, size)
+    cutoff = simulation.spectrum.short_cutoff
+    if simulation.schedule.straight:
+        period, length = simulation.tile[1]
+        return numerical_error(simulation, length / cutoff * (1 + period / correlation_length))
     low, high = steady.lowest_radius, steady.highest_radius
     cutoffs, longest = math.pi * (low + high) / cutoff, 2 * math.pi * high
     apart = 1 + (high - low) / correlation_length
@@ -341,6 +318,6 @@ def _digest(content: Any) -> str:
 
 
 @functools.cache
-def simulation_fingerprint() -> str:
-    """Twelve hexadecimal digits that change with what determines a simulation."""
-    return fingerprint("crackfront.simulate.run.run_simulation")
+def simulation_fingerprint(kind: type[Schedule] = LoadSchedule) -> str:
+    """Twelve hexadecimal digits that change with what determines a simulation of a kind of load."""
+    return fingerprint("crackfront.simulate.run.run_simulation", kind.__module__)

@@ -14,7 +14,6 @@ from pydantic import BeforeValidator, Field, create_model, model_validator
 
 from crackfront.analysis.sweep import FEWEST_BOOTSTRAP
 from crackfront.core.adhesion import FieldKind, larkin_length
-from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Interpolation
@@ -460,12 +459,11 @@ def _refuse_endless(sweep: Sweep) -> None:
         16.0 * sweep.fit.n_bootstrap * sweep.n_realisation,
         "lower bootstrap",
     )
-    seconds, straight = 0.0, isinstance(sweep.schedule, LineLoad)
+    seconds, straight = 0.0, sweep.schedule.straight
     for item in sweep.spectra:
         for energy in sweep.elastic_energies:
             knobs = sweep.numerics.knobs_of(sweep.kind, item.spectrum, energy, straight=straight)
-            deepest = getattr(sweep.schedule, "max_penetration", 0.0)
-            refuse_oversized(item.spectrum, sweep.numerics, knobs, deepest)
+            refuse_oversized(item.spectrum, sweep.numerics, knobs, sweep.schedule.max_penetration)
             cost = expected_cost(sweep.simulation(item, energy, 0))
             coarser = "ask for fewer, coarser or larger load steps, or for smaller tiles"
             refuse_beyond_memory(f"simulations of {item.name}", cost.memory, coarser, anywhere=True)
@@ -499,7 +497,7 @@ def _refuse_unresolved(simulation: Simulation, name: str) -> None:
     sizes, energy = simulation.resolution, simulation.elastic_energy
     larkin = larkin_length(simulation.kind, simulation.spectrum, 2 * math.sqrt(energy))
     site = sizes.tile_side / sizes.n_angle
-    if isinstance(simulation.schedule, LineSchedule) and larkin < 2 * site:
+    if simulation.schedule.straight and larkin < 2 * site:
         raise ConfigurationError(
             f"numerics: the Larkin length of {name} at e_el {energy:g} is {larkin:.3g}, below two "
             f"sites ({2 * site:.3g}); lower the amplitude or take more sites"

@@ -10,8 +10,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Literal
 
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.core.cycle.schedule import Schedule
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.lines import LineLoad
@@ -71,9 +70,8 @@ class Sweep:
         Realisations of the noise for every spectrum.
     numerics : Numerics
         How simulations are resolved and solved.
-    schedule : LoadSchedule, SteadySchedule or LineLoad
-        Penetrations to visit, in full cycles or the steady parts of their branches; or how straight
-        fronts are held.
+    schedule : Schedule or LineLoad
+        Loads of all simulations, or how straight fronts are held.
     record : tuple of {"fronts", "energy"}
         What to record beside the curves.
     failed_fraction : float
@@ -87,7 +85,7 @@ class Sweep:
     elastic_energies: tuple[float, ...]
     n_realisation: int
     numerics: Numerics
-    schedule: LoadSchedule | SteadySchedule | LineLoad
+    schedule: Schedule | LineLoad
     record: tuple[Literal["fronts", "energy"], ...]
     failed_fraction: float
     fit: FitRange
@@ -104,14 +102,11 @@ class Sweep:
 
     def simulation(self, item: NamedSpectrum, energy: float, realisation: int) -> Simulation:
         """One simulation of the sweep."""
-        load, shape = self.schedule, item.spectrum
         return simulation_of(
             self.kind,
-            shape,
+            item.spectrum,
             energy,
-            load.schedule(self.kind, shape, energy, item.spring, self.numerics)
-            if isinstance(load, LineLoad)
-            else load,
+            self.schedule.for_surface(self.kind, item.spectrum, energy, item.spring, self.numerics),
             self.numerics,
             seed=self.seed,
             realisation=realisation,

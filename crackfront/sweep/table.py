@@ -135,7 +135,7 @@ def sweep_row(result: SimulationResult) -> SweepRow:
     record, simulation = result.record, result.simulation
     length = simulation.correlation_length
     mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
-    steady = mean_adhesion(record, simulation.schedule, mean, length)
+    steady = mean_adhesion(record, length, simulation.schedule.n_period, mean)
     status, sentence = _status(record, steady)
     known, cycle = status in COMPLETE, status == COMPLETE[0]
     numerical = stated_error(simulation, steady, length) if known else (np.nan, np.nan)
@@ -196,7 +196,7 @@ def _axes(sweep: Sweep) -> SweepAxes:
         roll_off=np.array([spectrum.longest_feature for spectrum in spectra]),
         hurst=np.array([getattr(spectrum, "hurst", math.nan) for spectrum in spectra]),
         correlation_length=np.array([row[0].correlation_length for row in firsts]),
-        spring=np.array([[one.spring for one in row] for row in firsts]),
+        spring=np.array([[one.schedule.spring for one in row] for row in firsts]),
         n_angle=np.array([[tile.n_angle for tile in row] for row in tiles]),
         sample_spacing=np.array([[tile.spacing for tile in row] for row in tiles]),
         tile_side=np.array([row[0].tile_side for row in tiles]),

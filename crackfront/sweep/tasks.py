@@ -10,7 +10,6 @@ from pathlib import Path
 
 from numba.core.errors import NumbaError
 
-from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.outcome import DefectError
 from crackfront.data.bounds import TooLargeError
 from crackfront.data.files import leftover_parts, write_text
@@ -70,9 +69,9 @@ def fill(
     write_text(store.configuration, origin.configuration, sealed=True)
     longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
     tasks = [_Task(one, store, origin, checkpoint_seconds) for one in longest_first]
-    kinds = {(item.solver.name, isinstance(item.schedule, LineSchedule)) for item in simulations}
-    for solver, line in kinds:
-        compile_solver(solver, line)
+    kinds = {(item.solver.name, item.schedule.straight) for item in simulations}
+    for solver, straight in kinds:
+        compile_solver(solver, straight)
     for task, finished in parallel.run_tasks(_run_task, tasks):
         yield task.simulation, finished
         if finished.status in (STOPPED, NOT_STORED):

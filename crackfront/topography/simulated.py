@@ -15,6 +15,7 @@ from crackfront.analysis.law import pinning_factor
 from crackfront.analysis.steady import mean_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
+from crackfront.core.cycle.schedule import Schedule
 from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
@@ -23,7 +24,6 @@ from crackfront.simulate.lines import LineLoad
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import (
     Numerics,
-    Schedule,
     Simulation,
     numerical_error,
     simulation_of,
@@ -121,7 +121,7 @@ def _affordable(
         return simulation_of("roughness", spectrum, energy, schedule, numerics, seed=seed)
 
     def line(size: float) -> Simulation:
-        return simulation(_LINE.schedule("roughness", spectrum, energy, size, numerics))
+        return simulation(_LINE.for_surface("roughness", spectrum, energy, size, numerics))
 
     # Spheres go deeper where the features are large against the contact.
     largest = jkr.equilibrium_radius(_START) + _WAY * spectrum.correlation_length
@@ -179,7 +179,7 @@ def simulated(plan: SimulationPlan, scales: Scales) -> Simulated:
         result = run_simulation(simulation)
         e_el = result.measures.e_el
         mean, length = 1 - e_el, simulation.correlation_length
-        steady = mean_adhesion(result.record, simulation.schedule, mean, length)
+        steady = mean_adhesion(result.record, length, simulation.schedule.n_period, mean)
         if steady.sentence:
             failed.append(f"{simulation.label}: {steady.sentence}")
             continue

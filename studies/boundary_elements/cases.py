@@ -15,7 +15,7 @@ from pydantic import model_validator
 
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load
-from crackfront.core.cycle.schedule import LoadSchedule, loads
+from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.fingerprint import fingerprint
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
@@ -105,7 +105,7 @@ class Loads(Section):
         if self.steady is None:
             for count in range(math.ceil(interaction_range / self.step), 0, -1):
                 yield Load(-count * self.step, 1)
-            yield from loads(LoadSchedule(self.max_penetration, self.step))
+            yield from LoadSchedule(self.max_penetration, self.step).loads()
         else:
             counts = {name: round(b / self.step) for name, b in self.steady.model_dump().items()}
             for count in range(counts["first"], counts["last"] + 1):

@@ -19,7 +19,6 @@ from crackfront.analysis.law import slope_breadth
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
 from crackfront.core.variables import variable
 from crackfront.data.files import read_dataset
-from crackfront.simulate.lines import LineLoad
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.sweep import Sweep
 
@@ -131,7 +130,7 @@ def law_cells(configuration: Path) -> list[LawCell]:
     """
     sweep = load_configuration(configuration)
     load = sweep.schedule
-    if not isinstance(load, LineLoad):
+    if not load.straight:
         raise ValueError(f"{configuration} runs spheres; the law is measured on straight fronts")
     dataset, cells = read_dataset(results_folder(configuration) / "hysteresis.nc"), []
     for (place, amplitude), found in cell_means(sweep.kind, dataset).items():
@@ -147,7 +146,7 @@ def law_cells(configuration: Path) -> list[LawCell]:
                 spectrum=name if sweep.kind == "roughness" else f"{name}-{sweep.kind}",
                 breadth=slope_breadth(sweep.kind, item.spectrum),
                 disorder=0.0 if load.uncorrelated else 2 * math.sqrt(found.elastic_energy),
-                size=simulation.spring / larkin,
+                size=simulation.schedule.spring / larkin,
                 realisations=found.realisations,
                 approach=found.approach,
                 retraction=found.retraction,

@@ -69,7 +69,7 @@ def sphere_rows(configuration: Path) -> Iterator[SphereRow]:
         If the sweep runs full cycles or straight fronts, or spectra that are not self-affine.
     """
     sweep = load_configuration(configuration)
-    if not isinstance(sweep.schedule, SteadySchedule):
+    if sweep.schedule.straight or sweep.schedule.full_cycle:
         raise ValueError(f"{configuration} does not run the steady branches of spheres")
     dataset = read_dataset(results_folder(configuration) / "hysteresis.nc")
     radius = (dataset.lowest_radius + dataset.highest_radius).mean("realisation") / 2

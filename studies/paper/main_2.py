@@ -15,7 +15,7 @@ from pydantic import Field, model_validator
 
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load, Step, follow
-from crackfront.core.cycle.schedule import LoadSchedule, loads
+from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import RayField, polar_field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
@@ -153,7 +153,7 @@ def _loop(parameters: RingsParameters, rings: Rings) -> Array:
     schedule = LoadSchedule(parameters.max_penetration, parameters.step)
     field = _field(rings, parameters.max_penetration, parameters.samples)
     rows = []
-    for step in _steps(field, loads(schedule)):
+    for step in _steps(field, schedule.loads()):
         penetration, direction, _ = step.load
         passed = rings.penetration(np.linspace(step.before[0], step.front[0], _PATH))
         jump = np.any(direction * np.diff(passed) < 0)

@@ -18,7 +18,6 @@ from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.record import Recorder
-from crackfront.core.cycle.schedule import loads
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
@@ -108,7 +107,7 @@ def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedL
             fronts.append(recorder.front)
             progress(f"{FRONTS[len(fronts) - 1]}: mean radius {fronts[-1].mean():.4f} at b = 0")
 
-    record = recorded(simulation, field, loads(parameters.schedule), Recorder(observers=[observe]))
+    record = recorded(simulation, field, parameters.schedule.loads(), Recorder(observers=[observe]))
     if len(fronts) < 2:
         raise ValueError(f"the cycle ended before its two fronts at b = 0: {record.status.value}")
     correlation_length = simulation.spectrum.correlation_length

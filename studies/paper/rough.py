@@ -14,7 +14,6 @@ from scipy.ndimage import map_coordinates
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.cycle.follow import Load, front_at
-from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import first_touch, refuse_outgrown
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -213,7 +212,6 @@ def recorded(
     simulation: Simulation, field: TileField, loads: Iterable[Load], recorder: Recorder
 ) -> CycleRecord:
     """States of a front that begins in contact that is just made and follows loads."""
-    assert not isinstance(simulation.schedule, LineSchedule), "loads are penetrations"
     refuse_outgrown(field, simulation.schedule.max_penetration)
     compile_solver(simulation.solver.name)
     recorder.run(field, first_touch(field), loads, simulation.solver)

@@ -59,7 +59,7 @@ class StraightParameters(Section):
         knobs = Knobs(None, pixels, 2 * pixels, "cubic", pixels, tolerance)
         numerics = Numerics(knobs, tile_roll_offs=1.0, tile_cutoffs=_TILE_CUTOFFS)
         load = LineLoad("larkin_length", self.length, _PERIOD, _TRANSIENT, _STEP, uncorrelated=True)
-        schedule = load.schedule(_KIND, _SPECTRUM, energy, spring, numerics)
+        schedule = load.for_surface(_KIND, _SPECTRUM, energy, spring, numerics)
         simulation = simulation_of(
             _KIND, _SPECTRUM, energy, schedule, numerics, seed=seed, realisation=realisation
         )

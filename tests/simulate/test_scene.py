@@ -9,7 +9,6 @@ import pytest
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import correlation_length
-from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton, Reference
@@ -103,7 +102,7 @@ def test_the_plateau_of_a_spectrum_is_not_in_the_key():
 
 def test_the_key_changes_with_the_sources_of_the_solver(monkeypatch):
     before = SIMULATION.key
-    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda: "other")
+    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda _: "other")
     assert SIMULATION.key != before
 
 
@@ -205,12 +204,13 @@ def test_a_run_holds_no_tile_beside_its_splines(monkeypatch):
         tiles.append(weakref.ref(adhesion.work_of_adhesion))
         return adhesion
 
-    def looked_at(*arguments, **options):
+    def looked_at(self, *arguments, **options):
         tiles.append(tiles[0]())
-        return run_cycle(*arguments, **options)
+        return run(self, *arguments, **options)
 
-    compile_solver(SIMULATION.solver.name)
+    run = LoadSchedule.run
+    compile_solver(SIMULATION.solver.name, SIMULATION.schedule.straight)
     monkeypatch.setattr("crackfront.simulate.run.simulation_adhesion", remembered)
-    monkeypatch.setattr("crackfront.simulate.run.run_cycle", looked_at)
+    monkeypatch.setattr(LoadSchedule, "run", looked_at)
     run_simulation(SIMULATION)
     assert tiles[1] is None

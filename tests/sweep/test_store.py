@@ -111,7 +111,7 @@ def test_a_truncated_file_is_named_and_computed_anew_and_the_others_are_not(stor
 
 def test_a_file_of_an_older_solver_is_not_found(store, monkeypatch):
     fill(store, FLAT[:1])
-    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda: "newer")
+    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda _: "newer")
     assert store.inventory(FLAT[:1]).missing == FLAT[:1]
 
 
@@ -133,7 +133,7 @@ def test_what_is_stale_is_told_with_what_has_changed(store, change, part):
 
 def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
     fill(store, FLAT[:2])
-    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda: "newer")
+    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda _: "newer")
     inventory = store.inventory(FLAT)
     assert len(inventory.missing) == 4
     assert inventory.stale_sentence() == "2 stored simulations are stale: 2 as sources changed"

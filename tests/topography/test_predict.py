@@ -506,7 +506,7 @@ def test_a_line_with_too_many_sites_has_shorter_springs_and_is_corrected(coarse,
     sites = line.simulations[0].resolution.n_angle
     small_limits(_MOST_LINE_SITES=sites - 1, _SHORT_SIZE=10.0)
     plan = prediction_plan(coarse, large, 1, 1)
-    assert plan.simulations[0].spring < line.simulations[0].spring
+    assert plan.simulations[0].schedule.spring < line.simulations[0].schedule.spring
     prediction = predicted(coarse, large)
     w_rms = prediction.w_rms / large.work_of_adhesion
     long, short = (pinning_factor(w_rms, g).factor.value for g in (prediction.size, 10.0))

@@ -13,11 +13,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.field.fields import TileField
+from crackfront.core.cycle.schedule import Schedule
+from crackfront.core.field.fields import Interpolation, TileField
+from crackfront.core.geometry.base import Geometry
+from crackfront.core.geometry.line import Line, line_field
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Solver
+from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
 
@@ -26,7 +31,7 @@ _BEHIND = 1.3
 
 
 @dataclass(frozen=True, slots=True)
-class LineSchedule:
+class LineSchedule(Schedule):
     """Loads of a straight front on a tile, first forward, then back over the same places.
 
     Parameters
@@ -57,6 +62,9 @@ class LineSchedule:
     step: float
     uncorrelated: bool = False
 
+    straight = True
+    max_penetration = 0.0
+
     def __post_init__(self) -> None:
         for name in ("spring", "length", "period", "lead_in", "step"):
             if not 0 < getattr(self, name) < math.inf:
@@ -74,6 +82,51 @@ class LineSchedule:
         step = self.period / self.n_period
         n_step = math.ceil(self.lead_in / step) + self.n_period
         return step * np.arange(n_step + 1, dtype=float)
+
+    @property
+    def front_length(self) -> float:
+        """Period of the front (Units: length)."""
+        return self.length
+
+    def fitted(self, side: float, spacing: float) -> tuple[float, float]:
+        """Period of the front, and whole samples, so that a period further on all is the same."""
+        return self.length, self.period / math.ceil(self.period / spacing)
+
+    def tile(self, n_point: int, side: float) -> tuple[tuple[int, int], tuple[float, float]]:
+        """One period along the motion and one of the front."""
+        return (round(self.period * n_point / side), n_point), (self.period, side)
+
+    def geometry(self, n_site: int) -> Geometry:
+        """Line on springs that do not pull at w_int."""
+        return Line(n_site, self.length, WORK_OF_ADHESION / self.spring, WORK_OF_ADHESION)
+
+    def field(
+        self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
+    ) -> TileField:
+        """Field of a tile over all loads."""
+        return line_field(
+            adhesion,
+            self.spring,
+            (0.0, float(self.loads[-1])),
+            n_site=n_site,
+            spacing=spacing,
+            interpolation=interpolation,
+            band_limited=not self.uncorrelated,
+        )
+
+    def run(
+        self,
+        field: TileField,
+        solver: Solver,
+        recorder: Recorder,
+        *,
+        correlation_length: float,
+        elastic_energy: float,
+    ) -> CycleRecord:
+        """States of both branches over the lead-in and a period."""
+        return run_period(
+            field, self, elastic_energy=elastic_energy, solver=solver, recorder=recorder
+        )
 
 
 def run_period(

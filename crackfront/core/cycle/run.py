@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core import jkr
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.schedule import LoadSchedule, loads
 from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.solver.relax import Solver
 from crackfront.core.units import WORK_OF_ADHESION
+
+if TYPE_CHECKING:
+    from crackfront.core.cycle.schedule import LoadSchedule
 
 Array = NDArray[np.float64]
 
@@ -48,7 +52,7 @@ def run_cycle(
     """
     recorder = recorder or Recorder()
     front = checked_touch(field, schedule.max_penetration)
-    recorder.run(field, front, loads(schedule), solver)
+    recorder.run(field, front, schedule.loads(), solver)
     return recorder.record()
 
 

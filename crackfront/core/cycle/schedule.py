@@ -1,12 +1,23 @@
-"""The loads of a cycle, in order."""
+"""Kinds of load, what simulations ask of each, and the loads of a full cycle."""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
+from crackfront.core import jkr
+from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.field.fields import Field, Interpolation, TileField
+from crackfront.core.geometry.base import Geometry
+from crackfront.core.geometry.sphere import sphere
+from crackfront.core.solver.relax import Solver
 
 DEFAULT_STEP = 0.004
 """Load step that leaves the dissipated energies of a full cycle within 1% of the quasi-static loop.
@@ -15,8 +26,119 @@ docs/hard-cases.md has the measure. (Units: reduced vertical length)
 """
 
 
+class Schedule(ABC):
+    """A kind of load: what simulations ask of it.
+
+    A kind is a frozen dataclass, whose fields enter the keys of simulations, with these attributes
+    and the methods that are abstract here.
+
+    Attributes
+    ----------
+    straight : bool
+        Whether the front is a straight one on springs.
+    full_cycle : bool
+        Whether the load goes from first contact to pull-off.
+    uncorrelated : bool
+        Whether sites know nothing of each other.
+    max_penetration : float
+        Largest penetration of a sphere; else 0. (Units: reduced vertical length)
+    spring : float
+        Length of the springs of a straight front; else NaN. (Units: length)
+    """
+
+    __slots__ = ()
+
+    straight: bool
+    full_cycle = False
+    uncorrelated: bool
+    max_penetration: float
+    spring: float
+
+    @property
+    @abstractmethod
+    def n_period(self) -> int | None:
+        """States at the end of each branch that are averaged; None where travel decides."""
+
+    @property
+    @abstractmethod
+    def front_length(self) -> float:
+        """Length of the longest front that is smooth (Units: length)."""
+
+    @abstractmethod
+    def fitted(self, side: float, spacing: float) -> tuple[float, float]:
+        """Side of the tile along the front, of a least one, and distance of samples, of a largest.
+
+        (Units: length)
+        """
+
+    @abstractmethod
+    def tile(self, n_point: int, side: float) -> tuple[tuple[int, int], tuple[float, float]]:
+        """Points and sides along x and y of a tile with so many points on its side along y."""
+
+    @abstractmethod
+    def geometry(self, n_site: int) -> Geometry:
+        """Contact, whose springs do not pull at w_int."""
+
+    @abstractmethod
+    def field(
+        self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
+    ) -> TileField:
+        """Field of a tile that no front leaves; arguments as of :func:`contact_field`."""
+
+    @abstractmethod
+    def run(
+        self,
+        field: Any,
+        solver: Solver,
+        recorder: Recorder,
+        *,
+        correlation_length: float,
+        elastic_energy: float,
+    ) -> CycleRecord:
+        """States of the whole load on a field of a correlation length and an e_el (w_int)."""
+
+    def for_surface(self, *_: object) -> Schedule:
+        """Loads on one surface; a kind that does not choose them by the surface has them itself."""
+        return self
+
+
+class SphereSchedule(Schedule):
+    """Loads of a sphere on a square tile, up to a largest penetration."""
+
+    __slots__ = ()
+
+    straight = uncorrelated = False
+    spring = math.nan
+    n_period = None
+
+    @property
+    def front_length(self) -> float:
+        """Length of the longest front that is smooth (Units: length)."""
+        return 2 * math.pi * float(jkr.equilibrium_radius(self.max_penetration))
+
+    def fitted(self, side: float, spacing: float) -> tuple[float, float]:
+        """The side and the distance themselves."""
+        return side, spacing
+
+    def tile(self, n_point: int, side: float) -> tuple[tuple[int, int], tuple[float, float]]:
+        """As many points along x."""
+        return (n_point, n_point), (side, side)
+
+    def geometry(self, n_site: int) -> Geometry:
+        """Sphere with so many rays."""
+        return sphere(n_site)
+
+    def field(
+        self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
+    ) -> TileField:
+        """Field of a tile up to the largest penetration."""
+        return contact_field(
+            adhesion, self.max_penetration, n_site, spacing, interpolation, band_limited=True
+        )
+
+
 @dataclass(frozen=True, slots=True)
-class LoadSchedule:
+class LoadSchedule(SphereSchedule):
     """Penetrations 0, step, 2 step ... max, and back until contact is lost.
 
     Parameters
@@ -41,6 +163,8 @@ class LoadSchedule:
 
     max_penetration: float
     step: float
+
+    full_cycle = True
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.step) and self.step > 0):
@@ -72,6 +196,15 @@ class LoadSchedule:
             yield k * self.step
             k -= 1
 
+    def loads(self) -> Iterator[Load]:
+        """Penetrations of a whole cycle, without end, each with its direction."""
+        yield from (Load(penetration, 1) for penetration in self.approach())
+        yield from (Load(penetration, -1) for penetration in self.retraction())
+
+    def run(self, field: Field, solver: Solver, recorder: Recorder, **_: float) -> CycleRecord:
+        """States from first contact to pull-off."""
+        return run_cycle(field, self, solver, recorder)
+
 
 def there_and_back(first: float, last: float, step: float) -> list[Load]:
     """Loads from one to a higher one, and back to the first.
@@ -99,11 +232,3 @@ def there_and_back(first: float, last: float, step: float) -> list[Load]:
         )
     way = [first + load for load in LoadSchedule(last - first, step).approach()]
     return [*(Load(load, 1) for load in way), *(Load(load, -1) for load in way[-2::-1])]
-
-
-def loads(schedule: LoadSchedule) -> Iterator[Load]:
-    """Penetrations of a whole cycle, without end, with the direction in which each is reached."""
-    for penetration in schedule.approach():
-        yield Load(penetration, 1)
-    for penetration in schedule.retraction():
-        yield Load(penetration, -1)

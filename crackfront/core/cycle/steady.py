@@ -18,6 +18,7 @@ from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import first_touch, refuse_outgrown
+from crackfront.core.cycle.schedule import SphereSchedule
 from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import ContactState
@@ -54,7 +55,7 @@ On fine spectra 1.5 times the rms is hundreds of them, where fronts deviate by 7
 
 
 @dataclass(frozen=True, slots=True)
-class SteadySchedule:
+class SteadySchedule(SphereSchedule):
     """Approach from a penetration until w_appr is known well enough, and back over the same radii.
 
     Parameters
@@ -90,6 +91,12 @@ class SteadySchedule:
                 f"steady start {self.start} must be 0 or more and below the largest penetration "
                 f"{self.max_penetration}"
             )
+
+    def run(
+        self, field: Field, solver: Solver, recorder: Recorder, **surface: float
+    ) -> CycleRecord:
+        """States of both branches while they are steady."""
+        return run_steady(field, self, solver=solver, recorder=recorder, **surface)
 
 
 def run_steady(

@@ -166,8 +166,8 @@ def test_springs_are_multiples_of_the_length_that_is_named():
         simulation = sweep.simulation(SWEEP.spectra[1], 0.04, 0)
         kind, spectrum = simulation.kind, simulation.spectrum
         expected = length(kind, spectrum) if length else larkin_length(kind, spectrum, 0.4)
-        assert simulation.spring == pytest.approx(8 * expected)
-        assert simulation.schedule.length >= 7.999 * simulation.spring
+        assert simulation.schedule.spring == pytest.approx(8 * expected)
+        assert simulation.schedule.length >= 7.999 * simulation.schedule.spring
         points, sides = simulation.tile
         assert sides[0] / points[0] == pytest.approx(sides[1] / points[1], rel=1e-12)
 
