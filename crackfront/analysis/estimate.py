@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -49,6 +49,14 @@ class Estimate(Generic[Number]):
     def each(self, function: Callable[[Number], Other]) -> Estimate[Other]:
         """The estimate whose four entries are those of a function, as of an index or a unit."""
         return Estimate(*map(function, (self.value, self.standard_error, self.low, self.high)))
+
+    def at(self: Estimate, index: Any) -> Estimate:
+        """The estimates at some places of arrays."""
+        return self.each(lambda values: values[index])
+
+    def only(self: Estimate, known: NDArray[np.bool_]) -> Estimate:
+        """The estimates where something holds, NaN elsewhere."""
+        return self.each(lambda values: np.where(known, values, np.nan))
 
 
 def with_error(value: float, error: float) -> str:

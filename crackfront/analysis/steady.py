@@ -101,8 +101,8 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
         )
     states, radius = record.states, record.states.mean_radius
     steady = states.least_travel >= correlation_length
-    branches = [steady & (sign * states.direction > 0) for sign in (1, -1)]
-    counts = _counts(branches)
+    branches = [np.flatnonzero(steady & (sign * states.direction > 0)) for sign in (1, -1)]
+    counts = branches[0].size, branches[1].size
     if min(counts) < FEWEST_STATES:
         return _no_value(
             counts,
@@ -111,8 +111,9 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
         )
     lowest = float(max(radius[branch].min() for branch in branches))
     highest = float(min(radius[branch].max() for branch in branches))
-    branches = [branch & (radius >= lowest) & (radius <= highest) for branch in branches]
-    counts = _counts(branches)
+    shared = (radius >= lowest) & (radius <= highest)
+    branches = [branch[shared[branch]] for branch in branches]
+    counts = branches[0].size, branches[1].size
     if min(counts) < FEWEST_STATES:
         return _no_value(
             counts,
@@ -120,31 +121,15 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
             f"retraction at equal mean radii; {FEWEST_STATES} each are needed, so penetrate "
             "deeper or use a smaller load step",
         )
-    values = states.apparent_work_of_adhesion
-    w_appr, w_retr = (float(np.mean(values[branch])) for branch in branches)
-    errors = [
-        standard_error(
-            values[branch], radius[branch], states.rms_radius[branch], correlation_length
-        )
-        for branch in branches
-    ]
     from_force = [_adhesion_from_force(radius[branch], states.force[branch]) for branch in branches]
-    return SteadyAdhesion(
-        w_appr=w_appr,
-        w_retr=w_retr,
-        w_appr_error=errors[0],
-        w_retr_error=errors[1],
-        hysteresis=w_retr - w_appr,
+    return _measures(
+        (states.apparent_work_of_adhesion, radius, states.rms_radius),
+        branches,
+        correlation_length,
+        from_force=from_force,
         hysteresis_error=_error_of_difference(states, branches, correlation_length),
-        midpoint=(w_retr + w_appr) / 2,
-        w_appr_from_force=from_force[0],
-        w_retr_from_force=from_force[1],
-        hysteresis_from_force=from_force[1] - from_force[0],
-        n_approach=counts[0],
-        n_retraction=counts[1],
         lowest_radius=lowest,
         highest_radius=highest,
-        front_rms=float(np.mean(states.rms_radius[branches[0] | branches[1]])),
     )
 
 
@@ -170,38 +155,55 @@ def period_adhesion(
         counts = branches[0].size, branches[1].size
         return _no_value(counts, f"the front was left before it had passed the tile: {counts}")
     values = mean - states.pinning_force
-    w_appr, w_retr = (float(np.mean(values[branch])) for branch in branches)
+    return _measures(
+        (values, states.mean_position, states.rms_position), branches, correlation_length
+    )
+
+
+def _measures(
+    columns: tuple[Array, Array, Array],
+    branches: Sequence[NDArray[np.int64]],
+    correlation_length: float,
+    *,
+    from_force: Sequence[float] | None = None,
+    hysteresis_error: float | None = None,
+    lowest_radius: float = math.nan,
+    highest_radius: float = math.nan,
+) -> SteadyAdhesion:
+    """Means over the states of both branches.
+
+    Columns are the apparent work of adhesion, mean place and rms of the front. Where no curve is
+    fitted to the force, that of the springs is the force; where no other error of the hysteresis is
+    given, those of the branches are independent.
+    """
+    values, place, roughness = columns
+    works = [float(np.mean(values[branch])) for branch in branches]
     errors = [
-        standard_error(
-            values[branch],
-            states.mean_position[branch],
-            states.rms_position[branch],
-            correlation_length,
-        )
+        standard_error(values[branch], place[branch], roughness[branch], correlation_length)
         for branch in branches
     ]
+    (w_appr, w_retr), from_force = works, from_force or works
     return SteadyAdhesion(
         w_appr=w_appr,
         w_retr=w_retr,
         w_appr_error=errors[0],
         w_retr_error=errors[1],
         hysteresis=w_retr - w_appr,
-        hysteresis_error=math.hypot(*errors),
+        hysteresis_error=math.hypot(*errors) if hysteresis_error is None else hysteresis_error,
         midpoint=(w_retr + w_appr) / 2,
-        # What pulls the springs is the force.
-        w_appr_from_force=w_appr,
-        w_retr_from_force=w_retr,
-        hysteresis_from_force=w_retr - w_appr,
-        n_approach=n_period,
-        n_retraction=n_period,
-        lowest_radius=math.nan,
-        highest_radius=math.nan,
-        front_rms=float(np.mean(states.rms_position[np.concatenate(branches)])),
+        w_appr_from_force=from_force[0],
+        w_retr_from_force=from_force[1],
+        hysteresis_from_force=from_force[1] - from_force[0],
+        n_approach=branches[0].size,
+        n_retraction=branches[1].size,
+        lowest_radius=lowest_radius,
+        highest_radius=highest_radius,
+        front_rms=float(np.mean(roughness[np.concatenate(branches)])),
     )
 
 
 def _error_of_difference(
-    states: ContactState[Array], branches: Sequence[NDArray[np.bool_]], correlation_length: float
+    states: ContactState[Array], branches: Sequence[NDArray[np.int64]], correlation_length: float
 ) -> float:
     """Standard error of the hysteresis, from states of both branches that are closest."""
     radii = [states.mean_radius[branch] for branch in branches]
@@ -209,12 +211,6 @@ def _error_of_difference(
     closest = np.argmin(np.abs(radii[0][:, np.newaxis] - radii[1]), axis=1)
     roughness = states.rms_radius[branches[0]]
     return standard_error(retraction[closest] - approach, radii[0], roughness, correlation_length)
-
-
-def _counts(branches: Sequence[NDArray[np.bool_]]) -> tuple[int, int]:
-    """Number of states of the approach and of the retraction."""
-    approach, retraction = (int(np.count_nonzero(branch)) for branch in branches)
-    return approach, retraction
 
 
 def _adhesion_from_force(radius: Array, force: Array) -> float:

@@ -45,12 +45,10 @@ def _reduced(data: Labelled) -> tuple[Labelled, AxisUnits]:
     return in_reduced_units(data, scales), AxisUnits(scales)
 
 
-def _loop(loop: object) -> Dataset:
-    """Dataset that a loop is."""
+def _refuse_no_loop(loop: object) -> None:
+    """Raise TypeError if an argument is no loop."""
     wanted = "an xarray.Dataset, as run_loop returns it or crackfront cycle has written it"
     refuse_other_type("loop", loop, Dataset, wanted)
-    assert isinstance(loop, Dataset)
-    return loop
 
 
 def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
@@ -126,7 +124,7 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     ValueError
         If it is no loop, or holds no state.
     """
-    loop = _loop(loop)
+    _refuse_no_loop(loop)
     if "pinning_force" in loop:
         states = cycle_record(loop).states
         with _drawing(axes) as drawn:
@@ -168,7 +166,7 @@ def plot_fronts(
     ValueError
         If loop or surface cannot be used, or the loop holds no fronts.
     """
-    loop = _loop(loop)
+    _refuse_no_loop(loop)
     if ("radius" not in loop and "position" not in loop) or loop.sizes["step"] == 0:
         raise ValueError(
             "the loop holds no fronts; run it with fronts=True, or crackfront cycle with "

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
+from crackfront.core.geometry.line import LineState
 from crackfront.plots.parts import draw_arrow
 from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
 from crackfront.plots.units import REDUCED, AxisUnits
@@ -47,22 +48,6 @@ class LoopStates(Protocol):
     @property
     def force(self) -> Array:
         """Normal forces."""
-
-
-class LineStates(Protocol):
-    """What is drawn of the states of a straight front."""
-
-    @property
-    def direction(self) -> NDArray[np.int64]:
-        """+1 where the load advances, -1 where it recedes."""
-
-    @property
-    def load(self) -> Array:
-        """Places of the springs' other end."""
-
-    @property
-    def pinning_force(self) -> Array:
-        """Mean forces of the springs."""
 
 
 def loop_figure(
@@ -266,7 +251,7 @@ def _name_axes(axes: Axes, units: AxisUnits = REDUCED) -> None:
 
 
 def pinning_figure(
-    states: LineStates, n_period: int, *, elastic_energy: float, title: str = ""
+    states: LineState[Array], n_period: int, *, elastic_energy: float, title: str = ""
 ) -> Figure:
     """Pinning force of a straight front against its load, on a figure one column wide.
 
@@ -282,7 +267,7 @@ def pinning_figure(
 
 def draw_pinning(
     axes: Axes,
-    states: LineStates,
+    states: LineState[Array],
     n_period: int | None = None,
     *,
     elastic_energy: float | None = None,
@@ -293,7 +278,7 @@ def draw_pinning(
     ----------
     axes : Axes
         Where to draw.
-    states : LineStates
+    states : LineState
         States of a straight front, forward and back.
     n_period : int, optional
         States at the end of each branch that are one period.

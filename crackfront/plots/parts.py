@@ -232,16 +232,6 @@ def spectrum_colour(index: int) -> str:
     return COLOURS[index % len(COLOURS)]
 
 
-def spectrum_row(estimate: Estimate, index: int) -> Estimate:
-    """Estimates of one spectrum."""
-    return Estimate(*(values[index] for values in arrays(estimate)))
-
-
-def arrays(estimate: Estimate) -> tuple[Array, Array, Array, Array]:
-    """Arrays of an estimate."""
-    return estimate.value, estimate.standard_error, estimate.low, estimate.high
-
-
 def label_panel(axes: Axes, name: str, left: float = 4.0) -> None:
     """Bold letter of a panel above its upper left corner, so many points to the left of it."""
     axes.annotate(

@@ -19,7 +19,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.law import WEAKEST, law_value, pinning_factor, shipped_law, slope_breadth
 from crackfront.analysis.result import SweepFit
@@ -28,7 +27,6 @@ from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind
 from crackfront.plots.parts import (
     Series,
-    arrays,
     draw_below,
     draw_estimates,
     draw_fit,
@@ -39,7 +37,6 @@ from crackfront.plots.parts import (
     spectrum_colour,
     spectrum_families,
     spectrum_label,
-    spectrum_row,
     spring_label,
     sweep_series,
 )
@@ -72,25 +69,25 @@ def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
     disorder.
     """
     with house_style():
-        if table.straight:
-            return _line_factor_figure(table, fit)
         figure = blank_figure(PAGE, 0.45 * PAGE)
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
-        draw_factor_by_disorder(left, table, fit)
-        draw_factor_by_length(right, table, fit)
-        set_factor_limits(left, fit)
-        handles, labels = legend_entries(left)
-        figure.legend(handles, labels, loc="outside upper center", ncols=3)
+        text = POINTS_EXPLAINED
+        if table.straight:
+            _draw_line_factors(left, right, table, fit)
+        else:
+            draw_factor_by_disorder(left, table, fit)
+            draw_factor_by_length(right, table, fit)
+            set_factor_limits(left, fit)
+            figure.legend(*legend_entries(left), loc="outside upper center", ncols=3)
+            text += f"; {SHIFTS_EXPLAINED} (a); {SHAPES_EXPLAINED} (b)"
         for axes, letter in ((left, "a"), (right, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
-        explain(figure, f"{POINTS_EXPLAINED}; {SHIFTS_EXPLAINED} (a); {SHAPES_EXPLAINED} (b)")
+        explain(figure, text)
         return figure
 
 
-def _line_factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
-    """Straight fronts: k against size, a colour an amplitude, and its limit against disorder."""
-    figure = blank_figure(PAGE, 0.45 * PAGE)
-    left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
+def _draw_line_factors(left: Axes, right: Axes, table: SweepTable, fit: SweepFit) -> None:
+    """Draw k of straight fronts against size, and its limit against disorder."""
     draw_factor_by_size(left, table, fit)
     draw_infinite_law(right)
     families, cells = spectrum_families(table), fit.cells
@@ -99,16 +96,11 @@ def _line_factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
         series = Series(spectrum_colour(family), MARKERS[family % len(MARKERS)], label)
         s = np.zeros_like(cells.w_rms[index]) if fit.uncorrelated else cells.w_rms[index]
         shown = np.nan_to_num(cells.size[index]) > LARGE
-        row = spectrum_row(cells.infinite_factor, index)
-        row = Estimate(*(np.where(shown, values, np.nan) for values in arrays(row)))
+        row = cells.infinite_factor.at(index).only(shown)
         draw_estimates(right, series, s, row, fit.in_range)
     right.legend(*legend_entries(right), loc="lower left")
     right.set_ylabel(r"$k$, infinite contact (points: $g>1$)")
     left.set_ylim(0.0, 1.1 * PERTURBATION_FACTOR)
-    for axes, letter in ((left, "a"), (right, "b")):
-        axes.set_title(letter, loc="left", fontweight="bold")
-    explain(figure, POINTS_EXPLAINED)
-    return figure
 
 
 def draw_factor_by_size(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
@@ -125,7 +117,7 @@ def draw_factor_by_size(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
         colour = to_hex(shades[amplitude])
         for index, family in enumerate(families):
             series = Series(colour, MARKERS[family % len(MARKERS)], "")
-            cell = Estimate(*(one[[index], amplitude] for one in arrays(fit.cells.factor)))
+            cell = fit.cells.factor.at(([index], amplitude))
             here = fit.in_range[[amplitude]]
             draw_estimates(axes, series, size[[index], amplitude], cell, here)
         axes.plot(
@@ -173,10 +165,10 @@ def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     reach = np.fmax(hysteresis.low[above], floor)
     lowest = min(float(np.min(reach, initial=np.inf)), PAPER_FACTOR / 2 * ends[0]) / 1.6
     for index, series in enumerate(sweep_series(table)):
-        row = spectrum_row(hysteresis, index)
+        row = hysteresis.at(index)
         below = np.nan_to_num(row.value, nan=np.inf) <= floor
         draw_below(axes, index, series.colour, variance[index, below])
-        shown = Estimate(*(np.where(below, np.nan, values) for values in arrays(row)))
+        shown = row.only(~below)
         draw_estimates(axes, series, variance[index], shown, fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
     draw_theory(axes, ends, lambda factor, abscissa: factor / 2 * abscissa)
@@ -246,7 +238,7 @@ def draw_factor_by_disorder(axes: Axes, table: SweepTable, fit: SweepFit) -> Non
     aside = 1 + 0.12 * (np.arange(n_spectrum) - (n_spectrum - 1) / 2) / max(n_spectrum - 1, 1)
     for index, series in enumerate(sweep_series(table)):
         abscissa = energy[index] * aside[index]
-        draw_estimates(axes, series, abscissa, spectrum_row(fit.cells.factor, index), fit.in_range)
+        draw_estimates(axes, series, abscissa, fit.cells.factor.at(index), fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (energy, factor))
     ends = np.array([np.nanmin(energy) / 1.4, np.nanmax(energy) * 1.4])
     fitted = np.array([fit.lowest_elastic_energy, fit.highest_elastic_energy])
@@ -270,7 +262,7 @@ def draw_factor_by_length(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
         family = family[np.argsort(length[family])]
         axes.plot(length[family], factor.value[family], color="0.6", linewidth=0.6, zorder=1)
     for index, series in enumerate(sweep_series(table)):
-        here = Estimate(*(values[[index]] for values in arrays(factor)))
+        here = factor.at([index])
         draw_estimates(axes, replace(series, label=""), length[[index]], here, np.array([True]))
     ends = np.array([np.min(length) / 1.6, np.max(length) * 1.6])
     draw_theory(axes, ends, lambda factor, abscissa: np.full(abscissa.shape, factor))
