@@ -18,7 +18,7 @@ atexit.register(gc.freeze)
 
 sys.path.insert(0, workflow.basedir)  # where the studies stand
 
-from crackfront.core.fingerprint import fingerprint
+from crackfront.data.fingerprint import fingerprint
 from crackfront.data.files import date_back, set_aside_damaged
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.store import Store

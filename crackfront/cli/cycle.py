@@ -311,7 +311,7 @@ class _Keeper:
 
 def _key(field_file: Path, *asked: object) -> str:
     """What changes with the field, with what is asked for and with the solver."""
-    from crackfront.core.fingerprint import solver_fingerprint
+    from crackfront.data.fingerprint import solver_fingerprint
 
     with field_file.open("rb") as file:
         content = hashlib.file_digest(file, "sha256").hexdigest()

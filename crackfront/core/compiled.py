@@ -8,6 +8,7 @@ lies there is executed, so nobody but this user may write to it.
 from __future__ import annotations
 
 import functools
+import hashlib
 import inspect
 from collections.abc import Callable
 from pathlib import Path
@@ -24,7 +25,6 @@ from numba.core.caching import (
 )
 from numba.extending import overload
 
-from crackfront.core.fingerprint import solver_fingerprint
 from crackfront.core.private_cache import private_folder
 
 
@@ -35,8 +35,17 @@ def cache_folder() -> Path | None:
     None where this user has no private folder: every process then compiles its own kernels.
     """
     if numba.config.CACHE_DIR:
-        return Path(numba.config.CACHE_DIR, f"crackfront-{solver_fingerprint()}")
-    return private_folder(solver_fingerprint())
+        return Path(numba.config.CACHE_DIR, f"crackfront-{_digest_of_kernels()}")
+    return private_folder(_digest_of_kernels())
+
+
+def _digest_of_kernels() -> str:
+    """Twelve hexadecimal digits of the sources that hold kernels and their constants."""
+    core, digest = Path(__file__).parent, hashlib.sha256()
+    parts = (path for name in ("field", "geometry", "solver") for path in core.glob(f"{name}/*.py"))
+    for path in (core / "compiled.py", core / "units.py", *sorted(parts)):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
 
 
 class _Locator(_SourceFileBackedLocatorMixin, _CacheLocator):  # type: ignore[misc]

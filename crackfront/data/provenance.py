@@ -12,7 +12,7 @@ from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from crackfront.core.fingerprint import solver_fingerprint
+from crackfront.data.fingerprint import solver_fingerprint
 
 PACKAGE = Path(__file__).parents[1]
 

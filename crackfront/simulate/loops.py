@@ -20,7 +20,6 @@ from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import first_touch, run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import TileField
-from crackfront.core.fingerprint import solver_fingerprint
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
@@ -30,6 +29,7 @@ from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.files import labelled, labelled_fields
+from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.provenance import __version__
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.run import compile_solver

@@ -18,11 +18,11 @@ from crackfront.core.adhesion import FieldKind, correlation_length
 from crackfront.core.contact import n_site
 from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.field.fields import Interpolation
-from crackfront.core.fingerprint import fingerprint
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS
 from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import Spectrum
+from crackfront.data.fingerprint import fingerprint
 from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error, usual_size
 
 

@@ -31,10 +31,10 @@ from crackfront.analysis.table import (
     SweepTable,
 )
 from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.fingerprint import fingerprint
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.variables import ADHESION, variables
 from crackfront.data.files import UnreadableFileError, labelled_fields, read_dataset
+from crackfront.data.fingerprint import fingerprint
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import Block, write_records_in_blocks
 from crackfront.simulate.run import SimulationResult

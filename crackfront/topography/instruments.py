@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from crackfront.core.optional_libraries import MissingExtraError
+from crackfront.data.optional_libraries import MissingExtraError
 from crackfront.data.written_units import prefixed
 from crackfront.topography.files import readable, refuse_special, refuse_too_many_points
 from crackfront.topography.options import ReadingOptions

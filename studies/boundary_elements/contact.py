@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from scipy.fft import irfft2, rfft2
 
 from crackfront.core import jkr
-from crackfront.core.optional_libraries import MissingExtraError
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
+from crackfront.data.optional_libraries import MissingExtraError
 
 Array = NDArray[np.float64]
 Values = TypeVar("Values", NDArray[np.float64], NDArray[np.float32])

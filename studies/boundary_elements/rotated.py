@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from scipy.fft import fft2, fftfreq
 
 from crackfront.core.adhesion import rough_adhesion
-from crackfront.core.optional_libraries import MissingExtraError
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
+from crackfront.data.optional_libraries import MissingExtraError
 
 Array = NDArray[np.float64]
 

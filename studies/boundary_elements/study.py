@@ -7,8 +7,8 @@ from importlib import import_module
 from pathlib import Path
 
 from crackfront.analysis.validity import validity_text
-from crackfront.core.optional_libraries import MissingExtraError
 from crackfront.data.files import UnreadableFileError, set_aside, write_text
+from crackfront.data.optional_libraries import MissingExtraError
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import read_record, write_record, write_records
 from crackfront.plots.style import save_figure

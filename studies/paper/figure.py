@@ -19,7 +19,7 @@ from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import with_error
-from crackfront.core.fingerprint import fingerprint
+from crackfront.data.fingerprint import fingerprint
 from crackfront.data.section import ConfigurationError, Section, content_of, validated
 from studies.paper.drawing import Animation
 

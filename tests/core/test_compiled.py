@@ -1,13 +1,13 @@
 """The cache of compiled kernels: its place, who may write to it, and when kernels are compiled."""
 
 import os
+import shutil
 import tempfile
 
 import numpy as np
 import pytest
 
 from crackfront.core import compiled
-from crackfront.core.fingerprint import solver_fingerprint
 
 
 def quotient(a, b):
@@ -34,15 +34,16 @@ def cache_hits():
 def test_a_kernel_is_compiled_once_in_a_private_folder_of_these_sources(fresh_cache):
     assert (cache_hits(), cache_hits()) == (0, 1)
     [path] = fresh_cache.rglob("*quotient*.nbi")
-    assert fresh_cache / solver_fingerprint() in path.parents
-    assert (fresh_cache / solver_fingerprint()).stat().st_mode & 0o077 == 0
+    folder = compiled.cache_folder()
+    assert (folder.parent, folder.stat().st_mode & 0o077) == (fresh_cache, 0)
+    assert folder in path.parents
 
 
 def test_the_folder_that_numba_is_given_is_used(fresh_cache, tmp_path, monkeypatch):
     monkeypatch.setattr(compiled.numba.config, "CACHE_DIR", str(tmp_path / "given"))
     assert (cache_hits(), cache_hits()) == (0, 1)
     assert any((tmp_path / "given").rglob("*quotient*.nbi"))
-    assert not fresh_cache.joinpath(solver_fingerprint()).exists()
+    assert not fresh_cache.exists()
 
 
 @pytest.mark.parametrize("missing", ["file", None])
@@ -82,7 +83,10 @@ def linked(folder):
 def test_a_folder_that_others_can_fill_is_neither_used_nor_touched(fresh_cache, harm, depth):
     if harm is given_away and os.geteuid() != 0:
         pytest.skip("only root can give files to another user")
-    folder = fresh_cache / solver_fingerprint() if depth else fresh_cache
+    name = compiled.cache_folder().name
+    compiled.cache_folder.cache_clear()
+    folder = fresh_cache / name if depth else fresh_cache
+    shutil.rmtree(fresh_cache)
     harm(folder)
     before = folder.lstat()
     (folder / "planted.nbi").write_bytes(b"code")

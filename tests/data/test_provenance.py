@@ -6,8 +6,8 @@ import sys
 import pytest
 
 from crackfront import __version__
-from crackfront.core.compiled import solver_fingerprint
 from crackfront.data import provenance as module
+from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.provenance import git_commit, provenance
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from crackfront.core import fingerprint as module
-from crackfront.core.fingerprint import fingerprint
+from crackfront.data import fingerprint as module
+from crackfront.data.fingerprint import fingerprint
 from crackfront.simulate.simulation import simulation_fingerprint
 from crackfront.sweep.table import row_fingerprint
 from studies.paper.figure import checks_fingerprint, drawing_fingerprint, figure_fingerprint
@@ -144,7 +144,7 @@ def test_every_function_that_a_simulation_runs_counts_in_its_key(tmp_path):
     program = """
 import sys
 from pathlib import Path
-from crackfront.core import fingerprint as module
+from crackfront.data import fingerprint as module
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
 

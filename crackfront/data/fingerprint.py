@@ -25,15 +25,15 @@ ROOT = Path(__file__).parents[2]
 
 _PACKAGES = ("crackfront", "studies")
 
-_NO_PART = ("crackfront.core.fingerprint", "crackfront.core.private_cache")
+_NO_PART = ("crackfront.data.fingerprint", "crackfront.core.private_cache")
 """Modules that decide what is stored where, and no number."""
 
 
 def fingerprint(*names: str) -> str:
     """Twelve hexadecimal digits that change with the sources that some names reach.
 
-    Of a class that is reached, the subclasses in modules that are reached count as well; files of
-    data count byte by byte where their names stand in what is reached.
+    Of a class that is reached, the subclasses in modules that are reached count as well, of an
+    abstract one those in its folder. Files of data count byte by byte where they are named.
 
     Parameters
     ----------
@@ -152,6 +152,7 @@ class _Reach:
         self._modules: dict[str, _Module | None] = {}
         self._taken: set[_Statement] = set()
         self._aliases: set[_Statement] = set()
+        self._searched: set[_Module] = set()
         self._waiting: list[tuple[_Statement, bool]] = []
         for name in names:
             origins = list(self._origins(name))
@@ -189,6 +190,13 @@ class _Reach:
             self._modules[name] = None if name in _NO_PART else _module(name)
         return self._modules[name]
 
+    def _beside(self, module: _Module) -> Iterator[_Module]:
+        """Modules of the same folder."""
+        home = module.name.rpartition(".")[0]
+        for path in sorted(module.path.parent.glob("*.py")):
+            if found := self._module(f"{home}.{path.stem}"):
+                yield found
+
     def _origins(self, name: str) -> Iterator[tuple[_Module, str, str]]:
         """Where a full name is defined: modules, its name there ("" for a module), attributes."""
         parts = name.split(".")
@@ -214,6 +222,8 @@ class _Reach:
             if statement not in known:
                 known.add(statement)
                 self._waiting.append((statement, is_alias))
+                if "ABC" in statement.bases:
+                    self._searched |= set(self._beside(statement.module))
                 if not is_alias:
                     self._take(statement.module.acting)
 
@@ -225,8 +235,8 @@ class _Reach:
                     self._take(home.defined[name], annotated=annotated or is_alias)
 
     def _take_subclasses(self) -> None:
-        """Count the subclasses of what counts, in the modules that are reached."""
-        for module in {statement.module for statement in self._taken}:
+        """Count the subclasses of what counts, in modules that are reached or beside an ABC."""
+        for module in self._searched | {statement.module for statement in self._taken}:
             for statement in [one for ones in module.defined.values() for one in ones]:
                 for base in statement.bases:
                     for home, name, _ in self._meant(module, base):
