@@ -69,7 +69,7 @@ def minimiser(configuration: Path) -> None:
     """
     from studies.boundary_elements.benchmarks import MINIMISER, minimiser_row
     from studies.boundary_elements.parameters import load_validation, validation_cases
-    from studies.boundary_elements.report import table
+    from studies.pages import markdown_table
 
     rows = (
         minimiser_row(replace(case, elastic_energy=energy))
@@ -77,14 +77,13 @@ def minimiser(configuration: Path) -> None:
         if case.elastic_energy > 0
         for energy in (case.elastic_energy, 0.177)
     )
-    click.echo("\n".join(table("Products and seconds of a load step.", MINIMISER, rows)))
+    click.echo(markdown_table(MINIMISER, rows))
 
 
 @commands.command()
 def rotated() -> None:
     """Time the mapping whose crack turns with the angle, and the plain sum over all modes."""
     from studies.boundary_elements.benchmarks import ROTATED, TILES, rotated_row
-    from studies.boundary_elements.report import table
+    from studies.pages import markdown_table
 
-    rows = (rotated_row(*tile) for tile in TILES)
-    click.echo("\n".join(table("Processor time of the mapping.", ROTATED, rows)))
+    click.echo(markdown_table(ROTATED, (rotated_row(*tile) for tile in TILES)))

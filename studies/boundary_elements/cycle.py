@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,21 +83,15 @@ def boundary_cycle(
     Raises
     ------
     ValueError
-        If a state does not come to rest, or the cycle to resume is another one.
+        If a state does not come to rest.
     """
     contact, so_far = case.contact(), resume or _no_states(case.n_point)
     known, side = so_far.penetration.size, case.n_point
+    loads = islice(case.loads.loads(case.interaction_range), known, None)
     displacement = contact.elastic_displacement(np.pad(so_far.pressure, (0, side)))
-    for number, (penetration, direction, _) in enumerate(case.loads.loads(case.interaction_range)):
+    for penetration, direction, _ in loads:
         if so_far.status != RUNNING:
             return so_far
-        if number < known:
-            if so_far.penetration[number] != penetration:
-                raise ValueError(
-                    f"the cycle to resume has penetration {so_far.penetration[number]:g} where "
-                    f"{penetration:g} is asked for; it is that of another load, so remove it"
-                )
-            continue
         started = time.process_time()
         radius = max(so_far.trust_radius, _LEAST_RADIUS)
         found = equilibrium(

@@ -16,7 +16,6 @@ from studies.boundary_elements.cycle import BoundaryCycle
 from studies.boundary_elements.front import FrontCycle, States, shared_states
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,8 +24,7 @@ class Hysteresis:
 
     Works of adhesion are means over the states of a branch, of the smooth sphere that has the same
     force at the same penetration. The hysteresis is the energy that either branch loses per area
-    that it sweeps, summed: it does not depend on where on the surface the branches are. Areas are
-    means over the states, relative to that of the front.
+    that it sweeps, summed: it does not depend on where on the surface the branches are.
     """
 
     seed: int = variable("seed of the surface", "1")
@@ -44,10 +42,6 @@ class Hysteresis:
     front_approach: float = variable("w_appr of the front", ADHESION)
     front_retraction: float = variable("w_retr of the front", ADHESION)
     front_hysteresis: float = variable("energy that it loses per area swept", ADHESION)
-    open_inside: float = variable(
-        "area within the front, beyond the perimeter of the boundary elements", "1"
-    )
-    closed_outside: float = variable("area within their perimeter, beyond the front", "1")
     barriers: int = variable("steps that were shortened before a barrier", "1")
     saddles: int = variable("unstable states without forces that were left", "1")
     least_released: float = variable("least fall of the energy at a penetration", ENERGY)
@@ -72,9 +66,9 @@ class Hysteresis:
 
 
 def hysteresis(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Hysteresis:
-    """Hysteresis of both models on one surface, and where their contacts differ."""
-    theirs, ours = _steady_states(case, boundary, front)
-    closed, inside = boundary.radius[theirs] ** 2, front.radius[ours] ** 2
+    """Hysteresis of both models on one surface."""
+    theirs, ours = shared_states(boundary, front.states)
+    steady = case.loads.are_steady(boundary.penetration[theirs])
     adhesion = rough_adhesion(case.heights(), case.pixel)
     return Hysteresis(
         seed=case.seed,
@@ -86,10 +80,8 @@ def hysteresis(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Hyster
         asked_energy=case.elastic_energy,
         elastic_energy=adhesion.e_el,
         repelling=float(np.mean(adhesion.work_of_adhesion < 0)),
-        **_branches("boundary", boundary, boundary.energy, theirs),
-        **_branches("front", front.states, front.energy, ours),
-        open_inside=_mean_part(inside - closed, inside),
-        closed_outside=_mean_part(closed - inside, inside),
+        **_branches("boundary", boundary, boundary.energy, theirs[steady]),
+        **_branches("front", front.states, front.energy, ours[steady]),
         barriers=int(np.sum(boundary.barriers)),
         saddles=int(np.sum(boundary.saddles)),
         least_released=float(np.min(boundary.released)),
@@ -118,21 +110,9 @@ def apparent_adhesion(force: Array, penetration: Array) -> Array:
     return jkr.apparent_work_of_adhesion(radius, penetration)
 
 
-def _mean_part(excess: Array, whole: Array) -> float:
-    """Mean over states of what is positive, relative to the whole, both by their angles."""
-    return float(np.mean(np.sum(np.maximum(excess, 0), axis=1) / np.sum(whole, axis=1)))
-
-
-def _steady_states(
-    case: Case, boundary: BoundaryCycle, front: FrontCycle
-) -> tuple[Indices, Indices]:
-    """Indices of the shared states on the steady parts of both branches."""
-    theirs, ours = shared_states(boundary, front.states)
-    kept = case.loads.are_steady(boundary.penetration[theirs])
-    return theirs[kept], ours[kept]
-
-
-def _branches(name: str, states: States, energy: Array, kept: Indices) -> dict[str, float]:
+def _branches(
+    name: str, states: States, energy: Array, kept: NDArray[np.int64]
+) -> dict[str, float]:
     """Works of adhesion and hysteresis of a model.
 
     In a load step it loses the work of the force, by the trapezoidal rule, less the energy's rise.

@@ -20,6 +20,7 @@ from studies.boundary_elements.averages import (
 )
 from studies.boundary_elements.differences import Differences
 from studies.boundary_elements.hysteresis import Hysteresis
+from studies.pages import markdown_table
 
 _PULL_OFF = 1.5
 """Magnitude of the pull-off force of a smooth sphere (Units: pi w_int R)."""
@@ -53,11 +54,10 @@ def validation_report(
     return "\n".join(line for part in parts for line in part)
 
 
-def table(text: str, header: str, lines: Iterable[str]) -> list[str]:
+def _table(text: str, header: str, lines: Iterable[str]) -> list[str]:
     """A paragraph and its table, or nothing where the table has no lines."""
-    cells = [f"| {line} |" for line in lines]
-    rule = "|" + " --: |" * (1 + header.count(" | "))
-    return [text, "", f"| {header} |", rule, *cells, ""] if cells else []
+    rows = [[line] for line in lines]
+    return [text, "", markdown_table(header, rows), ""] if rows else []
 
 
 _SETTING = "roll-off | e_el | points | range | step"
@@ -89,7 +89,7 @@ def _hysteresis_table(found: Sequence[Setting]) -> list[str]:
         for name in ("approach", "retraction", "hysteresis")
         for model in ("boundary", "front")
     ]
-    return table(
+    return _table(
         "Works of adhesion of the smooth sphere with the same force at the same penetration, in "
         "w_int; boundary elements first, then the front on the same surfaces; in brackets standard "
         "errors over surfaces. Hysteresis: the energy that either branch loses per area that it "
@@ -123,7 +123,7 @@ def _resolution_table(rows: Sequence[Hysteresis]) -> list[str]:
                 f"{row.boundary_retraction:.4f} | {row.boundary_hysteresis:.4f} | "
                 f"{change:+.1%} | {row.front_hysteresis:.4f}"
             )
-    return table(
+    return _table(
         "One surface by boundary elements at several resolutions: hysteresis, and its change from "
         "the coarsest.",
         f"{_SETTING} | w_appr | w_retr | hysteresis | change | front",
@@ -132,19 +132,17 @@ def _resolution_table(rows: Sequence[Hysteresis]) -> list[str]:
 
 
 def _run_table(found: Sequence[Setting]) -> list[str]:
-    """Areas, what the minimiser did, and the processor time."""
+    """What the minimiser did, and the processor time."""
     hours = sum(row.boundary_seconds for one in found for row in one.rows) / 3600
-    names = "repelling", "open_inside", "closed_outside"
-    return table(
-        "Part of the surface that repels the front; areas within the front beyond the perimeter of "
-        "the boundary elements, and the other way round, relative to the front's. Products of a "
-        "load step; steps that would have passed a barrier and were shortened; states without "
-        "forces that were no minimum and were left; least fall of the energy at a penetration. "
-        f"Seconds of one core for a surface; boundary elements took {hours:.2f} core hours in all.",
-        f"{_SETTING} | surfaces | repels | open inside | closed outside | products | barriers "
-        "| saddles | least fall | s | front, s",
+    return _table(
+        "Part of the surface that repels the front. Products of a load step; steps that would have "
+        "passed a barrier and were shortened; states without forces that were no minimum and were "
+        "left; least fall of the energy at a penetration. Seconds of one core for a surface; "
+        f"boundary elements took {hours:.2f} core hours in all.",
+        f"{_SETTING} | surfaces | repels | products | barriers | saddles | least fall | s "
+        "| front, s",
         (
-            " | ".join(_cells(one, *names))
+            " | ".join(_cells(one, "repelling"))
             + f" | {one.mean(lambda row: row.products).value:.0f} | "
             f"{sum(row.barriers for row in one.rows)} | {sum(row.saddles for row in one.rows)} | "
             f"{min(row.least_released for row in one.rows):.1e} | "
@@ -173,7 +171,7 @@ def _difference_table(loops: Sequence[Differences]) -> list[str]:
         "{force_rms:.2%} | {force_largest:.2%} | {area_mean:.2%} | {area_rms:.2%} | "
         "{perimeter_approach:.4f} | {perimeter_retraction:.4f} | {perimeter_all:.4f}"
     )
-    return table(
+    return _table(
         "Boundary elements minus front, in all states in which both have contact; in approach from "
         "the penetration b on at which the boundary elements have left, everywhere, the perimeter "
         "with which they jumped into contact. Forces in units of the smooth pull-off force, areas "
@@ -191,7 +189,7 @@ def _jump_table(loops: Sequence[Differences]) -> list[str]:
         f"{_CRACK_CELLS} | {{jumps_boundary}} | {{jumps_front}} | {{jumps_shared}} | "
         "{jump_shift:.4f} | {jump_spread:.4f} | {pull_off_force:.2%} | {pull_off_penetration:.3f}"
     )
-    return table(
+    return _table(
         "Arcs of the perimeter that move a quarter of a short cutoff or more in one load step; of "
         "the front's, those for which the boundary elements jump at the same place within 0.1 of "
         "penetration; their penetrations, boundary elements minus front.",

@@ -62,13 +62,6 @@ def test_a_cycle_goes_on_from_the_file_of_any_load_step(small, cycle_and_parts, 
     assert again.status == whole.status
 
 
-def test_a_cycle_of_another_load_is_not_resumed(small, cycle_and_parts):
-    _, parts = cycle_and_parts
-    loads = Loads(max_penetration=0.3, step=0.1, shown_penetration=0.1)
-    with pytest.raises(ValueError, match=r"penetration -0.75 where -0.7 is asked for"):
-        boundary_cycle(replace(small, loads=loads), resume=parts[0])
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("n_point", "interaction_range", "bound"), [(128, 0.43, 0.02), (256, 0.30, 0.012)]
