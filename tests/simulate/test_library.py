@@ -420,30 +420,6 @@ def test_scans_are_read_in_the_words_of_the_commands():
     assert cf.predict(SCAN, SPHERE, **WORDS).e_el == expected
 
 
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        ({"channel": "Phase"}, "has no channel 'Phase'"),
-        ({"crop": "1um"}, "^crop is '1um'; write both ends"),
-        ({"mask": "1um:2um"}, "has 2 dimension"),
-        ({"detrend": "spline"}, "^detrend is 'spline'; choose one"),
-        ({"detrend": 10}, "^detrend is 10; choose one"),
-        ({"size": "5x5"}, "^size is '5x5'; write one number"),
-        ({"shortest": -1.0}, "^shortest is -1 m; it must lie between"),
-        ({"shortest": "4"}, "^shortest is '4', without a unit"),
-    ],
-)
-def test_words_that_cannot_be_used_are_refused_by_their_names(words, sentence):
-    with pytest.raises(ValueError, match=sentence):
-        cf.read_scan(SCAN, SPHERE, **words)
-
-
-@pytest.mark.parametrize("words", [{"crop": 3}, {"mask": 3}, {"longest": [1]}])
-def test_words_of_another_type_say_what_they_expect(words):
-    with pytest.raises(TypeError, match=f"^{next(iter(words))} is .*; give a"):
-        cf.predict(SCAN, SPHERE, **words)
-
-
 def test_a_prediction_shows_itself_with_intervals_limits_and_notes():
     found = cf.predict(SCAN, SPHERE)
     surface = measured_surface(read_measurements([SCAN]))

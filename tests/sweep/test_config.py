@@ -483,9 +483,9 @@ def test_a_surface_is_read_in_the_words_of_the_commands(tmp_path):
     ("words", "sentence"),
     [
         ("channel: Phase", "has no channel 'Phase'"),
-        ("crop: 1um", "crop is '1um'; write both ends"),
         ("shortest: -1", "shortest is -1 m; it must lie"),
-        ("detrend: 12", "detrend is 12; choose one of center"),
+        ("crop: 3", "crop is 3; give a text, as in '2um:8um"),
+        ("chanel: 0", "unknown key spectra.0..surface.chanel; did you mean channel?"),
     ],
 )
 def test_words_of_a_surface_that_cannot_be_used_are_refused(tmp_path, words, sentence):

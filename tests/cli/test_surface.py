@@ -1,0 +1,296 @@
+"""`crackfront surface` and `crackfront predict`: what they say, write and refuse."""
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.law import shipped_law
+from crackfront.cli import main
+from crackfront.core.variables import variables
+from crackfront.simulate.fields import read_field
+from crackfront.simulate.files import read_cycle
+from crackfront.topography.measures import measured_surface
+from crackfront.topography.prediction import Prediction, predicted
+from crackfront.topography.reading import read_measurements
+from tests.topography.made import DETAIL, OVERVIEW, SCENE, write_smooth
+
+ROOT = Path(__file__).parents[2]
+
+
+SPHERE = {
+    "--modulus": "0.7MPa",
+    "--poisson": "0.5",
+    "--radius": "1.25mm",
+    "--work-of-adhesion": "63mJ/m2",
+}
+
+
+def sphere(**changes):
+    """Options of the sphere; None leaves one out."""
+    named = SPHERE | {f"--{name.replace('_', '-')}": value for name, value in changes.items()}
+    return [part for item in named.items() if item[1] is not None for part in item]
+
+
+def run(*arguments):
+    """Result of a command."""
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+def refused(*arguments):
+    """Sentence of a command that is refused."""
+    result = run(*arguments)
+    assert result.exit_code == 2, result.output
+    assert "Traceback" not in result.output
+    [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
+    return sentence
+
+
+@pytest.fixture(scope="module")
+def surface():
+    return measured_surface(read_measurements([DETAIL, OVERVIEW]))
+
+
+@pytest.fixture
+def predict(tmp_path, monkeypatch):
+    """Result of a prediction for the shipped scans, without the seconds that figures take."""
+
+    def command(*more, scans=(DETAIL, OVERVIEW), drawn=False, **changes):
+        if not drawn:
+            monkeypatch.setattr("crackfront.plots.style.save_figure", lambda figure, stem: ())
+        return run("predict", *scans, *sphere(**changes), "--figure", tmp_path / "figure", *more)
+
+    return command
+
+
+def test_a_prediction_does_not_depend_on_the_units_of_its_options(predict):
+    one = json.loads(predict("--json").output)["prediction"]
+    other = json.loads(
+        predict("--json", modulus="7e5 Pa", radius="0.00125m", work_of_adhesion="0.063N/m").output
+    )["prediction"]
+    for name, entry in one.items():
+        assert other[name]["value"] == pytest.approx(entry["value"], rel=1e-9)
+
+
+def test_a_negative_share_is_a_reservation_where_it_counts(predict):
+    content = json.loads(predict("--json").output)
+    [told] = [text for text in content["verdict"]["reservations"] if "w_loc negative" in text]
+    share = content["prediction"]["negative_share"]["value"]
+    assert f"{share:.2%} of the surface" in told
+    weak = json.loads(predict("--json", modulus="0.1MPa").output)
+    assert weak["prediction"]["negative_share"]["value"] < 0.05
+    assert not any("w_loc" in text for text in weak["verdict"]["reservations"])
+
+
+def test_each_outcome_has_its_exit_code(predict, tmp_path):
+    smooth = write_smooth(tmp_path / "smooth.al3d")
+    for code, outcome, more in (
+        (0, "applies", {"scans": (smooth,)}),
+        (3, "applies with reservations", {}),
+        (4, "does not apply", {"modulus": "100GPa"}),
+    ):
+        result = predict("--json", "--no-figure", **more)
+        content = json.loads(result.output)
+        assert (result.exit_code, content["verdict"]["outcome"]) == (code, outcome)
+        assert (content["prediction"] is None) == (code == 4)
+    told = run("predict", "--help").output
+    for text in ("Exit code 0: the theory applies", "3: it applies with", "4: it does"):
+        assert text in told
+    assert "  4   predict: the theory does not apply" in run("--help").output
+
+
+def test_millipascals_for_megapascals_are_refused_with_what_would_do(predict):
+    result = predict("--simulate", modulus="0.7mPa", drawn=True)
+    assert result.exit_code == 4
+    assert "THE THEORY DOES NOT APPLY" in result.output
+    assert "contact of 114 mm on a sphere of 1.25 mm, FAILS above 875 um" in result.output
+    assert "contact modulus E / (1 - nu^2) above 2.08 kPa" in result.output
+    assert "w_appr" not in result.output
+    assert "figure:" not in result.output
+
+
+def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
+    result = predict(drawn=True)
+    assert result.exit_code == 3, result.output
+    for text in (
+        "nanodiamond-overview.al3d: al3d, 144 x 144 points, 43.2 um x 43.2 um",
+        "SYNTHETIC, not a measurement",
+        "hurst",
+        "w_appr ",
+        "w_retr ",
+        "L_kappa ",
+        "Larkin length ",
+        "negative w_loc ",
+        "pull-off, given load",
+        "with the paper's k = 3",
+        "channel               'Default'",
+        "taken off             the paraboloid",
+        "The theory applies with 2 reservations",
+        "inside by a factor of",
+        "taken for 0.5 nm",
+    ):
+        assert text in result.output
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["figure.pdf", "figure.png"]
+
+
+def test_json_has_units_for_everything_that_is_predicted(predict, surface):
+    prediction = predicted(surface, SCENE)
+    content = json.loads(predict("--json").output)
+    expected = {}
+    for item in variables(Prediction):
+        found = getattr(prediction, item.name)
+        numbers = {"": found}
+        if isinstance(found, Estimate):
+            numbers = {"": found.value, "_low": found.low, "_high": found.high}
+        if item.name == "e_el":
+            numbers["_error"] = found.standard_error
+        expected |= {item.name + end: (number, item.units) for end, number in numbers.items()}
+    assert set(content["prediction"]) == set(expected)
+    for name, (number, units) in expected.items():
+        assert content["prediction"][name]["units"] == units
+        assert content["prediction"][name]["value"] == pytest.approx(number, rel=1e-12)
+    assert [item["checksum"] for item in content["measurements"]] == [
+        one.measurement.checksum for one in surface.scans
+    ]
+    density = content["measurements"][1]["density"]
+    assert density["density"]["units"] == "m^4"
+    assert len(density["wavevector"]["value"]) == len(density["density"]["value"]) > 10
+    assert content["measurements"][1]["limits"][0]["cause"] == "pixels"
+    shares = content["spectrum"]["share_of_e_el"]
+    assert shares["measured"] + shares["continued"] == pytest.approx(1)
+    assert shares["measured"] > 0.9
+    assert content["simulation"] is None
+
+
+def test_simulations_find_what_is_predicted(predict):
+    """A scene with few sites: long waves of the overview under a small sphere."""
+    result = predict(
+        *("--simulate", "--realisations", "2", "--seed", "1", "--json"),
+        scans=(OVERVIEW,),
+        radius="0.5mm",
+        modulus="1.2MPa",
+    )
+    assert result.exit_code == 3, result.output
+    content = json.loads(result.output)
+    found, law = content["simulation"], content["prediction"]
+    assert found["realisations"] == 2
+    assert found["remark"] == ""
+    assert found["w_appr"]["low"] < found["w_appr"]["value"] < found["w_appr"]["high"]
+    both = content["factors"]["both"]
+    k = found["k"]
+    own = (k["high"] - k["low"]) / 2
+    assert abs(k["value"] - both["value"]) < np.hypot(own, (both["high"] - both["low"]) / 2)
+    assert law["k_appr"]["value"] == content["factors"]["approach"]["value"]
+    assert found["hysteresis"]["value"] == pytest.approx(
+        found["w_retr"]["value"] - found["w_appr"]["value"]
+    )
+
+
+def test_a_single_simulation_has_no_interval(predict):
+    more = ("--simulate", "--realisations", "1")
+    options = {"scans": (OVERVIEW,), "radius": "0.5mm", "modulus": "1.2MPa"}
+    content = json.loads(predict(*more, "--json", **options).output)
+    assert content["simulation"]["w_appr"]["low"] is None
+    text = predict(*more, **options).output
+    assert "simulating 1 surface(s), about" in text
+    value = 1e3 * content["simulation"]["w_appr"]["value"]
+    assert f"w_appr                {value:.3g} mJ/m2\n" in text
+
+
+@pytest.fixture(scope="module")
+def coarse():
+    """The surface of the overview alone, with few sites under a sphere."""
+    return measured_surface(read_measurements([OVERVIEW]))
+
+
+def test_a_map_becomes_a_field_that_a_cycle_runs_on(tmp_path):
+    field, out = tmp_path / "field.nc", tmp_path / "out.nc"
+    coarse = sphere(radius="20um")
+    result = run("surface", OVERVIEW, *coarse, "--shortest", "4um", "--field", field)
+    assert result.exit_code == 0, result.output
+    assert "of the power law would add" in result.output
+    adhesion = read_field(field)
+    assert adhesion.work_of_adhesion.shape == (288, 288)
+    scene = replace(SCENE, radius=20e-6)
+    assert adhesion.pixel * scene.lateral == pytest.approx(0.3e-6)
+    more = ("--max-penetration", 0.2, "--step", 0.4, "--tolerance", 1e-3, "--angles", 64)
+    result = run("cycle", "--field", field, *more, "--output", out)
+    assert result.exit_code == 0, result.output
+    assert read_cycle(out).states.penetration.size > 1
+
+
+def test_a_surface_alone_has_no_energy_and_with_a_sphere_it_has(surface):
+    alone = run("surface", DETAIL, OVERVIEW)
+    assert alone.exit_code == 0, alone.output
+    assert "e_el  " not in alone.output
+    assert "e_el  " in run("surface", DETAIL, OVERVIEW, *sphere()).output
+    content = json.loads(run("surface", DETAIL, OVERVIEW, *sphere(), "--json").output)
+    energy = surface.conformity_energy(SCENE.contact_modulus)
+    assert content["e_el"]["value"] == pytest.approx(energy.value)
+    assert content["prediction"] is None
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"modulus": "0.7"}, "--modulus is '0.7', without a unit"),
+        ({"radius": "1.25MPa"}, "--radius is '1.25MPa', which is no length"),
+        ({"work_of_adhesion": "63mJ"}, "--work-of-adhesion is '63mJ', which is no energy per area"),
+        ({"radius": "-1mm"}, "--radius is '-1mm'; it must be positive"),
+        ({"poisson": "0.7"}, "--poisson is 0.7; it must lie between -0.99 and 0.5"),
+    ],
+)
+def test_a_sphere_that_makes_no_sense_is_refused(tmp_path, changes, sentence):
+    figure = ("--figure", tmp_path / "figure")
+    assert sentence in refused("predict", OVERVIEW, *sphere(**changes), *figure)
+
+
+def test_every_kind_of_bad_scan_is_refused_with_a_sentence(tmp_path, monkeypatch, rng):
+    figure = ("--figure", tmp_path / "figure")
+    noise, plain = tmp_path / "noise.sur", tmp_path / "plain.txt"
+    noise.write_bytes(rng.bytes(777))
+    np.savetxt(plain, rng.standard_normal((64, 64)))
+    for scan, more, sentence in (
+        (noise, (), "is in no format that SurfaceTopography reads"),
+        (plain, ("--unit", "um", "--size", "5x5"), "--size is '5x5'"),
+        (tmp_path / "absent.al3d", (), "cannot be used"),
+        (OVERVIEW, ("--shortest", "5"), "--shortest is '5', without a unit"),
+        (OVERVIEW, ("--shortest", "15um"), "less than an octave; use a better scan"),
+    ):
+        assert sentence in refused("predict", scan, *sphere(), *figure, *more)
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    assert "pip install '.[surfaces]'" in refused("predict", OVERVIEW, *sphere(), *figure)
+
+
+def test_a_field_needs_the_whole_sphere_and_one_scan(tmp_path):
+    field = ("--field", tmp_path / "field.nc")
+    assert "the sphere is incomplete" in refused("surface", OVERVIEW, *field)
+    assert "the sphere is incomplete" in refused("surface", OVERVIEW, *sphere(radius=None), *field)
+    assert "--field takes one scan" in refused("surface", OVERVIEW, DETAIL, *sphere(), *field)
+    within = (*field, "--place", "within")
+    assert "is smaller than the contact" in refused("surface", OVERVIEW, *sphere(), *within)
+    assert not (tmp_path / "field.nc").exists()
+
+
+def test_the_documentation_shows_what_the_command_prints(predict, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    names = [path.relative_to(ROOT) for path in (DETAIL, OVERVIEW)]
+    page = (ROOT / "docs/surfaces.md").read_text(encoding="utf-8")
+    shown = page.split("```text\n")[1].split("```")[0]
+    assert predict(scans=names).output == shown
+    command = page.split("```sh\n")[1].split("```")[0].replace("\\\n", " ").split()
+    assert command == ["crackfront", "predict", *map(str, names), *sphere()]
+
+
+def test_the_documentation_states_the_range_of_the_law():
+    page = (ROOT / "docs/surfaces.md").read_text(encoding="utf-8")
+    law = shipped_law()
+    weakest, strongest = law.disorder
+    smallest, largest = law.size
+    assert f"w_rms/w_int from {weakest:.2g} to {strongest:.2g} and g from {smallest:.2g} " in page
+    assert f"to {largest:.3g}" in page

@@ -1,0 +1,38 @@
+"""Scans and surfaces that several tests use."""
+
+import pytest
+
+from crackfront.topography.measures import measured_surface
+from crackfront.topography.prediction import predicted
+from crackfront.topography.reading import read_measurements
+from tests.topography.made import DETAIL, OVERVIEW, SCENE, map_heights, write_al3d
+
+
+@pytest.fixture
+def noise(rng):
+    """Heights without correlation, of a small map."""
+    return 1e-7 * rng.standard_normal((48, 48))
+
+
+@pytest.fixture
+def heights(rng):
+    """Heights of a map."""
+    return map_heights(rng)
+
+
+@pytest.fixture
+def scan(tmp_path, heights):
+    """File of these heights."""
+    return write_al3d(tmp_path / "scan.al3d", heights)
+
+
+@pytest.fixture(scope="session")
+def surface():
+    """Surface of the scans that are shipped."""
+    return measured_surface(read_measurements([DETAIL, OVERVIEW]))
+
+
+@pytest.fixture(scope="session")
+def prediction(surface):
+    """Its prediction."""
+    return predicted(surface, SCENE)

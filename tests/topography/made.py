@@ -1,0 +1,75 @@
+"""Scans that tests make and read."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import Scales
+from crackfront.topography.measures import read_surface
+from crackfront.topography.options import ReadingOptions, options_for_each
+from crackfront.topography.reading import read_measurements
+from studies.accuracy import scans
+
+FOLDER = Path(__file__).parents[2] / "examples/scans"
+DETAIL, OVERVIEW = FOLDER / "nanodiamond-detail.al3d", FOLDER / "nanodiamond-overview.al3d"
+SCENE = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
+
+SIDE = 20e-6
+SPECTRUM = SelfAffineSpectrum(0.4e-6, 3e-6, hurst=0.8, plateau=1e-26)
+HEAD = "# Channel: Main\n# Width: 20 um\n# Height: 20 um\n# Value units: um\n"
+
+
+def map_heights(rng, n_point=128, spectrum=SPECTRUM, side=SIDE):
+    """Heights of a map whose edges do not fit together."""
+    return gaussian_field(spectrum, 2 * n_point, 2 * side, rng)[:n_point, :n_point]
+
+
+def write_al3d(path, heights, side=SIDE, comment="test"):
+    """An AL3D file of a map."""
+    path.write_bytes(scans.al3d(heights, side / len(heights), comment))
+    return path
+
+
+def write_text(path, heights, cell=lambda row, column, text: text):
+    """A map as text, in um."""
+    rows = (
+        " ".join(cell(i, j, f"{value:.6f}") for j, value in enumerate(row))
+        for i, row in enumerate(1e6 * heights.T)
+    )
+    path.write_text(HEAD + "\n".join(rows) + "\n")
+    return path
+
+
+def one_cell(text):
+    """What replaces a cell in the middle by a text."""
+    return lambda row, column, known: text if (row, column) == (20, 7) else known
+
+
+def write_line(path, heights, pixel):
+    """A text file of a line, in two columns without units."""
+    np.savetxt(path, np.column_stack([pixel * np.arange(heights.size), heights]))
+    return path
+
+
+def read(path, **given):
+    """Measurement of a file, read by options as a user gives them."""
+    return read_measurements([path], options_for_each(ReadingOptions, given, 1))[0]
+
+
+def refusal(*paths, **given):
+    """Sentence for files that are refused."""
+    with pytest.raises(ValueError, match=r".") as caught:
+        read_surface(paths, options_for_each(ReadingOptions, given, len(paths)))
+    message = str(caught.value)
+    assert "\n" not in message
+    return message
+
+
+def write_smooth(path):
+    """Scan of a surface with a third of the heights of nanodiamond, showing all that matters."""
+    spectrum = SelfAffineSpectrum(0.1e-6, 2.1e-6, 0.95, 1e-27)
+    heights = gaussian_field(spectrum, 512, 25.6e-6, np.random.default_rng(3))
+    return write_al3d(path, heights, 25.6e-6, "smooth")

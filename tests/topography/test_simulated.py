@@ -1,0 +1,93 @@
+"""The simulations behind a prediction."""
+
+import functools
+from dataclasses import replace
+
+import pytest
+
+from crackfront.analysis.law import pinning_factor
+from crackfront.core.cycle.period import LineSchedule
+from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.simulate.run import run_simulation
+from crackfront.topography.measures import measured_surface
+from crackfront.topography.prediction import predicted
+from crackfront.topography.reading import read_measurements
+from crackfront.topography.simulated import prediction_plan, simulated
+from tests.topography.made import OVERVIEW, SCENE
+
+
+@pytest.fixture
+def small_limits(monkeypatch):
+    """Limits on sites, by name, so that small scenes are too large."""
+
+    def limit(**changes):
+        for name, value in changes.items():
+            monkeypatch.setattr(f"crackfront.topography.simulated.{name}", value)
+
+    return limit
+
+
+@pytest.fixture
+def _each_simulated_once(monkeypatch):
+    """Equal simulations are run once."""
+    once = functools.cache(run_simulation)
+    monkeypatch.setattr("crackfront.topography.simulated.run_simulation", once)
+
+
+LONG_WAVES = replace(SCENE, radius=0.5e-3, contact_modulus=1.2e6 / 0.75)
+
+
+@pytest.fixture(scope="module")
+def coarse():
+    """The surface of the overview alone, with few sites under a sphere."""
+    return measured_surface(read_measurements([OVERVIEW]))
+
+
+@pytest.mark.usefixtures("_each_simulated_once")
+def test_a_sphere_with_too_many_sites_is_a_straight_front_on_its_springs(coarse, small_limits):
+    sphere_plan = prediction_plan(coarse, LONG_WAVES, 2, 1)
+    assert sphere_plan.remark == ""
+    assert isinstance(sphere_plan.simulations[0].schedule, SteadySchedule)
+    small_limits(_MOST_SITES=100)
+    plan = prediction_plan(coarse, LONG_WAVES, 2, 1)
+    schedule = plan.simulations[0].schedule
+    assert isinstance(schedule, LineSchedule)
+    spring = predicted(coarse, LONG_WAVES).l_kappa / LONG_WAVES.lateral
+    assert schedule.spring == pytest.approx(spring)
+    assert schedule.length >= 9.99 * spring
+    assert plan.correction == 1
+    found = simulated(plan, LONG_WAVES)
+    assert found.remark == plan.remark
+    assert "a straight front is simulated, on springs of the length L_kappa" in plan.remark
+    law = predicted(coarse, LONG_WAVES).factors.both
+    assert found.k.value == pytest.approx(law.value, rel=0.15)
+
+
+@pytest.mark.usefixtures("_each_simulated_once")
+def test_a_line_with_too_many_sites_has_shorter_springs_and_is_corrected(coarse, small_limits):
+    small_limits(_MOST_SITES=100)
+    large = replace(SCENE, radius=5e-3)
+    line = prediction_plan(coarse, large, 1, 1)
+    assert line.correction == 1
+    sites = line.simulations[0].resolution.n_angle
+    small_limits(_MOST_LINE_SITES=sites - 1, _SHORT_SIZE=10.0)
+    plan = prediction_plan(coarse, large, 1, 1)
+    assert plan.simulations[0].schedule.spring < line.simulations[0].schedule.spring
+    prediction = predicted(coarse, large)
+    w_rms = prediction.w_rms / large.work_of_adhesion
+    long, short = (pinning_factor(w_rms, g).factor.value for g in (prediction.size, 10.0))
+    assert plan.correction == pytest.approx(long / short)
+    assert f"g 10, not {prediction.size:.3g}" in plan.remark
+    assert f"multiplied by {plan.correction:.3f}" in plan.remark
+    plain, corrected = (simulated(item, large) for item in (replace(plan, correction=1.0), plan))
+    assert corrected.k.value == pytest.approx(plan.correction * plain.k.value)
+    assert corrected.hysteresis.value == pytest.approx(
+        corrected.w_retr.value - corrected.w_appr.value
+    )
+    assert corrected.k.value == pytest.approx(prediction.factors.both.value, rel=0.1)
+
+
+def test_what_is_too_large_in_every_way_is_refused(coarse, small_limits):
+    small_limits(_MOST_MEMORY=1e6)
+    with pytest.raises(ValueError, match=r"no simulation is small enough: .* without --simulate"):
+        prediction_plan(coarse, LONG_WAVES, 1, 1)
