@@ -172,8 +172,7 @@ def _draw_axes(axes: Axes, shown: AnimatedCycle) -> None:
     for values, setter, above in limits:
         low, high = values.min(), values.max()
         setter(low - 0.06 * (high - low), high + above * (high - low))
-    axes.set_xlabel(f"mean {RADIUS_LABEL}")
-    axes.set_ylabel(FORCE_LABEL)
+    axes.set(xlabel=f"mean {RADIUS_LABEL}", ylabel=FORCE_LABEL)
 
 
 FIGURE = Figure(

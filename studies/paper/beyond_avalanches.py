@@ -310,8 +310,7 @@ def _draw_densities(axes: Axes, record: AvalancheRecord, values: Array, what: st
             color=colour,
             label=f"{name} disorder, {disorder}, {chosen.size} avalanches",
         )
-    axes.set_xlabel(what)
-    axes.set_ylabel("probability density")
+    axes.set(xlabel=what, ylabel="probability density")
 
 
 def _draw_areas(axes: Axes, record: AvalancheRecord) -> None:

@@ -316,8 +316,7 @@ def draw_events(axes: Axes, record: EventRecord) -> None:
     theory = level * (ends / ends[0]) ** -SIZE_EXPONENT
     _draw_theory(axes, ends, theory, rf"\tau = {SIZE_EXPONENT:.2f}", "upper right")
     _name_fit(axes, rf"$\tau = {law.exponent:.2f}$ ({law.low:.2f} to {law.high:.2f})", 0.06)
-    axes.set_xlabel(r"area of a whole event $S/\ell\xi_u$")
-    axes.set_ylabel("probability density")
+    axes.set(xlabel=r"area of a whole event $S/\ell\xi_u$", ylabel="probability density")
 
 
 def draw_cutoffs(axes: Axes, record: EventRecord) -> None:
@@ -330,8 +329,7 @@ def draw_cutoffs(axes: Axes, record: EventRecord) -> None:
     theory = 0.6 * law.scales[0] * (ends / ends[0]) ** growth
     _draw_theory(axes, ends, theory, rf"1 + \zeta = {growth:.3f}", "lower right")
     _name_fit(axes, rf"slope {slope.exponent:.2f} $\pm$ {slope.reach:.2f}", 0.9)
-    axes.set_xlabel(r"length of the springs $L_\kappa/\ell$")
-    axes.set_ylabel(r"cut-off $S_m/\ell\xi_u$")
+    axes.set(xlabel=r"length of the springs $L_\kappa/\ell$", ylabel=r"cut-off $S_m/\ell\xi_u$")
 
 
 def draw_depths(axes: Axes, record: EventRecord) -> None:
@@ -354,8 +352,7 @@ def draw_depths(axes: Axes, record: EventRecord) -> None:
     theory = 0.7 * fit[0] * (ends / ends[0]) ** _ROUGHNESS
     _draw_theory(axes, ends, theory, rf"\zeta = {_ROUGHNESS}", "lower right")
     _name_fit(axes, rf"slope {slope.exponent:.3f} $\pm$ {slope.reach:.3f}", 0.9)
-    axes.set_xlabel(r"extent $l/\ell$")
-    axes.set_ylabel(r"depth $S/l\xi_u$")
+    axes.set(xlabel=r"extent $l/\ell$", ylabel=r"depth $S/l\xi_u$")
 
 
 _FEWEST_IN_A_BIN = 10

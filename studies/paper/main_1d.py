@@ -156,10 +156,8 @@ def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
             end = 0 if direction > 0 else -1
             _draw_jump(axes, direction, float(radius[end]), float(force[end]), colour)
         _draw_pull_off(axes, loop)
-        axes.set_xlim(left=_LEFT)
-        axes.set_ylim(bottom=1.12 * float(np.min(loop.force)))
-        axes.set_xlabel(RADIUS_LABEL)
-        axes.set_ylabel(FORCE_LABEL)
+        axes.set(xlim=(_LEFT, None), ylim=(1.12 * float(np.min(loop.force)), None))
+        axes.set(xlabel=RADIUS_LABEL, ylabel=FORCE_LABEL)
         axes.legend(loc="upper left")
         return figure
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
+from scipy.optimize import brentq
 
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load, Step, follow
@@ -43,9 +44,11 @@ from crackfront.plots.style import (
 )
 from studies.paper.drawing import BRANCHES, write_beside
 from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
-from studies.paper.rings import INNERMOST, Rings, first_stops, folds
 
 _STATE, _LOOP, _CASE = "state", "loop", "case"
+
+INNERMOST = 1e-3
+"""Radius at which contact is made."""
 
 _TOLERANCE = 1e-13
 """Force that may be left on a circle, relative to w_int: next to pull-off it is soft."""
@@ -54,6 +57,26 @@ _PATH = 257
 """Points between two states at which a fold of the equilibria is looked for."""
 
 Amplitude = Annotated[float, Field(gt=0, lt=1)]
+
+
+class Rings(NamedTuple):
+    """Rings of w_loc(a) = 1 + delta sin(2 pi a / d), delta in w_int, d in reduced lengths."""
+
+    amplitude: float
+    wavelength: float
+
+    def adhesion(self, radius: ArrayLike) -> Array:
+        """Work of adhesion at a distance from the apex (Units: w_int)."""
+        phase = 2 * np.pi * np.asarray(radius) / self.wavelength
+        return np.asarray(1 + self.amplitude * np.sin(phase))
+
+    def penetration(self, radius: ArrayLike) -> Array:
+        """Penetration b_eq(a) at which a front is in equilibrium, stable or not."""
+        return jkr.equilibrium_penetration(radius, self.adhesion(radius))
+
+    def outermost(self, penetration: float) -> float:
+        """Radius that no front gets beyond at a penetration."""
+        return jkr.equilibrium_radius(penetration, 1 + self.amplitude) + self.wavelength
 
 
 class RingsParameters(Section):
@@ -197,6 +220,50 @@ _KNOWN = {(0.2, 0.3, 0.7, 0.005): (0.3886, 2e-4), (0.2, 0.3, 0.7, 0.1): (0.238, 
 """Hysteresis with its tolerance, by amplitude, window and wavelength, from a separate program."""
 
 _ROUND_OFF = 1e-9
+
+
+def first_stops(rings: Rings, penetration: Array, direction: int, start: float) -> Array:
+    """Radii at which a front on the rings first rests; NaN where no rest is left.
+
+    In approach (direction 1) that is where the running maximum of b_eq from the start reaches each
+    penetration, in retraction (-1) its running minimum: its folds are found first, then the root
+    between two of them. All lengths are reduced.
+    """
+    largest = max(float(np.max(penetration)), 0.0)
+    end = rings.outermost(largest) if direction > 0 else INNERMOST
+    nodes = folds(rings, min(start, end), max(start, end))[::direction]
+    reached = direction * rings.penetration(nodes)
+    stops = np.full(penetration.size, np.nan)
+    for index, load in enumerate(penetration):
+        beyond = np.flatnonzero(reached >= direction * load)
+        if beyond.size and (first := beyond[0]) > 0:
+            between = nodes[first - 1], nodes[first]
+            stops[index] = brentq(
+                lambda a, b=load: float(rings.penetration(a)) - b, *between, xtol=1e-15
+            )
+        elif beyond.size:
+            stops[index] = nodes[0]
+    return stops
+
+
+def folds(rings: Rings, low: float, high: float) -> Array:
+    """Ends of an interval and the extrema of b_eq within, increasing."""
+
+    def slope(radius: float) -> float:
+        adhesion = float(rings.adhesion(radius))
+        turn = 2 * math.pi / rings.wavelength
+        rise = rings.amplitude * turn * math.cos(turn * radius)
+        return 2 * radius - math.sqrt(2 / 3) * (adhesion + radius * rise) / math.sqrt(
+            radius * adhesion
+        )
+
+    grid = np.linspace(low, high, 64 * math.ceil((high - low) / rings.wavelength) + 2)
+    sign = np.sign([slope(radius) for radius in grid])
+    turns = [
+        brentq(slope, grid[i], grid[i + 1], xtol=1e-15)
+        for i in np.flatnonzero(sign[:-1] * sign[1:] < 0)
+    ]
+    return np.array([low, *turns, high])
 
 
 def rings_checks(loops: RingLoops) -> tuple[Check, ...]:
@@ -399,9 +466,7 @@ def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float,
             contact = loops.radius_at_zero(0, direction)
             place = contact, float(jkr.apparent_work_of_adhesion(contact, 0.0))
             _draw_state(axes, direction, place, (8, -3) if direction > 0 else (-6, 4))
-    axes.set_xlim(*limits)
-    axes.set_ylim(0.35, 2.05)
-    axes.set_xlabel(RADIUS_LABEL)
+    axes.set(xlim=limits, ylim=(0.35, 2.05), xlabel=RADIUS_LABEL)
     axes.set_ylabel(r"energy release rate / $w_\mathrm{int}$")
     axes.legend(loc="upper left", ncols=2)
 
@@ -429,10 +494,7 @@ def _draw_forces(axes: Axes, loops: RingLoops) -> None:
             zorder=1,
         )
     axes.plot(radius, jkr.force(radius, 0.0), color=BLACK, linewidth=0.8, label="$b=0$", zorder=1)
-    axes.set_xlim(0, _REACH)
-    axes.set_ylim(-2.7, 2.7)
-    axes.set_xlabel(RADIUS_LABEL)
-    axes.set_ylabel(FORCE_LABEL)
+    axes.set(xlim=(0, _REACH), ylim=(-2.7, 2.7), xlabel=RADIUS_LABEL, ylabel=FORCE_LABEL)
     axes.legend(loc="upper left", ncols=2, columnspacing=1.0)
 
 

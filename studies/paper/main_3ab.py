@@ -344,9 +344,7 @@ def _draw_shortest(axes: Axes, record: InstabilityRecord, index: int) -> None:
 def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
     """Limits, names and a scale."""
     reach = 1.04 * record.before.max() + _GAP
-    axes.set_xlim(-reach, reach)
-    axes.set_ylim(-0.6, 1.28 * reach)
-    axes.set_aspect("equal")
+    axes.set(xlim=(-reach, reach), ylim=(-0.6, 1.28 * reach), aspect="equal")
     axes.set_axis_off()
     for index, name, side in ((STRONG, "strong", -1), (WEAK, "weak", 1)):
         text = (
@@ -382,8 +380,7 @@ def _draw_cycle(axes: Axes, record: InstabilityRecord) -> None:
     axes.set_xlim(0.0, 1.08 * record.state_radius.max())
     axes.set_ylim(1.25 * record.state_force.min(), 0.1)
     axes.legend(loc="lower left")
-    axes.set_xlabel(RADIUS_LABEL)
-    axes.set_ylabel(FORCE_LABEL)
+    axes.set(xlabel=RADIUS_LABEL, ylabel=FORCE_LABEL)
 
 
 FIGURE = Figure(

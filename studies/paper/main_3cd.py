@@ -265,8 +265,7 @@ def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
         near = np.abs(angle) < 2 * loop.y[-1] / loop.x[0]
         x, y = (radius * np.cos(angle))[near], (radius * np.sin(angle))[near]
         axes.plot(x, y, color=colour, linestyle=style, linewidth=1.0, label=label)
-    axes.set_xlim(loop.x[0], loop.x[-1])
-    axes.set_ylim(loop.y[0], loop.y[-1])
+    axes.set(xlim=(loop.x[0], loop.x[-1]), ylim=(loop.y[0], loop.y[-1]))
     label_plane(axes)
     axes.legend(loc="lower center", bbox_to_anchor=(0.55, 1.0), ncols=3, columnspacing=1.0)
 

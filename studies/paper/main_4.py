@@ -262,8 +262,7 @@ def _draw_map(axes: Axes, record: Mapping, values: Array, colours: str, label: s
     axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(4))
-    axes.set_xlabel(LENGTH_LABEL.format("$x$"))
-    axes.set_ylabel(LENGTH_LABEL.format("$y$"))
+    axes.set(xlabel=LENGTH_LABEL.format("$x$"), ylabel=LENGTH_LABEL.format("$y$"))
 
 
 def _draw_profile(upper: Axes, lower: Axes, record: Mapping, place: str, colour: str) -> None:

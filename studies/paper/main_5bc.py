@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated, Any
@@ -15,6 +15,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
+from scipy.ndimage import find_objects, label
 
 from crackfront.analysis.estimate import REACH
 from crackfront.analysis.finding import PAPER_FACTOR
@@ -24,6 +25,7 @@ from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
@@ -32,7 +34,6 @@ from crackfront.data.section import InputFile, Plateau, Positive, refusal
 from crackfront.plots.style import BLACK, ORANGE, PAGE, blank_figure, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import Simulation
-from studies.paper.advances import Perimeters
 from studies.paper.drawing import BRANCHES, name_panels
 from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.measured import ForceRadius, fitted_adhesion, read_force_radius
@@ -194,6 +195,102 @@ class NanodiamondContact:
         radius = float(np.mean(self.radius[since])) / self.scales.lateral
         energy = self.elastic_energy / self.work_of_adhesion
         return sphere_factors("roughness", self.spectrum, energy, radius)
+
+
+_MOST_SITES = 4096
+"""Sites of a perimeter that are kept for drawing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Advance:
+    """A connected part of a front that has advanced: its sites, (n_site,) each.
+
+    The angles (rad) make no jump at 2 pi; the radii are those before and after.
+    """
+
+    angle: Array
+    inner: Array
+    outer: Array
+
+    @property
+    def extent(self) -> float:
+        """Width along the perimeter, at the mean of both fronts (Units: length)."""
+        if self.angle.size == 0:
+            return 0.0
+        width = (self.angle[-1] - self.angle[0]) * (1 + 1 / max(self.angle.size - 1, 1))
+        return float(width * np.mean(self.inner + self.outer) / 2)
+
+
+def advances(before: Array, after: Array, threshold: float) -> list[Advance]:
+    """Connected parts of a front, (n_angle,) radii, that have advanced by more than a threshold.
+
+    Examples
+    --------
+    >>> before = np.ones(8)
+    >>> after = before + np.array([0.5, 0.5, 0, 0, 0.5, 0, 0, 0.5])
+    >>> [(part.angle * 4 / np.pi).tolist() for part in advances(before, after, 0.1)]
+    [[4.0], [7.0, 8.0, 9.0]]
+    """
+    moved = after - before > threshold
+    # From a site at rest on, no part is cut in two.
+    start = int(np.argmin(moved))
+    labels, n_part = label(np.roll(moved, -start))
+    parts = []
+    for (sites,) in find_objects(labels, n_part):
+        index = np.arange(sites.start, sites.stop) + start
+        wrapped = index % before.size
+        parts.append(Advance(2 * np.pi * index / before.size, before[wrapped], after[wrapped]))
+    return parts
+
+
+class Perimeters:
+    """What is kept of the fronts of an approach after jump-in: an observer of its states.
+
+    All sites have then travelled by more than `passed`; a site that advances by more has jumped.
+    Fronts up to the force `highest` count; `every` so many load steps one is kept in `lines`, with
+    its state in `states`, at few enough angles for a drawing. For each of `strides`, multiples of
+    the load step, `widest` has the widest advance and `extents` the widths of all. A state does not
+    depend on the load step that led there (no passing), so that every second state is what twice
+    the step would find.
+    """
+
+    def __init__(self, passed: float, highest: float, every: int, strides: Sequence[int]) -> None:
+        self._passed, self._highest, self._every = passed, highest, every
+        self._before: dict[int, Array | None] = dict.fromkeys(strides)
+        self._count = 0
+        self.widest = {stride: Advance(*(np.empty(0),) * 3) for stride in strides}
+        self.extents: dict[int, list[float]] = {stride: [] for stride in strides}
+        self.states: list[ContactState[float]] = []
+        self.lines: list[Array] = []
+        self.angle = np.empty(0)
+
+    def __call__(self, recorder: Recorder) -> None:
+        """Compare a front with the ones before, and keep every few of them."""
+        state, front = recorder.states[-1], recorder.front
+        # Before it jumps into contact, the sphere rests on a few places about its apex.
+        if state.direction < 0 or state.least_travel <= self._passed:
+            return
+        if state.force > self._highest:
+            return
+        self.follow(front)
+        if self._count % self._every == 1 % self._every:
+            kept = slice(None, None, -(-front.size // _MOST_SITES))
+            self.angle = (2 * np.pi * np.arange(front.size) / front.size)[kept]
+            self.states.append(state)
+            self.lines.append(front[kept])
+
+    def follow(self, front: Array) -> None:
+        """Compare the front of the next state, (n_angle,) radii, with earlier ones."""
+        for stride, before in self._before.items():
+            if self._count % stride:
+                continue
+            if before is not None:
+                found = advances(before, front, self._passed)
+                self.extents[stride] += [part.extent for part in found]
+                candidates = [self.widest[stride], *found]
+                self.widest[stride] = max(candidates, key=lambda part: part.extent)
+            self._before[stride] = front
+        self._count += 1
 
 
 def nanodiamond_contact(
@@ -453,10 +550,7 @@ def _draw_perimeters(axes: Axes, contact: NanodiamondContact) -> None:
     outline = radius * np.cos(around), radius * np.sin(around)
     axes.fill(*outline, color=ORANGE, linewidth=0.6, zorder=3, label=label)
     reach = 1.03 * float(np.abs(lines).max())
-    axes.set_xlim(-reach, reach)
-    axes.set_ylim(-reach, reach)
-    axes.set_aspect("equal")
-    axes.set_xlabel("$x$ (µm)")
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xlabel="$x$ (µm)")
     axes.set_ylabel("$y$ (µm)")
     axes.legend(loc="center", handlelength=0.8)
 
@@ -499,8 +593,7 @@ def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
     axes.set_xlim(0.75 * contact.radius[contact.direction < 0].min() * _MICRO, place[-1])
     low, high = force.min(), force.max()
     axes.set_ylim(low - 0.15 * (high - low), high + 0.08 * (high - low))
-    axes.set_xlabel("mean contact radius (µm)")
-    axes.set_ylabel("normal force (mN)")
+    axes.set(xlabel="mean contact radius (µm)", ylabel="normal force (mN)")
     axes.legend(loc="upper left")
 
 

@@ -9,8 +9,7 @@ from pydantic import ValidationError
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from studies.paper.figure import figure
-from studies.paper.main_2 import RingLoops, RingsParameters
-from studies.paper.rings import INNERMOST, Rings, first_stops
+from studies.paper.main_2 import INNERMOST, RingLoops, Rings, RingsParameters, first_stops
 
 GIVEN = {
     "amplitude": 0.4,

@@ -9,9 +9,8 @@ import pytest
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.data.section import ConfigurationError
-from studies.paper.advances import Perimeters, advances
 from studies.paper.figure import figure, load_figure, settings_fingerprint
-from studies.paper.main_5bc import NanodiamondParameters
+from studies.paper.main_5bc import NanodiamondParameters, Perimeters, advances
 
 CONFIGURATION = Path(__file__).parents[3] / "config" / "figures" / "main-5bc.yaml"
 
