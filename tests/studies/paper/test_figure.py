@@ -41,15 +41,6 @@ def test_figures_that_took_longer_than_a_minute_tell_about_how_long_they_take():
         assert seconds / 4 < expected < 4 * seconds, name
 
 
-def test_a_figure_imports_no_other_figure_whose_changes_its_fingerprint_would_miss():
-    for name in FIGURES:
-        source = REPOSITORY / "studies" / "paper" / f"{name.replace('-', '_')}.py"
-        imported = re.findall(
-            r"studies\.paper\.((?:main|si|beyond)_\w+)", source.read_text("utf-8")
-        )
-        assert imported == []
-
-
 @pytest.mark.parametrize("scale", SCALES)
 @pytest.mark.parametrize("name", FIGURES)
 def test_every_configuration_is_valid_at_every_scale(name, scale):

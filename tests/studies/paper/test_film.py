@@ -6,10 +6,6 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.core.synthesis import gaussian_field
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
 from crackfront.data.section import ConfigurationError
 from studies.paper.figure import figure, load_figure
 from studies.paper.film import conformity_energy
@@ -91,25 +87,6 @@ def test_the_density_of_lines_is_that_of_a_single_wave():
     density = profile_periodogram(np.tile(wave[:, None], 4), pixel)
     assert density[4] == pytest.approx(amplitude**2 / 4 * side)
     assert np.delete(density, 4) == pytest.approx(0.0, abs=1e-25)
-
-
-def test_the_density_of_lines_is_the_same_in_both_directions_on_average():
-    spectrum = SelfAffineSpectrum(0.05, 0.25, 0.8)
-    along, across = np.zeros(31), np.zeros(31)
-    for seed in range(200):
-        heights = gaussian_field(spectrum, 64, 1.0, np.random.default_rng(seed))
-        along += profile_periodogram(heights, 1 / 64)
-        across += profile_periodogram(heights.T, 1 / 64)
-    assert np.sum(along[3:15]) == pytest.approx(np.sum(across[3:15]), rel=0.05)
-
-
-@pytest.mark.parametrize("name", ["main-5a", "si-6"])
-def test_data_without_measured_points_come_back_from_their_file(name, request, tmp_path):
-    record = request.getfixturevalue({"main-5a": "scales", "si-6": "synthetic"}[name])
-    write_record(tmp_path / f"{name}.nc", record, provenance(), title="film")
-    again = read_record(tmp_path / f"{name}.nc", figure(name).record)
-    assert again.measured_profile.size == 0
-    assert failed(name, again) == failed(name, record)
 
 
 @pytest.mark.parametrize("name", ["main-5a", "si-6"])

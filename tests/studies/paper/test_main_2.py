@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
 from studies.paper.figure import figure
-from studies.paper.main_2 import INNERMOST, RingLoops, Rings, RingsParameters, first_stops
+from studies.paper.main_2 import INNERMOST, Rings, RingsParameters, first_stops
 
 GIVEN = {
     "amplitude": 0.4,
@@ -77,13 +75,6 @@ def test_an_instability_lies_where_the_radius_jumps(loops):
             moved = np.abs(np.diff(loops.radius[branch]))
             jumped = loops.jump[branch][1:] > 0
             assert moved[jumped].min() > 0.5 * wavelength > moved[~jumped].max()
-
-
-def test_data_of_rings_come_back_from_their_file(loops, tmp_path):
-    write_record(tmp_path / "main-2.nc", loops, provenance(), title="rings")
-    again = read_record(tmp_path / "main-2.nc", RingLoops)
-    np.testing.assert_array_equal(again.radius, loops.radius)
-    assert failed(again) == []
 
 
 def test_a_figure_of_rings_shows_units_on_every_axis(loops):

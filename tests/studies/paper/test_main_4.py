@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
 from studies.paper.figure import figure
-from studies.paper.main_4 import Mapping, MappingParameters, mapping
+from studies.paper.main_4 import MappingParameters, mapping
 
 GIVEN = {
     "seed": 1,
@@ -59,13 +57,6 @@ def test_the_rms_that_the_main_text_prints_fails_parseval(record):
     claims = failed(replace(record, rms=math.sqrt(2 * record.energy)))
     assert len(claims) == 1
     assert "Parseval" in claims[0]
-
-
-def test_data_of_a_mapping_come_back_from_their_file(record, tmp_path):
-    write_record(tmp_path / "main-4.nc", record, provenance(), title="mapping")
-    again = read_record(tmp_path / "main-4.nc", Mapping)
-    np.testing.assert_array_equal(again.adhesion, record.adhesion)
-    assert failed(again) == []
 
 
 def test_a_figure_of_a_mapping_shows_two_maps_and_two_profiles(record):

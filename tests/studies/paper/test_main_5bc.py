@@ -8,8 +8,7 @@ import pytest
 
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
-from crackfront.data.section import ConfigurationError
-from studies.paper.figure import figure, load_figure, settings_fingerprint
+from studies.paper.figure import figure, settings_fingerprint
 from studies.paper.main_5bc import NanodiamondParameters, Perimeters, advances
 
 CONFIGURATION = Path(__file__).parents[3] / "config" / "figures" / "main-5bc.yaml"
@@ -142,12 +141,6 @@ def with_measured(folder, text):
     line = f"parameters:\n  measured: {folder / 'measured.csv'}\n"
     path.write_text(CONFIGURATION.read_text().replace("parameters:\n", line))
     return path
-
-
-def test_a_configuration_with_a_wrong_csv_is_refused_before_any_work(tmp_path):
-    path = with_measured(tmp_path, MEASURED.replace("0.5,110", "nan,110"))
-    with pytest.raises(ConfigurationError, match=r"measured.csv, line 4: force is 'nan'"):
-        load_figure(path, "quick")
 
 
 def test_a_measured_file_decides_what_a_figure_is_made_of_and_a_comment_does_not(tmp_path):
