@@ -32,7 +32,7 @@ from crackfront.topography.prediction import predicted
 from crackfront.topography.reading import read_measurements
 from crackfront.topography.tile import measured_adhesion
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[1]
 TEST = ROOT / "config/test.yaml"
 SCAN = ROOT / "examples/scans/nanodiamond-detail.al3d"
 SPHERE = cf.Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)

@@ -1,0 +1,123 @@
+"""Figures of one loop: what is drawn where."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crackfront.analysis.steady import steady_adhesion
+from crackfront.core import jkr
+from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.fields import polar_field
+from crackfront.core.geometry.line import LineState
+from crackfront.core.solver.relax import Newton
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.plots.loop import loop_figure, pinning_figure, steady_loop_figure
+
+
+@pytest.fixture(scope="module")
+def record():
+    """A cycle over a small pinning field."""
+    radii = np.linspace(0.02, 2.2, 110)
+    angle = np.linspace(0, 2 * np.pi, 32, endpoint=False)
+    bumps = 1 + 0.2 * np.sin(8 * np.pi * radii)[:, None] * np.cos(4 * angle)
+    return run_cycle(
+        polar_field(radii, WORK_OF_ADHESION * bumps), LoadSchedule(1.0, 0.05), Newton(1e-6)
+    )
+
+
+def line_labelled(axes, words):
+    """The line whose label holds the words."""
+    return next(line for line in axes.get_lines() if words in str(line.get_label()))
+
+
+def line_states(n_step=9):
+    """A front that pins by 0.2 forward and 0.1 back once it has forgotten its start."""
+    load = np.arange(float(n_step))
+    pinning = np.where(load < 4, 0.0, 0.2)
+    zero = np.zeros(2 * n_step)
+    return LineState(
+        load=np.concatenate([load, load[::-1]]),
+        direction=np.repeat([1, -1], n_step),
+        mean_position=zero,
+        rms_position=zero,
+        pinning_force=np.concatenate([pinning, -pinning / 2]),
+        least_travel=zero,
+        iterations=zero,
+        updates=zero,
+        residual=zero,
+    )
+
+
+def test_the_pinning_force_is_averaged_over_the_last_period_of_each_branch():
+    axes = pinning_figure(line_states(), 5, elastic_energy=0.1, title="front").axes[0]
+    assert axes.get_title() == "front"
+    forward, back = (line_labelled(axes, words) for words in ("k=2.00", "k=1.00"))
+    np.testing.assert_allclose(forward.get_data(), ([4, 8], [0.2, 0.2]))
+    np.testing.assert_allclose(back.get_data(), ([4, 0], [-0.1, -0.1]))
+    assert axes.get_legend() is not None
+
+
+def test_a_front_that_was_left_before_a_period_is_refused():
+    with pytest.raises(ValueError, match="has 9 states, fewer than the 20"):
+        pinning_figure(line_states(), 20, elastic_energy=0.1)
+
+
+def measured(steady):
+    """Works of adhesion and their window, as a loop is drawn with them."""
+    return (steady.w_appr, steady.w_retr), (steady.lowest_radius, steady.highest_radius)
+
+
+def test_the_loop_lies_between_its_curves(record):
+    steady = steady_adhesion(record, correlation_length=0.1)
+    axes = loop_figure(record.states, *measured(steady), elastic_energy=0.01, title="loop").axes[0]
+    assert axes.get_title() == "loop"
+    for words, adhesion in (("appr", steady.w_appr), ("retr", steady.w_retr)):
+        radius, force = line_labelled(axes, f"\\mathrm{{{words}}}").get_data()
+        np.testing.assert_allclose(force, jkr.equilibrium_force(radius, adhesion))
+    drawn = line_labelled(axes, "approach").get_xdata()
+    np.testing.assert_array_equal(drawn, record.states.mean_radius[record.states.direction > 0])
+
+
+@pytest.mark.parametrize("energy", [0.002, 0.01, 0.1])
+def test_the_arrows_of_a_loop_lie_beside_all_curves_and_in_the_direction_of_motion(record, energy):
+    works = measured(steady_adhesion(record, correlation_length=0.1))
+    axes = loop_figure(record.states, *works, elastic_energy=energy).axes[0]
+    to_axes = axes.transData + axes.transAxes.inverted()
+    curves = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.get_lines()])
+    arrows = [(np.array(text.xyann), np.array(text.xy)) for text in axes.texts]
+    assert len(arrows) == 2
+    for tail, head in arrows:
+        points = np.linspace(tail, head, 20)
+        assert np.hypot(*(points[:, None] - curves).T).min() > 0.015
+    assert [np.sign(head[0] - tail[0]) for tail, head in arrows] == [1, -1]
+
+
+def test_steady_parts_are_drawn_on_the_loop_that_they_stand_for(record):
+    steady = steady_adhesion(record, 0.1)
+    works, window = measured(steady)
+    left, right = steady_loop_figure(
+        record.states, works, window, elastic_energy=0.01, title="steady"
+    ).axes[:2]
+    # From no contact to the turn and back, through the pull-off force of w_retr.
+    curves = [line.get_xydata() for line in left.get_lines()]
+    assert min(points[:, 0].min() for points in curves) == 0
+    smooth = [points[:, 1].min() for points in curves if len(points) == 300]
+    assert min(smooth) == pytest.approx(jkr.pull_off_force(works[1]), abs=1e-3)
+    assert left.get_ylim()[0] < jkr.pull_off_force(works[1])
+    assert "steady" in left.get_title()
+    assert right.get_legend() is None
+    assert left.figure.legends[0].get_texts()
+
+
+def test_a_loop_without_steady_states_is_drawn_without_curves(record):
+    steady = steady_adhesion(record, correlation_length=10.0)
+    axes = loop_figure(record.states, *measured(steady)).axes[0]
+    assert not [line for line in axes.get_lines() if "JKR" in str(line.get_label())]
+
+
+def test_an_empty_record_is_refused(record):
+    empty = replace(record.states, mean_radius=np.array([]))
+    with pytest.raises(ValueError, match="holds no state"):
+        loop_figure(empty, *measured(steady_adhesion(record, 0.1)))
