@@ -54,6 +54,9 @@ class Commands(click.Group):
             ) from error
         except BrokenPipeError:
             raise
+        except MemoryError as error:
+            sentence = "the memory does not suffice; compute less, or on a machine with more"
+            raise click.ClickException(sentence) from error
         except OSError as error:
             raise _RefusalError(_file_sentence(error)) from error
         except ValueError as error:

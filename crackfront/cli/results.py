@@ -12,15 +12,12 @@ from crackfront.cli.report import FILE, announce_cost, as_json, examples
 from crackfront.cli.sweep import (
     configuration_argument,
     fill_store,
+    opened,
     output_option,
-    sweep_and_store,
 )
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from crackfront.analysis.result import SweepFit
-    from crackfront.simulate.run import SimulationResult
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.store import Store
     from crackfront.sweep.sweep import Sweep
@@ -31,12 +28,11 @@ if TYPE_CHECKING:
 @output_option
 def aggregate(configuration: Path, output: Path | None) -> None:
     """Collect the stored simulations of a sweep in hysteresis.nc."""
-    from crackfront.data.provenance import provenance
     from crackfront.sweep.library import without_value
     from crackfront.sweep.table import COMPLETE
 
-    sweep, store = sweep_and_store(configuration, output)
-    path, statuses = store.aggregate(sweep, provenance(configuration.read_text(encoding="utf-8")))
+    sweep, store, origin = opened(configuration, output)
+    path, statuses = store.aggregate(sweep, origin)
     failed = sum(count for status, count in statuses.items() if status not in COMPLETE)
     sentence = without_value(statuses)
     if failed > sweep.failed_fraction * sweep.n_simulation:
@@ -61,12 +57,11 @@ def aggregate(configuration: Path, output: Path | None) -> None:
 def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the last."""
     from crackfront.analysis.report import fit_table
-    from crackfront.data.provenance import provenance
     from crackfront.sweep.fit_files import write_fit
 
-    sweep, store = sweep_and_store(configuration, output)
+    sweep, store, origin = opened(configuration, output)
     fitted = _fitted(sweep, store)
-    paths = write_fit(store.folder, fitted, provenance(configuration.read_text(encoding="utf-8")))
+    paths = write_fit(store.folder, fitted, origin)
     if as_json:
         click.echo(paths[1].read_text(encoding="utf-8"))
         return
@@ -79,22 +74,23 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
 @output_option
 def figures(configuration: Path, output: Path | None) -> None:
     """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
+    from crackfront.plots.loop import simulation_figure
     from crackfront.plots.style import save_figure
     from crackfront.plots.sweep import factor_figure, hysteresis_figure
     from crackfront.simulate.costs import expected_cost
     from crackfront.simulate.files import read_simulation
 
-    sweep, store = sweep_and_store(configuration, output)
+    sweep, store, origin = opened(configuration, output)
     fitted = _fitted(sweep, store)
     simulation = _loop_example(sweep)
     # Its file may have gone since the table was made.
     missing = store.inventory([simulation]).missing
     announce_cost(sum(expected_cost(one).seconds for one in missing))
-    fill_store(store, missing, configuration)
+    fill_store(store, missing, origin)
     result = read_simulation(store.path(simulation), simulation)
     drawn = {
         "hysteresis": hysteresis_figure(fitted.table, fitted),
-        "loop": _loop(result),
+        "loop": simulation_figure(result),
         "factor": factor_figure(fitted.table, fitted),
     }
     for name, figure in drawn.items():
@@ -120,14 +116,14 @@ def summary(configuration: Path, output: Path | None) -> None:
     from crackfront.sweep.summary import summary_page
     from crackfront.sweep.table import read_statuses
 
-    sweep, store = sweep_and_store(configuration, output)
+    sweep, store, origin = opened(configuration, output)
     about = {name: text for name, text in store.about(sweep).items() if name != "configuration"}
     page = summary_page(
         f"Adhesion hysteresis: {configuration.stem}",
         fit_table(_fitted(sweep, store)),
         {text: store.folder / "figures" / f"{name}.png" for name, text in _CAPTIONS.items()},
         read_statuses(store.hysteresis),
-        configuration.read_text(encoding="utf-8"),
+        origin.configuration,
         about | {"seed of the sweep": str(sweep.seed)},
     )
     path = store.folder / "summary.html"
@@ -160,7 +156,7 @@ def fit_of_sweep(configuration: Path) -> SweepFit:
     ValueError
         If the sweep has not been run.
     """
-    sweep, store = sweep_and_store(configuration, None)
+    sweep, store, _ = opened(configuration, None)
     if not store.hysteresis.exists():
         raise ValueError(
             f"{store.folder} holds no hysteresis.nc; run the sweep first: "
@@ -179,35 +175,6 @@ def _fitted(sweep: Sweep, store: Store) -> SweepFit:
         seed=sweep.seed,
         kind=sweep.kind,
         uncorrelated=sweep.schedule.uncorrelated,
-    )
-
-
-def _loop(result: SimulationResult) -> Figure:
-    """Loop of one simulation: force of a sphere, pinning force of a straight front."""
-    import numpy as np
-
-    from crackfront.analysis.steady import steady_adhesion
-    from crackfront.plots.loop import loop_figure, pinning_figure, steady_loop_figure
-
-    simulation, states = result.simulation, result.record.states
-    schedule, energy = simulation.schedule, result.measures.e_el
-    title = (
-        rf"{simulation.spectrum_name}, $e_\mathrm{{el}} = {simulation.elastic_energy:g}\,"
-        rf"w_\mathrm{{int}}$, realisation {simulation.realisation}"
-    )
-    if schedule.n_period is not None:
-        return pinning_figure(states, schedule.n_period, elastic_energy=energy, title=title)
-    steady = steady_adhesion(result.record, simulation.correlation_length)
-    works = steady.w_appr, steady.w_retr
-    # Steady parts have no loop to draw but the one that they stand for.
-    whole = schedule.full_cycle or not np.all(np.isfinite(works))
-    return (loop_figure if whole else steady_loop_figure)(
-        states,
-        works,
-        (steady.lowest_radius, steady.highest_radius),
-        elastic_energy=energy,
-        kind=simulation.kind,
-        title=title,
     )
 
 

@@ -28,6 +28,7 @@ from crackfront.data.bounds import COUNT, Range, in_bytes, refuse_beyond_memory
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
+    from crackfront.data.provenance import Provenance
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.store import Store
     from crackfront.sweep.sweep import NamedSpectrum, Sweep
@@ -42,13 +43,15 @@ output_option = click.option(
 )
 
 
-def sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, Store]:
-    """Sweep of a configuration file, and its store."""
+def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Provenance]:
+    """Sweep of a configuration file, its store, and the origin of what is computed for it."""
+    from crackfront.data.provenance import provenance
     from crackfront.sweep.configuration import load_configuration, results_folder
     from crackfront.sweep.store import Store
 
     sweep = load_configuration(configuration)
-    return sweep, Store(results_folder(configuration) if output is None else output)
+    store = Store(results_folder(configuration) if output is None else output)
+    return sweep, store, provenance(configuration.read_text(encoding="utf-8"))
 
 
 @click.command(
@@ -63,7 +66,7 @@ def sweep_and_store(configuration: Path, output: Path | None) -> tuple[Sweep, St
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
-    sweep, store = sweep_and_store(configuration, output)
+    sweep, store, _ = opened(configuration, output)
     shards = sweep.shards(block)
     inventory = store.inventory(sweep.simulations())
     if as_json:
@@ -223,7 +226,7 @@ def simulate(
         with parallel.deferring_stops():
             parallel.serve_tasks("crackfront.sweep.tasks")
         return
-    sweep, store = sweep_and_store(configuration, output)
+    sweep, store, origin = opened(configuration, output)
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
     chosen = range(sweep.n_realisation) if realisations is None else realisations
     shards = [sweep.named_shard(item, chosen) for item in items]
@@ -255,7 +258,7 @@ def simulate(
     if sentence := inventory.stale_sentence():
         click.echo(sentence)
     try:
-        fill_store(store, inventory.missing, configuration, checkpoint)
+        fill_store(store, inventory.missing, origin, checkpoint)
     except StoppedError as stopped:
         if not parallel.launcher_knows_of_stop():
             raise
@@ -286,18 +289,16 @@ def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path
 def fill_store(
     store: Store,
     missing: tuple[Simulation, ...],
-    configuration: Path,
+    origin: Provenance,
     checkpoint_seconds: float = 60.0,
 ) -> None:
     """Run what is missing and report every simulation as it ends."""
-    from crackfront.data.provenance import provenance
     from crackfront.sweep.parallel import deferring_stops
     from crackfront.sweep.tasks import NOT_STORED, STOPPED, fill
 
     if missing:
         announce_compilation()
     started = time.monotonic()
-    origin = provenance(configuration.read_text(encoding="utf-8"))
     outcomes = fill(store, missing, origin, checkpoint_seconds)
     with deferring_stops(), closing(outcomes):
         for count, (line, finished) in enumerate(_reported(outcomes, len(missing))):

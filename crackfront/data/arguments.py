@@ -21,7 +21,7 @@ def refuse_other_type(
     TypeError: surface is 'scan.ibw'; give a list of heights
     """
     if not isinstance(value, kind):
-        raise TypeError(f"{name} is {_told(value)}; give {wanted}")
+        raise TypeError(f"{name} is {_shown(value)}; give {wanted}")
 
 
 def refuse_no_numbers(**values: object) -> None:
@@ -30,8 +30,8 @@ def refuse_no_numbers(**values: object) -> None:
         refuse_other_type(name, value, Real, "a number")
 
 
-def _told(value: object) -> str:
-    """A value, or of which type it is."""
+def _shown(value: object) -> str:
+    """The value, or its type where that says more."""
     if isinstance(value, _SAYS_ITSELF):
         return repr(value)
     kind = type(value)

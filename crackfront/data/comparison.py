@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -105,7 +105,7 @@ def comparison(one: Path, other: Path) -> Comparison:
 
 
 def _results(folder: Path) -> dict[str, Path]:
-    """Results of a folder by their names in it; what is only on its way is none."""
+    """Results of a folder by their names in it, without checkpoints."""
     paths = {str(path.relative_to(folder)): path for path in folder.rglob("[!.]*.nc")}
     return {name: path for name, path in paths.items() if "checkpoints" not in Path(name).parts}
 
@@ -115,23 +115,17 @@ def _pairs(
 ) -> tuple[dict[str, tuple[Path, Path]], tuple[Path, ...]]:
     """Files of equal names, or of names that are equal without a key, and those that are alone."""
     pairs = {name: (ones[name], others[name]) for name in sorted(ones.keys() & others.keys())}
-    left = [_by_short_name(paths, pairs) for paths in (ones, others)]
+    alike: dict[str, tuple[list[Path], list[Path]]] = defaultdict(lambda: ([], []))
+    for side, paths in enumerate((ones, others)):
+        for name in sorted(paths.keys() - pairs.keys()):
+            alike[_KEY.sub("", name)][side].append(paths[name])
     alone = []
-    for name in sorted(left[0].keys() | left[1].keys()):
-        first, second = left[0][name], left[1][name]
+    for name, (first, second) in sorted(alike.items()):
         if len(first) == len(second) == 1:
             pairs[name] = first[0], second[0]
         else:
             alone += [*first, *second]
     return pairs, tuple(alone)
-
-
-def _by_short_name(paths: dict[str, Path], without: Iterable[str]) -> dict[str, list[Path]]:
-    """Paths by their names without keys, but for some."""
-    found: dict[str, list[Path]] = defaultdict(list)
-    for name in paths.keys() - set(without):
-        found[_KEY.sub("", name)].append(paths[name])
-    return found
 
 
 def _differences(file: str, one: Path, other: Path) -> Iterator[Difference]:
@@ -168,11 +162,10 @@ def _difference(file: str, name: str, one: NDArray[Any], other: NDArray[Any]) ->
         return Difference(file, name, 0.0, in_bits=True)
     if np.array_equal(one, other, equal_nan=True):
         return Difference(file, name, 0.0, in_bits=False)
-    finite = np.abs(other[np.isfinite(other)], dtype=float)
-    scale = float(np.max(finite, initial=0.0)) or 1.0
+    scale = float(np.max(np.abs(other[np.isfinite(other)], dtype=float), initial=0.0)) or 1.0
     with np.errstate(invalid="ignore", over="ignore"):
         apart = np.abs(np.subtract(one, other, dtype=float))
-    # What is equal is not apart, infinity and NaN included; what is a number in one alone is.
+    # Equal infinities and two NaN are not apart; a number and none are infinitely so.
     same = (one == other) | (np.isnan(one) & np.isnan(other))
     largest = float(np.max(np.where(same, 0.0, np.nan_to_num(apart, nan=math.inf)), initial=0.0))
     return Difference(file, name, largest / scale, in_bits=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,12 +10,16 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crackfront.analysis.finding import PAPER_FACTOR
+from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.geometry.line import LineState
 from crackfront.plots.parts import draw_arrow
 from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
 from crackfront.plots.units import REDUCED, AxisUnits
+
+if TYPE_CHECKING:
+    from crackfront.simulate.run import SimulationResult
 
 Array = NDArray[np.float64]
 
@@ -48,6 +52,30 @@ class LoopStates(Protocol):
     @property
     def force(self) -> Array:
         """Normal forces."""
+
+
+def simulation_figure(result: SimulationResult) -> Figure:
+    """Loop of one simulation: force of a sphere, pinning force of a straight front."""
+    simulation, states = result.simulation, result.record.states
+    schedule, energy = simulation.schedule, result.measures.e_el
+    title = (
+        rf"{simulation.spectrum_name}, $e_\mathrm{{el}} = {simulation.elastic_energy:g}\,"
+        rf"w_\mathrm{{int}}$, realisation {simulation.realisation}"
+    )
+    if schedule.n_period is not None:
+        return pinning_figure(states, schedule.n_period, elastic_energy=energy, title=title)
+    steady = steady_adhesion(result.record, simulation.correlation_length)
+    works = steady.w_appr, steady.w_retr
+    # Steady parts have no loop to draw but the one that they stand for.
+    whole = schedule.full_cycle or not np.all(np.isfinite(works))
+    return (loop_figure if whole else steady_loop_figure)(
+        states,
+        works,
+        (steady.lowest_radius, steady.highest_radius),
+        elastic_energy=energy,
+        kind=simulation.kind,
+        title=title,
+    )
 
 
 def loop_figure(

@@ -6,7 +6,6 @@ import contextlib
 import errno
 import fcntl
 import functools
-import hashlib
 import json
 import os
 import secrets
@@ -14,23 +13,16 @@ import socket
 import time
 import zlib
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from itertools import islice
 from pathlib import Path
 from typing import BinaryIO
-
-import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.analysis.table import SweepRow
 from crackfront.data.digests import Integrity, integrity
 from crackfront.data.files import replace_atomically, set_aside
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.table import ROWS_AT_ONCE, row_fingerprint
-
-_LINE = np.dtype([("identity", "u8"), ("label", "u8"), ("place", "u8"), ("journal", "u4")])
-"""What is held of a line: hashes of key with label and of the label, and where it begins."""
+from crackfront.sweep.table import row_fingerprint
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,116 +255,53 @@ def _entry(line: bytes, definition: str) -> Entry | None:
 
 
 class RowIndex:
-    """Where in the journals of a store the row of each simulation stands: 28 bytes a row.
+    """Where in the journals of a store the rows of each label stand.
 
     Parameters
     ----------
     folder : Path
         Folder of the store.
     checked : bool, optional
-        Whether the content of the files counts that the rows name, and not their sizes alone.
+        Whether the content of a file must be that which its row names, or its size alone.
     """
 
     def __init__(self, folder: Path, *, checked: bool = True) -> None:
         self._curves, self._checked = folder / "curves", checked
-        self._journals = journal_paths(folder / "journals")
-        lines = np.fromiter(self._ended(), dtype=_LINE)
-        self._lines = lines[np.argsort(lines["identity"], kind="stable")]
-
-    def rows(
-        self, simulations: Iterable[Simulation]
-    ) -> Iterator[tuple[Simulation, SweepRow | None]]:
-        """Simulations in their order, with the rows of those whose files are as the rows say."""
-        remaining = iter(simulations)
-        while chunk := list(islice(remaining, ROWS_AT_ONCE)):
-            yield from zip(chunk, self._rows(chunk), strict=True)
-
-    def parts(self, label: str) -> dict[str, str] | None:
-        """What the key is made of with which a simulation of a label was stored last, if it was."""
-        labels = self._lines["label"]
-        if not labels.size:
-            return None
-        last = np.searchsorted(labels, _hash(label), side="right", sorter=self._by_label) - 1
-        if last < 0:
-            return None
-        line = self._lines[self._by_label[last]]
-        entries = self._entries(int(line["journal"]), [int(line["place"])])
-        return next((one.parts for one in entries if one.label == label), None)
-
-    def _begun(self, simulations: Sequence[Simulation]) -> Sequence[bool]:
-        """Whether there is a line of the label of each simulation."""
-        if not self._lines.size:
-            return [False] * len(simulations)
-        labels = np.array([_hash(one.label) for one in simulations], dtype="u8")
-        places = np.searchsorted(self._lines["label"], labels, sorter=self._by_label)
-        nearest = self._by_label[np.minimum(places, self._lines.size - 1)]
-        return (self._lines["label"][nearest] == labels).tolist()
-
-    @functools.cached_property
-    def _by_label(self) -> NDArray[np.int64]:
-        """Lines in the order of their labels."""
-        return np.argsort(self._lines["label"], kind="stable")
-
-    def _ended(self) -> Iterator[tuple[int, int, int, int]]:
-        """Lines of simulations that have ended."""
-        for number, path in enumerate(self._journals):
+        self._places: dict[str, list[tuple[Path, int]]] = defaultdict(list)
+        for path in journal_paths(folder / "journals"):
             for place, entry in read_journal(path, row_fingerprint()):
                 if entry.definition:
-                    identity = _hash(f"{entry.key} {entry.label}")
-                    yield identity, _hash(entry.label), place, number
+                    self._places[entry.label].append((path, place))
 
-    def _rows(self, simulations: Sequence[Simulation]) -> Iterator[SweepRow | None]:
-        """Rows of a few simulations, journal by journal."""
-        # A key takes long, and what has no line needs none.
-        begun = self._begun(simulations)
-        if not any(begun):
-            yield from (None for _ in simulations)
-            return
-        # Spectra of one shape and different names have the same keys.
-        names = [
-            (one.key if known else "", one.label)
-            for one, known in zip(simulations, begun, strict=True)
-        ]
-        hashes = np.array(
-            [_hash(f"{key} {label}") if key else 0 for key, label in names], dtype="u8"
-        )
-        first, last = (
-            np.searchsorted(self._lines["identity"], hashes, side=side)
-            for side in ("left", "right")
-        )
-        wanted: dict[int, list[int]] = defaultdict(list)
-        for start, stop in zip(first, last, strict=True):
-            for line in self._lines[start:stop]:
-                wanted[int(line["journal"])].append(int(line["place"]))
-        found: dict[tuple[str, str], list[Entry]] = defaultdict(list)
-        for number, places in sorted(wanted.items()):
-            for entry in self._entries(number, sorted(places)):
-                found[entry.key, entry.label].append(entry)
-        for name in names:
-            yield next((entry.row for entry in found[name] if self._valid(entry)), None)
+    def row(self, simulation: Simulation) -> SweepRow | None:
+        """Row of a simulation, if there is one and its file is as the row says."""
+        if simulation.label not in self._places:
+            return None  # a key takes long
+        key = simulation.key
+        entries = (entry for entry in self._entries(simulation.label) if entry.key == key)
+        return next((entry.row for entry in entries if self._is_valid(entry)), None)
 
-    def _entries(self, number: int, places: Sequence[int]) -> Iterator[Entry]:
-        """Whole entries of a journal at given places."""
-        with self._journals[number].open("rb") as file:
-            for place in places:
+    def parts(self, label: str) -> dict[str, str] | None:
+        """Parts of the key with which a simulation of a label was stored last, if it was."""
+        entries = list(self._entries(label))
+        return entries[-1].parts if entries else None
+
+    def _entries(self, label: str) -> Iterator[Entry]:
+        """Entries of simulations of a label that have ended, in the order of the journals."""
+        for path, place in self._places.get(label, ()):
+            with path.open("rb") as file:
                 file.seek(place)
                 if (entry := _entry(file.readline(), row_fingerprint())) is not None:
                     yield entry
 
-    def _valid(self, entry: Entry) -> bool:
+    def _is_valid(self, entry: Entry) -> bool:
         """Whether an entry has a row, and the file that the row names, if any, is that of then."""
         if entry.row is None or not entry.row.curve:
             return entry.row is not None
         path = self._curves / entry.row.curve
         try:
-            if path.stat().st_size != entry.size or not self._checked:
+            if not self._checked:
                 return path.stat().st_size == entry.size
-            found, digest = integrity(path)
+            return integrity(path) == (Integrity.WHOLE, entry.digest)
         except FileNotFoundError:
             return False
-        return found is Integrity.WHOLE and digest == entry.digest
-
-
-def _hash(text: str) -> int:
-    """64 bits that differ for different texts, but for one in 1e19."""
-    return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=8).digest())

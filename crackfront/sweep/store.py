@@ -52,28 +52,28 @@ class Holding:
 
 
 @dataclass(frozen=True, slots=True)
-class Stale:
-    """Label of a simulation that is stored with another key, and which parts of that changed."""
-
-    label: str
-    changed: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class Inventory:
-    """What a store lacks, a sentence for every file that is of no use, and what is stale of it."""
+    """What a store lacks, and why.
+
+    Attributes
+    ----------
+    missing : tuple of Simulation
+        What is to be computed.
+    unreadable : tuple of str
+        A sentence for every file that is of no use.
+    stale : tuple of tuple of str
+        Of every missing simulation that is stored with another key the parts of it that changed.
+    """
 
     missing: tuple[Simulation, ...]
     unreadable: tuple[str, ...]
-    stale: tuple[Stale, ...]
+    stale: tuple[tuple[str, ...], ...]
 
     def stale_sentence(self) -> str:
         """How many are stale for which reason; empty where none is."""
-        reasons = Counter(" and ".join(item.changed) for item in self.stale)
-        told = ", ".join(
-            f"{count} as {reason} changed" for reason, count in sorted(reasons.items())
-        )
-        return f"{len(self.stale)} stored simulations are stale: {told}" if told else ""
+        reasons = sorted(Counter(" and ".join(changed) for changed in self.stale).items())
+        listed = ", ".join(f"{count} as {reason} changed" for reason, count in reasons)
+        return f"{len(self.stale)} stored simulations are stale: {listed}" if listed else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +145,9 @@ class Store:
     ) -> Iterator[Holding]:
         """What is stored of simulations, by the index of the rows or one that is given."""
         curves = _Curves(self.folder / "curves")
-        for simulation, row in (index or RowIndex(self.folder)).rows(simulations):
+        index = index or RowIndex(self.folder)
+        for simulation in simulations:
+            row = index.row(simulation)
             if row is not None or simulation not in curves or not self.path(simulation).is_file():
                 yield Holding(simulation, row)
                 continue
@@ -160,14 +162,11 @@ class Store:
         index = RowIndex(self.folder)
         absent = [one for one in self.holdings(simulations, index) if one.row is None]
         missing = tuple(one.simulation for one in absent)
+        changed = (_changed_parts(one, index.parts(one.label)) for one in missing)
         return Inventory(
             missing,
             unreadable=tuple(one.unreadable for one in absent if one.unreadable),
-            stale=tuple(
-                Stale(one.label, changed)
-                for one in missing
-                if (changed := _changed_parts(one, index.parts(one.label)))
-            ),
+            stale=tuple(parts for parts in changed if parts),
         )
 
     def progress(self, sweep: Sweep) -> list[Progress]:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
-from crackfront.data.digests import Integrity, integrity
-from crackfront.data.files import NO_ROOM, UnreadableFileError, integrities, read_attributes
+from crackfront.data.digests import Integrity
+from crackfront.data.files import NO_ROOM, UnreadableFileError, integrities
 from crackfront.sweep.journal import journal_paths, line_counts, read_journal
 from crackfront.sweep.store import SUMS
 from crackfront.sweep.table import row_fingerprint
@@ -49,8 +49,7 @@ def verification(place: Path) -> Verification:
         If there is no such folder or archive, or the folder is empty.
     """
     with _folder(place) as folder:
-        named = _named_curves(folder)
-        found = [*_files(folder, named), *_lines(folder), *_sums(folder)]
+        found = [*_files(folder), *_lines(folder), *_sums(folder)]
         counts: dict[str, Counter[Integrity]] = defaultdict(Counter)
         for group, _, state in found:
             if group:
@@ -60,18 +59,16 @@ def verification(place: Path) -> Verification:
             damaged.append(place.name)  # the list is the last file of an archive
         elif not found:
             raise UnreadableFileError(f"{place} holds no file; name a folder of results")
-        wanted = [*(f"curves/{name}" for name in named), *(name for name, _ in _listed(folder))]
+        wanted = [*_named_curves(folder), *(name for name, _ in _listed(folder))]
         missing = [name for name in wanted if not (folder / name).is_file()]
     return Verification(dict(counts), tuple(dict.fromkeys(damaged)), tuple(dict.fromkeys(missing)))
 
 
-def _files(folder: Path, named: dict[str, set[str]]) -> Iterator[tuple[str, str, Integrity]]:
+def _files(folder: Path) -> Iterator[tuple[str, str, Integrity]]:
     """Files of a folder, by the folder in it, and whether they are as they were written."""
     for path, state in integrities(folder):
         name = path.relative_to(folder)
-        curve = name.parts[0] == "curves" and state is Integrity.WHOLE
-        strange = curve and not _is_own(path, named)
-        yield str(name.parent), str(name), Integrity.DAMAGED if strange else state
+        yield str(name.parent), str(name), state
 
 
 def _lines(folder: Path) -> Iterator[tuple[str, str, Integrity]]:
@@ -109,21 +106,12 @@ def _folder(place: Path) -> Iterator[Path]:
         yield inner[0] if len(inner) == 1 else Path(temporary)
 
 
-def _named_curves(folder: Path) -> dict[str, set[str]]:
-    """Files that journals name, with the digests that they state."""
-    named: dict[str, set[str]] = defaultdict(set)
+def _named_curves(folder: Path) -> Iterator[str]:
+    """Files of simulations that journals name."""
     for path in journal_paths(folder / "journals"):
         for _, entry in read_journal(path, row_fingerprint()):
             if entry.row is not None and entry.row.curve:
-                named[entry.row.curve].add(entry.digest)
-    return named
-
-
-def _is_own(path: Path, named: dict[str, set[str]]) -> bool:
-    """Whether a file that is whole is that of the simulation after which it is named."""
-    if integrity(path)[1] in named.get(path.name, ()):
-        return True
-    return path.stem.endswith(f"-{read_attributes(path).get('key')}")
+                yield f"curves/{entry.row.curve}"
 
 
 def _listed(folder: Path) -> Iterator[tuple[str, str]]:
