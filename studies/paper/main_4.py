@@ -18,7 +18,7 @@ from scipy.ndimage import maximum_filter
 
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.core.synthesis import gaussian_field, tile_mean_square
+from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
@@ -27,6 +27,7 @@ from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain,
 from studies.paper.drawing import DOTTED, write_beside
 from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to
 from studies.paper.rough import rough_spectrum
+from studies.paper.tiles import tile_mean_square
 
 _X, _Y, _BAND, _PLACE = "x", "y", "band", "coordinate"
 

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from scipy.signal import periodogram
 
 from crackfront.core.adhesion import half_derivative_mean_square
-from crackfront.core.synthesis import gaussian_field, tile_mean_square
+from crackfront.core.synthesis import gaussian_field
 from crackfront.core.variables import variable
 from crackfront.data.section import Count, Positive, Seed, refusal
 from crackfront.plots.densities import (
@@ -27,6 +27,7 @@ from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure,
 from studies.paper.drawing import DOTTED, write_beside
 from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
 from studies.paper.film import POINTS_PER_DECADE, FilmParameters, shown_wavevectors
+from studies.paper.tiles import tile_mean_square
 
 _WAVE, _MODE, _POINT = "wavevector", "mode", "point"
 

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.core.synthesis import gaussian_field, tile_mean_square
+from crackfront.core.synthesis import gaussian_field
 
 # Shapes of SI Fig. S-5 on a small tile: flat, H below, at and above one half.
 SHAPES = [
@@ -161,22 +161,3 @@ def test_a_cutoff_below_two_pixels_is_refused_with_what_to_do(rng):
 def test_a_tile_that_holds_no_mode_is_refused(rng):
     with pytest.raises(ValueError, match=r"tile of side 0\.05 is shorter than the short cutoff"):
         gaussian_field(SHAPES[0], 64, 0.05, rng)
-
-
-@pytest.mark.parametrize("order", [0.0, 0.5])
-@pytest.mark.parametrize("spectrum", SHAPES)
-def test_mean_squares_of_tiles_scatter_around_their_expected_one(spectrum, order):
-    squares = []
-    for seed in range(100):
-        heights = gaussian_field(spectrum, 64, LENGTH, seeded(seed))
-        measured = half_derivative_mean_square(heights, LENGTH / 64) if order else np.var(heights)
-        squares.append(measured)
-    expected, deviation = tile_mean_square(spectrum, LENGTH, order)
-    assert np.mean(squares) == pytest.approx(expected, abs=4 * deviation / 10)
-    assert np.std(squares) == pytest.approx(deviation, rel=0.3)
-
-
-def test_a_large_tile_has_the_mean_square_of_its_spectrum():
-    expected, deviation = tile_mean_square(SHAPES[3], 20.0, 0.5)
-    assert expected == pytest.approx(SHAPES[3].mean_square(0.5), rel=1e-3)
-    assert deviation < 0.02 * expected

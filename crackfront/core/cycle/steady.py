@@ -29,28 +29,28 @@ from crackfront.core.units import WORK_OF_ADHESION
 Array = NDArray[np.float64]
 
 FEWEST_STATES = 3
-"""Steady states from which a standard error is told."""
+"""Steady states from which a standard error is computed."""
 
-_FEWEST_TO_STOP = 8
+_FEWEST_TO_TURN = 8
 """Steady states before the approach may turn."""
 
-_DEPTH = 3.0
+_DEPTHS = 3.0
 """Rms deviations of a front from its mean after which it forgets; docs/model.md has the measure."""
 
 _N_CIRCLE = 64
-"""Circles that are tried as a start."""
+"""Number of circles that are tried as a start."""
 
-_MARGIN = 1.5
-"""How many times the rms of w_loc a circle must be from rest to be a start.
+_LEAST_DRIVE = 1.5
+"""Drive of a circle that may be a start, in units of the rms of w_loc on it.
 
-docs/model.md says how often fronts then differ from those that come from far behind. That every
-single site moves forward is not asked: where some repel, no circle with an open edge fulfils it.
+docs/model.md says how often fronts then differ from those that come from far behind. Single sites
+may move back: where some repel, no circle with an open edge drives all of them forward.
 """
 
-_STRONGEST, _FAR = 2.6, 20.0
-"""Largest k, and how many correlation lengths behind where it lets a front rest a circle will do.
+_LARGEST_FACTOR, _FAR_BEHIND = 2.6, 20.0
+"""A circle may also be a start this many correlation lengths behind where the largest k holds one.
 
-On fine spectra 1.5 times the rms is hundreds of them, where fronts deviate by 7 at most.
+On fine spectra the drive above needs hundreds of correlation lengths; fronts deviate by 7 at most.
 """
 
 
@@ -173,7 +173,7 @@ def _loads(
         )
         own = own_part(values, np.array(shared))
         error = standard_error(own, radius, roughness, correlation_length) / math.sqrt(2)
-        if len(steady) >= _FEWEST_TO_STOP and error <= schedule.standard_error * elastic_energy:
+        if len(steady) >= _FEWEST_TO_TURN and error <= schedule.standard_error * elastic_energy:
             break
     lowest = min((item.mean_radius for item in steady), default=math.inf)
     last = recorder.states[-1]
@@ -204,10 +204,10 @@ def _circle_adhesion(field: Field, radius: float) -> float:
 
 
 def own_part(values: Array, shared: Array) -> Array:
-    """What one branch does not share with the other over the same radii.
+    """Apparent work of adhesion without what both branches share over the same radii.
 
-    The mean of w_loc on the circles raises and lowers both branches alike, the more the smoother
-    their fronts are; the hysteresis is free of it, and of its noise.
+    The mean of w_loc on the circles raises and lowers both branches alike and adds noise to each,
+    but not to the hysteresis.
 
     Parameters
     ----------
@@ -266,11 +266,11 @@ def forward_circle(
         circle = np.full(field.geometry.n_site, radius)
         adhesion = front_adhesion(circle, field)
         drive = direction * (np.mean(adhesion) - jkr.energy_release_rate(radius, penetration))
-        if drive > _MARGIN * np.std(adhesion):
+        if drive > _LEAST_DRIVE * np.std(adhesion):
             return circle
-        if resting is None and drive > _STRONGEST * np.var(adhesion) / (4 * WORK_OF_ADHESION):
+        if resting is None and drive > _LARGEST_FACTOR * np.var(adhesion) / (4 * WORK_OF_ADHESION):
             resting = radius
-        if resting is not None and abs(radius - resting) > _FAR * correlation_length:
+        if resting is not None and abs(radius - resting) > _FAR_BEHIND * correlation_length:
             return circle
     return np.full(field.geometry.n_site, furthest)
 
@@ -280,9 +280,9 @@ def standard_error(
 ) -> float:
     """Standard error of the mean apparent work of adhesion over steady states of one branch.
 
-    States count as one that are closer to each other than the correlation length of w_loc, or
-    than three times the rms deviation of the front from its mean where that is larger: a rough
-    front has to pass its own depth before it has left what pinned it (docs/model.md).
+    States count as independent if they are at least one distance apart: the correlation length of
+    w_loc or three times the rms roughness of the front, whichever is larger. A rough front
+    has to pass its own depth before it has left what pinned it (docs/model.md).
 
     Parameters
     ----------
@@ -302,6 +302,6 @@ def standard_error(
     """
     if values.size < FEWEST_STATES:
         return math.inf
-    distance = max(correlation_length, _DEPTH * float(np.mean(roughness)))
+    distance = max(correlation_length, _DEPTHS * float(np.mean(roughness)))
     independent = min(values.size, 1 + np.ptp(radius) / distance)
     return float(np.std(values, ddof=1) / math.sqrt(independent))

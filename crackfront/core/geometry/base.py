@@ -56,7 +56,7 @@ class Geometry(Protocol):
         """Energy of body and line, the derivative of which is f + K u."""
 
     def can_rest_inside(self, place: float, product: float, load: float) -> bool:
-        """Whether a front may rest before a place with a given weighted work of adhesion."""
+        """Whether a front may rest before a place of this weighted work of adhesion."""
 
 
 @dispatched
@@ -85,7 +85,7 @@ def mode_stiffness(geometry: Any, mode: float) -> float:
 
 @dispatched
 def weight(geometry: Any, place: float) -> float:
-    """What the work of adhesion at a place is multiplied by in the balance of forces."""
+    """Factor of the work of adhesion at a place in the balance of forces."""
     raise NotImplementedError
 
 

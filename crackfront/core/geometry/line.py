@@ -77,7 +77,7 @@ class Line(NamedTuple):
 
     @property
     def n_site(self) -> int:
-        """Rays."""
+        """Number of rays."""
         return self.n_ray
 
     @property
@@ -127,7 +127,7 @@ class Line(NamedTuple):
         return self.length * float(np.mean(springs) + line)
 
     def can_rest_inside(self, place: float, product: float, load: float) -> bool:
-        """Always: a line is nowhere lost."""
+        """True: a straight front does not lose contact."""
         return True
 
 
@@ -204,7 +204,7 @@ def straight_front(field: TileField, adhesion: AdhesionMap, load: float) -> Arra
 
 
 def _reach(adhesion: AdhesionMap, stiffness: float) -> float:
-    """Way that no pinning of a tile pulls a spring."""
+    """Distance to the load at which the springs overcome any pinning of a tile (Units: length)."""
     values = adhesion.work_of_adhesion
     # Splines overshoot the points by less than a quarter of their range.
     return 1.25 * float(values.max() - values.min()) / stiffness + 2 * adhesion.pixel
@@ -212,48 +212,48 @@ def _reach(adhesion: AdhesionMap, stiffness: float) -> float:
 
 @implements(base.restoring_force, Line)
 def _spring_force(geometry: Any, place: float, load: float) -> float:
-    """Of the spring, about the mean work of adhesion."""
+    """Mean work of adhesion and force of the spring, per length of the front."""
     return geometry.mean + geometry.stiffness * (place - load)
 
 
 @implements(base.restoring_slope, Line)
 def _spring_slope(geometry: Any, place: float, load: float) -> float:
-    """The same everywhere."""
+    """Stiffness of the spring, the same at all places."""
     return geometry.stiffness
 
 
 @implements(base.lowest_place, Line)
 def _lowest(geometry: Any, load: float) -> float:
-    """None."""
+    """Minus infinity: a straight front can rest anywhere."""
     return -np.inf
 
 
 @implements(base.mode_stiffness, Line)
 def _stiffness(geometry: Any, mode: float) -> float:
-    """Of the absolute value of the wavevector."""
+    """w_int times the wavevector of the mode."""
     return WORK_OF_ADHESION * 2 * np.pi / geometry.length * mode
 
 
 @implements(base.weight, Line)
 def _one(geometry: Any, place: float) -> float:
-    """Forces are per length."""
+    """Weight of the work of adhesion, 1: forces are per length of the front."""
     return 1.0
 
 
 @implements(base.weight_slope, Line)
 def _zero(geometry: Any) -> float:
-    """That of a constant."""
+    """Derivative of the constant weight."""
     return 0.0
 
 
 @implements(base.ray_start, Line)
 def _row(geometry: Any, ray: int, n_x: int, n_y: int, inverse_pixel: float) -> Any:
-    """Where the row of the ray crosses x = 0."""
+    """Point of a tile at which the ray, parallel to x, crosses x = 0."""
     spacing = geometry.length / geometry.n_ray
     return -geometry.corner[0] * inverse_pixel, ray * spacing * inverse_pixel
 
 
 @implements(base.ray_direction, Line)
 def _along(geometry: Any, ray: int) -> Any:
-    """Along x."""
+    """Unit vector along x."""
     return 1.0, 0.0

@@ -70,7 +70,7 @@ class Sphere(NamedTuple):
 
     @property
     def n_site(self) -> int:
-        """Rays; a single one is a circle, without line elasticity."""
+        """Number of rays; a single one is a circle, without line elasticity."""
         return self.cosine.size
 
     @property
@@ -188,49 +188,49 @@ def line_energy(radius: Array) -> float:
 
 @implements(base.restoring_force, Sphere)
 def _ring_force(geometry: Any, place: float, load: float) -> float:
-    """A G_JKR of an open edge, zero in compression."""
+    """A G_JKR of an open edge, zero where the edge is in compression."""
     opening = place * place - load
     return RING * opening * opening if opening > 0.0 else 0.0
 
 
 @implements(base.restoring_slope, Sphere)
 def _ring_slope(geometry: Any, place: float, load: float) -> float:
-    """Derivative of a G by a: a G is convex."""
+    """Derivative of the convex a G_JKR by the radius."""
     opening = place * place - load
     return 4 * RING * place * opening if opening > 0.0 else 0.0
 
 
 @implements(base.lowest_place, Sphere)
 def _lowest(geometry: Any, load: float) -> float:
-    """Radius within which the edge is in compression (a^2 < b)."""
+    """Radius within which the edge is in compression, a^2 < b, so that no front rests."""
     return np.sqrt(max(load, 0.0))
 
 
 @implements(base.mode_stiffness, Sphere)
 def _stiffness(geometry: Any, mode: float) -> float:
-    """Of the half-Laplacian in the angle."""
+    """w_int times the number of the mode, as of the half-Laplacian in the angle."""
     return WORK_OF_ADHESION * mode
 
 
 @implements(base.weight, Sphere)
 def _radius(geometry: Any, place: float) -> float:
-    """Perimeter per angle."""
+    """Weight of the work of adhesion, the radius: forces are per angle."""
     return place
 
 
 @implements(base.weight_slope, Sphere)
 def _one(geometry: Any) -> float:
-    """Of the radius by itself."""
+    """Derivative of the weight by the radius."""
     return 1.0
 
 
 @implements(base.ray_start, Sphere)
 def _apex(geometry: Any, ray: int, n_x: int, n_y: int, inverse_pixel: float) -> Any:
-    """Centre of the tile."""
+    """Centre of the tile, above which the apex is."""
     return 0.5 * n_x, 0.5 * n_y
 
 
 @implements(base.ray_direction, Sphere)
 def _direction(geometry: Any, ray: int) -> Any:
-    """Unit vector at the angle."""
+    """Unit vector at the angle of the ray."""
     return geometry.cosine[ray], geometry.sine[ray]
