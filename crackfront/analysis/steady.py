@@ -11,11 +11,16 @@ from numpy.typing import NDArray
 
 from crackfront.core import jkr
 from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.cycle.steady import FEWEST_STATES, standard_error
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import ADHESION, LATERAL, variable
 
 Array = NDArray[np.float64]
+
+FEWEST_STATES = 3
+"""Steady states from which a standard error is computed."""
+
+_DEPTHS = 3.0
+"""Rms deviations of a front from its mean after which it forgets; docs/model.md has the measure."""
 
 STEADY_DEFINITION = (
     "w_appr and w_retr are means of the apparent work of adhesion, <a G> / <a> with the mean over "
@@ -225,3 +230,35 @@ def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
     """A result without values, and why."""
     nan = math.nan
     return SteadyAdhesion(*(nan,) * 10, *counts, nan, nan, nan, sentence)
+
+
+def standard_error(
+    values: Array, radius: Array, roughness: Array, correlation_length: float
+) -> float:
+    """Standard error of the mean apparent work of adhesion over steady states of one branch.
+
+    States count as independent if they are at least one distance apart: the correlation length of
+    w_loc or three times the rms roughness of the front, whichever is larger. A rough front
+    has to pass its own depth before it has left what pinned it (docs/model.md).
+
+    Parameters
+    ----------
+    values : (n_state,) array
+        Apparent work of adhesion. (Units: w_int)
+    radius : (n_state,) array
+        Mean radius. (Units: reduced lateral length)
+    roughness : (n_state,) array
+        Rms deviation of the front from its mean radius. (Units: reduced lateral length)
+    correlation_length : float
+        That of w_loc. (Units: reduced lateral length)
+
+    Returns
+    -------
+    float
+        Standard error, infinite for fewer than :data:`FEWEST_STATES` states. (Units: w_int)
+    """
+    if values.size < FEWEST_STATES:
+        return math.inf
+    distance = max(correlation_length, _DEPTHS * float(np.mean(roughness)))
+    independent = min(values.size, 1 + np.ptp(radius) / distance)
+    return float(np.std(values, ddof=1) / math.sqrt(independent))

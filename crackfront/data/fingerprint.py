@@ -33,7 +33,7 @@ def fingerprint(*names: str) -> str:
     """Twelve hexadecimal digits that change with the sources that some names reach.
 
     Of a class that is reached, the subclasses in modules that are reached count as well, of an
-    abstract one those in its folder. Files of data count byte by byte where they are named.
+    abstract one all in its package. Files of data count byte by byte where they are named.
 
     Parameters
     ----------
@@ -51,7 +51,9 @@ def fingerprint(*names: str) -> str:
     False
     """
     folder = private_folder("fingerprints")
-    asked = repr((names, str(ROOT), sys.version_info[:2])).encode() + Path(__file__).read_bytes()
+    places = [place for package in _PACKAGES for place in _modules(package)]
+    asked = repr((names, str(ROOT), places, sys.version_info[:2])).encode()
+    asked += Path(__file__).read_bytes()
     kept = None if folder is None else folder / _digest(asked)
     with contextlib.suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
         if kept is not None:
@@ -72,7 +74,7 @@ def fingerprint(*names: str) -> str:
 @functools.cache
 def solver_fingerprint() -> str:
     """Twelve hexadecimal digits that change with what determines the fronts of a simulation."""
-    parts = "solver.relax", "cycle.run", "cycle.steady", "cycle.period"
+    parts = "cycle.run", "geometry.line", "solver.relax"
     return fingerprint(*(f"crackfront.core.{part}" for part in parts))
 
 
@@ -84,6 +86,11 @@ def _digest(content: bytes) -> str:
 def _file_digests(places: Iterable[str]) -> dict[str, str]:
     """Hexadecimal digits of files, by their places below the folder of the packages."""
     return {place: _digest((ROOT / place).read_bytes()) for place in places}
+
+
+def _modules(package: str) -> list[str]:
+    """Places of all modules of a package, below the folder of the packages."""
+    return sorted(str(path.relative_to(ROOT)) for path in (ROOT / package).rglob("*.py"))
 
 
 class _Statement:
@@ -190,13 +197,6 @@ class _Reach:
             self._modules[name] = None if name in _NO_PART else _module(name)
         return self._modules[name]
 
-    def _beside(self, module: _Module) -> Iterator[_Module]:
-        """Modules of the same folder."""
-        home = module.name.rpartition(".")[0]
-        for path in sorted(module.path.parent.glob("*.py")):
-            if found := self._module(f"{home}.{path.stem}"):
-                yield found
-
     def _origins(self, name: str) -> Iterator[tuple[_Module, str, str]]:
         """Where a full name is defined: modules, its name there ("" for a module), attributes."""
         parts = name.split(".")
@@ -223,9 +223,16 @@ class _Reach:
                 known.add(statement)
                 self._waiting.append((statement, is_alias))
                 if "ABC" in statement.bases:
-                    self._searched |= set(self._beside(statement.module))
+                    self._search(statement)
                 if not is_alias:
                     self._take(statement.module.acting)
+
+    def _search(self, abstract: _Statement) -> None:
+        """Look for subclasses of an abstract class in all modules of its package that name it."""
+        for place in _modules(abstract.module.name.partition(".")[0]):
+            if abstract.defined[0].encode() in (ROOT / place).read_bytes():
+                module = self._module(place.removesuffix(".py").replace("/", "."))
+                self._searched |= {module} if module else set()
 
     def _follow(self, statement: _Statement, is_alias: bool) -> None:
         """Count what a statement uses."""
@@ -235,7 +242,7 @@ class _Reach:
                     self._take(home.defined[name], annotated=annotated or is_alias)
 
     def _take_subclasses(self) -> None:
-        """Count the subclasses of what counts, in modules that are reached or beside an ABC."""
+        """Count the subclasses of what counts, in the modules that are reached or searched."""
         for module in self._searched | {statement.module for statement in self._taken}:
             for statement in [one for ones in module.defined.values() for one in ones]:
                 for base in statement.bases:

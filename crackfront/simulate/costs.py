@@ -26,9 +26,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from crackfront.core import jkr
-from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.schedule import LoadSchedule, Schedule
-from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.data.bounds import (
@@ -39,7 +37,9 @@ from crackfront.data.bounds import (
     refuse_outside,
 )
 from crackfront.simulate.laws import Knobs
+from crackfront.simulate.period import LineSchedule
 from crackfront.simulate.simulation import Numerics, Simulation
+from crackfront.simulate.steady import SteadySchedule
 
 Array = NDArray[np.float64]
 

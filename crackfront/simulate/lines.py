@@ -14,9 +14,9 @@ from crackfront.core.adhesion import (
     force_correlation_length,
     larkin_length,
 )
-from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.spectrum import Spectrum
 from crackfront.data.bounds import refuse_beyond_memory
+from crackfront.simulate.period import LineSchedule
 from crackfront.simulate.simulation import Numerics
 
 SpringUnit = Literal["correlation_length", "larkin_length"]

@@ -15,7 +15,6 @@ from crackfront.analysis.steady import SteadyAdhesion, steady_adhesion
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load, front_at
-from crackfront.core.cycle.instabilities import measured_instabilities, resolved_motion
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import first_touch, run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -32,6 +31,7 @@ from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.provenance import __version__
 from crackfront.simulate.files import cycle_dataset
+from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import Simulation, missed_error, stated_error
 from crackfront.simulate.surfaces import (

@@ -13,12 +13,12 @@ import numpy as np
 
 from crackfront.analysis.table import RunMeasures
 from crackfront.core.adhesion import chemical_adhesion
-from crackfront.core.cycle.period import LineSchedule
 from crackfront.core.cycle.record import Checkpoint, CycleRecord, Observer, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.solver.window import HALF_BAND
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
+from crackfront.simulate.period import LineSchedule
 from crackfront.simulate.simulation import Simulation
 
 

@@ -12,7 +12,6 @@ import xarray as xr
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core import units
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.cycle.instabilities import Instabilities
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.spectrum import Spectrum
@@ -27,6 +26,7 @@ from crackfront.core.variables import (
 )
 from crackfront.data.arguments import refuse_other_type
 from crackfront.data.written_units import si_value, unit_value
+from crackfront.simulate.instabilities import Instabilities
 
 Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
 

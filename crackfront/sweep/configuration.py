@@ -15,7 +15,6 @@ from pydantic import BeforeValidator, Field, create_model, model_validator
 from crackfront.analysis.sweep import FEWEST_BOOTSTRAP
 from crackfront.core.adhesion import FieldKind, larkin_length
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
@@ -44,6 +43,7 @@ from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineLoad, SpringUnit
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error
+from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
 from crackfront.topography.measures import read_surface
 from crackfront.topography.options import ReadingOptions, declared, options_for_each

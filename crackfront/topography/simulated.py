@@ -16,7 +16,6 @@ from crackfront.analysis.steady import mean_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.cycle.schedule import Schedule
-from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.costs import expected_cost
@@ -28,6 +27,7 @@ from crackfront.simulate.simulation import (
     numerical_error,
     simulation_of,
 )
+from crackfront.simulate.steady import SteadySchedule
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import reduced_spectrum
 from crackfront.topography.tile import zero_load_radius

@@ -1,6 +1,6 @@
 """Whether steady branches have forgotten the circle at which they began.
 
-Fronts that begin at the circle of `core.cycle.steady.forward_circle` are compared, load by load,
+Fronts that begin at the circle of `simulate.steady.forward_circle` are compared, load by load,
 with those that begin as far behind as the field allows.
 """
 
@@ -12,10 +12,10 @@ import numpy as np
 
 from crackfront.core import jkr
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.steady import forward_circle
 from crackfront.core.field.fields import first_place, last_place
 from crackfront.core.outcome import Direction
 from crackfront.simulate.contact import simulation_field
+from crackfront.simulate.steady import forward_circle
 from studies.accuracy.scenes import SCENES, Scene
 from studies.accuracy.study import branch_record
 from studies.pages import markdown_table

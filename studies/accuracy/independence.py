@@ -4,7 +4,7 @@ The error of k that was asked for is held against the scatter of k between surfa
 what a run states. The autocorrelation of w along a branch, in mean radius, pooled over surfaces and
 summed up to where it first falls below a twentieth, gives the distance of independent states;
 beside it stand the correlation length of w_loc and the rms deviation of the fronts from their mean
-radius, of which :func:`crackfront.core.cycle.steady.standard_error` makes it.
+radius, of which :func:`crackfront.simulate.steady.standard_error` makes it.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ import numpy as np
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.adhesion import correlation_length
 from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.outcome import Direction
 from crackfront.simulate.run import SimulationResult, run_simulation
+from crackfront.simulate.steady import SteadySchedule
 from studies.accuracy.scenes import SCENES, Scene
 from studies.accuracy.study import rms
 from studies.pages import markdown_table

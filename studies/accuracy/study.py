@@ -12,7 +12,6 @@ from scipy.signal import resample
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.steady import forward_circle
 from crackfront.core.field.fields import Field
 from crackfront.core.outcome import Direction
 from crackfront.core.solver.relax import Solver
@@ -20,6 +19,7 @@ from crackfront.core.variables import ADHESION, FORCE, variable
 from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.costs import featured_cost, features
 from crackfront.simulate.laws import Knobs
+from crackfront.simulate.steady import forward_circle
 from studies.accuracy.scenes import Progress, Scene, Setting
 
 Array = NDArray[np.float64]

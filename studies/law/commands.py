@@ -10,9 +10,9 @@ from typing import cast
 import click
 
 from crackfront.cli.report import FILE, examples, refuse_unwritable
-from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.data.files import write_text
 from crackfront.plots.style import save_picture
+from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 from studies.law.cells import LawCell, csv_rows, csv_text, law_cells, measured_cells
 from studies.law.drawing import law_figure, spectra_points

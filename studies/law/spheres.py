@@ -13,11 +13,11 @@ from crackfront.analysis.law import slope_breadth
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.files import read_dataset
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Numerics, simulation_of
+from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.table import sweep_row
 from studies.law.cells import COLUMNS, Means, cell_means, csv_rows, mean_factors

@@ -15,10 +15,10 @@ from matplotlib.ticker import FixedLocator, LogLocator
 from crackfront.analysis.estimate import with_error
 from crackfront.core.adhesion import force_correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.cycle.instabilities import resolved_motion, swept_clusters
 from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.simulate.instabilities import resolved_motion, swept_clusters
 from studies.paper.drawing import DASHED, ON_WHITE, THEORY, label_plain_numbers, name_panels
 from studies.paper.events import (
     SIZE_EXPONENT,

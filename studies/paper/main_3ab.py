@@ -13,12 +13,6 @@ from pydantic import model_validator
 
 from crackfront.core import jkr
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.cycle.instabilities import (
-    Motion,
-    measured_instabilities,
-    resolved_motion,
-    shortest_instability,
-)
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.outcome import Direction
 from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
@@ -26,6 +20,12 @@ from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.instabilities import ENERGY_LABEL, draw_patches, energy_shades
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
 from crackfront.plots.style import PAGE, PURPLE, VERMILION, blank_figure, explain, house_style
+from crackfront.simulate.instabilities import (
+    Motion,
+    measured_instabilities,
+    resolved_motion,
+    shortest_instability,
+)
 from studies.paper.drawing import BRANCHES, draw_jump, name_panels, write_beside
 from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to
 from studies.paper.rough import (

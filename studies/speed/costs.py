@@ -14,12 +14,12 @@ from dataclasses import fields, replace
 import numpy as np
 
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.costs import Features, Measured, features, measured_runs, predicted_seconds
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
+from crackfront.simulate.steady import SteadySchedule
 
 KNOBS = Knobs(None, 2.4, 4, "cubic", 4, 1e-4)
 ENERGIES = (0.002, 0.01, 0.05, 0.15)

@@ -18,7 +18,6 @@ import numpy as np
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.field.fields import Field, first_place, polar_field
 from crackfront.core.field.samples import make_memory
 from crackfront.core.outcome import Status
@@ -33,6 +32,7 @@ from crackfront.simulate.files import cycle_dataset, write_simulation
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.run import compile_solver, run_simulation
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
+from crackfront.simulate.steady import SteadySchedule
 from studies.pages import markdown_table
 from studies.speed.machine import peak_memory, restart_peak
 

@@ -10,11 +10,11 @@ import pytest
 import yaml
 
 from crackfront.analysis.law import slope_breadth
-from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.units import Scales
 from crackfront.data.provenance import provenance
 from crackfront.data.section import ConfigurationError
 from crackfront.simulate.laws import Knobs
+from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.table import failed_row, read_table, write_hysteresis
 from crackfront.topography.measures import measured_surface

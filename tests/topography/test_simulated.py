@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 
 from crackfront.analysis.law import pinning_factor
-from crackfront.core.cycle.period import LineSchedule
-from crackfront.core.cycle.steady import SteadySchedule
+from crackfront.simulate.period import LineSchedule
 from crackfront.simulate.run import run_simulation
+from crackfront.simulate.steady import SteadySchedule
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.prediction import predicted
 from crackfront.topography.reading import read_measurements

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.steady import SteadySchedule
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.data.files import UnreadableFileError
 from crackfront.data.provenance import provenance
 from crackfront.simulate.files import read_checkpoint, write_checkpoint
 from crackfront.simulate.run import run_simulation
+from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 
 TEST = Path(__file__).parents[3] / "config/test.yaml"

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.analysis.steady import standard_error
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -28,14 +29,8 @@ from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
 
-FEWEST_STATES = 3
-"""Steady states from which a standard error is computed."""
-
 _FEWEST_TO_TURN = 8
 """Steady states before the approach may turn."""
-
-_DEPTHS = 3.0
-"""Rms deviations of a front from its mean after which it forgets; docs/model.md has the measure."""
 
 _N_CIRCLE = 64
 """Number of circles that are tried as a start."""
@@ -273,35 +268,3 @@ def forward_circle(
         if resting is not None and abs(radius - resting) > _FAR_BEHIND * correlation_length:
             return circle
     return np.full(field.geometry.n_site, furthest)
-
-
-def standard_error(
-    values: Array, radius: Array, roughness: Array, correlation_length: float
-) -> float:
-    """Standard error of the mean apparent work of adhesion over steady states of one branch.
-
-    States count as independent if they are at least one distance apart: the correlation length of
-    w_loc or three times the rms roughness of the front, whichever is larger. A rough front
-    has to pass its own depth before it has left what pinned it (docs/model.md).
-
-    Parameters
-    ----------
-    values : (n_state,) array
-        Apparent work of adhesion. (Units: w_int)
-    radius : (n_state,) array
-        Mean radius. (Units: reduced lateral length)
-    roughness : (n_state,) array
-        Rms deviation of the front from its mean radius. (Units: reduced lateral length)
-    correlation_length : float
-        That of w_loc. (Units: reduced lateral length)
-
-    Returns
-    -------
-    float
-        Standard error, infinite for fewer than :data:`FEWEST_STATES` states. (Units: w_int)
-    """
-    if values.size < FEWEST_STATES:
-        return math.inf
-    distance = max(correlation_length, _DEPTHS * float(np.mean(roughness)))
-    independent = min(values.size, 1 + np.ptp(radius) / distance)
-    return float(np.std(values, ddof=1) / math.sqrt(independent))

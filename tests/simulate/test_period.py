@@ -10,7 +10,6 @@ from click.testing import CliRunner
 from crackfront.analysis.steady import period_adhesion
 from crackfront.cli import main
 from crackfront.core.adhesion import AdhesionMap, correlation_length, larkin_length
-from crackfront.core.cycle.period import LineSchedule, run_period
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.geometry.line import line_field
 from crackfront.core.outcome import Status
@@ -20,11 +19,12 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.provenance import provenance
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.files import read_checkpoint, read_simulation, write_checkpoint
+from crackfront.simulate.period import LineSchedule, run_period
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.table import read_table
 
-CONFIG = Path(__file__).parents[3] / "config"
+CONFIG = Path(__file__).parents[2] / "config"
 TEXT = (CONFIG / "line-test.yaml").read_text(encoding="utf-8")
 SWEEP = load_configuration(CONFIG / "line-test.yaml")
 ONE = SWEEP.simulation(SWEEP.spectra[1], 0.04, 0)

@@ -14,13 +14,6 @@ from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import first_touch
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.steady import (
-    SteadySchedule,
-    forward_circle,
-    own_part,
-    run_steady,
-    standard_error,
-)
 from crackfront.core.field.fields import polar_field
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import ContactState
@@ -31,6 +24,13 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.contact import simulation_adhesion
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation
+from crackfront.simulate.steady import (
+    SteadySchedule,
+    forward_circle,
+    own_part,
+    run_steady,
+    standard_error,
+)
 
 SPECTRUM = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
 LENGTH = correlation_length("roughness", SPECTRUM)
