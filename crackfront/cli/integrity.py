@@ -68,7 +68,7 @@ def verify(place: Path, as_json: bool) -> None:
 )
 @as_json
 def compare(one: Path, other: Path, tolerance: float, as_json: bool) -> None:
-    """Tell whether two files of results, or two folders of them, agree in values and in bits.
+    """Compare two files of results, or two folders of them, in values and in bits.
 
     The numbers are largest differences relative to the largest magnitude, a variable each. What a
     run cost and where it comes from is left out. The exit code is 1 where the results do not agree.

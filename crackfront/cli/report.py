@@ -1,4 +1,4 @@
-"""What commands share: options and the end of their help, and telling how far they are."""
+"""What commands share: types of options, ends of help texts, JSON and announcements."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def _plain(value: Any) -> object:
 
 
 def announce_compilation(*, err: bool = False) -> None:
-    """Tell when something is compiled, beside the output where that is for machines."""
+    """Print a line when something is compiled, to standard error if so asked."""
     from crackfront.core.compiled import when_compiling
 
     sentence = "compiling the solver (once, for half a minute to a minute)"
@@ -75,7 +75,7 @@ def announce_compilation(*, err: bool = False) -> None:
 
 
 def announce_cost(seconds: float, *, err: bool = True) -> None:
-    """Tell how much processor time is expected, where that is more than a moment."""
+    """Print how much processor time is expected, if it is more than a moment."""
     if seconds > _MOMENT:
         click.echo(f"about {in_time(seconds)} of processor time", err=err)
 
@@ -90,7 +90,7 @@ def refuse_unwritable(folder: Path) -> None:
     Raises
     ------
     OSError
-        If the folder cannot be made, or takes no file.
+        If the folder cannot be made or written to.
     """
     import tempfile
 

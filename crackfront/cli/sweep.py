@@ -238,7 +238,7 @@ def simulate(
         refuse_beyond_memory(
             f"{busy} rank(s) of {in_bytes(costs['bytes_a_rank'])}",
             costs["bytes_a_rank"] * (busy if launcher is None else 1),
-            "ask for fewer ranks, coarser numerics or a smaller tile",
+            "use fewer ranks, coarser numerics or a smaller tile",
         )
         announce_cost(costs["core_seconds"])
     if busy > 1 and not parallel.under_mpi():
@@ -276,7 +276,7 @@ def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path
     folder.mkdir(parents=True, exist_ok=True)
     code = parallel.launch_ranks(arguments, ranks, launcher, folder)
     if code is None or code == StoppedError.exit_code:
-        sys.exit(StoppedError.exit_code)  # the manager has told it
+        sys.exit(StoppedError.exit_code)  # the manager has printed its sentence
     if code != 0:
         click.echo(
             f"Error: the ranks ended with exit code {code}; finished simulations are stored, and "
@@ -346,9 +346,9 @@ def _reported(
 @click.argument("folder", type=FILE)
 @as_json
 def status(folder: Path, as_json: bool) -> None:
-    """Tell how far the sweep in a folder is, and which processes are at it, here or elsewhere.
+    """Show how far the sweep in a folder is, and which processes run it, here or elsewhere.
 
-    A process on this machine is told to run as long as it lives, one on another machine as long as
+    A process on this machine counts as long as it lives, one on another machine as long as
     it shows signs of life.
     """
     from crackfront.data.files import refuse_damaged
@@ -378,7 +378,7 @@ def status(folder: Path, as_json: bool) -> None:
             f"{one.silent_seconds:.0f} s ago"
         )
     if len(processes) > _MOST_PROCESSES:
-        click.echo(f"and {len(processes) - _MOST_PROCESSES} more, which --json tells")
+        click.echo(f"and {len(processes) - _MOST_PROCESSES} more, listed by --json")
     left, ranks = sum(item.seconds for item in found), len(processes)
     total = sum(item.done + item.failed + item.running + item.waiting for item in found)
     ended = sum(item.done + item.failed for item in found)

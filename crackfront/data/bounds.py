@@ -99,7 +99,7 @@ def refuse_beyond_memory(what: str, needed: float, remedy: str, *, anywhere: boo
     Raises
     ------
     TooLargeError
-        That tells what is needed and what is at hand.
+        That states what is needed and what there is.
     """
     at_hand = memory_at_hand()
     if needed > (max(at_hand, MOST_MEMORY) if anywhere else at_hand):

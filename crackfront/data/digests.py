@@ -56,7 +56,7 @@ def seal(path: Path, suffix: str) -> str:
     path : Path
         The file; JSON must be a mapping that ends in a brace and a new line.
     suffix : str
-        Ending of the name that it will have, which tells its format.
+        Ending of the name that it will have, from which its format follows.
     """
     before, after = _COMMENT.get(suffix, (b"\n", b"\n"))
     with path.open("rb+") as file:

@@ -80,7 +80,7 @@ def write_dataset(
 
 
 def write_text(path: Path, text: str, *, sealed: bool = False) -> None:
-    """Write a text file atomically, where it is asked for with a digest."""
+    """Write a text file atomically, with a digest if it is to be sealed."""
     replace_atomically(path, lambda part: part.write_text(text, encoding="utf-8"), sealed=sealed)
 
 
@@ -134,7 +134,7 @@ def refuse_no_file(path: Path) -> None:
 
 
 def _refuse_full_disk(path: Path, error: Exception) -> None:
-    """Raise that the disk is full if a folder takes no mebibyte any more."""
+    """Raise that the disk is full if not a mebibyte can be written in the folder."""
     try:
         with tempfile.TemporaryFile(dir=path.parent) as probe:
             probe.write(bytes(2**20))

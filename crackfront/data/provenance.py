@@ -56,7 +56,7 @@ class Provenance:
 
 
 def provenance(configuration: str = "") -> Provenance:
-    """Origin of the results of this process, which a configuration of this text asked for."""
+    """Origin of what this process computes for a configuration of this text."""
     return Provenance(
         crackfront_version=__version__,
         git_commit=git_commit(),

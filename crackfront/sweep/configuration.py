@@ -234,7 +234,7 @@ class NumericsSection(Section):
 class SteadySection(Section):
     """Steady parts of the branches only, as in `SteadySchedule`.
 
-    States that are nearer than a hundredth of the correlation length tell nothing new.
+    States nearer than a hundredth of the correlation length are no further samples.
     """
 
     start: Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -465,7 +465,7 @@ def _refuse_endless(sweep: Sweep) -> None:
             knobs = sweep.numerics.knobs_of(sweep.kind, item.spectrum, energy, straight=straight)
             refuse_oversized(item.spectrum, sweep.numerics, knobs, sweep.schedule.max_penetration)
             cost = expected_cost(sweep.simulation(item, energy, 0))
-            coarser = "ask for fewer, coarser or larger load steps, or for smaller tiles"
+            coarser = "use fewer, coarser or larger load steps, or smaller tiles"
             refuse_beyond_memory(f"simulations of {item.name}", cost.memory, coarser, anywhere=True)
             seconds += sweep.n_realisation * cost.seconds
     refuse_beyond_time("the simulations", seconds, coarser)
@@ -488,7 +488,7 @@ def _refuse_unreachable(sweep: Sweep) -> None:
             if isinstance(asked, float) and (left := missed_error(simulation, asked)):
                 raise ConfigurationError(
                     f"numerics: error is {asked:g}, but the finest numerics leave {left:.2g} for "
-                    f"{item.name} at e_el {energy:g}; ask for that, or give the knobs"
+                    f"{item.name} at e_el {energy:g}; allow that, or give the knobs"
                 )
 
 
@@ -500,7 +500,7 @@ def _refuse_unresolved(simulation: Simulation, name: str) -> None:
     if simulation.schedule.straight and larkin < 2 * site:
         raise ConfigurationError(
             f"numerics: the Larkin length of {name} at e_el {energy:g} is {larkin:.3g}, below two "
-            f"sites ({2 * site:.3g}); lower the amplitude or take more sites"
+            f"sites ({2 * site:.3g}); lower the amplitude or use more sites"
         )
 
 

@@ -276,7 +276,7 @@ class RowIndex:
     def row(self, simulation: Simulation) -> SweepRow | None:
         """Row of a simulation, if there is one and its file is as the row says."""
         if simulation.label not in self._places:
-            return None  # a key takes long
+            return None  # before its key is computed, which is slow
         key = simulation.key
         entries = (entry for entry in self._entries(simulation.label) if entry.key == key)
         return next((entry.row for entry in entries if self._is_valid(entry)), None)

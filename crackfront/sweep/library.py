@@ -89,6 +89,6 @@ def sweep(
 def without_value(statuses: Mapping[str, int]) -> str:
     """How many simulations have no value and how they ended; empty where all have one."""
     others = {status: count for status, count in statuses.items() if status not in COMPLETE}
-    told = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
+    listed = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
     failed, total = sum(others.values()), sum(statuses.values())
-    return f"{failed} of {total} simulations have no value: {told}" if failed else ""
+    return f"{failed} of {total} simulations have no value: {listed}" if failed else ""

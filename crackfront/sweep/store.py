@@ -97,7 +97,7 @@ class Progress:
 
 
 class _Curves:
-    """Files of simulations by all of their names but the keys, which take long."""
+    """Files of simulations by their names without the keys, which are slow to compute."""
 
     def __init__(self, folder: Path) -> None:
         self._names = {path.stem.rpartition("-")[0] for path in folder.glob("*.nc")}
@@ -230,7 +230,7 @@ class Store:
         return {name: str(value) for name, value in about.items()}
 
     def renewed(self, sweep: Sweep, configuration: Path) -> Iterator[str]:
-        """Take back what is damaged or missing, so that the workflow makes it anew.
+        """Set aside what is damaged, and remove lists of what is missing; the workflow renews it.
 
         Parameters
         ----------

@@ -161,7 +161,7 @@ class Sweep:
             least = -(-self.n_realisation // max(1, MOST_SHARDS // len(self.spectra)))
             raise ValueError(
                 f"blocks of {size} realisations are {len(self.spectra) * n_block} shards, more "
-                f"than {MOST_SHARDS} jobs; take blocks of {least} or more"
+                f"than {MOST_SHARDS} jobs; use blocks of {least} or more"
             )
         return tuple(
             self.named_shard(item, range(first, min(first + size, self.n_realisation)))

@@ -162,8 +162,8 @@ def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
     """The same about a simulation that cannot be done, and why, in a word and in a sentence."""
     unknown: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
     nothing = dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
-    told = {"status": status, "status_sentence": sentence, "seed": simulation.seed, "curve": ""}
-    return SweepRow(**(unknown | nothing | told))
+    known = {"status": status, "status_sentence": sentence, "seed": simulation.seed, "curve": ""}
+    return SweepRow(**(unknown | nothing | known))
 
 
 @functools.cache

@@ -48,43 +48,31 @@ def verification(place: Path) -> Verification:
     UnreadableFileError
         If there is no such folder or archive, or the folder is empty.
     """
+    counts: dict[str, Counter[Integrity]] = defaultdict(Counter)
+    damaged = []
     with _folder(place) as folder:
-        found = [*_files(folder), *_lines(folder), *_sums(folder)]
-        counts: dict[str, Counter[Integrity]] = defaultdict(Counter)
-        for group, _, state in found:
-            if group:
-                counts[group][state] += 1
-        damaged = [name for _, name, state in found if state is Integrity.DAMAGED]
-        if place.is_file() and not (folder / SUMS).is_file():
+        for path, state in integrities(folder):
+            name = path.relative_to(folder)
+            counts[str(name.parent)][state] += 1
+            damaged += [str(name)] if state is Integrity.DAMAGED else []
+        for path in journal_paths(folder / "journals"):
+            n_whole, n_damaged = line_counts(path)
+            counts[LINES] += Counter({Integrity.WHOLE: n_whole, Integrity.DAMAGED: n_damaged})
+            damaged += [str(path.relative_to(folder))] if n_damaged else []
+        listed = dict(_listed(folder))
+        missing = [
+            name for name in [*_named_curves(folder), *listed] if not (folder / name).is_file()
+        ]
+        damaged += [
+            name
+            for name, checksum in listed.items()
+            if name not in missing and _checksum(folder / name) != checksum
+        ]
+        if place.is_file() and not listed:
             damaged.append(place.name)  # the list is the last file of an archive
-        elif not found:
+        elif not counts:
             raise UnreadableFileError(f"{place} holds no file; name a folder of results")
-        wanted = [*_named_curves(folder), *(name for name, _ in _listed(folder))]
-        missing = [name for name in wanted if not (folder / name).is_file()]
     return Verification(dict(counts), tuple(dict.fromkeys(damaged)), tuple(dict.fromkeys(missing)))
-
-
-def _files(folder: Path) -> Iterator[tuple[str, str, Integrity]]:
-    """Files of a folder, by the folder in it, and whether they are as they were written."""
-    for path, state in integrities(folder):
-        name = path.relative_to(folder)
-        yield str(name.parent), str(name), state
-
-
-def _lines(folder: Path) -> Iterator[tuple[str, str, Integrity]]:
-    """The same of the lines of its journals."""
-    for path in journal_paths(folder / "journals"):
-        for state, count in zip(
-            (Integrity.WHOLE, Integrity.DAMAGED), line_counts(path), strict=True
-        ):
-            yield from [(LINES, str(path.relative_to(folder)), state)] * count
-
-
-def _sums(folder: Path) -> Iterator[tuple[str, str, Integrity]]:
-    """Files, counted elsewhere, that do not have the checksum of the list of an archive."""
-    for name, checksum in _listed(folder):
-        if (folder / name).is_file() and _checksum(folder / name) != checksum:
-            yield "", name, Integrity.DAMAGED
 
 
 @contextlib.contextmanager

@@ -157,7 +157,7 @@ def test_an_error_chooses_the_numerics_of_every_spectrum_and_amplitude(tmp_path)
 def test_an_error_below_that_of_the_finest_numerics_is_refused(tmp_path):
     sentence = refusal(tmp_path, asking(1e-5))
     assert "numerics: error is 1e-05, but the finest numerics leave" in sentence
-    assert "for flat at e_el 0.02; ask for that, or give the knobs" in sentence
+    assert "for flat at e_el 0.02; allow that, or give the knobs" in sentence
 
 
 def test_given_numerics_serve_every_amplitude(tmp_path):
@@ -236,7 +236,7 @@ BAD = {
     ),
     "years": (
         ("angles_per_cutoff: 2", "angles: 1000000000"),
-        "years of processor time; ask for fewer, coarser or larger load steps",
+        "years of processor time; use fewer, coarser or larger load steps",
     ),
     "unknown key": (
         ("realisations: 2", "realisation: 2\nrealisations: 2"),

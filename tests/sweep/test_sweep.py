@@ -65,7 +65,7 @@ def test_shards_hold_every_simulation_once(block):
 
 def test_a_hundred_thousand_simulations_are_no_more_than_a_thousand_jobs():
     sweep = replace(SWEEP, n_realisation=25_000)
-    with pytest.raises(ValueError, match=r"2500 shards, more than 1000 jobs; take blocks of 50 or"):
+    with pytest.raises(ValueError, match=r"2500 shards, more than 1000 jobs; use blocks of 50 or"):
         sweep.shards(20)
     assert len(sweep.shards(50)) == 1000
 
