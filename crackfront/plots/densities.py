@@ -21,7 +21,6 @@ Array = NDArray[np.float64]
 WAVEVECTOR_LABEL = r"wavevector $q$ (m$^{-1}$)"
 PROFILE_LABEL = r"$C^\mathrm{1D}$ (m$^3$)"
 ISOTROPIC_LABEL = r"$C^\mathrm{iso}$ (m$^4$)"
-CONVERTED_LABEL = r"$q\,C^\mathrm{iso}/\pi$ (paper's conversion)"
 
 
 _NAME = 0.4

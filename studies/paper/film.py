@@ -14,6 +14,8 @@ from studies.paper.figure import Array
 from studies.paper.measured import ProfileDensity, read_profile_density
 from studies.paper.rough import rough_spectrum
 
+CONVERTED_LABEL = r"$q\,C^\mathrm{iso}/\pi$ (paper's conversion)"
+
 POINTS_PER_DECADE = 100
 """Wavevectors at which a density is shown."""
 

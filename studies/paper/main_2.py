@@ -23,14 +23,7 @@ from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive, Section, refusal
-from crackfront.plots.parts import (
-    FORCE_LABEL,
-    HEIGHT_LABEL,
-    LENGTH_LABEL,
-    RADIUS_LABEL,
-    draw_arrow,
-    label_panel,
-)
+from crackfront.plots import parts
 from crackfront.plots.style import (
     BLACK,
     BLUE,
@@ -396,7 +389,7 @@ def rings_figure(loops: RingLoops) -> Drawing:
         _draw_release(short, loops, 1, (1.1, 1.8))
         _draw_forces(force, loops)
         for name, axes in zip("abcd", (profile, long, short, force), strict=True):
-            label_panel(axes, name)
+            parts.label_panel(axes, name)
         explain(
             figure,
             "thick: the edge is pinned; thin: it jumps (b, d with arrows); grey: $w_\\mathrm{loc}$ "
@@ -421,7 +414,7 @@ def _draw_contact(axes: Axes, loops: RingLoops) -> None:
     axes.annotate("elastic body", (0.0, -0.4), ha="center")
     axes.set_ylim(-0.6, 1.7)
     axes.set_box_aspect(0.4)
-    axes.set_ylabel(HEIGHT_LABEL.format("height").replace(" / ", " /\n"))
+    axes.set_ylabel(parts.HEIGHT_LABEL.format("height").replace(" / ", " /\n"))
     axes.tick_params(labelbottom=False)
 
 
@@ -445,8 +438,8 @@ def _draw_rings(axes: Axes, loops: RingLoops) -> None:
     bar = axes.inset_axes((1.03, 0.0, 0.03, 1.0))
     axes.figure.colorbar(image, cax=bar, label=r"$w_\mathrm{loc}/w_\mathrm{int}$")
     bar.set_ylim(1 - loops.amplitude, 1 + loops.amplitude)
-    axes.set_xlabel(LENGTH_LABEL.format("$x$"))
-    axes.set_ylabel(LENGTH_LABEL.format("$y$").replace(" / ", " /\n"))
+    axes.set_xlabel(parts.LENGTH_LABEL.format("$x$"))
+    axes.set_ylabel(parts.LENGTH_LABEL.format("$y$").replace(" / ", " /\n"))
 
 
 def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float, float]) -> None:
@@ -466,7 +459,7 @@ def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float,
             contact = loops.radius_at_zero(0, direction)
             place = contact, float(jkr.apparent_work_of_adhesion(contact, 0.0))
             _draw_state(axes, direction, place, (8, -3) if direction > 0 else (-6, 4))
-    axes.set(xlim=limits, ylim=(0.35, 2.05), xlabel=RADIUS_LABEL)
+    axes.set(xlim=limits, ylim=(0.35, 2.05), xlabel=parts.RADIUS_LABEL)
     axes.set_ylabel(r"energy release rate / $w_\mathrm{int}$")
     axes.legend(loc="upper left", ncols=2)
 
@@ -494,7 +487,9 @@ def _draw_forces(axes: Axes, loops: RingLoops) -> None:
             zorder=1,
         )
     axes.plot(radius, jkr.force(radius, 0.0), color=BLACK, linewidth=0.8, label="$b=0$", zorder=1)
-    axes.set(xlim=(0, _REACH), ylim=(-2.7, 2.7), xlabel=RADIUS_LABEL, ylabel=FORCE_LABEL)
+    axes.set(
+        xlim=(0, _REACH), ylim=(-2.7, 2.7), xlabel=parts.RADIUS_LABEL, ylabel=parts.FORCE_LABEL
+    )
     axes.legend(loc="upper left", ncols=2, columnspacing=1.0)
 
 
@@ -534,7 +529,7 @@ def _draw_branch(
         axes.plot(path, value(path, load), color=colour, linewidth=0.7)
         if index == 0:
             middle = slice(path.size // 2, path.size // 2 + 2)
-            draw_arrow(axes, path[middle], value(path, load)[middle], colour)
+            parts.draw_arrow(axes, path[middle], value(path, load)[middle], colour)
 
 
 FIGURE = Figure(

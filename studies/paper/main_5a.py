@@ -12,15 +12,7 @@ from pydantic import model_validator
 
 from crackfront.core.variables import variable
 from crackfront.data.section import Positive, refusal
-from crackfront.plots.densities import (
-    CONVERTED_LABEL,
-    ISOTROPIC_LABEL,
-    PROFILE_LABEL,
-    WAVEVECTOR_LABEL,
-    add_wavelengths,
-    draw_dominant_scales,
-    set_density_scales,
-)
+from crackfront.plots import densities
 from crackfront.plots.style import (
     BLACK,
     BLUE,
@@ -32,7 +24,7 @@ from crackfront.plots.style import (
 )
 from studies.paper.drawing import write_beside
 from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
-from studies.paper.film import FilmParameters, conformity_energy, shown_wavevectors
+from studies.paper.film import CONVERTED_LABEL, FilmParameters, conformity_energy, shown_wavevectors
 
 _WAVE, _ORDER, _POINT = "wavevector", "order", "point"
 
@@ -163,9 +155,9 @@ def film_scales_figure(record: FilmScales) -> Drawing:
         figure, q = blank_figure(COLUMN, 1.35 * COLUMN), record.wavevector
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.25, 1))
         for axes in (upper, lower):
-            set_density_scales(axes, q)
+            densities.set_density_scales(axes, q)
         upper.plot(q, record.isotropic, color=BLACK)
-        draw_dominant_scales(upper, record.mean_square, record.shortest, record.longest)
+        densities.draw_dominant_scales(upper, record.mean_square, record.shortest, record.longest)
         _draw_roll_off(upper, record)
         lower.plot(q, record.profile, color=BLACK, label="exact projection")
         lower.plot(q, record.converted, color=BLUE, dashes=(4, 2), label=CONVERTED_LABEL)
@@ -175,10 +167,10 @@ def film_scales_figure(record: FilmScales) -> Drawing:
             lower.plot(points, density, ".", color=VERMILION, markersize=2, label="measured")
         lower.axvline(2 * np.pi / record.roll_off, color="0.6", linewidth=0.6, zorder=1)
         lower.legend(loc="upper right")
-        upper.set_ylabel(ISOTROPIC_LABEL)
-        lower.set_ylabel(PROFILE_LABEL)
-        add_wavelengths(upper)
-        lower.set_xlabel(WAVEVECTOR_LABEL)
+        upper.set_ylabel(densities.ISOTROPIC_LABEL)
+        lower.set_ylabel(densities.PROFILE_LABEL)
+        densities.add_wavelengths(upper)
+        lower.set_xlabel(densities.WAVEVECTOR_LABEL)
         explain(figure, "bars: scales of 80% of a mean square; grey: the roll-off")
         return figure
 

@@ -16,17 +16,11 @@ from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.variables import variable
 from crackfront.data.section import Count, Positive, Seed, refusal
-from crackfront.plots.densities import (
-    CONVERTED_LABEL,
-    PROFILE_LABEL,
-    WAVEVECTOR_LABEL,
-    add_wavelengths,
-    set_density_scales,
-)
+from crackfront.plots import densities
 from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
 from studies.paper.drawing import DOTTED, write_beside
 from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
-from studies.paper.film import POINTS_PER_DECADE, FilmParameters, shown_wavevectors
+from studies.paper.film import CONVERTED_LABEL, POINTS_PER_DECADE, FilmParameters, shown_wavevectors
 from studies.paper.tiles import tile_mean_square
 
 _WAVE, _MODE, _POINT = "wavevector", "mode", "point"
@@ -97,11 +91,11 @@ def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> S
     film, side, points = parameters.spectrum, parameters.side, parameters.points()
     included, stiffness = film.longer_than(parameters.shortest), parameters.contact_modulus / 4
     n_point = 2 * math.ceil(_PIXELS * side / parameters.shortest / 2)
-    densities, halves, squares = [], [], []
+    profiles, halves, squares = [], [], []
     seeds = np.random.SeedSequence(parameters.seed).spawn(parameters.realisations)
     for surface, seed in enumerate(seeds, start=1):
         heights = gaussian_field(included, n_point, side, np.random.default_rng(seed))
-        densities.append(profile_periodogram(heights, side / n_point))
+        profiles.append(profile_periodogram(heights, side / n_point))
         halves.append(half_derivative_mean_square(heights, side / n_point))
         squares.append(float(np.mean(np.var(heights, axis=0))))
         progress(f"surface {surface} of {parameters.realisations}: {n_point} points a side")
@@ -118,7 +112,7 @@ def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> S
         profile=film.profile_density(wavevector),
         converted=wavevector / np.pi * film.density(wavevector),
         mode=mode[kept],
-        synthetic=np.mean(densities, axis=0)[kept],
+        synthetic=np.mean(profiles, axis=0)[kept],
         included=included.profile_density(mode[kept]),
         film_energy=stiffness * film.mean_square(0.5),
         tile_energy=stiffness * float(np.mean(halves)),
@@ -214,7 +208,7 @@ def synthetic_film_figure(record: SyntheticFilm) -> Drawing:
     with house_style():
         figure, q = blank_figure(COLUMN, 0.9 * COLUMN), record.wavevector
         axes = figure.add_subplot()
-        set_density_scales(axes, q)
+        densities.set_density_scales(axes, q)
         axes.plot(q, record.profile, color=VERMILION, label="nanodiamond, ideal spectrum")
         axes.plot(q, record.converted, color="0.5", dashes=(4, 2), label=CONVERTED_LABEL)
         if record.measured_wavevector.size:
@@ -224,9 +218,9 @@ def synthetic_film_figure(record: SyntheticFilm) -> Drawing:
         axes.plot(record.mode, record.synthetic, color=BLUE, linewidth=0.8, label=label)
         _draw_end(axes, f"tile {1e6 * record.side:.3g} µm", record.side, "left")
         _draw_end(axes, f"cutoff {1e6 * record.shortest:.3g} µm", record.shortest, "right")
-        axes.set(ylabel=PROFILE_LABEL, xlabel=WAVEVECTOR_LABEL)
+        axes.set(ylabel=densities.PROFILE_LABEL, xlabel=densities.WAVEVECTOR_LABEL)
         axes.set_ylim(top=20 * float(record.profile.max()))
-        add_wavelengths(axes)
+        densities.add_wavelengths(axes)
         axes.legend(loc="lower left", bbox_to_anchor=(0.07, 0.0))
         return figure
 
