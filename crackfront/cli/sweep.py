@@ -188,13 +188,6 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
     "[default: mpiexec beside this Python]",
 )
 @click.option(
-    "--threads",
-    type=whole(Range(1, 16)),
-    default=1,
-    show_default=True,
-    help="Threads of a simulation with 16384 sites or more, in every rank.",
-)
-@click.option(
     "--checkpoint",
     type=Number(Range(0, 1e9)),
     default=60.0,
@@ -208,7 +201,6 @@ def simulate(
     realisations: range | None,
     ranks: int,
     launcher: str | None,
-    threads: int,
     checkpoint: float,
 ) -> None:
     """Run the simulations of a sweep that are not stored yet.
@@ -218,10 +210,6 @@ def simulate(
     """
     from crackfront.sweep import parallel
 
-    if threads > 1:
-        from crackfront.core.solver.threads import set_threads
-
-        set_threads(threads)
     if not parallel.is_manager(ranks):
         with parallel.deferring_stops():
             parallel.serve_tasks("crackfront.sweep.tasks")
@@ -244,7 +232,6 @@ def simulate(
     if busy > 1 and not parallel.under_mpi():
         arguments = ["simulate", str(configuration), "--ranks", str(busy)]
         arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
-        arguments += ["--threads", str(threads)]
         arguments += [] if spectrum is None else ["--spectrum", spectrum]
         arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
         _launch(arguments, busy, launcher, store.folder)

@@ -11,8 +11,6 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.field.fields import Interpolation, TileField, tile_field
 from crackfront.core.geometry.sphere import sphere
-from crackfront.core.solver.filters import ROWS
-from crackfront.core.solver.team import LARGE
 from crackfront.core.units import WORK_OF_ADHESION
 
 
@@ -66,8 +64,9 @@ def contact_field(
 def n_site(least: float) -> int:
     """Even number of sites, 4 or more and not below a number, whose transforms are fast.
 
-    Of larger fronts four pairs of sites are transformed at once, in each part of the largest.
+    Transforms are fast of lengths without large prime factors. From 256 sites on the number is a
+    multiple of 8, so that four pairs of sites are transformed at once; from 16384 on, of 32.
     """
     least = max(4.0, least * (1 - 1e-12))
-    together = 2 if least < 256 else 8 if least < LARGE else 8 * ROWS
+    together = 2 if least < 256 else 8 if least < 16384 else 32
     return together * int(next_fast_len(math.ceil(least / together), real=True))

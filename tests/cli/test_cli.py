@@ -25,7 +25,7 @@ from crackfront.cli import main
 from crackfront.cli.report import StoppedError
 from crackfront.core import jkr
 from crackfront.core.outcome import Status
-from crackfront.core.solver.monotone import relax_together
+from crackfront.core.solver.monotone import monotone_newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.files import write_text
 from crackfront.sweep.configuration import load_configuration
@@ -824,4 +824,4 @@ def test_an_archive_has_the_whole_name_of_its_folder_and_an_empty_one_is_refused
 def test_the_solver_is_compiled_ahead_for_spheres_and_straight_fronts():
     result = run("compile")
     assert result.exit_code == 0, result.output
-    assert len(relax_together.signatures) >= 1
+    assert len(monotone_newton.signatures) >= 1

@@ -88,7 +88,7 @@ def test_a_mended_docstring_a_comment_and_an_annotation_change_nothing(sources):
     edited(
         sources / KERNEL,
         ('^r"""The fast', 'r"""The very fast'),
-        ("^_ROUNDS = 12", "# Why.\n_ROUNDS: int = 12"),
+        ("^_BETWEEN = 13", "# Why.\n_BETWEEN: int = 13"),
     )
     edited(
         sources / "crackfront/core/jkr.py",
@@ -123,7 +123,7 @@ def test_a_local_module_that_is_renamed_changes_no_key(sources):
 @pytest.mark.parametrize(
     ("place", "change"),
     [
-        (KERNEL, ("^_ROUNDS = 12", "_ROUNDS = 13")),
+        (KERNEL, ("^_BETWEEN = 13", "_BETWEEN = 14")),
         ("crackfront/core/solver/forces.py", (r"reach \* inverse\) \+ 1", "reach * inverse) + 2")),
         ("crackfront/core/units.py", ("CONTACT_MODULUS = 0.75", "CONTACT_MODULUS = 0.7500001")),
         ("crackfront/core/spectrum.py", (r"\(-2 - 2 \* self", "(-2.1 - 2 * self")),

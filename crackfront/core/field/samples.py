@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.core.compiled import dispatched, implements, jit, kernel
-from crackfront.core.field.fields import RayField, TileField
+from crackfront.core.compiled import dispatched, implements, kernel
+from crackfront.core.field.fields import Field, RayField, TileField
 from crackfront.core.geometry.base import ray_direction, ray_start, weight, weight_slope
 
 
@@ -78,11 +78,10 @@ _LINEAR_MEMORY, _CUBIC_MEMORY = 128, 32
 """Samples of a ray that are remembered: a cubic piece does the work of four straight ones."""
 
 
-@jit
-def distance_ahead(field):
+def distance_ahead(field: Field) -> float:
     """Largest distance that a solver may look ahead, over half of the samples of a memory."""
     memory, last = _CUBIC_MEMORY if is_cubic(field) else _LINEAR_MEMORY, sample_count(field) - 1
-    return memory // 2 * (sample_place(field, last) - sample_place(field, 0)) / last
+    return float(memory // 2 * (sample_place(field, last) - sample_place(field, 0)) / last)
 
 
 @implements(sample_place, RayField)

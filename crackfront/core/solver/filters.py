@@ -5,9 +5,6 @@ length. With its modes Z and M of them, factors f and the angle phi = pi k / M,
 
 .. math:: Z'_k = (s - d \sin\varphi) Z_k + i d \cos\varphi\, \overline{Z_{M-k}} ,
    \qquad s, d = (f_k \pm f_{M-k}) / 2 .
-
-Large fronts are transformed in :data:`ROWS` parts, which threads share: mode k then stands in row
-k % rows and column k // rows.
 """
 
 from __future__ import annotations
@@ -22,33 +19,25 @@ from rocket_fft import lowlevel
 
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import mode_stiffness
-from crackfront.core.solver.team import LARGE, bounds, hear, my_blocks, summed, tell, wait
 
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
 
-ROWS = 4
-"""Parts in which a large front is transformed."""
-
-
 class Transform(NamedTuple):
-    """Work space for the modes of a front; all arrays have the shape (rows, columns).
+    """Work space for the modes of a front; arrays have one entry a mode.
 
     Attributes
     ----------
     paired : bool
-        Whether sites stand in pairs; each has a mode of its own where their number is odd.
-    turn : array
-        Of what a part is turned between the first step of a transform and the others.
+        Whether sites stand in pairs; where their number is odd, each has a mode of its own.
     cosine, sine : array
         Of pi k / M.
-    before, after : array
+    before, after : complex array
         Modes before and after a filter.
     """
 
     paired: bool
-    turn: Modes
     cosine: Array
     sine: Array
     before: Modes
@@ -56,8 +45,9 @@ class Transform(NamedTuple):
 
 
 class Filter(NamedTuple):
-    """Factors of a mode and of its conjugate partner, (rows, columns) arrays."""
+    """Factors of each mode and of its conjugate partner, and the work space to apply them."""
 
+    transform: Transform
     straight: Array
     crossed: Array
 
@@ -65,167 +55,101 @@ class Filter(NamedTuple):
 @jit
 def make_transform(count, like):
     """Work space for a front of `count` sites, of the precision of a complex array."""
-    half = count // 2 if count % 2 == 0 else count
-    rows = ROWS if count >= LARGE and half % ROWS == 0 else 1
-    shape = (rows, half // rows)
-    turn = np.empty(shape, like.dtype)
-    cosine, sine = np.empty(shape), np.empty(shape)
-    for row in range(rows):
-        for column in range(shape[1]):
-            angle = np.pi * (row + rows * column) / half
-            cosine[row, column], sine[row, column] = np.cos(angle), np.sin(angle)
-            if rows > 1:
-                angle = 2 * np.pi * row * column / half
-                turn[row, column] = complex(np.cos(angle), -np.sin(angle))
-    before, after = np.empty(shape, like.dtype), np.empty(shape, like.dtype)
-    return Transform(count % 2 == 0, turn, cosine, sine, before, after)
+    size = count // 2 if count % 2 == 0 else count
+    cosine, sine = np.empty(size), np.empty(size)
+    for k in range(size):
+        angle = np.pi * k / size
+        cosine[k], sine[k] = np.cos(angle), np.sin(angle)
+    return Transform(
+        count % 2 == 0, cosine, sine, np.empty(size, like.dtype), np.empty(size, like.dtype)
+    )
 
 
 @jit
 def make_filter(transform):
     """Filter without factors yet."""
-    shape, kind = transform.sine.shape, transform.turn.real.dtype
-    return Filter(np.empty(shape, kind), np.empty(shape, kind))
+    shape, real = transform.sine.shape, transform.before.real.dtype
+    return Filter(transform, np.empty(shape, real), np.empty(shape, real))
 
 
 @kernel
-def set_filter(team, transform, filtering, geometry, shift, inverted):
+def set_filter(filtering, geometry, shift, inverted):
     """Give a filter the stiffness of the line plus a shift, or the inverse of that."""
-    rows, columns = transform.sine.shape
-    half = rows * columns
-    for block in range(*my_blocks(team)):
-        for column in range(*bounds(team, block, columns)):
-            for row in range(rows):
-                k = row + rows * column
-                one = mode_stiffness(geometry, k if transform.paired else min(k, half - k)) + shift
-                other = mode_stiffness(geometry, half - k) + shift if transform.paired else one
-                if inverted:
-                    one, other = 1.0 / one, 1.0 / other
-                difference = 0.5 * (one - other)
-                filtering.straight[row, column] = (
-                    0.5 * (one + other) - difference * transform.sine[row, column]
-                )
-                filtering.crossed[row, column] = difference * transform.cosine[row, column]
-    wait(team)
+    transform = filtering.transform
+    size = transform.sine.size
+    for k in range(size):
+        one = mode_stiffness(geometry, k if transform.paired else min(k, size - k)) + shift
+        other = mode_stiffness(geometry, size - k) + shift if transform.paired else one
+        if inverted:
+            one, other = 1.0 / one, 1.0 / other
+        difference = 0.5 * (one - other)
+        filtering.straight[k] = 0.5 * (one + other) - difference * transform.sine[k]
+        filtering.crossed[k] = difference * transform.cosine[k]
 
 
 _AXIS = np.zeros(1, np.int64)
 
 
-def _to_modes(row: Any, modes: Any) -> None:
-    """Modes of a row."""
-    modes[:] = scipy.fft.fft(row)
+def _to_modes(vector: Any, modes: Any) -> None:
+    """Modes of a vector, into memory that is there."""
+    modes[:] = scipy.fft.fft(vector)
 
 
-def _from_modes(modes: Any, row: Any, count: int) -> None:
-    """Row of the modes of a number of sites or pairs."""
-    row[:] = scipy.fft.ifft(modes, norm="forward") / count
+def _from_modes(modes: Any, vector: Any) -> None:
+    """Vector of the modes, into memory that is there."""
+    vector[:] = scipy.fft.ifft(modes)
 
 
 @overload(_to_modes)
-def _to_modes_compiled(row, modes):
-    """Into memory that is there; scipy's functions ask for new memory every time."""
-    return lambda row, modes: lowlevel.c2c(row, modes, _AXIS, True, 1.0, 1)
+def _to_modes_compiled(vector, modes):
+    """By what scipy calls, as scipy's own functions allocate memory every time."""
+    return lambda vector, modes: lowlevel.c2c(vector, modes, _AXIS, True, 1.0, 1)
 
 
 @overload(_from_modes)
-def _from_modes_compiled(modes, row, count):
+def _from_modes_compiled(modes, vector):
     """The same backward."""
-    return lambda modes, row, count: lowlevel.c2c(modes, row, _AXIS, False, 1.0 / count, 1)
+    return lambda modes, vector: lowlevel.c2c(modes, vector, _AXIS, False, 1.0 / modes.size, 1)
 
 
 @kernel
-def apply_filter(team, transform, filtering, vector, result):
-    """Fill in what a filter makes of a vector; return the product of the two."""
-    rows, columns = transform.sine.shape
-    before, after = transform.before, transform.after
-    if transform.paired:
-        source = vector.view(before.dtype).reshape((rows, columns))
-        target = result.view(before.dtype).reshape((rows, columns))
+def apply_filter(filtering, vector, result):
+    """Apply a filter to a vector; return the product of vector and result."""
+    before, after = filtering.transform.before, filtering.transform.after
+    straight, crossed = filtering.straight, filtering.crossed
+    if filtering.transform.paired:
+        _to_modes(vector.view(before.dtype), before)
     else:
-        source, target = before, after
         for i in range(vector.size):
-            before[0, i] = vector[i]
-    if rows > 1:
-        for block in range(*my_blocks(team)):
-            low, high = bounds(team, block, columns)
-            _scatter(source, transform.turn, before, low, high)
-        wait(team)
-    for block in range(*my_blocks(team)):
-        for row in range(*bounds(team, block, rows)):
-            _to_modes(before[row] if rows > 1 else source[row], before[row])
-    wait(team)
-    for block in range(*my_blocks(team)):
-        product = 0.0
-        for row in range(*bounds(team, block, rows)):
-            straight, crossed = filtering.straight[row], filtering.crossed[row]
-            here, there = before[row].view(straight.dtype), before[-row].view(straight.dtype)
-            mixed = after[row].view(straight.dtype)
-            first = 0
-            if row == 0:
-                # The partner of the first mode is itself.
-                first = 1
-                product += _mix(here[:2], here[:2], straight[:1], crossed[:1], mixed[:2])
-            product += _mix(
-                here[2 * first :], there[2 * first :], straight[first:], crossed[first:],
-                mixed[2 * first :],
-            )  # fmt: skip
-            _from_modes(after[row], after[row] if rows > 1 else target[row], rows * columns)
-        tell(team, 0, block, product / (rows * columns))
-    product = summed(team, hear(team), 0)
-    if rows > 1:
-        for block in range(*my_blocks(team)):
-            low, high = bounds(team, block, columns)
-            _gather(after, transform.turn, target, low, high)
-        wait(team)
-    elif not transform.paired:
+            before[i] = vector[i]
+        _to_modes(before, before)
+    modes, mixed = before.view(straight.dtype), after.view(straight.dtype)
+    # The partner of the first mode is itself.
+    product = 0.0 + _mix(modes[:2], modes[:2], straight[:1], crossed[:1], mixed[:2])
+    product += _mix(modes[2:], modes[2:], straight[1:], crossed[1:], mixed[2:])
+    if filtering.transform.paired:
+        _from_modes(after, result.view(before.dtype))
+    else:
+        _from_modes(after, after)
         for i in range(result.size):
-            result[i] = target[0, i].real
-    return product
-
-
-@kernel(fastmath={"contract"})
-def _scatter(source, turn, parts, low, high):
-    """Transform columns of four entries and turn them."""
-    for column in range(low, high):
-        a, b, c, d = source[0, column], source[1, column], source[2, column], source[3, column]
-        even, odd = a + c, b + d
-        parts[0, column] = even + odd
-        parts[2, column] = turn[2, column] * (even - odd)
-        even, odd = a - c, b - d
-        odd = complex(odd.imag, -odd.real)
-        parts[1, column] = turn[1, column] * (even + odd)
-        parts[3, column] = turn[3, column] * (even - odd)
-
-
-@kernel(fastmath={"contract"})
-def _gather(parts, turn, target, low, high):
-    """Turn columns of four entries back and invert their transform."""
-    for column in range(low, high):
-        a, b = parts[0, column], np.conj(turn[1, column]) * parts[1, column]
-        c = np.conj(turn[2, column]) * parts[2, column]
-        d = np.conj(turn[3, column]) * parts[3, column]
-        even, odd = a + c, b + d
-        target[0, column], target[2, column] = even + odd, even - odd
-        even, odd = a - c, b - d
-        odd = complex(-odd.imag, odd.real)
-        target[1, column], target[3, column] = even + odd, even - odd
+            result[i] = after[i].real
+    return product / before.size
 
 
 @kernel(fastmath={"reassoc", "nsz", "contract"})
-def _mix(here, there, straight, crossed, mixed):
-    """Filter a row of modes with their partners in reverse; return the product of the rows.
+def _mix(modes, partners, straight, crossed, mixed):
+    """Filter modes with their partners in reverse; return the product before and after.
 
     Modes are given as real and imaginary parts in turn.
     """
-    total, last = straight.dtype.type(0.0), np.uint64(there.size - 1)
+    total, last = straight.dtype.type(0.0), np.uint64(partners.size - 1)
     for column in range(straight.size):
         # Numbers without a sign, as those that may count from the end are no loop for vectors.
         k = np.uint64(2) * np.uint64(column)
-        real, imaginary = here[k], here[k + np.uint64(1)]
-        mixed[k] = straight[column] * real + crossed[column] * there[last - k]
+        real, imaginary = modes[k], modes[k + np.uint64(1)]
+        mixed[k] = straight[column] * real + crossed[column] * partners[last - k]
         mixed[k + np.uint64(1)] = (
-            straight[column] * imaginary + crossed[column] * there[last - k - np.uint64(1)]
+            straight[column] * imaginary + crossed[column] * partners[last - k - np.uint64(1)]
         )
         total += real * mixed[k] + imaginary * mixed[k + np.uint64(1)]
     return total

@@ -1,8 +1,8 @@
-"""Forces on the sites of a front and the hardening that lies ahead of them."""
+"""A front at a load, the forces on its sites, and how far these hold on the way ahead."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.fft
@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.field.pieces import blend, hull_until, peek_piece, polynomial, steepest_inside
 from crackfront.core.field.rays import front_products, segment_below
-from crackfront.core.field.samples import fetch, is_cubic, peek, sample_count, sample_place
+from crackfront.core.field.samples import (
+    SampleMemory,
+    distance_ahead,
+    fetch,
+    is_cubic,
+    peek,
+    sample_count,
+    sample_place,
+)
 from crackfront.core.geometry.base import (
     lowest_place,
     mode_stiffness,
@@ -26,23 +34,80 @@ Array = NDArray[np.float64]
 CONVERGED, INWARD, OUTWARD, LIMIT, BLOCKED, TURNED, STILL = range(7)
 """Codes with which a compiled solver ends."""
 
+GROWTH = 8
+"""Longest step of a site, over the longest distance that its step before looked ahead."""
 
-class Front(NamedTuple):
-    """A front with what is known of the field under it.
+
+class Problem(NamedTuple):
+    """What all kernels of a relaxation share.
 
     Attributes
     ----------
-    place : (n_site,) array
-        Place of each site.
-    segment : (n_site,) int array
-        Sample below the site (above it in the sense of the motion for a site on a sample).
-    product : (n_site,) array
-        Weighted work of adhesion under the site.
+    field : Field
+        Work of adhesion along the rays.
+    memory : SampleMemory
+        Samples of the field near the front.
+    load : float
+        Load of the geometry.
+    direction : int
+        1 where the front advances, -1 where it recedes.
+    tolerance : float
+        Largest drive that may be left, relative to w_int.
+    lowest : float
+        Place at which a receding site rests in any case; -inf where it leaves the field before.
+    furthest : float
+        Longest step of a site.
+    slack : float
+        Backward drive up to which a site counts as at rest.
+    """
+
+    field: Any
+    memory: SampleMemory
+    load: float
+    direction: int
+    tolerance: float
+    lowest: float
+    furthest: float
+    slack: float
+
+
+def make_problem(
+    start: Array, load: float, direction: int, field: Any, memory: SampleMemory, tolerance: float
+) -> Problem:
+    """Relaxation of a front from its start."""
+    lowest = float(lowest_place(field.geometry, load))
+    if direction > 0 or lowest <= sample_place(field, 0):
+        lowest = -np.inf
+    slack = tolerance * WORK_OF_ADHESION * weight(field.geometry, float(np.min(start)))
+    ahead = distance_ahead(field)
+    return Problem(field, memory, load, direction, tolerance, lowest, ahead, slack)
+
+
+class Front(NamedTuple):
+    """A front, the field under it and the force on it; (n_site,) arrays.
+
+    Attributes
+    ----------
+    place : array
+        Places of the sites.
+    segment : int array
+        Sample below each site (above it in the sense of the motion for a site on a sample).
+    product : array
+        Weighted work of adhesion under each site.
+    drive : array
+        Force along the motion, -inf for a site at rest at the lowest place.
     """
 
     place: Array
     segment: NDArray[np.int64]
     product: Array
+    drive: Array
+
+
+@jit
+def make_front(place):
+    """Front at given places, which its moves change, without the field and forces yet."""
+    return Front(place, np.zeros(place.size, np.int64), np.zeros(place.size), np.zeros(place.size))
 
 
 @kernel
@@ -70,7 +135,7 @@ def line_force(geometry, front):
 
 @kernel
 def _stiffen(geometry, modes):
-    """Multiply modes, given as real and imaginary parts in turn, by their stiffness."""
+    """Multiply modes, given as real and imaginary parts in turn, by the stiffness of the line."""
     for n in range(modes.size // 2):
         stiffness = mode_stiffness(geometry, n)
         modes[2 * n] *= stiffness
@@ -87,14 +152,15 @@ def front_force(front, load, field):
 
 
 @kernel(inline="always")
-def locate(field, memory, ray, place, segment, direction):
+def locate(problem, ray, place, segment):
     """Segment ahead of a place that was in `segment` before it moved, and the product there.
 
     A negative segment says that the ray ends: -INWARD or -OUTWARD. A site on the first sample may
     rest there, and leaves only as it moves on.
     """
+    field = problem.field
     last = sample_count(field) - 2
-    if direction > 0:
+    if problem.direction > 0:
         while place >= sample_place(field, segment + 1):
             segment += 1
             if segment > last:
@@ -105,30 +171,28 @@ def locate(field, memory, ray, place, segment, direction):
         if place < sample_place(field, segment):
             return -INWARD, 0.0
     inner, outer = sample_place(field, segment), sample_place(field, segment + 1)
-    fetch(field, memory, ray, segment, segment + 1)
-    piece = peek_piece(field, memory, ray, segment)
+    fetch(field, problem.memory, ray, segment, segment + 1)
+    piece = peek_piece(field, problem.memory, ray, segment)
     return segment, blend(piece, (place - inner) / (outer - inner))
 
 
 @kernel
-def place_sites(front, field, memory, direction, low, high):
-    """Find the segments and products of some sites of a front.
+def place_sites(problem, front):
+    """Find the segments and products under a front.
 
-    Returns CONVERGED, or the side on which one left the field.
+    Returns CONVERGED, or the side on which a site has left the field.
     """
     code = CONVERGED
-    for i in range(low, high):
-        segment = segment_below(field, front.place[i], direction)
-        front.segment[i], front.product[i] = locate(
-            field, memory, i, front.place[i], segment, direction
-        )
+    for i in range(front.place.size):
+        segment = segment_below(problem.field, front.place[i], problem.direction)
+        front.segment[i], front.product[i] = locate(problem, i, front.place[i], segment)
         if front.segment[i] < 0:
             code = -front.segment[i]
     return code
 
 
 @kernel(inline="always")
-def hardening(field, memory, ray, place, product, segment, reach, load, direction):
+def hardening(problem, ray, place, product, segment, reach):
     """Stiffness D >= (f(0) - f(s)) / s for 0 < s <= reach, f the site's own drive after s.
 
     Pieces lie in the hull of their control points, so that no chord of the product is steeper than
@@ -136,9 +200,11 @@ def hardening(field, memory, ray, place, product, segment, reach, load, directio
     The slope of the restoring force increases and is convex: no chord outward is steeper than the
     mean of the slopes at its ends, none inward steeper than that under the site.
     """
-    restoring = restoring_slope(field.geometry, place, load)
+    field, memory, direction = problem.field, problem.memory, problem.direction
+    restoring = restoring_slope(field.geometry, place, problem.load)
     if direction > 0:
-        restoring = 0.5 * (restoring + restoring_slope(field.geometry, place + reach, load))
+        ahead = restoring_slope(field.geometry, place + reach, problem.load)
+        restoring = 0.5 * (restoring + ahead)
     last = sample_count(field) - 2
     inner, outer = sample_place(field, segment), sample_place(field, segment + 1)
     inverse = 1.0 / (outer - inner)
@@ -188,8 +254,8 @@ def following(site, count):
 
 
 @kernel(fastmath={"contract", "nnan", "nsz"})
-def harden(field, memory, front, first, step, part, reach, stiffness, load, direction):
-    """Let reaches grow to part of the steps, and stiffnesses to what holds over them.
+def harden(problem, front, first, step, part, reach, stiffness):
+    """Raise reaches to part of the steps, and stiffnesses to what holds over them.
 
     The arrays have one entry for each site from `first` on. Returns whether a stiffness grew.
     """
@@ -199,9 +265,7 @@ def harden(field, memory, front, first, step, part, reach, stiffness, load, dire
     for j in range(step.size):
         if part * step[j] > reach[j]:
             reach[j] = part * step[j]
-            ahead = hardening(
-                field, memory, i, place[i], product[i], segment[i], reach[j], load, direction
-            )
+            ahead = hardening(problem, i, place[i], product[i], segment[i], reach[j])
             grew = grew or ahead > stiffness[j]
             stiffness[j] = max(ahead, stiffness[j])
         i = following(i, place.size)
@@ -209,36 +273,30 @@ def harden(field, memory, front, first, step, part, reach, stiffness, load, dire
 
 
 @kernel
-def touch_samples(field, memory, front, first, values):
-    """Read the sample under each of the sites from `first` on, so that it is at hand.
+def touch_samples(problem, front, first, values):
+    """Read the sample under each of the sites from `first` on, to bring them into the cache.
 
     The reads do not wait for one another, as those between the computations of bounds do.
     """
     i = np.uint64(first)
     for j in range(values.size):
-        values[j] = peek(field, memory, i, front.segment[i])[0]
+        values[j] = peek(problem.field, problem.memory, i, front.segment[i])[0]
         i = following(i, front.place.size)
 
 
-@jit
-def resting_place(field, load, direction):
-    """Lowest place, where a site that recedes rests; -inf where it leaves the field before."""
-    lowest = lowest_place(field.geometry, load)
-    return lowest if direction < 0 and lowest > sample_place(field, 0) else -np.inf
-
-
 @kernel
-def drive_sites(geometry, front, line, load, direction, lowest, drive, low, high):
-    """Fill in the force along the motion of some sites, `line` being that of the line.
+def drive_sites(problem, front, line):
+    """Compute the drives from the forces of the line.
 
-    Returns its largest and least value relative to w_int. Sites that rest at the lowest place are
-    driven back without bound, and do not count.
+    Returns the largest and the least relative to w_int, without those of sites at rest at the
+    lowest place.
     """
-    place, product = front.place, front.product
+    place, product, drive = front.place, front.product, front.drive
+    geometry, load, direction = problem.field.geometry, problem.load, problem.direction
     most, least = 0.0, 0.0
-    for i in range(np.uint64(low), np.uint64(high)):
+    for i in range(np.uint64(place.size)):
         drive[i] = direction * (product[i] - restoring_force(geometry, place[i], load) - line[i])
-        if place[i] <= lowest:
+        if place[i] <= problem.lowest:
             drive[i] = -np.inf
             continue
         relative = drive[i] / (weight(geometry, place[i]) * WORK_OF_ADHESION)

@@ -1,7 +1,7 @@
-"""A safe Newton step of the whole front, by conjugate gradients.
+"""Newton steps of the whole front that pass no barrier, by conjugate gradients.
 
-They run in single precision; what their step leaves of the drives is then told in double precision,
-and they go on from there where it is too much.
+Conjugate gradients run in single precision. The residual of their step is then computed in double
+precision, and they go on from there where it is too large.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import mode_stiffness, restoring_slope, self_modes
 from crackfront.core.solver.filters import (
     Filter,
-    Transform,
     apply_filter,
     make_filter,
     make_transform,
@@ -24,88 +23,105 @@ from crackfront.core.solver.filters import (
 from crackfront.core.solver.forces import (
     BLOCKED,
     CONVERGED,
+    GROWTH,
     harden,
     largest_entry,
     locate,
-    resting_place,
     touch_samples,
 )
-from crackfront.core.solver.team import bounds, greatest, hear, my_blocks, summed, tell, wait
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 
-_GROWTH = 8
-"""How many times as far as the furthest reach, or as its own force takes it, a site may go."""
-
 _ACCURACY = 0.05
-"""To which part of the mean drive the linear system is solved."""
+"""Residual to which the linear system is solved, over the mean drive."""
 
-_MARGIN = 0.9
-"""To which part of that single precision is to come, before double precision tells."""
+_SINGLE = 0.9
+"""Part of that residual to which single precision goes, before double precision checks it."""
 
-_LIMIT = 100
+_MOST_PAIRS = 100
 """Pairs of FFTs after which conjugate gradients are given up."""
 
+_TRIALS = 6
+"""Times that the system is solved for stiffnesses that hold over the step."""
+
 _FALL = 0.8
-"""Part of the softening that is tried next where the matrix is not positive definite."""
+"""Factor of the softening used, where the matrix is not positive definite."""
 
 _RISE = 1.1
-"""How many times as much of the softening as the last step used the next one tries."""
+"""Factor of the softening used, from one step to the next."""
 
-_LEAST = 0.2
-"""Share of the softening below which none is used."""
+_LEAST_SOFTENING = 0.2
+"""Part of the softening below which none is used."""
+
+_RIGID = 10.0
+"""Stiffness of a site, over that of the line against it, above which the system is scaled."""
 
 
-class Newton(NamedTuple):
-    """Work space of the Newton step; arrays have one entry a site.
+class Workspace(NamedTuple):
+    """Work space of steps of the whole front; arrays have one entry a site.
 
     Attributes
     ----------
-    reach : (n_site,) array
-        Distance over which the stiffness holds.
-    ahead : (n_site,) array
+    reach : array
+        Distance over which the hardening holds.
+    hardening : array
         Stiffness of the site's own force, negative where the field softens.
-    step, right, line_force : (n_site,) array
-        The step, the drives that it is to use up, and the force of the line against it.
-    stiffness : (n_site,) array, in single precision as all that follow
-        Stiffness that the step uses.
-    free : (n_site,) array
-        1 for a site that may move, 0 for one that is driven backward and held.
-    residual, descent, search, along, force : (n_site,) array
-        What is left of the drives, that by the preconditioner, the direction of search, the force
-        of the line along it, and with that of the sites.
-    transform, coarse : Transform
-        Work space for modes in double and in single precision.
-    line, coarse_line, inverse : Filter
-        Stiffness of the line in both, and the preconditioner.
+    step : array
+        Step along the motion.
+    right : array
+        Right side of the linear system.
+    line : array
+        Force of the line against the step.
+    stiffness : array, in single precision as all that follow
+        Hardening that the linear system uses.
+    scale : array
+        Scale of the site in the linear system: 0 for one that is driven backward and held.
+    residual : array
+        Right side less the forces against the step, scaled.
+    preconditioned : array
+        Residual after the preconditioner.
+    search : array
+        Direction of search.
+    line_along : array
+        Force of the line along the direction of search.
+    force_along : array
+        The same with that of the sites.
+    softening : (1,) array
+        Part of the softening that the last step used.
+    rigid : (1,) array
+        Stiffness of a site, over that of the line against it, above which the system is scaled.
+    stiff_line, single_line : Filter
+        Stiffness of the line in double and in single precision.
+    preconditioner : Filter
+        Inverse of the stiffness of the line and a mean of the sites.
     """
 
     reach: Array
-    ahead: Array
+    hardening: Array
     step: Array
     right: Array
-    line_force: Array
+    line: Array
     stiffness: Single
-    free: Single
+    scale: Single
     residual: Single
-    descent: Single
+    preconditioned: Single
     search: Single
-    along: Single
-    force: Single
-    transform: Transform
-    coarse: Transform
-    line: Filter
-    coarse_line: Filter
-    inverse: Filter
+    line_along: Single
+    force_along: Single
+    softening: Array
+    rigid: Array
+    stiff_line: Filter
+    single_line: Filter
+    preconditioner: Filter
 
 
 @jit
-def make_newton(count):
+def make_workspace(count, geometry):
     """Work space for a front of `count` sites."""
     transform = make_transform(count, np.empty(0, np.complex128))
-    coarse = make_transform(count, np.empty(0, np.complex64))
-    return Newton(
+    single = make_transform(count, np.empty(0, np.complex64))
+    work = Workspace(
         np.zeros(count),
         np.empty(count),
         np.empty(count),
@@ -118,17 +134,29 @@ def make_newton(count):
         np.empty(count, np.float32),
         np.empty(count, np.float32),
         np.empty(count, np.float32),
-        transform,
-        coarse,
+        np.ones(1),
+        np.full(1, _RIGID),
         make_filter(transform),
-        make_filter(coarse),
-        make_filter(coarse),
+        make_filter(single),
+        make_filter(single),
     )
+    set_filter(work.stiff_line, geometry, 0.0, False)
+    set_filter(work.single_line, geometry, 0.0, False)
+    return work
+
+
+@kernel
+def _largest(vector):
+    """Largest entry, 0 if none is positive."""
+    largest = 0.0
+    for value in vector:
+        largest = max(largest, value)
+    return largest
 
 
 @kernel(fastmath={"reassoc", "nsz"})
-def _forward(vector):
-    """Sum of what is positive."""
+def _forward_sum(vector):
+    """Sum of the positive entries."""
     total = 0.0
     for i in range(np.uint64(vector.size)):
         total += max(vector[i], 0.0)
@@ -136,267 +164,257 @@ def _forward(vector):
 
 
 @kernel(fastmath={"contract"})
-def _begin(newton, started, low, high):
-    """Drives that a step leaves, none if it was not started; return the largest."""
-    for i in range(np.uint64(low), np.uint64(high)):
-        force = newton.line_force[i] + newton.stiffness[i] * newton.step[i] if started else 0.0
-        newton.residual[i] = newton.free[i] * (newton.right[i] - force)
-        newton.search[i] = newton.along[i] = 0.0
-    return largest_entry(newton.residual[low:high])
+def _restart(work, started):
+    """Compute the residual in double precision and forget the search."""
+    for i in range(np.uint64(work.step.size)):
+        force = work.line[i] + work.stiffness[i] * work.step[i] if started else 0.0
+        work.residual[i] = work.scale[i] * (work.right[i] - force)
+        work.search[i] = work.line_along[i] = 0.0
+
+
+@kernel
+def _largest_residual(work, scaled):
+    """Largest residual of a free site, without its scale."""
+    if not scaled:
+        return largest_entry(work.residual)
+    largest = np.float32(0.0)
+    for i in range(work.scale.size):
+        if work.scale[i] > 0.0:
+            largest = max(largest, abs(work.residual[i]) / work.scale[i])
+    return largest
 
 
 @kernel(fastmath={"reassoc", "nsz", "contract"})
-def _turn(newton, factor, shift, low, high):
-    """Next direction of search, and :func:`_oppose` for it if all sites are free."""
-    residual, descent, free = newton.residual, newton.descent, newton.free
-    force, along, stiffness, search = newton.force, newton.along, newton.stiffness, newton.search
+def _turn(work, factor, shift):
+    """Compute the next direction of search, and :func:`_curvature` if all sites are free."""
+    residual, preconditioned, scale = work.residual, work.preconditioned, work.scale
+    force, along, stiffness = work.force_along, work.line_along, work.stiffness
+    search = work.search
     factor, shift, total = np.float32(factor), np.float32(shift), 0.0
-    for i in range(np.uint64(low), np.uint64(high)):
-        along[i] = factor * along[i] + residual[i] - shift * descent[i]
-        search[i] = factor * search[i] + free[i] * descent[i]
+    for i in range(np.uint64(search.size)):
+        along[i] = factor * along[i] + residual[i] - shift * preconditioned[i]
+        search[i] = factor * search[i] + scale[i] * preconditioned[i]
         force[i] = along[i] + stiffness[i] * search[i]
         total += search[i] * force[i]
     return total
 
 
 @kernel(fastmath={"reassoc", "nsz", "contract"})
-def _oppose(newton, low, high):
-    """Change of the drives along the direction of search; return its product with that."""
-    force, along, stiffness, search = newton.force, newton.along, newton.stiffness, newton.search
-    total = 0.0
-    for i in range(np.uint64(low), np.uint64(high)):
+def _curvature(work):
+    """Compute the force along the direction of search; return its product with the direction."""
+    force, along, stiffness = work.force_along, work.line_along, work.stiffness
+    search, total = work.search, 0.0
+    for i in range(np.uint64(search.size)):
         force[i] = along[i] + stiffness[i] * search[i]
         total += search[i] * force[i]
     return total
 
 
 @kernel(fastmath={"contract"})
-def _advance(newton, length, low, high):
-    """Go along the direction of search; return the largest drive left."""
-    step, residual, free = newton.step, newton.residual, newton.free
-    search, force = newton.search, newton.force
+def _advance(work, length):
+    """Go a length along the direction of search."""
+    step, residual, scale = work.step, work.residual, work.scale
+    search, force = work.search, work.force_along
     length = np.float32(length)
-    for i in range(np.uint64(low), np.uint64(high)):
+    for i in range(np.uint64(step.size)):
         step[i] += length * search[i]
-        residual[i] -= length * free[i] * force[i]
-    return largest_entry(residual[low:high])
+        residual[i] -= length * scale[i] * force[i]
 
 
 @kernel
-def _solve(team, newton, geometry, shift, tolerance, all_free, longest):
-    """Conjugate gradients for (K + D) step = right on the free sites, to a tolerance in each.
+def _solve(work, geometry, shift, tolerance, all_free, scaled, started):
+    """Solve (K + D) step = right on the free sites by conjugate gradients, to a largest residual.
 
-    They start from the step, of which `longest` is the largest entry. Returns the number of FFT
-    pairs and whether it succeeded; it fails where the matrix is not positive definite. With all
-    sites free, K times a direction follows by recurrence from the preconditioner.
+    They go on from the step if they have started. Returns the number of FFT pairs and whether it
+    succeeded; it fails where the matrix is not positive definite. With all sites free, K times a
+    direction follows by recurrence from the preconditioner.
     """
-    count, coarse, started = newton.step.size, newton.coarse, longest > 0.0
-    set_filter(team, coarse, newton.inverse, geometry, shift, True)
+    set_filter(work.preconditioner, geometry, shift, True)
     largest, old, pairs = 0.0, 1.0, 0
-    while pairs < _LIMIT:
-        if largest <= _MARGIN * tolerance:
+    while pairs < _MOST_PAIRS:
+        if largest <= _SINGLE * tolerance:
             if started:
-                apply_filter(team, newton.transform, newton.line, newton.step, newton.line_force)
+                apply_filter(work.stiff_line, work.step, work.line)
                 pairs += 1
-            for block in range(*my_blocks(team)):
-                low, high = bounds(team, block, count)
-                tell(team, 0, block, _begin(newton, started, low, high))
-            largest = greatest(team, hear(team), 0)
+            _restart(work, started)
+            largest = _largest_residual(work, scaled)
             if largest <= tolerance:
                 return pairs, True
             started = True
-        new = apply_filter(team, coarse, newton.inverse, newton.residual, newton.descent)
+        new = apply_filter(work.preconditioner, work.residual, work.preconditioned)
         pairs += 1
-        for block in range(*my_blocks(team)):
-            low, high = bounds(team, block, count)
-            tell(team, 0, block, _turn(newton, new / old, shift, low, high))
+        curvature = _turn(work, new / old, shift)
         if not all_free:
-            wait(team)
-            apply_filter(team, coarse, newton.coarse_line, newton.search, newton.along)
+            apply_filter(work.single_line, work.search, work.line_along)
             pairs += 1
-            for block in range(*my_blocks(team)):
-                tell(team, 0, block, _oppose(newton, *bounds(team, block, count)))
-        curvature = summed(team, hear(team), 0)
+            curvature = _curvature(work)
         if not curvature > 0.0:
             return pairs, False
-        for block in range(*my_blocks(team)):
-            tell(team, 0, block, _advance(newton, new / curvature, *bounds(team, block, count)))
-        largest, old = greatest(team, hear(team), 0), new
+        _advance(work, new / curvature)
+        largest, old = _largest_residual(work, scaled), new
     return pairs, False
 
 
 @kernel
-def _soften(newton, share, floor, low, high):
-    """Stiffness with a share of the softening; none at all means at least the floor.
+def _soften(work, floor):
+    """Set the stiffness to a share of the softening; none at all means at least the floor.
 
-    Returns the sum of what is not negative.
+    Returns the mean of what is not negative, and the largest.
     """
-    total = 0.0
-    for i in range(np.uint64(low), np.uint64(high)):
-        ahead = newton.ahead[i]
+    total, largest, share = 0.0, 0.0, work.softening[0]
+    for i in range(np.uint64(work.step.size)):
+        ahead = work.hardening[i]
         stiffness = max(ahead, share * ahead) if share > 0.0 else max(ahead, floor)
         # Rounded up, as it is a bound.
-        newton.stiffness[i] = stiffness + 2.0**-23 * abs(stiffness)
+        work.stiffness[i] = stiffness + 2.0**-23 * abs(stiffness)
         total += max(stiffness, 0.0)
-    return total
+        largest = max(largest, stiffness)
+    return total / work.step.size, largest
 
 
 @kernel
-def _solve_softest(team, newton, geometry, floor, tolerance, share, all_free, longest):
-    """Step with as much softening as leaves the matrix positive definite.
+def _scale(work, own):
+    """Scale the free sites so that none is stiffer than the line against it.
 
-    Returns FFT pairs, success and the share of the softening that was used.
+    Without that, needles of the field spoil the preconditioner. Returns the mean scaled stiffness.
     """
-    pairs, count = 0, newton.step.size
+    total = 0.0
+    for i in range(work.step.size):
+        stiffness = max(work.stiffness[i], 0.0)
+        part = own / max(stiffness, own)
+        if work.scale[i] > 0.0:
+            work.scale[i] = np.sqrt(part)
+        total += part * stiffness
+    return total / work.step.size
+
+
+@kernel
+def _solve_softest(work, geometry, own, floor, tolerance, all_free, started):
+    """Solve with as much softening as leaves the matrix positive definite.
+
+    Returns the number of FFT pairs and whether it succeeded.
+    """
+    pairs = 0
     while True:
-        for block in range(*my_blocks(team)):
-            low, high = bounds(team, block, count)
-            if longest == 0.0:
-                newton.step[low:high] = 0.0
-            tell(team, 0, block, _soften(newton, share, floor, low, high))
-        mean = summed(team, hear(team), 0) / count
-        used, solved = _solve(team, newton, geometry, mean + floor, tolerance, all_free, longest)
+        if not started:
+            work.step[:] = 0.0
+        mean, stiffest = _soften(work, floor)
+        scaled = stiffest > work.rigid[0] * own
+        if scaled:
+            mean, all_free = _scale(work, own), False
+        used, solved = _solve(work, geometry, mean + floor, tolerance, all_free, scaled, started)
         pairs += used
-        if solved or share == 0.0:
-            return pairs, solved, share
-        longest = 0.0
-        share = _FALL * share if share > _LEAST else 0.0
+        if solved or work.softening[0] == 0.0:
+            return pairs, solved
+        started = False
+        if used >= _MOST_PAIRS and stiffest > own and not scaled:
+            work.rigid[0] = 1.0
+        elif work.softening[0] > _LEAST_SOFTENING:
+            work.softening[0] *= _FALL
+        else:
+            work.softening[0] = 0.0
 
 
 @kernel
-def newton_step(
-    team, newton, field, memory, front, drive, b, direction, furthest, slack, share
-):  # fmt: skip
-    """Move the whole front by one safe step of at most about `furthest`.
+def newton_step(work, problem, front):
+    """Move the whole front by one step that passes no barrier; return code and pairs of FFTs.
 
-    `share` is the part of the softening that the last step used. Returns code, pairs of FFTs and
-    the share of this step.
-
-    The right-hand side is lowered by the tolerance of the linear solver and the step clipped at
+    The right side is lowered by the largest residual of the linear solver and the step clipped at
     zero: an inexact step then still leaves every drive forward. Sites driven backward by more than
-    `slack` are held. Where a site would pass the lowest place nothing moves, and BLOCKED is told.
+    the slack are held. Where a site would pass the lowest place nothing moves, and the code is
+    BLOCKED, as the step of a site is safe only together with all others.
     """
-    count, step, geometry = drive.size, newton.step, field.geometry
-    for block in range(*my_blocks(team)):
-        low, high = bounds(team, block, count)
-        tell(team, 0, block, np.max(drive[low:high]))
-        tell(team, 1, block, largest_entry(newton.reach[low:high]))
-        tell(team, 2, block, _forward(drive[low:high]))
-    told = hear(team)
-    largest, longest = greatest(team, told, 0), greatest(team, told, 1)
-    own = mode_stiffness(geometry, 1) * self_modes(count)
-    floor = largest / furthest
-    guess = 0.0
+    step, drive, geometry = work.step, front.drive, problem.field.geometry
+    largest, longest = _largest(drive), largest_entry(work.reach)
+    own = mode_stiffness(geometry, 1) * self_modes(drive.size)
+    floor, guess = largest / problem.furthest, 0.0
     if longest == 0.0:
         # How far the front would go as a whole, if only the load held it.
-        guess = min(
-            furthest / _GROWTH, largest / max(restoring_slope(geometry, front.place[0], b), floor)
-        )
-    furthest = min(furthest, _GROWTH * max(longest, guess, largest / own))
-    tolerance = _ACCURACY * max(summed(team, told, 2) / count, 1e-4 * largest)
-    for block in range(*my_blocks(team)):
-        low, high = bounds(team, block, count)
-        held = _prepare(
-            newton, field, memory, front, drive, tolerance, slack, furthest, guess, low, high
-        )
-        tell(team, 0, block, held)
-        _fails(newton, field, memory, front, b, direction, 1.0, low, high)
-    all_free = greatest(team, hear(team), 0) == 0.0
-    share = min(_RISE * max(share, _LEAST), 1.0)
+        slope = restoring_slope(geometry, front.place[0], problem.load)
+        guess = min(problem.furthest / GROWTH, largest / max(slope, floor))
+    furthest = min(problem.furthest, GROWTH * max(longest, guess, largest / own))
+    tolerance = _ACCURACY * max(_forward_sum(drive) / drive.size, 1e-4 * largest)
+    all_free = _prepare(work, problem, front, tolerance, furthest, guess)
+    _fails(work, problem, front, 1.0)
+    work.softening[0] = min(_RISE * max(work.softening[0], _LEAST_SOFTENING), 1.0)
     pairs, safe, part, longest = 0, False, 1.0, 0.0
-    for _ in range(6):
-        used, solved, share = _solve_softest(
-            team, newton, geometry, floor, tolerance, share, all_free, longest
+    for _ in range(_TRIALS):
+        used, solved = _solve_softest(
+            work, geometry, own, floor, tolerance, all_free, longest > 0.0
         )
         pairs += used
         if not solved:
             break
-        for block in range(*my_blocks(team)):
-            low, high = bounds(team, block, count)
-            np.maximum(step[low:high], 0.0, step[low:high])
-            tell(team, 0, block, largest_entry(step[low:high]))
-        longest = greatest(team, hear(team), 0)
+        np.maximum(step, 0.0, step)
+        longest = largest_entry(step)
         # A part of a safe step is safe.
         part = min(1.0, furthest / max(longest, 1e-9 * furthest))
-        for block in range(*my_blocks(team)):
-            low, high = bounds(team, block, count)
-            fails = _fails(newton, field, memory, front, b, direction, part, low, high)
-            tell(team, 0, block, fails)
-        safe = greatest(team, hear(team), 0) == 0.0
+        safe = not _fails(work, problem, front, part)
         if safe:
             break
-    for block in range(*my_blocks(team)):
-        low, high = bounds(team, block, count)
-        for i in range(low, high):
-            step[i] *= part
-        if not safe or longest == 0.0:
-            _own_steps(newton, field, memory, front, drive, b, direction, furthest, low, high)
-        tell(team, 0, block, _passes_lowest(newton, field, front, b, direction, low, high))
-    # That of a site is safe only together with the others.
-    if greatest(team, hear(team), 0) > 0.0:
-        return BLOCKED, pairs, share
-    for block in range(*my_blocks(team)):
-        low, high = bounds(team, block, count)
-        tell(team, 0, block, _move(newton, field, memory, front, direction, low, high))
-    return int(greatest(team, hear(team), 0)), pairs, share
+    for i in range(step.size):
+        step[i] *= part
+    if not safe or longest == 0.0:
+        _take_own_steps(work, problem, front, own, furthest)
+    if _passes_lowest(work, front, problem.lowest):
+        return BLOCKED, pairs
+    return _move(work, problem, front), pairs
 
 
 @kernel
-def _prepare(newton, field, memory, front, drive, tolerance, slack, furthest, guess, low, high):
-    """Drives to use up, free sites and steps to look at; return whether a site is held."""
-    held = 0.0
-    touch_samples(field, memory, front, low, newton.ahead[low:high])
-    for i in range(np.uint64(low), np.uint64(high)):
-        newton.right[i] = max(drive[i], 0.0) - tolerance
-        newton.free[i] = 1.0 if drive[i] >= -slack else 0.0
-        held = max(held, 1.0 - newton.free[i])
-        newton.step[i] = min(max(newton.reach[i], guess, 1e-9 * furthest), furthest)
-        newton.reach[i], newton.ahead[i] = 0.0, -np.inf
-    return held
+def _prepare(work, problem, front, tolerance, furthest, guess):
+    """Set right side, free sites and a first guess of the step; return whether all are free."""
+    drive, all_free = front.drive, True
+    touch_samples(problem, front, 0, work.hardening)
+    for i in range(np.uint64(drive.size)):
+        work.right[i] = max(drive[i], 0.0) - tolerance
+        free = drive[i] >= -problem.slack
+        work.scale[i], all_free = 1.0 if free else 0.0, all_free and free
+        work.step[i] = min(max(work.reach[i], guess, 1e-9 * furthest), furthest)
+        work.reach[i], work.hardening[i] = 0.0, -np.inf
+    return all_free
 
 
 @kernel
-def _fails(newton, field, memory, front, b, direction, part, low, high):
-    """Whether a stiffness does not hold over part of the step; it is raised for the next."""
-    ahead, fails = newton.ahead, 0.0
-    step, reach = newton.step[low:high], newton.reach[low:high]
-    if harden(field, memory, front, low, step, part, reach, ahead[low:high], b, direction):
-        for i in range(np.uint64(low), np.uint64(high)):
-            fails = max(fails, 1.0 if ahead[i] > newton.stiffness[i] else 0.0)
+def _fails(work, problem, front, part):
+    """Whether a stiffness does not hold over part of the step; its hardening is raised."""
+    fails = False
+    if harden(problem, front, 0, work.step, part, work.reach, work.hardening):
+        for i in range(np.uint64(work.step.size)):
+            fails = fails or work.hardening[i] > work.stiffness[i]
     return fails
 
 
 @kernel
-def _passes_lowest(newton, field, front, b, direction, low, high):
+def _passes_lowest(work, front, lowest):
     """Whether a site would pass the lowest place."""
-    lowest, passes = resting_place(field, b, direction), 0.0
-    for i in range(low, high):
-        if newton.step[i] > max(front.place[i] - lowest, 0.0):
-            passes = 1.0
+    passes = False
+    for i in range(work.step.size):
+        passes |= work.step[i] > max(front.place[i] - lowest, 0.0)
     return passes
 
 
 @kernel
-def _move(newton, field, memory, front, direction, low, high):
-    """Take the step of some sites."""
-    place, segment, step = front.place, front.segment, newton.step
-    for i in range(low, high):
-        moved = place[i] + direction * step[i]
-        below, value = locate(field, memory, i, moved, segment[i], direction)
+def _move(work, problem, front):
+    """Take the step."""
+    place, segment, step = front.place, front.segment, work.step
+    for i in range(place.size):
+        moved = place[i] + problem.direction * step[i]
+        below, value = locate(problem, i, moved, segment[i])
         if below < 0:
             return -below
         place[i], segment[i], front.product[i] = moved, below, value
-        newton.reach[i] = 3 * step[i]
+        work.reach[i] = 3 * step[i]
     return CONVERGED
 
 
 @kernel
-def _own_steps(newton, field, memory, front, drive, b, direction, furthest, low, high):
-    """Steps of each site by its own force alone, the others held; always safe."""
-    line, step = mode_stiffness(field.geometry, 1) * self_modes(drive.size), newton.step
-    for i in range(low, high):
-        step[i] = min(max(drive[i], 0.0) / line, furthest)
-        newton.reach[i], newton.ahead[i] = 0.0, -np.inf
-    _fails(newton, field, memory, front, b, direction, 1.0, low, high)
-    for i in range(low, high):
-        step[i] = min(max(drive[i], 0.0) / (line + max(newton.ahead[i], 0.0)), step[i])
+def _take_own_steps(work, problem, front, own, furthest):
+    """Replace the step by that of each site by its own force, all others held: always safe."""
+    drive, step = front.drive, work.step
+    for i in range(step.size):
+        step[i] = min(max(drive[i], 0.0) / own, furthest)
+        work.reach[i], work.hardening[i] = 0.0, -np.inf
+    _fails(work, problem, front, 1.0)
+    for i in range(step.size):
+        step[i] = min(max(drive[i], 0.0) / (own + max(work.hardening[i], 0.0)), step[i])

@@ -22,7 +22,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 
 @kernel
 def _enter(field, memory, ray, segment, pieces):
-    """Fill in the polynomial of the segment that a site comes to; return its ends."""
+    """Compute the polynomial of the segment that a site comes to; return the segment's ends."""
     inner, outer = sample_place(field, segment), sample_place(field, segment + 1)
     fetch(field, memory, ray, segment, segment + 1)
     piece = polynomial(field, peek_piece(field, memory, ray, segment), outer - inner)
@@ -31,13 +31,17 @@ def _enter(field, memory, ray, segment, pieces):
 
 
 @jit
-def rosso_krauth(place, load, direction, field, memory, tolerance, max_sweeps):
+def rosso_krauth(place, problem, max_sweeps):
     """Move every site by its own force over its own stiffness, at most to the next sample.
 
-    The front is changed in place. What a site leaves out when it moves, the pull of its
-    neighbours' moves, only pushes it on: no barrier is ever passed. The stiffness of a cubic piece
-    is that of its steepest chord from the site to the next sample; a linear piece has only one.
+    The places are changed. What a site leaves out when it moves, the pull of its neighbours' moves,
+    only pushes it on: no barrier is ever passed. The stiffness of a cubic piece is that of its
+    steepest chord from the site to the next sample; a linear piece has only one. Returns a code,
+    the number of sweeps, that of updates of a site, and the largest drive left.
     """
+    field, memory, load, direction = (
+        problem.field, problem.memory, problem.load, problem.direction
+    )  # fmt: skip
     count, last, geometry = place.size, sample_count(field) - 2, field.geometry
     line_stiffness = mode_stiffness(geometry, 1) * self_modes(count)
     lowest = lowest_place(geometry, load)
@@ -60,7 +64,7 @@ def rosso_krauth(place, load, direction, field, memory, tolerance, max_sweeps):
             resting = direction < 0 and a <= lowest
             drive[i] = 0.0 if resting else max(direction * force, 0.0)
             residual = max(residual, drive[i] / (weight(geometry, a) * WORK_OF_ADHESION))
-        if residual <= tolerance:
+        if residual <= problem.tolerance:
             return CONVERGED, sweep, sweep * count, residual
         still = True
         for i in range(count):

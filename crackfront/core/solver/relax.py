@@ -20,8 +20,8 @@ from crackfront.core.field.samples import SampleMemory, evaluate, make_memory
 from crackfront.core.geometry.base import lowest_place
 from crackfront.core.outcome import DefectError, Direction, Relaxation, Status
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE, forces
+from crackfront.core.solver.monotone import monotone_newton
 from crackfront.core.solver.reference import rosso_krauth
-from crackfront.core.solver.threads import monotone_newton
 
 Array = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class Solver:
 
     name: ClassVar[str]
     kernel: ClassVar[Callable[..., Any]]
-    """Changes a front in place; returns a code, sweeps, updates of single sites, residual."""
+    """Moves the sites of an array; returns code, sweeps, updates of single sites, residual."""
 
     def __post_init__(self) -> None:
         if self.max_sweeps < 1:
@@ -153,15 +153,10 @@ def relax(
         return Relaxation(moved, Status.LEFT_FIELD_OUTWARD, 0, 0, np.inf)
     if memory is None:
         memory = make_memory(field)
-    code, sweeps, updates, residual = solver.kernel(
-        moved,
-        float(load),
-        int(direction),
-        field,
-        memory,
-        float(solver.tolerance),
-        int(solver.max_sweeps),
+    problem = forces.make_problem(
+        moved, float(load), int(direction), field, memory, float(solver.tolerance)
     )
+    code, sweeps, updates, residual = solver.kernel(moved, problem, int(solver.max_sweeps))
     if code == forces.TURNED:
         raise DefectError(
             f"the {solver.name} solver moved a site past its equilibrium at penetration {load}; "

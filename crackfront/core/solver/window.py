@@ -1,7 +1,7 @@
-"""Relaxation of a few neighbouring sites while the rest of the front is held.
+"""Windows: a few neighbouring sites are relaxed while the rest of the front is held.
 
-The coupling to sites beyond :data:`HALF_BAND` neighbours is left out of the step (it only pulls
-forward), which makes the step a banded system that is solved directly.
+A step leaves out the coupling to sites beyond :data:`HALF_BAND` neighbours (it only pulls forward),
+which makes it a banded system that is solved directly.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import restoring_force, weight
 from crackfront.core.solver.forces import (
     CONVERGED,
+    GROWTH,
     following,
     harden,
     largest_entry,
     locate,
-    resting_place,
     touch_samples,
 )
 from crackfront.core.units import WORK_OF_ADHESION
@@ -32,28 +32,35 @@ HALF_BAND = 7
 LONGEST = 256
 """Largest number of sites relaxed at once."""
 
-_MARGIN = 8
-"""Sites on each side of those with a drive that a step moves, too."""
+_BESIDE = 8
+"""Sites on each side of the active ones that a step moves, too."""
 
 _DOMINANCE = 0.02
 """By how much a pivot exceeds its row, relative to the stiffness of the line against one site."""
 
-_GROWTH = 8
-"""How many times as far as the furthest reach a site may go."""
+_ROUNDS = 12
+"""Most steps of a window before the drives of the whole front are computed again."""
 
 
 class Window(NamedTuple):
-    """Work space of a window: one entry a site, and the coupling between sites.
+    """Work space of a window.
 
     Attributes
     ----------
-    drive, reach, stiffness, step, given : (LONGEST + HALF_BAND,) array
-        Force along the motion, distance over which the stiffness holds, stiffness of the site's
-        own force, the step, and the step that is given to a site, negative for none.
+    drive : (LONGEST + HALF_BAND,) array
+        Force along the motion, as of all arrays of this shape for each site.
+    reach : array
+        Distance over which the stiffness holds.
+    stiffness : array
+        Stiffness of the site's own force.
+    step : array
+        Step along the motion.
+    given : array
+        Step that is prescribed, negative for none.
     band : (LONGEST + HALF_BAND, HALF_BAND + 1) array
         Factors of the banded system.
     coupling : (2 LONGEST + 1,) array
-        Line stiffness between sites by their distance, its centre at LONGEST.
+        Stiffness of the line between two sites by their distance, its centre at LONGEST.
     """
 
     drive: Array
@@ -72,26 +79,20 @@ def make_window(row):
     coupling = np.zeros(2 * LONGEST + 1)
     for lag in range(min(LONGEST, row.size)):
         coupling[LONGEST + lag] = coupling[LONGEST - lag] = row[lag]
-    return Window(
-        np.zeros(size),
-        np.zeros(size),
-        np.zeros(size),
-        np.zeros(size),
-        np.zeros(size),
-        np.zeros((size, HALF_BAND + 1)),
-        coupling,
-    )
+    drive, reach, stiffness = np.zeros(size), np.zeros(size), np.zeros(size)
+    step, given, band = np.zeros(size), np.zeros(size), np.zeros((size, HALF_BAND + 1))
+    return Window(drive, reach, stiffness, step, given, band, coupling)
 
 
 @kernel(inline="always")
 def _behind(row):
-    """A row of the pivot as that of the next site sees it: its coupling first, its drive last."""
+    """The pivot's row shifted to the next site: coupling to that site first, right side last."""
     return (row[1], row[2], row[3], row[4], row[5], row[6], row[7], 0.0, row[8])
 
 
 @kernel(fastmath={"contract", "nnan", "nsz"})
-def _less(row, pivot, inverse):
-    """A row less that part of the pivot's which takes the site of the pivot out of it."""
+def _eliminated(row, pivot, inverse):
+    """A row after elimination of the pivot's site from it."""
     part = pivot[0] * inverse
     return (
         row[0] - part * pivot[0],
@@ -108,11 +109,11 @@ def _less(row, pivot, inverse):
 
 @kernel(fastmath={"contract"})
 def _solve_banded(window, count):
-    """Step of (K + D) step = drive with K cut to a band, by Gaussian elimination, clipped at 0.
+    """Solve (K + D) step = drive with K cut to a band, by Gaussian elimination; clip at 0.
 
     D is raised where its softening would make a pivot no larger than the rest of its row. A site
-    whose step is given has a stiffness against which all others vanish in round-off. The rows
-    behind the pivot go by names, so that they stay in registers.
+    of prescribed step gets a stiffness against which all others vanish in round-off. Each row
+    behind the pivot has a name of its own, so that it stays in registers.
     """
     band, step, drive, stiffness = window.band, window.step, window.drive, window.stiffness
     k = window.coupling[LONGEST : LONGEST + HALF_BAND + 1]
@@ -133,13 +134,13 @@ def _solve_banded(window, count):
         band[i, 0], band[i, 1], band[i, 2], band[i, 3] = inverse, c1, c2, c3
         band[i, 4], band[i, 5], band[i, 6], band[i, 7] = c4, c5, c6, c7
         seen = _behind((pivot, c1, c2, c3, c4, c5, c6, c7, right))
-        row, seen = _less(second, seen, inverse), _behind(seen)
-        second, seen = _less(third, seen, inverse), _behind(seen)
-        third, seen = _less(fourth, seen, inverse), _behind(seen)
-        fourth, seen = _less(fifth, seen, inverse), _behind(seen)
-        fifth, seen = _less(sixth, seen, inverse), _behind(seen)
-        sixth, seen = _less(seventh, seen, inverse), _behind(seen)
-        seventh = _less(fresh, seen, inverse)
+        row, seen = _eliminated(second, seen, inverse), _behind(seen)
+        second, seen = _eliminated(third, seen, inverse), _behind(seen)
+        third, seen = _eliminated(fourth, seen, inverse), _behind(seen)
+        fourth, seen = _eliminated(fifth, seen, inverse), _behind(seen)
+        fifth, seen = _eliminated(sixth, seen, inverse), _behind(seen)
+        sixth, seen = _eliminated(seventh, seen, inverse), _behind(seen)
+        seventh = _eliminated(fresh, seen, inverse)
     s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
     for i in range(count - 1, -1, -1):
         # The nearest site last: its step is known last.
@@ -150,8 +151,8 @@ def _solve_banded(window, count):
 
 
 @kernel
-def _choose_step(window, field, memory, front, first, count, b, direction, furthest, lowest):
-    """Step of at most `furthest` that no stiffness underestimates, with no site below the lowest.
+def _choose_step(window, problem, front, first, count, furthest):
+    """Compute a step of at most `furthest` that passes no barrier and not the lowest place.
 
     Sites that would go beyond the reach of their stiffness get it anew for the longer way. It can
     only grow, so that the second step is shorter everywhere and needs no third.
@@ -161,14 +162,14 @@ def _choose_step(window, field, memory, front, first, count, b, direction, furth
         # A stiffness for a way that is much too long is much too large.
         step[j] = min(max(reach[j], 1e-9 * furthest), furthest)
         reach[j], stiffness[j] = 0.0, -np.inf
-    harden(field, memory, front, first, step, 1.0, reach, stiffness, b, direction)
+    harden(problem, front, first, step, 1.0, reach, stiffness)
     _solve_banded(window, count)
     # A part of a safe step is safe.
     part = min(1.0, furthest / largest_entry(step))
-    if harden(field, memory, front, first, step, part, reach, stiffness, b, direction):
+    if harden(problem, front, first, step, part, reach, stiffness):
         _solve_banded(window, count)
-    if lowest > -np.inf:
-        _stop_at_lowest(window, front, first, count, lowest, part)
+    if problem.lowest > -np.inf:
+        _stop_at_lowest(window, front, first, count, problem.lowest, part)
     if part < 1.0:
         for j in range(count):
             step[j] *= part
@@ -176,7 +177,7 @@ def _choose_step(window, field, memory, front, first, count, b, direction, furth
 
 @kernel
 def _stop_at_lowest(window, front, first, count, lowest, part):
-    """Give the sites that would pass the lowest place steps by their own force, not beyond it."""
+    """Let sites that would pass the lowest place go by their own force alone, and not beyond it."""
     place, step = front.place, window.step
     own, passing = window.coupling[LONGEST], False
     for j in range(count):
@@ -191,7 +192,7 @@ def _stop_at_lowest(window, front, first, count, lowest, part):
 
 @kernel(fastmath={"contract"})
 def _couple(drive, coupling, step, count):
-    """Take from the drives what the line puts up against the steps, four of them at a time."""
+    """Subtract the forces of the line against the steps from the drives, four steps at a time."""
     step[count : count + 3] = 0.0
     for j in range(0, count, 4):
         first, second, third, fourth = step[j], step[j + 1], step[j + 2], step[j + 3]
@@ -202,74 +203,71 @@ def _couple(drive, coupling, step, count):
 
 
 @kernel
-def _move(window, field, memory, front, first, count, b, direction, lowest):
-    """Take the step and bring the drive within the window up to date."""
+def _move(window, problem, front, first, count):
+    """Take the step and update the drives within the window."""
     place, segment, product = front.place, front.segment, front.product
-    drive, step, coupling = window.drive, window.step, window.coupling
-    geometry = field.geometry
+    drive, step, direction = window.drive, window.step, problem.direction
+    geometry, load, lowest = problem.field.geometry, problem.load, problem.lowest
     i = np.uint64(first)
     for j in range(count):
         moved = place[i] + direction * step[j]
         resting = direction < 0 and moved <= lowest
         moved = min(place[i], lowest) if resting else moved
-        low, value = locate(field, memory, i, moved, segment[i], direction)
+        low, value = locate(problem, i, moved, segment[i])
         if low < 0:
             return -low
-        rise = restoring_force(geometry, moved, b) - restoring_force(geometry, place[i], b)
+        rise = restoring_force(geometry, moved, load) - restoring_force(geometry, place[i], load)
         drive[j] = -np.inf if resting else drive[j] + direction * (value - product[i] - rise)
         place[i], segment[i], product[i] = moved, low, value
         i = following(i, place.size)
-    _couple(drive, coupling, step, count)
+    _couple(drive, window.coupling, step, count)
     return CONVERGED
 
 
 @kernel
-def _trim(window, field, front, first, count, level, slack):
-    """Leave only the sites with a drive above a level and their neighbours in the window.
+def _trim(window, problem, front, first, count, level):
+    """Reduce the window to the active sites, those with a drive above a level, and some beside.
 
-    Returns the first and the number of them, which is 0 if there are none.
+    Returns the first and the number of its sites, which is 0 if none is active.
     """
     place, drive, reach = front.place, window.drive, window.reach
     low, high = count, 0
     i = np.uint64(first)
     for j in range(count):
-        if drive[j] > level * weight(field.geometry, place[i]) * WORK_OF_ADHESION:
+        if drive[j] > level * weight(problem.field.geometry, place[i]) * WORK_OF_ADHESION:
             low, high = min(low, j), j + 1
         i = following(i, place.size)
     if high == 0:
         return first, 0
-    low, high = max(low - _MARGIN, 0), min(high + _MARGIN, count)
+    low, high = max(low - _BESIDE, 0), min(high + _BESIDE, count)
     for j in range(low, high):
         drive[j - low], reach[j - low] = drive[j], reach[j]
-        window.given[j - low] = 0.0 if drive[j] < -slack else -1.0
+        window.given[j - low] = 0.0 if drive[j] < -problem.slack else -1.0
     return (first + low) % place.size, high - low
 
 
 @kernel
-def relax_window(
-    window, field, memory, front, drive, first, count, b, direction, level, furthest, slack, rounds
-):
-    """Move `count` sites from `first` on until their drive falls below a level.
+def relax_window(window, problem, front, first, count, level):
+    """Move `count` sites from `first` on until their drives fall below a level, or for some steps.
 
-    At most `rounds` steps of at most `furthest` are taken; `drive` is that of the whole front.
-    Sites driven backward by more than `slack` are held, also those that rest at the lowest place.
-    Returns a code and the number of updates of a site.
+    Sites driven backward by more than the slack are held, also those at the lowest place. The
+    drives of the front are left as they are. Returns a code and the number of updates of a site.
     """
-    local, reach, step = window.drive, window.reach, window.step
-    own, lowest = window.coupling[LONGEST], resting_place(field, b, direction)
-    touch_samples(field, memory, front, first, step[:count])
+    drive, reach, step = window.drive, window.reach, window.step
+    own = window.coupling[LONGEST]
+    touch_samples(problem, front, first, step[:count])
     for j in range(count):
-        local[j] = drive[(first + j) % drive.size]
-        reach[j] = 4 * max(local[j], 0.0) / own
+        drive[j] = front.drive[(first + j) % front.drive.size]
+        reach[j] = 4 * max(drive[j], 0.0) / own
     updates = 0
-    for _ in range(rounds):
-        first, count = _trim(window, field, front, first, count, level, slack)
+    for _ in range(_ROUNDS):
+        first, count = _trim(window, problem, front, first, count, level)
         if count == 0:
             break
-        far = min(_GROWTH * largest_entry(reach[:count]), furthest)
-        _choose_step(window, field, memory, front, first, count, b, direction, far, lowest)
+        furthest = min(GROWTH * largest_entry(reach[:count]), problem.furthest)
+        _choose_step(window, problem, front, first, count, furthest)
         updates += count
-        code = _move(window, field, memory, front, first, count, b, direction, lowest)
+        code = _move(window, problem, front, first, count)
         if code != CONVERGED:
             return code, updates
         for j in range(count):

@@ -1,124 +1,277 @@
+"""The straight front: closed forms, the scalar problem, the reference, and its command."""
+
+import signal
+
 import numpy as np
 import pytest
-from hypothesis import given
+import xarray as xr
+from click.testing import CliRunner
+from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
-from crackfront.core.geometry.base import self_modes
-from crackfront.core.geometry.sphere import half_laplacian, line_energy
+from crackfront.cli import main
+from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.cycle.follow import Load, follow
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.cycle.schedule import there_and_back
+from crackfront.core.field.rays import front_adhesion
+from crackfront.core.geometry.line import line_field, straight_front
+from crackfront.core.solver.forces import line_force
+from crackfront.core.solver.relax import SOLVERS, Newton, Reference, front_force
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.plots.library import plot_fronts, plot_loop
 
-COUNTS = [1, 4, 5, 7, 8, 13, 16, 30, 31, 64]
-
-
-def angles(n_angle):
-    return 2 * np.pi * np.arange(n_angle) / n_angle
+every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 
 
-def stiffness_matrix(n_angle):
-    return np.array([half_laplacian(row) for row in np.eye(n_angle)])
+def tile(values, pixel=1.0, corner=(0.0, 0.0)):
+    """A tile of a work of adhesion relative to w_int."""
+    return AdhesionMap(WORK_OF_ADHESION * np.asarray(values), pixel, 0.0, 0.0, corner)
 
 
-@st.composite
-def fronts(draw):
-    n_angle = draw(st.integers(4, 40))
-    seed = draw(st.integers(0, 2**32 - 1))
-    return 1.5 + 0.3 * np.random.default_rng(seed).standard_normal(n_angle)
+def noisy(seed, n_x=48, n_y=32, rms=0.3):
+    """A tile of smooth noise, three points a wave and more."""
+    modes = np.fft.rfft2(np.random.default_rng(seed).standard_normal((n_x, n_y)))
+    fast = np.hypot(np.fft.fftfreq(n_x)[:, None], np.fft.rfftfreq(n_y)) > 0.3
+    modes[fast], modes[0, 0] = 0.0, 0.0
+    values = np.fft.irfft2(modes, (n_x, n_y))
+    return tile(1 + rms * values / values.std())
 
 
-@pytest.mark.parametrize("n_angle", COUNTS)
-def test_every_resolved_mode_is_multiplied_by_its_order(n_angle):
-    for order in range((n_angle - 1) // 2 + 1):
-        for shift in (0.0, 0.4):
-            wave = np.cos(order * angles(n_angle) + shift)
-            assert np.allclose(half_laplacian(wave), order * wave, atol=1e-12)
+def run(adhesion, spring, way, solver, interpolation="linear"):
+    """Record of a front from far behind the first load on, and its field."""
+    ends = min(load.value for load in way), max(load.value for load in way)
+    field = line_field(adhesion, spring, ends, interpolation=interpolation)
+    recorder = Recorder(fronts=True, energy=True)
+    front = straight_front(field, adhesion, way[0].value)
+    recorder.run(field, front, [way[0]._replace(start=front), *way[1:]], solver)
+    return recorder.record(), field
 
 
-@pytest.mark.parametrize("n_angle", [4, 8, 30, 64])
-def test_the_alternating_mode_of_an_even_grid_is_multiplied_by_half_the_count(n_angle):
-    zigzag = (-1.0) ** np.arange(n_angle)
-    assert np.allclose(half_laplacian(zigzag), n_angle / 2 * zigzag, atol=1e-12)
+@every_solver
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+def test_without_disorder_the_front_is_where_the_load_is(solver, interpolation):
+    way = there_and_back(0.3, 20.1, 2.2)
+    record, _ = run(tile(np.ones((8, 16))), 5.0, way, SOLVERS[solver](1e-12), interpolation)
+    assert np.allclose(record.states.mean_position, record.states.load, rtol=0, atol=1e-10)
+    assert np.allclose(record.states.pinning_force, 0.0, atol=1e-11)
+    assert np.all(np.ptp(record.fronts, axis=1) < 1e-10)
 
 
-@pytest.mark.parametrize("n_angle", COUNTS)
-def test_self_stiffness_is_the_force_on_a_site_that_advances_alone(n_angle):
-    assert np.diag(stiffness_matrix(n_angle)) == pytest.approx(self_modes(n_angle), rel=1e-12)
+def first_stops(wave, spring, loads, start):
+    """Places at which a straight front first rests, one load after the other.
+
+    In equilibrium the load is u - spring (w - mean) / w_int, straight between the points of the
+    wave: its running maximum from behind is reached first.
+    """
+    balance = np.arange(wave.size) - spring * (wave - wave.mean())
+    n_period = 80
+    nodes = np.arange(-wave.size * n_period // 2, wave.size * n_period // 2)
+    height = balance[nodes % wave.size] + (nodes - nodes % wave.size)
+    places, here = [], start
+    for load in loads:
+        ahead = np.flatnonzero((nodes >= np.ceil(here)) & (height >= load.value))
+        k = ahead[0]
+        if load.direction < 0:
+            behind = np.flatnonzero((nodes <= np.floor(here)) & (height <= load.value))
+            k = behind[-1] + 1
+        part = (load.value - height[k - 1]) / (height[k] - height[k - 1])
+        here = nodes[k - 1] + part
+        places.append(here)
+    return np.array(places)
 
 
-@pytest.mark.parametrize("n_angle", COUNTS)
-def test_advancing_one_site_pulls_no_other_site_back(n_angle):
-    # The M-matrix property on which no passing rests.
-    matrix = stiffness_matrix(n_angle)
-    np.fill_diagonal(matrix, 0.0)
-    assert np.all(matrix <= 1e-13)
+@every_solver
+@pytest.mark.parametrize("spring", [3.0, 40.0])
+def test_a_sinusoid_along_the_motion_is_the_scalar_problem(solver, spring):
+    wave = 1 + 0.2 * np.sin(2 * np.pi * np.arange(12) / 12)
+    adhesion = tile(np.repeat(wave[:, None], 16, axis=1))
+    way = there_and_back(30.0, 95.0, 0.7131)  # no tie with a fold
+    record, _ = run(adhesion, spring, way, SOLVERS[solver](1e-12))
+    expected = first_stops(wave, spring, way, record.fronts[0].mean() - 12)
+    assert np.allclose(record.states.mean_position, expected, rtol=0, atol=1e-8)
+    assert np.all(np.ptp(record.fronts, axis=1) < 1e-8)
 
 
-@pytest.mark.parametrize("n_angle", [8, 30, 64])
-def test_sites_at_even_distance_do_not_feel_each_other_on_an_even_grid(n_angle):
-    response = stiffness_matrix(n_angle)[0]
-    assert np.allclose(response[2::2], 0.0, atol=1e-12)
-    assert np.all(response[1::2] < -1e-6)
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+@settings(max_examples=15)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    rms=st.sampled_from([0.05, 0.3, 1.0]),
+    spring=st.sampled_from([2.0, 20.0, 200.0]),
+)
+def test_the_fast_solver_finds_the_fronts_of_the_reference(interpolation, seed, rms, spring):
+    way = there_and_back(100.0, 160.0, 15.0)
+    adhesion = noisy(seed, rms=rms)
+    fast, slow = (
+        run(adhesion, spring, way, solver, interpolation)[0]
+        for solver in (Newton(1e-11), Reference(1e-11))
+    )
+    assert fast.status is slow.status
+    assert np.max(np.abs(fast.fronts - slow.fronts)) < 1e-7 * max(spring, 10.0)
+    assert np.all(fast.dissipated_energy[1:] > -1e-8)
 
 
-@pytest.mark.parametrize("n_angle", COUNTS)
-def test_the_stiffness_is_symmetric(n_angle):
-    matrix = stiffness_matrix(n_angle)
-    assert np.allclose(matrix, matrix.T, atol=1e-12)
+def test_a_front_solves_the_equation_of_a_line_on_springs():
+    adhesion, spring = noisy(5), 16.0
+    way = there_and_back(60.0, 120.0, 6.0)
+    record, field = run(adhesion, spring, way, Newton(1e-10))
+    values, (n_x, n_y) = adhesion.work_of_adhesion, adhesion.work_of_adhesion.shape
+    numbers = np.abs(np.fft.fftfreq(n_y)) * 2 * np.pi
+    for front, load, direction in zip(
+        record.fronts, record.states.load, record.states.direction, strict=True
+    ):
+        low = np.floor(front).astype(int)
+        below, above = (values[(low + k) % n_x, np.arange(n_y)] for k in (0, 1))
+        held = below + (front - low) * (above - below)
+        assert np.allclose(held, front_adhesion(front, field), rtol=0, atol=1e-12)
+        line = WORK_OF_ADHESION * np.fft.ifft(numbers * np.fft.fft(front)).real
+        drive = held - values.mean() - WORK_OF_ADHESION / spring * (front - load) - line
+        assert np.allclose(drive, front_force(front, load, field), rtol=0, atol=1e-11)
+        assert np.max(direction * drive) <= 1.01e-10 * WORK_OF_ADHESION
 
 
-@given(fronts(), st.floats(-1, 1))
-def test_moving_the_whole_line_costs_no_line_energy(front, distance):
-    assert line_energy(front + distance) == pytest.approx(line_energy(front), abs=1e-11)
-    assert np.allclose(half_laplacian(front + distance), half_laplacian(front), atol=1e-11)
+def test_one_period_on_the_state_is_the_same_but_shifted():
+    adhesion = noisy(9)
+    way = [Load(100.0 + 4.0 * k, 1) for k in range(41)]
+    record, _ = run(adhesion, 12.0, way, Newton(1e-11), "cubic")
+    # 48 = 12 loads; what lies behind is forgotten by then.
+    assert np.allclose(record.fronts[24:], record.fronts[12:-12] + 48.0, rtol=0, atol=1e-7)
 
 
-@given(fronts())
-def test_the_line_force_has_zero_mean(front):
-    assert np.mean(half_laplacian(front)) == pytest.approx(0.0, abs=1e-12)
+def test_the_pinning_force_is_the_mean_adhesion_that_the_front_feels():
+    adhesion = noisy(2, rms=0.8)
+    record, field = run(adhesion, 60.0, there_and_back(60.0, 260.0, 5.0), Newton(1e-12))
+    felt = [front_adhesion(front, field).mean() / WORK_OF_ADHESION for front in record.fronts]
+    assert record.states.pinning_force == pytest.approx(1.0 - np.array(felt), abs=1e-10)
+    up = record.states.direction > 0
+    advance, recede = (np.mean(record.states.pinning_force[part][15:]) for part in (up, ~up))
+    assert advance - recede > 0.02
 
 
-@given(fronts())
-def test_the_line_energy_is_positive_out_of_the_circle(front):
-    assert line_energy(front) > 0
+def test_the_force_is_the_gradient_of_the_energy():
+    field = line_field(noisy(1, n_y=9), 7.0, (0.0, 10.0))
+    line, rng = field.geometry, np.random.default_rng(0)
+    front, step = 3 + 0.2 * rng.standard_normal(9), 1e-6
+    springs = line.mean + line.stiffness * (front - 5.0)
+    force = springs + line_force(line, front)
+    for site, change in enumerate(step * np.eye(9)):
+        rise = line.stored_energy(front + change, 5.0) - line.stored_energy(front - change, 5.0)
+        assert rise / (2 * step) == pytest.approx(force[site] * line.length / 9, rel=1e-7), site
 
 
-def test_a_circle_has_no_line_energy():
-    assert line_energy(np.full(16, 1.7)) == pytest.approx(0.0, abs=1e-15)
+def test_places_are_those_of_the_tile_wherever_it_lies():
+    values = noisy(4).work_of_adhesion
+    corners = (-3.25, 7.0), (0.0, 0.0)
+    moved, plain = (AdhesionMap(values, 0.5, 0.0, 0.0, corner) for corner in corners)
+    way = there_and_back(30.0, 40.0, 2.5)
+    shifted = [Load(load.value - 3.25, load.direction) for load in way]
+    found, field = run(moved, 4.0, shifted, Newton(1e-11))
+    expected, _ = run(plain, 4.0, way, Newton(1e-11))
+    assert np.allclose(found.fronts, expected.fronts - 3.25, rtol=0, atol=1e-8)
+    assert np.allclose(field.geometry.sites, 7.0 + 0.5 * np.arange(32))
 
 
-@pytest.mark.parametrize("order", [1, 3, 7])
-def test_one_wave_costs_half_its_order_times_the_square_of_its_amplitude(order):
-    # |a_n|^2 + |a_-n|^2 = A^2 / 2, hence pi w_int n A^2 / 2.
-    front = 1.0 + 0.3 * np.cos(order * angles(16))
-    assert line_energy(front) == pytest.approx(np.pi * WORK_OF_ADHESION * order * 0.3**2 / 2)
+def test_no_passing_holds_for_a_straight_front():
+    field = line_field(noisy(8), 20.0, (50.0, 90.0))
+    behind, ahead = np.full(32, 40.0), np.full(32, 41.0) + np.sin(np.arange(32))
+    one, other = (
+        next(follow(field, front, [Load(load, 1)], Newton(1e-11))).front
+        for front, load in ((behind, 70.0), (ahead, 71.0))
+    )
+    assert np.all(one <= other + 1e-9)
 
 
-@given(fronts())
-def test_the_gradient_of_the_line_energy_is_the_line_force(front):
-    # The energy is quadratic, so a central difference is exact for any step.
-    expected = 2 * np.pi / front.size * WORK_OF_ADHESION * half_laplacian(front)
-    for site in (0, front.size // 2, front.size - 1):
-        step = np.zeros(front.size)
-        step[site] = 0.5
-        slope = line_energy(front + step) - line_energy(front - step)
-        assert slope == pytest.approx(expected[site], rel=1e-10, abs=1e-10)
+@pytest.fixture
+def command(tmp_path):
+    """Result of `crackfront cycle` on a noisy tile as a straight front."""
+    adhesion = noisy(3)
+    axes = {name: np.arange(float(count)) for name, count in zip("xy", (48, 32), strict=True)}
+    values = xr.DataArray(adhesion.work_of_adhesion, axes, ("x", "y"), "work_of_adhesion")
+    values.to_dataset().to_netcdf(tmp_path / "F.nc")
+
+    def invoked(**changes):
+        options = {
+            "--geometry": "line",
+            "--spring": 32,
+            "--field": tmp_path / "F.nc",
+            "--from": 300,
+            "--to": 360,
+            "--step": 10,
+            "--interpolation": "linear",
+            "--tolerance": 1e-8,
+            "--record": "fronts",
+            "--output": tmp_path / "out.nc",
+        } | {f"--{name.strip('_').replace('_', '-')}": value for name, value in changes.items()}
+        words = [str(word) for one in options.items() if one[1] is not None for word in one]
+        return CliRunner().invoke(main, ["cycle", *words])
+
+    invoked.output = tmp_path / "out.nc"
+    return invoked
 
 
-@given(fronts(), st.integers(1, 39))
-def test_relabelling_the_angles_relabels_the_force(front, shift):
-    rolled = half_laplacian(np.roll(front, shift))
-    assert np.allclose(rolled, np.roll(half_laplacian(front), shift), atol=1e-12)
+def test_the_command_writes_a_cycle_of_the_line(command):
+    result = command()
+    assert result.exit_code == 0, result.output
+    found = xr.load_dataset(command.output)
+    loads = [*range(300, 361, 10), *range(350, 299, -10)]
+    assert found["load"].values == pytest.approx(loads)
+    assert found.direction.values.tolist() == [1] * 7 + [-1] * 6
+    assert found.attrs["status"] == "converged"
+    assert found.position.dims == ("step", "y")
+    assert found.y.values == pytest.approx(np.arange(32))
+    mean = found.position.mean("y")
+    assert found.mean_position.values == pytest.approx(mean.values, rel=1e-14)
+    assert found.pinning_force.values == pytest.approx(((found["load"] - mean) / 32).values)
+    assert np.all(found.residual <= 1e-8)
+    assert np.all(found.iterations > 0)
+    expected, _ = run(noisy(3), 32.0, there_and_back(300.0, 360.0, 10.0), Newton(1e-8))
+    assert np.array_equal(found.position, expected.fronts)
+    most, least = float(found.pinning_force.max()), float(found.pinning_force.min())
+    told = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
+    assert result.stdout.splitlines()[-1] == told
+    loop, fronts = (draw(found, axes=Figure().add_subplot()) for draw in (plot_loop, plot_fronts))
+    np.testing.assert_array_equal(loop.get_lines()[0].get_xdata(), loads[:7])
+    np.testing.assert_array_equal(fronts.get_lines()[0].get_xdata(), found.position[6])
+    with pytest.raises(ValueError, match="straight fronts are drawn without a surface"):
+        plot_fronts(found, surface=found.position)
 
 
-@given(fronts())
-def test_mirroring_the_front_mirrors_the_force(front):
-    assert np.allclose(half_laplacian(front[::-1]), half_laplacian(front)[::-1], atol=1e-12)
+def test_a_cycle_of_the_line_with_its_fronts_goes_on_to_the_same_bits(command, monkeypatch):
+    assert command().exit_code == 0
+    undisturbed = xr.load_dataset(command.output)
+
+    def interrupted(self, recorder):
+        if len(recorder.states) == 9:
+            signal.raise_signal(signal.SIGTERM)
+
+    with monkeypatch.context() as patched:
+        patched.setattr("crackfront.cli.watch.Progress.__call__", interrupted)
+        assert command().exit_code == 75
+    again = command()
+    assert ", after state 9" in again.stderr
+    xr.testing.assert_equal(xr.load_dataset(command.output), undisturbed)
 
 
-def test_a_band_limited_front_has_the_same_force_on_every_grid():
-    def front(n_angle):
-        angle = angles(n_angle)
-        return 1 + 0.1 * np.cos(angle) - 0.2 * np.sin(3 * angle)
-
-    coarse, fine = half_laplacian(front(8)), half_laplacian(front(24))
-    assert np.allclose(coarse, fine[::3], atol=1e-13)
-    assert line_energy(front(8)) == pytest.approx(line_energy(front(24)), rel=1e-13)
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"spring": 0}, "Invalid value for '--spring': 0.0 is not in the range"),
+        ({"spring": -2}, "Invalid value for '--spring': -2.0 is not in the range"),
+        ({"spring": None}, "--spring is missing; --geometry line needs it"),
+        ({"from_": None}, "--from is missing; --geometry line needs it"),
+        ({"to": 200}, "loads go from 300.0 to 200.0; the second must be above the first"),
+        ({"step": 0}, "load step is 0.0; it must be positive"),
+        ({"max_penetration": 1}, "--max-penetration is no option of --geometry line"),
+        (
+            {"geometry": "sphere", "max_penetration": 1},
+            "--spring is no option of --geometry sphere",
+        ),
+    ],
+)
+def test_options_that_do_not_fit_the_geometry_are_refused(command, changes, sentence):
+    result = command(**changes)
+    assert result.exit_code == 2
+    assert sentence in result.output
+    assert not command.output.exists()

@@ -15,16 +15,17 @@ from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import last_place, polar_field, tile_field
+from crackfront.core.field.fields import first_place, last_place, polar_field, tile_field
 from crackfront.core.field.rays import front_products, segment_below
 from crackfront.core.field.samples import make_memory
 from crackfront.core.geometry.sphere import sphere
 from crackfront.core.jkr import energy_release_rate
 from crackfront.core.outcome import Status
-from crackfront.core.solver.forces import hardening
+from crackfront.core.solver.forces import hardening, make_problem
 from crackfront.core.solver.relax import SOLVERS, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
+from crackfront.core.units import WORK_OF_ADHESION
 
 
 def rough_tile(
@@ -48,8 +49,8 @@ def outcomes(front, penetration, direction, field):
 
 
 @numba.njit
-def stiffness_ahead(field, memory, radius, segment, product, reach, penetration, direction):
-    return hardening(field, memory, 0, radius, product, segment, reach, penetration, direction)
+def stiffness_ahead(problem, radius, segment, product, reach):
+    return hardening(problem, 0, radius, product, segment, reach)
 
 
 @settings(max_examples=200)
@@ -81,9 +82,8 @@ def test_no_chord_of_the_drive_is_steeper_than_the_hardening(
 
     segment = segment_below(field, radius, direction)
     product = front_products(np.full(4, radius), field)[0]
-    found = stiffness_ahead(
-        field, make_memory(field), radius, segment, product, reach, penetration, direction
-    )
+    problem = make_problem(radius, penetration, direction, field, make_memory(field), 1e-8)
+    found = stiffness_ahead(problem, radius, segment, product, reach)
     distances = reach * np.linspace(0.01, 1, 100)
     chords = (drive(0.0) - drive(distances)) / distances
     assert found >= chords.max() - 1e-9 / reach
@@ -285,3 +285,29 @@ def test_uniform_adhesion_on_few_rings_takes_fewer_transforms_than_sweeps(n_angl
     for expected, found in compared(field, np.full(n_angle, 0.02), loads):
         assert found.status is expected.status
         assert found.sweeps <= expected.sweeps
+
+
+@pytest.mark.parametrize(
+    ("n_point", "pixel", "n_needle", "strength", "samples"),
+    [
+        (128, 0.04, 3, 1700.0, 5),
+        (96, 0.04, 100, 1800.0, 5),
+        (32, 0.1, 30, 1300.0, 5),
+        (64, 0.06, 30, 2000.0, 1),
+        (96, 0.04, 30, 170.0, 1),
+        (128, 0.04, 10, 400.0, 2),
+    ],
+)
+def test_needles_that_repel_take_no_more_transforms_than_the_reference_sweeps(
+    n_point, pixel, n_needle, strength, samples
+):
+    adhesion, rng = np.ones((n_point, n_point)), np.random.default_rng(n_needle)
+    adhesion.flat[rng.choice(n_point**2, n_needle, replace=False)] -= strength
+    tile = AdhesionMap(WORK_OF_ADHESION * adhesion, pixel, 0.0, 0.0)
+    field = tile_field(tile, sphere(1009), pixel / samples, 3.0)
+    loads = [(0.0, 1), (0.1, 1), (0.6, 1), (0.3, -1), (-0.3, -1)]
+    for expected, found in compared(field, np.full(1009, first_place(field)), loads):
+        assert found.status is expected.status
+        assert found.sweeps <= expected.sweeps
+        if found.status is Status.CONVERGED:
+            assert np.max(np.abs(found.front - expected.front)) < 1e-5

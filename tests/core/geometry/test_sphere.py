@@ -1,0 +1,124 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from crackfront.core.geometry.base import self_modes
+from crackfront.core.geometry.sphere import half_laplacian, line_energy
+from crackfront.core.units import WORK_OF_ADHESION
+
+COUNTS = [1, 4, 5, 7, 8, 13, 16, 30, 31, 64]
+
+
+def angles(n_angle):
+    return 2 * np.pi * np.arange(n_angle) / n_angle
+
+
+def stiffness_matrix(n_angle):
+    return np.array([half_laplacian(row) for row in np.eye(n_angle)])
+
+
+@st.composite
+def fronts(draw):
+    n_angle = draw(st.integers(4, 40))
+    seed = draw(st.integers(0, 2**32 - 1))
+    return 1.5 + 0.3 * np.random.default_rng(seed).standard_normal(n_angle)
+
+
+@pytest.mark.parametrize("n_angle", COUNTS)
+def test_every_resolved_mode_is_multiplied_by_its_order(n_angle):
+    for order in range((n_angle - 1) // 2 + 1):
+        for shift in (0.0, 0.4):
+            wave = np.cos(order * angles(n_angle) + shift)
+            assert np.allclose(half_laplacian(wave), order * wave, atol=1e-12)
+
+
+@pytest.mark.parametrize("n_angle", [4, 8, 30, 64])
+def test_the_alternating_mode_of_an_even_grid_is_multiplied_by_half_the_count(n_angle):
+    zigzag = (-1.0) ** np.arange(n_angle)
+    assert np.allclose(half_laplacian(zigzag), n_angle / 2 * zigzag, atol=1e-12)
+
+
+@pytest.mark.parametrize("n_angle", COUNTS)
+def test_self_stiffness_is_the_force_on_a_site_that_advances_alone(n_angle):
+    assert np.diag(stiffness_matrix(n_angle)) == pytest.approx(self_modes(n_angle), rel=1e-12)
+
+
+@pytest.mark.parametrize("n_angle", COUNTS)
+def test_advancing_one_site_pulls_no_other_site_back(n_angle):
+    # The M-matrix property on which no passing rests.
+    matrix = stiffness_matrix(n_angle)
+    np.fill_diagonal(matrix, 0.0)
+    assert np.all(matrix <= 1e-13)
+
+
+@pytest.mark.parametrize("n_angle", [8, 30, 64])
+def test_sites_at_even_distance_do_not_feel_each_other_on_an_even_grid(n_angle):
+    response = stiffness_matrix(n_angle)[0]
+    assert np.allclose(response[2::2], 0.0, atol=1e-12)
+    assert np.all(response[1::2] < -1e-6)
+
+
+@pytest.mark.parametrize("n_angle", COUNTS)
+def test_the_stiffness_is_symmetric(n_angle):
+    matrix = stiffness_matrix(n_angle)
+    assert np.allclose(matrix, matrix.T, atol=1e-12)
+
+
+@given(fronts(), st.floats(-1, 1))
+def test_moving_the_whole_line_costs_no_line_energy(front, distance):
+    assert line_energy(front + distance) == pytest.approx(line_energy(front), abs=1e-11)
+    assert np.allclose(half_laplacian(front + distance), half_laplacian(front), atol=1e-11)
+
+
+@given(fronts())
+def test_the_line_force_has_zero_mean(front):
+    assert np.mean(half_laplacian(front)) == pytest.approx(0.0, abs=1e-12)
+
+
+@given(fronts())
+def test_the_line_energy_is_positive_out_of_the_circle(front):
+    assert line_energy(front) > 0
+
+
+def test_a_circle_has_no_line_energy():
+    assert line_energy(np.full(16, 1.7)) == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("order", [1, 3, 7])
+def test_one_wave_costs_half_its_order_times_the_square_of_its_amplitude(order):
+    # |a_n|^2 + |a_-n|^2 = A^2 / 2, hence pi w_int n A^2 / 2.
+    front = 1.0 + 0.3 * np.cos(order * angles(16))
+    assert line_energy(front) == pytest.approx(np.pi * WORK_OF_ADHESION * order * 0.3**2 / 2)
+
+
+@given(fronts())
+def test_the_gradient_of_the_line_energy_is_the_line_force(front):
+    # The energy is quadratic, so a central difference is exact for any step.
+    expected = 2 * np.pi / front.size * WORK_OF_ADHESION * half_laplacian(front)
+    for site in (0, front.size // 2, front.size - 1):
+        step = np.zeros(front.size)
+        step[site] = 0.5
+        slope = line_energy(front + step) - line_energy(front - step)
+        assert slope == pytest.approx(expected[site], rel=1e-10, abs=1e-10)
+
+
+@given(fronts(), st.integers(1, 39))
+def test_relabelling_the_angles_relabels_the_force(front, shift):
+    rolled = half_laplacian(np.roll(front, shift))
+    assert np.allclose(rolled, np.roll(half_laplacian(front), shift), atol=1e-12)
+
+
+@given(fronts())
+def test_mirroring_the_front_mirrors_the_force(front):
+    assert np.allclose(half_laplacian(front[::-1]), half_laplacian(front)[::-1], atol=1e-12)
+
+
+def test_a_band_limited_front_has_the_same_force_on_every_grid():
+    def front(n_angle):
+        angle = angles(n_angle)
+        return 1 + 0.1 * np.cos(angle) - 0.2 * np.sin(3 * angle)
+
+    coarse, fine = half_laplacian(front(8)), half_laplacian(front(24))
+    assert np.allclose(coarse, fine[::3], atol=1e-13)
+    assert line_energy(front(8)) == pytest.approx(line_energy(front(24)), rel=1e-13)
