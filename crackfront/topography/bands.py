@@ -71,7 +71,7 @@ class BandLimit:
     cause: Cause
     """Why, one of :data:`Cause`."""
     wavelength: float
-    """Where. (Units: m)"""
+    """Where it lies. (Units: m)"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,16 +80,16 @@ class Band:
 
     shortest: BandLimit
     longest: BandLimit
-    """The ends that count."""
+    """The two ends of the band: the longest of the lower limits, the shortest of the upper ones."""
     limits: tuple[BandLimit, ...]
-    """All that were found, the ends that count among them."""
+    """All limits that were found, both ends among them."""
     stripes: tuple[int, ...]
     """Axes along which the map is shifted or levelled row by row; these waves are left out."""
     anisotropy: float
     """Of a map the rms slope along x over that along y; 1 for lines."""
     instrument: Instrument
     informative: float
-    """Shortest wavelength that tells the model. (Units: m)"""
+    """Shortest wavelength to which the model is fitted. (Units: m)"""
     end: float
     """Shortest wavelength that the surface is continued to: that which its points hold, unless
     instrument or density end before. (Units: m)"""
@@ -111,16 +111,16 @@ class Band:
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """A measurement in its waves."""
+    """A measurement with its waves, its density and the band that can be trusted."""
 
     measurement: Measurement
     waves: Periodogram
     density: Density
     """Isotropic density of a map without its stripes, C_1D of a line; trusted or not."""
     alternatives: tuple[Density, ...]
-    """The same with another window, and with more of the form taken off."""
+    """This density with another window, and with one more order of polynomials taken off."""
     band: Band
-    """What of it can be trusted."""
+    """The trusted wavelengths."""
 
     @property
     def trusted_measurement(self) -> Measurement:
@@ -253,7 +253,7 @@ def _form(density: Density, alternatives: Sequence[Density], longest: float) -> 
 
 
 def _levelled(heights: Array) -> Array:
-    """Heights without their polynomials up to an order."""
+    """Heights without the polynomials up to the order of :data:`_ORDER`."""
     axes = [np.polynomial.legendre.legvander(np.linspace(-1, 1, n), _ORDER) for n in heights.shape]
     bases = [np.linalg.qr(one)[0] for one in axes]
     if heights.ndim == 1:

@@ -156,7 +156,7 @@ def _draw_profiles(axes: Axes, surface: MeasuredSurface, wavevector: Array) -> N
 
 
 def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
-    """Points of one measurement."""
+    """Density of one measurement as open markers."""
     axes.plot(
         density.wavevector,
         density.value,

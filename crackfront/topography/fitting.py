@@ -100,8 +100,7 @@ class Fit:
     instruments: Array
     """Logarithm of q_c, m and logarithm of the noise of every density. Shape (n, n_density, 3)."""
     lowest: float
-    highest: float
-    """Ends of the wavevectors that are fitted. (Units: 1 / m)"""
+    """Lowest wavevector that is fitted. (Units: 1 / m)"""
     misfit: float
     """Least deviance per degree of freedom; 1 where only the number of modes makes noise."""
 
@@ -268,20 +267,19 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
         states[:, :_SHAPE],
         instruments(states),
         math.exp(low),
-        math.exp(high),
         least / max(count - start.size, 1),
     )
 
 
 def _limits(low: float, high: float) -> tuple[tuple[float, float], ...]:
-    """Limits of the parameters of P for logarithms of wavevectors between two."""
+    """Bounds of the parameters of P where logarithms of wavevectors lie between two numbers."""
     return ((-np.inf, np.inf), (0.0, 1.0), (0.0, 1.0), (low, high), (low - math.log(_BEYOND), high))
 
 
 def _first_shapes(
     densities: Sequence[tuple[Density, Array]], low: float, high: float
 ) -> list[Array]:
-    """Parameters of P from which fits begin."""
+    """Parameters of P from which fits begin, for three roll-offs."""
     found = []
     for part in (-0.1, 0.15, 0.45):
         roll_off = low + part * (high - low)
@@ -304,7 +302,7 @@ def _likeliest(
     start: Array,
     limits: Array,
 ) -> tuple[float, Array]:
-    """Half of the least deviance, and its parameters."""
+    """Half of the least deviance from a start, and the parameters that have it."""
 
     def residuals(trials: Array) -> Array:
         roots = [
@@ -382,7 +380,7 @@ def _model(surface: Array, instrument: Array, density: Density) -> Array:
 
 
 def _deviances(density: Density, model: Array) -> Array:
-    """Deviance of every bin, whose value is a mean of exponentially distributed powers."""
+    """Deviance of the bins from a model, as of means of exponentially distributed powers."""
     modes = 1 / (1 / density.modes + _INADEQUACY**2)
     apart = np.clip(np.log(density.value) - model, -30.0, 30.0)
     return np.asarray(2 * modes * (np.expm1(apart) - apart))

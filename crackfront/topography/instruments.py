@@ -218,13 +218,13 @@ def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
 
 
 def _kind(channel: Any) -> str:
-    """What a channel holds."""
+    """Quantity that a channel holds: height, phase and others."""
     # A reader takes any quantity over lengths for heights, and has two units for it.
     return "another quantity" if isinstance(channel.unit, tuple) else str(channel.data_kind.value)
 
 
 def _choice(channels: list[Any]) -> str:
-    """What channels there are to choose from."""
+    """Sentence that lists channels with their numbers, names and quantities."""
     known = (f"{item.index} {item.name!r} ({_kind(item)})" for item in channels)
     return f"choose by number or name with --channel: {', '.join(known)}"
 

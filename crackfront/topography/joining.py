@@ -46,7 +46,7 @@ class JointDensity:
 
     wavevector: Array
     value: Array
-    """As of a density. Shape (n,). (Units: 1 / m and m^4)"""
+    """Wavevectors of the bins and density there. Shape (n,). (Units: 1 / m and m^4)"""
     error: Array
     """Standard error of the logarithm of the value, which holds the scatter between scans. Shape
     (n,)."""
@@ -178,7 +178,7 @@ def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float],
 def _joined(
     densities: Sequence[Density], levels: Sequence[float], scatter: float
 ) -> tuple[Array, Array, Array]:
-    """Wavevectors, densities and errors of their logarithms, of scans moved by levels."""
+    """Wavevectors, densities and their relative errors, of scans multiplied by exp(level)."""
     places = np.concatenate([bin_numbers(one.wavevector) for one in densities])
     values = np.concatenate(
         [one.value * math.exp(level) for one, level in zip(densities, levels, strict=True)]
@@ -226,7 +226,7 @@ def _shares(
     wavevector: Array,
     model: Callable[[Array], Array],
 ) -> Shares:
-    """Where e_el comes from; the longer waves are those of another continuation."""
+    """Where e_el comes from; `longer` is the spectrum with the longest waves by the model."""
     total = spectrum.mean_square(0.5)
     # Neighbours further apart than this have a continuation between them.
     apart = np.diff(np.log10(wavevector)) > 1 / _CONTINUED_BINS

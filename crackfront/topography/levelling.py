@@ -29,7 +29,7 @@ def order_of(detrend: Detrend) -> int:
 
 
 def taken_off(detrend: Detrend) -> str:
-    """What is taken off, in words."""
+    """Name of the trend, as in 'the paraboloid'."""
     order = order_of(detrend)
     if detrend == "slope":
         return "the plane of least slope"
@@ -109,7 +109,7 @@ def _polynomial(
 
 
 def _product(bases: Sequence[Array], term: tuple[int, ...]) -> list[Array]:
-    """Factors of a term along the directions."""
+    """Legendre polynomials whose product over the directions is a term."""
     return [base[:, order] for base, order in zip(bases, term, strict=True)]
 
 
@@ -120,7 +120,7 @@ def _projected(values: Array, factors: Sequence[Array]) -> float:
 
 
 def _plane_of_least_slope(level: Array, fitted: Points) -> Array:
-    """Plane with the mean slopes of neighbours."""
+    """Plane with the mean slope between neighbouring points, along every direction."""
     trend = np.zeros(level.shape)
     for axis, count in enumerate(level.shape):
         pairs = range(count - 1), range(1, count)

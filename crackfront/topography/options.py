@@ -1,8 +1,7 @@
 """Options of reading scans and of predictions, each declared once, as a field of a record.
 
-Commands (:mod:`crackfront.cli.surface`), functions of the library
-(:mod:`crackfront.topography.library`) and configurations (:mod:`crackfront.sweep.configuration`)
-take their options from these fields.
+Commands (`cli/surface.py`), functions of the library (`topography/library.py`) and configurations
+(`sweep/configuration.py`) take their options from these fields.
 """
 
 from __future__ import annotations

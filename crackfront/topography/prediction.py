@@ -67,7 +67,7 @@ def predicted(
 ) -> Prediction:
     """Prediction for a surface under a sphere, of scales in SI units.
 
-    The range of attraction (Units: m) is that of :func:`crackfront.topography.verdict.verdict`.
+    The range of attraction (Units: m) is that of van der Waals forces where none is given.
 
     Raises
     ------

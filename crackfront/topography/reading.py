@@ -62,7 +62,7 @@ class Measurement:
     """Part of the points that were interpolated."""
     shortest: float
     longest: float
-    """Wavelengths that are trusted. (Units: m)"""
+    """Wavelengths that pixels, instrument and size of the scan allow to trust. (Units: m)"""
     channel: str = ""
     """Name of the channel in the file, and which of how many of heights it is."""
     levelling: str = ""
@@ -200,7 +200,7 @@ def _masked(
 def _slices(
     path: Path, what: str, region: Region, counts: tuple[int, ...], size: tuple[float, ...]
 ) -> tuple[slice, ...]:
-    """Points within a region of a scan."""
+    """Slices of the points within a region of a scan."""
     if len(region) != len(counts):
         raise ValueError(
             f"{path} has {len(counts)} dimension(s) and the {what} {len(region)}; name both ends "

@@ -123,7 +123,7 @@ def _continuation(fit: Fit) -> tuple[tuple[str, tuple[float, float, float], str]
 
 
 def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
-    """Lines of a surface."""
+    """Lines on the measurements, the spectrum and the rms measures."""
     for one in surface.scans:
         item = one.measurement
         points = " x ".join(map(str, item.heights.shape))
@@ -179,7 +179,7 @@ def _in_unit(unit: str, value: float, low: float, high: float) -> str:
 
 
 def _prediction_lines(item: Prediction) -> Iterator[str]:
-    """Lines of a prediction."""
+    """Lines with the predicted numbers."""
     yield "Prediction (95% intervals)"
     yield from _conformity_lines(item.e_el, item.work_of_adhesion)
     smooth = prefixed("N", item.pull_off_force_smooth)
@@ -216,7 +216,7 @@ def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
 
 
 def _verdict_lines(found: Verdict) -> Iterator[str]:
-    """Lines of a verdict."""
+    """Lines on whether the theory applies, with conditions, remedies and reservations."""
     count = len(found.reservations)
     yield {
         "applies": "The theory applies",
@@ -237,7 +237,7 @@ def _verdict_lines(found: Verdict) -> Iterator[str]:
 
 
 def _standing(item: Condition) -> str:
-    """How a condition stands."""
+    """By what factor a condition holds, or where it comes into doubt or fails."""
     if item.standing == "holds":
         return (
             f"inside by a factor of {float(f'{item.margin:.2g}'):g}"
@@ -281,7 +281,7 @@ def _factor(found: Number) -> str:
 
 
 def _limit_text(limit: BandLimit) -> str:
-    """A limit of trusted wavelengths."""
+    """A wavelength with the cause of its being a limit."""
     return f"{prefixed('m', limit.wavelength)} ({limit.cause})"
 
 

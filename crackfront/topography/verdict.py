@@ -44,7 +44,7 @@ class Condition:
     """A condition of the theory, in SI units."""
 
     name: str
-    """What must be."""
+    """What must hold, as in 'small slopes'."""
     found: str
     """What is compared with what, in words with numbers."""
     reason: str
@@ -55,7 +55,7 @@ class Condition:
     """Values up to which the condition holds, and up to which it is in doubt; where `rising`, down
     to which."""
     units: str
-    """Of all three."""
+    """Units of value, doubtful and limit."""
     rising: bool = False
     """Whether the value must be above the limit, not below."""
     remedies: tuple[str, ...] = ()
@@ -85,7 +85,7 @@ class Verdict:
     """Whether the theory applies."""
 
     conditions: tuple[Condition, ...]
-    """All that were looked at."""
+    """All conditions that were checked."""
     reservations: tuple[str, ...]
     """What is in doubt, one sentence each."""
     assumption: str
@@ -145,7 +145,7 @@ def verdict(
 
 
 def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Iterator[Condition]:
-    """All conditions."""
+    """Conditions of the theory, for a range of attraction (Units: m)."""
     w_int, modulus, radius = scales.work_of_adhesion, scales.contact_modulus, scales.radius
     e_el = surface.conformity_energy(modulus).value
     yield Condition(
@@ -237,7 +237,7 @@ def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Itera
 
 
 def _softer(scales: Scales, excess: float) -> tuple[str, ...]:
-    """What lowers e_el over w_int by a factor."""
+    """Changes each of which lowers e_el over w_int by a factor."""
     return (
         _modulus("below", scales.contact_modulus, 1 / excess),
         f"a roughness lower by a factor of {math.sqrt(excess):.3g}",
@@ -270,7 +270,7 @@ def _energy_of_share(share: float) -> float:
 
 
 def _energy_doubts(surface: MeasuredSurface, scales: Scales) -> Iterator[str]:
-    """Doubts of e_el by its interval."""
+    """Doubts from the width of the interval of e_el."""
     energy = surface.conformity_energy(scales.contact_modulus)
     shown = prefixed("J/m2", energy.value, energy.low, energy.high)
     if energy.value < scales.work_of_adhesion <= energy.high:
