@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from crackfront.topography.tile import Placement
 
 Command = Callable[..., None]
-
-_RESULTS = Path("results/predict")
 
 _EXIT_CODES = {"applies": 0, "applies with reservations": 3, "does not apply": 4}
 
@@ -136,7 +134,7 @@ def predict(
 
     scales = _scales(options)
     reach = parsed_options(PredictionOptions, options, "--").range
-    stem = _RESULTS / scans[0].stem if figure is None else figure
+    stem = Path("results/predict", scans[0].stem) if figure is None else figure
     if not no_figure:
         refuse_unwritable(stem.parent)
     surface = _surface(scans, options)
@@ -256,12 +254,11 @@ def _scales(options: Mapping[str, Any]) -> Scales:
     """Scene of the sphere of a command, in SI units."""
     from crackfront.core.units import Scales
 
-    sphere = parsed_options(SphereOptions, options, "--")
-    modulus, poisson, radius = sphere.modulus, sphere.poisson, sphere.radius
-    adhesion = sphere.work_of_adhesion
-    if modulus is None or poisson is None or radius is None or adhesion is None:
+    given = astuple(parsed_options(SphereOptions, options, "--"))
+    if None in given:
         raise ValueError(
             "the sphere is incomplete; name all of --modulus, --poisson, --radius and "
             "--work-of-adhesion"
         )
-    return Scales(radius, adhesion, modulus / (1 - poisson**2))
+    modulus, poisson, radius, work_of_adhesion = given
+    return Scales(radius, work_of_adhesion, modulus / (1 - poisson**2))

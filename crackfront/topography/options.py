@@ -81,16 +81,9 @@ def declared(record: type[Any]) -> Iterator[Option]:
 
 
 def parsed_options(record: type[Record], given: Mapping[str, Any], prefix: str = "") -> Record:
-    """Record of the options that a user gives.
+    """Record of the options among what a user gives; None is not given.
 
-    Parameters
-    ----------
-    record : type
-        A dataclass whose fields are made by :func:`option`.
-    given : mapping
-        Values by the names of options; None and names of other records are left out.
-    prefix : str, optional
-        What stands before the names in refusals: -- in commands.
+    The prefix stands before names in refusals: -- in commands.
 
     Raises
     ------

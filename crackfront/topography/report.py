@@ -253,20 +253,19 @@ def _standing(item: Condition) -> str:
 
 def _verdict_entry(found: Verdict) -> dict[str, Any]:
     """A verdict with the standing of every condition."""
-    return {
-        "outcome": found.outcome,
-        "conditions": [
-            asdict(item)
-            | {
-                "standing": item.standing,
-                "margin": item.margin if math.isfinite(item.margin) else None,
-            }
-            for item in found.conditions
-        ],
-        "reservations": list(found.reservations),
-        "remedies": list(found.remedies),
-        "assumption": found.assumption,
-    }
+    margins = [item.margin if math.isfinite(item.margin) else None for item in found.conditions]
+    conditions = [
+        asdict(item) | {"standing": item.standing, "margin": margin}
+        for item, margin in zip(found.conditions, margins, strict=True)
+    ]
+    return (
+        {"outcome": found.outcome}
+        | asdict(found)
+        | {
+            "conditions": conditions,
+            "remedies": found.remedies,
+        }
+    )
 
 
 def _shown(unit: str, found: Number) -> str:
