@@ -159,7 +159,7 @@ class _Reach:
         self._modules: dict[str, _Module | None] = {}
         self._taken: set[_Statement] = set()
         self._aliases: set[_Statement] = set()
-        self._searched: set[_Module] = set()
+        self._searched: dict[_Statement, set[_Module]] = {}
         self._waiting: list[tuple[_Statement, bool]] = []
         for name in names:
             origins = list(self._origins(name))
@@ -222,17 +222,23 @@ class _Reach:
             if statement not in known:
                 known.add(statement)
                 self._waiting.append((statement, is_alias))
-                if "ABC" in statement.bases:
-                    self._search(statement)
+                if "ABC" in statement.bases or self._searched.keys() & self._bases(statement):
+                    self._searched[statement] = set(self._naming(statement))
                 if not is_alias:
                     self._take(statement.module.acting)
 
-    def _search(self, abstract: _Statement) -> None:
-        """Look for subclasses of an abstract class in all modules of its package that name it."""
+    def _naming(self, abstract: _Statement) -> Iterator[_Module]:
+        """Modules of the package of an abstract class that hold its name."""
         for place in _modules(abstract.module.name.partition(".")[0]):
-            if abstract.defined[0].encode() in (ROOT / place).read_bytes():
-                module = self._module(place.removesuffix(".py").replace("/", "."))
-                self._searched |= {module} if module else set()
+            name = place.removesuffix(".py").replace("/", ".")
+            named = abstract.defined[0].encode() in (ROOT / place).read_bytes()
+            if named and (module := self._module(name)):
+                yield module
+
+    def _bases(self, statement: _Statement) -> set[_Statement]:
+        """Classes of the packages that a class extends."""
+        found = (one for base in statement.bases for one in self._meant(statement.module, base))
+        return {home.defined[name][0] for home, name, _ in found if name}
 
     def _follow(self, statement: _Statement, is_alias: bool) -> None:
         """Count what a statement uses."""
@@ -242,13 +248,17 @@ class _Reach:
                     self._take(home.defined[name], annotated=annotated or is_alias)
 
     def _take_subclasses(self) -> None:
-        """Count the subclasses of what counts, in the modules that are reached or searched."""
-        for module in self._searched | {statement.module for statement in self._taken}:
+        """Count the subclasses of what counts, of an abstract class wherever they are."""
+        parents = dict.fromkeys((one.module for one in self._taken), self._taken)
+        for module, known in [*parents.items(), *self._where()]:
             for statement in [one for ones in module.defined.values() for one in ones]:
-                for base in statement.bases:
-                    for home, name, _ in self._meant(module, base):
-                        if name and home.defined[name][0] in self._taken:
-                            self._take([statement])
+                if known & self._bases(statement):
+                    self._take([statement])
+
+    def _where(self) -> Iterator[tuple[_Module, set[_Statement]]]:
+        """Modules to search for subclasses, each with an abstract class."""
+        for abstract, modules in self._searched.items():
+            yield from ((module, {abstract}) for module in modules)
 
     def _text(self, statement: _Statement) -> str:
         """Meaning of a statement, with names that tell definitions of several modules apart."""

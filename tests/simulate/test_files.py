@@ -15,7 +15,7 @@ from crackfront.simulate.run import run_simulation
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 
-TEST = Path(__file__).parents[3] / "config/test.yaml"
+TEST = Path(__file__).parents[2] / "config/test.yaml"
 SWEEP = load_configuration(TEST)
 CYCLE = replace(
     SWEEP.simulation(SWEEP.spectra[1], 0.1, 0),

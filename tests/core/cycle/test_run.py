@@ -1,27 +1,25 @@
-import itertools
+"""Cycles of spheres: exact answers, order of states, and how they end."""
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.integrate import quad
 from scipy.ndimage import gaussian_filter
 
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
-from crackfront.core.cycle.energy import contact_energy, dissipated_energy
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import first_place, polar_field, tile_field
-from crackfront.core.field.rays import front_adhesion, swept_adhesion
-from crackfront.core.geometry.sphere import line_energy, sphere
+from crackfront.core.field.rays import front_adhesion
+from crackfront.core.geometry.sphere import sphere
 from crackfront.core.outcome import Status
-from crackfront.core.solver.relax import SOLVERS, Newton, front_force, relax
+from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
+from crackfront.core.units import WORK_OF_ADHESION
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 
@@ -40,55 +38,6 @@ def smooth_field(n_angle=24, spacing=0.02, largest=2.4, adhesion=1.0):
 
 def branch(record, direction):
     return record.states.direction == direction
-
-
-# --- load schedule
-
-
-@given(st.floats(0.0, 3.0), st.floats(0.01, 1.0))
-def test_approach_goes_up_in_whole_steps_and_visits_the_largest_penetration(largest, step):
-    loads = list(LoadSchedule(largest, step).approach())
-    assert loads[0] == 0
-    assert loads[-1] == pytest.approx(largest, rel=1e-9, abs=1e-12)
-    assert np.all(np.diff(loads) > 0)
-    assert np.allclose(loads[:-1], step * np.arange(len(loads) - 1), rtol=1e-12, atol=0)
-
-
-@given(st.floats(0.0, 3.0), st.floats(0.01, 1.0))
-def test_retraction_comes_back_over_the_penetrations_of_the_approach(largest, step):
-    schedule = LoadSchedule(largest, step)
-    up = list(schedule.approach())
-    down = list(itertools.islice(schedule.retraction(), len(up) + 3))
-    assert down[: len(up) - 1] == up[-2::-1]
-    assert np.allclose(np.diff(down), -step, rtol=1e-9)
-    assert down[-1] < -2 * step
-
-
-@pytest.mark.parametrize("step", [0.1, 0.05, 0.01, 0.3, 1 / 3, 0.7, 2.0])
-def test_round_off_of_the_step_adds_no_penetration_and_leaves_none_out(step):
-    loads = list(LoadSchedule(1.0, step).approach())
-    assert len(loads) == int(np.ceil(1 / step - 1e-9)) + 1
-    assert loads[-1] == pytest.approx(1.0)
-
-
-def test_a_schedule_to_zero_penetration_only_touches():
-    schedule = LoadSchedule(0.0, 0.25)
-    assert list(schedule.approach()) == [0.0]
-    assert list(itertools.islice(schedule.retraction(), 3)) == [-0.25, -0.5, -0.75]
-
-
-@pytest.mark.parametrize("step", [0.0, -0.1, float("nan"), float("inf")])
-def test_a_load_step_that_is_not_positive_is_refused(step):
-    with pytest.raises(ValueError, match=f"load step is {step}; it must be positive"):
-        LoadSchedule(1.0, step)
-
-
-@pytest.mark.parametrize("largest", [-0.01, float("nan"), float("inf")])
-def test_a_penetration_that_never_makes_contact_is_refused(largest):
-    with pytest.raises(
-        ValueError, match=rf"max penetration {largest} never makes contact; .* ask for 0 or more"
-    ):
-        LoadSchedule(largest, 0.1)
 
 
 # --- smooth limit
@@ -397,155 +346,6 @@ def test_hysteresis_grows_with_roughness_and_stays_below_perturbation_theory(sol
     assert hysteresis[-1] > 0.1
 
 
-# --- energy
-
-
-def energy(front, penetration, field, origin):
-    """Total energy written down once more: rings, line, minus the adhesion within the front."""
-    rings = 0.75 * (penetration**2 * front - 2 * front**3 * penetration / 3 + front**5 / 5)
-    return rings.mean() + line_energy(front) - swept_adhesion(origin, front, field)
-
-
-def test_dissipated_energy_is_the_fall_of_the_total_energy(rng):
-    field = noisy_field(8)
-    origin = np.full(24, first_place(field))
-    before, after = rng.uniform(0.8, 1.3, 24), rng.uniform(1.3, 2.2, 24)
-    for one, other in ((before, after), (after, before)):
-        fall = energy(one, 0.4, field, origin) - energy(other, 0.4, field, origin)
-        assert dissipated_energy(one, other, 0.4, field) == pytest.approx(fall, rel=1e-12)
-
-
-def test_an_edge_in_compression_advances_without_storing_or_releasing_elastic_energy():
-    # Up to a = sqrt(b) the sphere itself closes the gap; only adhesion is gained.
-    field, before, after = smooth_field(), np.full(24, 0.3), np.full(24, 0.8)
-    gained = WORK_OF_ADHESION * np.pi * (0.8**2 - 0.3**2)
-    assert dissipated_energy(before, after, 0.64, field) == pytest.approx(gained, rel=1e-12)
-
-
-def test_the_force_on_a_site_is_the_derivative_of_the_dissipated_energy(rng):
-    field = noisy_field(9)
-    front = rng.uniform(1.31, 1.37, 24)
-    start = np.full(24, 1.0)
-    expected = 2 * np.pi / 24 * front_force(front, 0.2, field)
-    for site in range(24):
-        step = np.zeros(24)
-        # Both ends of the difference stay on one linear piece, samples are 0.06 apart.
-        step[site] = 1e-6
-        slope = dissipated_energy(start, front + step, 0.2, field) - dissipated_energy(
-            start, front - step, 0.2, field
-        )
-        assert slope / 2e-6 == pytest.approx(expected[site], rel=1e-6, abs=1e-7)
-
-
-def test_the_force_on_the_sphere_is_the_derivative_of_the_energy_in_penetration(rng):
-    field = noisy_field(10)
-    front, origin = rng.uniform(1.2, 1.9, 24), np.full(24, 0.06)
-    step = 1e-3
-    slope = (
-        energy(front, 0.3 + step, field, origin) - energy(front, 0.3 - step, field, origin)
-    ) / (2 * step)
-    assert jkr.force(front, 0.3).mean() == pytest.approx(slope, rel=1e-10)
-
-
-@every_solver
-@settings(max_examples=20)
-@given(seed=st.integers(0, 2**32 - 1), amplitude=st.sampled_from([0.0, 0.1, 0.4]))
-def test_no_load_step_creates_energy(solver, seed, amplitude):
-    record = run_cycle(
-        noisy_field(seed, amplitude=amplitude),
-        LoadSchedule(0.8, 0.1),
-        SOLVERS[solver](),
-        Recorder(energy=True),
-    )
-    assert record.dissipated_energy.shape == record.states.penetration.shape
-    assert np.all(record.dissipated_energy >= -1e-11)
-
-
-def closed_loop(field, step, solver, low=-0.2, high=0.8):
-    """Dissipated energy, and the loop integral by the trapezoidal rule, of a closed minor loop."""
-    n_step = round((high - low) / step)
-    up = low + step * np.arange(1, n_step + 1)
-    down = up[::-1] - step
-
-    def at(front, load, direction):
-        found = relax(front, load, direction, field, SOLVERS[solver](1e-13))
-        assert found.status is Status.CONVERGED
-        return found.front
-
-    front = at(np.full(24, 0.06), high, 1)
-    for load in down:
-        front = at(front, load, -1)
-    start, force, dissipated = front, [jkr.force(front, low).mean()], 0.0
-    for loads, direction in ((up, 1), (down, -1)):
-        for load in loads:
-            after = at(front, load, direction)
-            dissipated += dissipated_energy(front, after, load, field)
-            front = after
-            force.append(jkr.force(front, load).mean())
-    assert np.allclose(front, start, rtol=0, atol=1e-8)
-    loads = np.concatenate([[low], up, down])
-    return dissipated, np.trapezoid(force, loads)
-
-
-@every_solver
-@pytest.mark.parametrize("seed", [11, 12])
-def test_the_energies_of_a_closed_loop_equal_the_integral_of_the_force(solver, seed):
-    field = noisy_field(seed)
-    balance = [closed_loop(field, step, solver) for step in (0.1, 0.05, 0.025, 0.0125)]
-    dissipated, work = np.array(balance).T
-    gap = dissipated - work
-    assert work.min() > 0.05
-    # First order in the load step: halving it halves the gap, and extrapolation closes it.
-    assert np.allclose(gap[:-1] / gap[1:], 2.0, atol=0.02)
-    assert abs(2 * gap[-1] - gap[-2]) < 1e-3 * work[-1]
-
-
-@every_solver
-def test_each_load_step_works_exactly_what_it_stores_and_dissipates(solver):
-    # At a fixed front the force is linear in penetration, so this balance has no step error.
-    field = noisy_field(13)
-    record = run_cycle(
-        field, LoadSchedule(0.8, 0.1), SOLVERS[solver](1e-12), Recorder(fronts=True, energy=True)
-    )
-    origin = np.full(24, 0.06)
-    stored = [
-        energy(front, load, field, origin)
-        for front, load in zip(record.fronts, record.states.penetration, strict=True)
-    ]
-    for k in range(1, len(stored)):
-        before, load, last = (
-            record.fronts[k - 1],
-            record.states.penetration[k],
-            record.states.penetration[k - 1],
-        )
-        work = (jkr.force(before, load) + jkr.force(before, last)).mean() / 2 * (load - last)
-        balance = stored[k] - stored[k - 1] + record.dissipated_energy[k]
-        assert work == pytest.approx(balance, abs=1e-12)
-
-
-@every_solver
-def test_a_smooth_cycle_dissipates_the_area_between_jump_in_and_pull_off(solver):
-    field = smooth_field(n_angle=16, spacing=0.01)
-    lowest = jkr.pull_off_penetration()
-    # Between the jumps only the stable branch exists, so the loop is the way out alone.
-    exact = -quad(lambda b: float(jkr.equilibrium_force(jkr.equilibrium_radius(b))), lowest, 0)[0]
-    found = []
-    for step in (0.04, 0.02, 0.01):
-        record = run_cycle(
-            field,
-            LoadSchedule(0.4, step),
-            SOLVERS[solver](1e-12),
-            Recorder(fronts=True, energy=True),
-        )
-        # The last jump, out of contact: all that is stored goes.
-        last, origin = record.fronts[-1], np.full(16, 0.01)
-        pull_off = energy(last, record.end_load, field, origin)
-        found.append(record.dissipated_energy.sum() + pull_off)
-    # Of first order: the last load may lie anywhere within a step below pull-off.
-    error = np.abs(np.array(found) - exact)
-    assert np.all(error < 3 * np.array([0.04, 0.02, 0.01]))
-
-
 # --- how a cycle ends, and bad input
 
 
@@ -604,72 +404,6 @@ def test_a_field_that_begins_too_far_outside_is_refused():
         run_cycle(field, LoadSchedule(0.5, 0.1))
 
 
-def test_dissipated_energies_with_that_of_pull_off_sum_up_to_the_loop_integral():
-    rng = np.random.default_rng(3)
-    radii = np.arange(0.01, 3.0, 0.02)
-    adhesion = WORK_OF_ADHESION * (1 + 0.3 * rng.standard_normal((radii.size, 32)))
-    field = polar_field(radii, adhesion)
-    gaps = []
-    for step in (0.01, 0.005):
-        record = run_cycle(field, LoadSchedule(0.6, step), Newton(1e-11), Recorder(energy=True))
-        force, penetration = record.states.force, record.states.penetration
-        # Contact is made at the first load and lost at the last, which the front reaches unmoved.
-        last = record.end_load - penetration[-1]
-        stretched = force[-1] + 2 * CONTACT_MODULUS * record.states.mean_radius[-1] * last
-        work = np.sum((force[1:] + force[:-1]) / 2 * np.diff(penetration))
-        work += (force[-1] + stretched) / 2 * last
-        gaps.append(abs(record.dissipated_energy.sum() + record.pull_off_energy - work) / work)
-    assert gaps[1] < 0.01
-    assert gaps[1] == pytest.approx(gaps[0] / 2, rel=0.2)
-
-
-@every_solver
-@pytest.mark.parametrize("amplitude", [0.0, 0.3, 1.0])
-@pytest.mark.parametrize("step", [0.05, 0.4])
-def test_a_cycle_dissipates_the_work_of_its_load_steps_to_round_off(solver, amplitude, step):
-    record = run_cycle(
-        noisy_field(3, 32, amplitude, largest=3.2),
-        LoadSchedule(0.6, step),
-        SOLVERS[solver](1e-6),
-        Recorder(energy=True),
-    )
-    # While the load changes the front is held, so that the force is linear in penetration.
-    change = np.diff(np.append(record.states.penetration, record.end_load))
-    work = np.sum(
-        (record.states.force + CONTACT_MODULUS * record.states.mean_radius * change) * change
-    )
-    lost = record.dissipated_energy.sum() + record.pull_off_energy
-    assert lost == pytest.approx(work, rel=1e-13)
-
-
-def repulsion_within(before, penetration, field):
-    """Integral of -w_loc where it repels, between a front and the edge of open contact."""
-    after = np.maximum(before, np.sqrt(max(penetration, 0.0)))
-    share = (np.arange(4000) + 0.5) / 4000
-    front = before + share[:, None] * (after - before)
-    repels = [np.maximum(-front_adhesion(a, field), 0.0) for a in front]
-    return 2 * np.pi * np.mean(np.mean(front * repels, axis=0) * (after - before))
-
-
-@every_solver
-def test_energy_is_gained_only_where_an_edge_in_compression_is_closed_over_repelling_places(solver):
-    gained, paid = 0.0, 0.0
-    for seed in range(4):
-        field = noisy_field(seed, 32, amplitude=2.0, largest=3.2)
-        record = run_cycle(
-            field, LoadSchedule(0.6, 0.05), SOLVERS[solver](), Recorder(fronts=True, energy=True)
-        )
-        assert np.all(record.dissipated_energy[branch(record, -1)] > -1e-11)
-        for row in range(1, np.count_nonzero(branch(record, 1))):
-            lost = record.dissipated_energy[row]
-            bound = repulsion_within(record.fronts[row - 1], record.states.penetration[row], field)
-            assert lost > -bound * (1 + 1e-3) - 1e-11
-            gained, paid = min(gained, lost), max(paid, bound)
-    # It does happen, and the bound is of the same size.
-    assert -0.02 < gained < -1e-3
-    assert paid < 20 * -gained
-
-
 def few_sites(seed, interpolation):
     """A field at three times w_int whose patches are as wide as a contact."""
     rng = np.random.default_rng(seed)
@@ -686,30 +420,6 @@ def cycles_of_few_sites(interpolation):
         field = few_sites(seed, interpolation)
         recorder = Recorder(fronts=True, energy=True)
         yield field, run_cycle(field, LoadSchedule(0.6, 0.05), recorder=recorder)
-
-
-def test_making_contact_gains_no_more_than_the_first_circle_costs():
-    least = 0.0
-    for field, record in cycles_of_few_sites("cubic"):
-        circle = np.full(field.geometry.n_site, first_place(field))
-        lost = record.dissipated_energy[0]
-        assert lost > -max(contact_energy(circle, 0.0, field), 0.0) - 1e-9
-        least = min(least, lost)
-    # It does happen.
-    assert -0.1 < least < -0.01
-
-
-def test_losing_contact_gains_no_more_than_what_adheres_when_one_site_has_passed_the_apex():
-    least = 0.0
-    for field, record in cycles_of_few_sites("cubic"):
-        assert record.dissipated_energy.sum() + record.pull_off_energy > 0
-        if record.pull_off_energy >= 0:
-            continue
-        found = relax(record.fronts[-1], record.end_load, -1, field)
-        left = np.maximum(found.front, first_place(field))
-        assert record.pull_off_energy > contact_energy(left, record.end_load, field) - 1e-6
-        least = min(least, record.pull_off_energy)
-    assert -1.5 < least < -0.3
 
 
 def test_the_apparent_work_is_less_in_retraction_only_where_the_mean_radius_has_grown_more():
