@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from typing import TYPE_CHECKING
 
 from scipy.optimize import brentq
@@ -105,10 +105,8 @@ def sphere_factors(
     refuse_outside("contact radius", contact_radius, LENGTH)
     w_rms = 2 * math.sqrt(elastic_energy)
     larkin = larkin_length(kind, spectrum, w_rms)
-    mean, breadth = (
-        mean_adhesion(kind, elastic_energy),
-        measured_breadth(slope_breadth(kind, spectrum)),
-    )
+    mean = mean_adhesion(kind, elastic_energy)
+    breadth = measured_breadth(slope_breadth(kind, spectrum))
     # Contact is lost in retraction at the larger radius, which a refusal names.
     retraction, approach = (
         pinning_factor(
@@ -117,14 +115,9 @@ def sphere_factors(
         for sign in (1, -1)
     )
     approach, retraction = _on_a_circle(approach), _on_a_circle(retraction)
-    one, other = approach.factor, retraction.factor
     # Errors of the law are the same for both branches.
-    both = Estimate(
-        *(
-            (getattr(one, name) + getattr(other, name)) / 2
-            for name in ("value", "standard_error", "low", "high")
-        )
-    )
+    branches = zip(astuple(approach.factor), astuple(retraction.factor), strict=True)
+    both = Estimate(*((one + other) / 2 for one, other in branches))
     spring = jkr.spring(contact_radius, mean)
     return SphereFactors(approach, retraction, both, spring, larkin, spring / larkin)
 

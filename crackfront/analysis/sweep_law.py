@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,12 +84,7 @@ class SweepLaw:
         values, sizes = np.empty((4, *energies.shape)), np.empty(energies.shape)
         for cell in np.ndindex(energies.shape):
             found, sizes[cell] = self.factor(cell[0], float(energies[cell]), float(holds[cell]))
-            values[:, cell[0], cell[1]] = (
-                found.value,
-                found.standard_error,
-                found.low,
-                found.high,
-            )
+            values[:, cell[0], cell[1]] = astuple(found)
         return Estimate(*values), sizes
 
     def curve(self, index: int, n_point: int = 40) -> tuple[Array, Array]:

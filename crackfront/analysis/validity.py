@@ -55,6 +55,9 @@ class ValidityRow:
     interaction_range: float
 
 
+_TYPES = {"float": float, "int": int}
+
+
 @functools.cache
 def shipped_validity() -> tuple[ValidityRow, ...]:
     """Rows of the file that the package ships."""
@@ -64,17 +67,7 @@ def shipped_validity() -> tuple[ValidityRow, ...]:
 def validity_of(text: str) -> tuple[ValidityRow, ...]:
     """Rows of a table as of :func:`validity_text`."""
     return tuple(
-        ValidityRow(
-            roll_off=float(row["roll_off"]),
-            hurst=float(row["hurst"]),
-            elastic_energy=float(row["elastic_energy"]),
-            ratio=float(row["ratio"]),
-            error=float(row["error"]),
-            surfaces=int(row["surfaces"]),
-            fine=int(row["fine"]),
-            n_point=int(row["n_point"]),
-            interaction_range=float(row["interaction_range"]),
-        )
+        ValidityRow(*(_TYPES[str(item.type)](row[item.name]) for item in fields(ValidityRow)))
         for row in csv.DictReader(io.StringIO(text))
     )
 

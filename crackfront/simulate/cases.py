@@ -32,18 +32,9 @@ _PLACE, _DEPTH = (Range(-bounds.most, bounds.most) for bounds in (NUMBER, PENETR
 
 
 def option(text: str, bounds: Range, *, flag: str | None = None, default: Any = MISSING) -> Any:
-    """A field of a case, which an option of the command line fills.
+    """A field of a case, which an option of the command line fills; needed without a default.
 
-    Parameters
-    ----------
-    text : str
-        Its help.
-    bounds : Range
-        What it may be.
-    flag : str, optional
-        How it is written, if not as the field.
-    default : optional
-        Its value where it is not given; by default it has to be.
+    `text` is its help, `bounds` what it may be, `flag` how it is written, if not as the field.
     """
     return dataclass_field(default=default, metadata={"text": text, "flag": flag, "bounds": bounds})
 

@@ -6,11 +6,14 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
 from crackfront.core.field.fields import TileField
 from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
 from crackfront.simulate.simulation import Simulation
+
+Array = NDArray[np.float64]
 
 
 def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
@@ -22,16 +25,22 @@ def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
     points, sides = simulation.tile
     pixel = sides[1] / points[1]
     rng = np.random.default_rng(simulation.seed)
-    unit = simulation.spectrum.with_elastic_energy(1.0)
     if simulation.schedule.uncorrelated:
         return _uncorrelated_adhesion(simulation, points, pixel, rng)
     if simulation.kind == "roughness":
-        heights = gaussian_field(unit, points, sides, rng)
-        heights *= math.sqrt(simulation.elastic_energy)
-        return rough_adhesion(heights, pixel)
+        return rough_adhesion(simulation_heights(simulation), pixel)
+    unit = simulation.spectrum.with_elastic_energy(1.0)
     fluctuation = gaussian_field(unit, points, sides, rng)
     fluctuation *= 2 * math.sqrt(simulation.elastic_energy / unit.mean_square(0.0))
     return chemical_adhesion(fluctuation, pixel)
+
+
+def simulation_heights(simulation: Simulation) -> Array:
+    """Heights on the tile of a simulation of roughness (Units: reduced vertical length)."""
+    unit, rng = simulation.spectrum.with_elastic_energy(1.0), np.random.default_rng(simulation.seed)
+    heights = gaussian_field(unit, *simulation.tile, rng)
+    heights *= math.sqrt(simulation.elastic_energy)
+    return heights
 
 
 def _uncorrelated_adhesion(

@@ -174,18 +174,9 @@ _USUAL, _SAMPLE_SECONDS = 0.05, 1e-7
 
 
 def refuse_unaffordable(cost: Cost, what: str, remedy: str, processes: int = 1) -> None:
-    """Raise if what is about to be run needs more memory or time than there is.
+    """Raise if processes of a cost each, at once on this machine, need more than it has.
 
-    Parameters
-    ----------
-    cost : Cost
-        Expected cost of each process.
-    what : str
-        What is run.
-    remedy : str
-        What to do.
-    processes : int, optional
-        How many run on this machine at once.
+    The refusal says what is run, and the remedy.
     """
     refuse_beyond_memory(what, processes * cost.memory, remedy)
     refuse_beyond_time(what, cost.seconds, remedy)
@@ -194,16 +185,8 @@ def refuse_unaffordable(cost: Cost, what: str, remedy: str, processes: int = 1) 
 def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepest: float) -> None:
     """Raise if the tile or the front of a sphere is larger than any machine holds.
 
-    Parameters
-    ----------
-    spectrum : Spectrum
-        Its shape. (Units: reduced lateral length)
-    numerics : Numerics
-        How simulations are resolved, with their knobs for this spectrum.
-    knobs : Knobs
-        Those knobs.
-    deepest : float
-        Largest penetration. (Units: reduced vertical length)
+    The knobs are those of the numerics for this spectrum, `deepest` is the largest penetration.
+    (Units: reduced lengths)
     """
     lengths = {"short_cutoff": spectrum.short_cutoff, "roll_off": spectrum.longest_feature}
     for name, value in lengths.items():
@@ -356,19 +339,11 @@ def _seconds(
 
 def _run(row: dict[str, str]) -> Measured:
     """A run from its row."""
-    return Measured(
-        name=row["name"],
-        held_out=row["held_out"] == "1",
-        features=Features(
-            n_angle=int(row["n_angle"]),
-            n_point=int(row["n_point"]),
-            elastic_energy=float(row["elastic_energy"]),
-            tolerance=float(row["tolerance"]),
-            breadth=float(row["breadth"]),
-            travel=float(row["travel"]),
-            full_cycle=row["full_cycle"] == "1",
-            n_state=float(row["expected_n_state"]),
-        ),
-        n_state=int(row["n_state"]),
-        cpu_seconds=float(row["cpu_seconds"]),
+    names = ("n_angle", "n_point", "elastic_energy", "tolerance", "breadth", "travel")
+    known = Features(
+        **{name: float(row[name]) for name in names},
+        full_cycle=row["full_cycle"] == "1",
+        n_state=float(row["expected_n_state"]),
     )
+    counts = int(row["n_state"]), float(row["cpu_seconds"])
+    return Measured(row["name"], row["held_out"] == "1", known, *counts)

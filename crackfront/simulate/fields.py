@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -61,7 +63,8 @@ def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionM
     """
     dataset = read_dataset(path, copies=_COPIES)
     if NAME not in dataset and _HEIGHT in dataset:
-        return _map_of(path, dataset[_HEIGHT])
+        with _naming(path):
+            return surface_adhesion(dataset[_HEIGHT])
     if NAME not in dataset:
         raise UnreadableFileError(
             f"{path} has no variable {NAME} (it has: {', '.join(map(str, dataset.data_vars))}); "
@@ -121,28 +124,25 @@ def _refuse_other_units(path: Path, values: xr.DataArray) -> None:
             )
 
 
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Begin a refusal with the name of the file."""
+    try:
+        yield
+    except ValueError as error:
+        raise UnreadableFileError(f"{path}: {error}") from error
+
+
 def _refuse_extreme(path: Path, samples: Array) -> None:
     """Raise if a sample is larger than any work of adhesion."""
-    try:
+    with _naming(path):
         refuse_extreme(f"{NAME} / w_int", samples, WORK_OF_ADHESION)
-    except ValueError as error:
-        raise UnreadableFileError(f"{path}: {error}") from error
-
-
-def _map_of(path: Path, heights: xr.DataArray) -> AdhesionMap:
-    """Map that is equivalent to the heights of a file."""
-    try:
-        return surface_adhesion(heights)
-    except ValueError as error:
-        raise UnreadableFileError(f"{path}: {error}") from error
 
 
 def _tile(path: Path, values: xr.DataArray) -> AdhesionMap:
     """Map of a periodic tile."""
-    try:
+    with _naming(path):
         samples, pixel = tile_samples(values)
-    except ValueError as error:
-        raise UnreadableFileError(f"{path}: {error}") from error
     _refuse_extreme(path, samples)
     # The refusal of values that are not finite, with their place, is that of the field.
     with np.errstate(invalid="ignore"):

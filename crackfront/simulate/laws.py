@@ -23,7 +23,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
-from typing import Literal, get_args
+from typing import Literal, cast, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -369,14 +369,9 @@ def read_laws() -> Iterator[Law]:
             yield Law(
                 row["shape"],
                 float(row["elastic_energy"]),
-                _knob(row["knob"]),
+                cast(Knob, row["knob"]),
                 int(row["direction"]),
                 (float(row["bias_0"]), float(row["bias_1"])),
                 (float(row["scatter_0"]), float(row["scatter_1"])),
                 float(row["avalanche"]),
             )
-
-
-def _knob(name: str) -> Knob:
-    """A knob by its name."""
-    return next(knob for knob in KNOBS if knob == name)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
+from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady import SteadyAdhesion, steady_adhesion
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.contact import contact_field
@@ -30,6 +31,7 @@ from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.provenance import __version__
+from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
 from crackfront.simulate.run import compile_solver
@@ -194,16 +196,11 @@ def result_sentence(record: CycleRecord, steady: SteadyAdhesion | None = None) -
         ("w_retr", steady.w_retr, steady.w_retr_error),
         ("hysteresis", steady.hysteresis, steady.hysteresis_error),
     )
-    told = ", ".join(f"{name} {_with_error(value, error)}" for name, value, error in works)
+    told = ", ".join(
+        f"{name} {with_error(value, error) if error > 0 else format(value, '.4g')}"
+        for name, value, error in works
+    )
     return f"{told} (w_int); {forces}"
-
-
-def _with_error(value: float, error: float) -> str:
-    """A number with its standard error, to two digits of that."""
-    if not error > 0:
-        return f"{value:.4g}"
-    digits = max(0, 1 - math.floor(math.log10(error)))
-    return f"{value:.{digits}f} ± {error:.{digits}f}"
 
 
 def _measures(
@@ -329,7 +326,5 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
             f"error is {error:g}, but the finest numerics on {pixels:.3g} pixels per short cutoff "
             f"leave {left:.2g}; ask for that, or make the surface with this error"
         )
-    field = contact_field(
-        adhesion, deepest, sizes.n_angle, sizes.spacing, sizes.interpolation, band_limited=True
-    )
+    field = simulation_field(simulation, adhesion)
     return SurfaceContact(field, chosen.solver.tolerance, measures, simulation)

@@ -14,14 +14,13 @@ from xarray import DataArray
 from crackfront.core.adhesion import AdhesionMap, FieldKind, chemical_adhesion, rough_adhesion
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
-from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, Variable
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import SEED, refuse_beyond_memory
 from crackfront.data.files import labelled
 from crackfront.data.tiles import refuse_extreme, tile_samples
-from crackfront.simulate.contact import simulation_adhesion
+from crackfront.simulate.contact import simulation_adhesion, simulation_heights
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.si_units import SURFACES, refuse_other_units
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
@@ -176,10 +175,7 @@ def _values(simulation: Simulation) -> Array:
     """Values of the tile of a simulation."""
     if simulation.kind == "chemical":
         return simulation_adhesion(simulation).work_of_adhesion / WORK_OF_ADHESION
-    unit, tile = simulation.spectrum.with_elastic_energy(1.0), simulation.resolution
-    rng = np.random.default_rng(simulation.seed)
-    heights = gaussian_field(unit, tile.n_point, tile.tile_side, rng)
-    return heights * math.sqrt(simulation.elastic_energy)
+    return simulation_heights(simulation)
 
 
 _AXES = tuple(
