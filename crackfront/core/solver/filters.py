@@ -24,113 +24,92 @@ Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
 
-class Transform(NamedTuple):
-    """Work space for the modes of a front; arrays have one entry a mode.
+class Filter(NamedTuple):
+    """Factors of the modes of a front and work space to apply them; arrays have one entry a mode.
 
     Attributes
     ----------
     paired : bool
         Whether sites stand in pairs; where their number is odd, each has a mode of its own.
+    straight, crossed : array
+        Factors of a mode and of its conjugate partner.
     cosine, sine : array
         Of pi k / M.
     before, after : complex array
-        Modes before and after a filter.
+        Modes before and after the filter.
     """
 
     paired: bool
+    straight: Array
+    crossed: Array
     cosine: Array
     sine: Array
     before: Modes
     after: Modes
 
 
-class Filter(NamedTuple):
-    """Factors of each mode and of its conjugate partner, and the work space to apply them."""
-
-    transform: Transform
-    straight: Array
-    crossed: Array
-
-
 @jit
-def make_transform(count, like):
-    """Work space for a front of `count` sites, of the precision of a complex array."""
+def make_filter(count, like):
+    """Filter of `count` sites without factors yet, of the precision of a complex array."""
     size = count // 2 if count % 2 == 0 else count
+    straight, crossed = np.empty(size, like.real.dtype), np.empty(size, like.real.dtype)
+    before, after = np.empty(size, like.dtype), np.empty(size, like.dtype)
     cosine, sine = np.empty(size), np.empty(size)
     for k in range(size):
         angle = np.pi * k / size
         cosine[k], sine[k] = np.cos(angle), np.sin(angle)
-    return Transform(
-        count % 2 == 0, cosine, sine, np.empty(size, like.dtype), np.empty(size, like.dtype)
-    )
-
-
-@jit
-def make_filter(transform):
-    """Filter without factors yet."""
-    shape, real = transform.sine.shape, transform.before.real.dtype
-    return Filter(transform, np.empty(shape, real), np.empty(shape, real))
+    return Filter(count % 2 == 0, straight, crossed, cosine, sine, before, after)
 
 
 @kernel
 def set_filter(filtering, geometry, shift, inverted):
     """Give a filter the stiffness of the line plus a shift, or the inverse of that."""
-    transform = filtering.transform
-    size = transform.sine.size
+    size, paired = filtering.sine.size, filtering.paired
     for k in range(size):
-        one = mode_stiffness(geometry, k if transform.paired else min(k, size - k)) + shift
-        other = mode_stiffness(geometry, size - k) + shift if transform.paired else one
+        one = mode_stiffness(geometry, k if paired else min(k, size - k)) + shift
+        other = mode_stiffness(geometry, size - k) + shift if paired else one
         if inverted:
             one, other = 1.0 / one, 1.0 / other
         difference = 0.5 * (one - other)
-        filtering.straight[k] = 0.5 * (one + other) - difference * transform.sine[k]
-        filtering.crossed[k] = difference * transform.cosine[k]
+        filtering.straight[k] = 0.5 * (one + other) - difference * filtering.sine[k]
+        filtering.crossed[k] = difference * filtering.cosine[k]
 
 
 _AXIS = np.zeros(1, np.int64)
 
 
-def _to_modes(vector: Any, modes: Any) -> None:
-    """Modes of a vector, into memory that is there."""
-    modes[:] = scipy.fft.fft(vector)
+def _transform(source: Any, target: Any, forward: bool) -> None:
+    """Modes of a vector or, backward, the vector of modes, into memory that is there."""
+    target[:] = scipy.fft.fft(source) if forward else scipy.fft.ifft(source)
 
 
-def _from_modes(modes: Any, vector: Any) -> None:
-    """Vector of the modes, into memory that is there."""
-    vector[:] = scipy.fft.ifft(modes)
-
-
-@overload(_to_modes)
-def _to_modes_compiled(vector, modes):
+@overload(_transform)
+def _transform_compiled(source, target, forward):
     """By what scipy calls, as scipy's own functions allocate memory every time."""
-    return lambda vector, modes: lowlevel.c2c(vector, modes, _AXIS, True, 1.0, 1)
-
-
-@overload(_from_modes)
-def _from_modes_compiled(modes, vector):
-    """The same backward."""
-    return lambda modes, vector: lowlevel.c2c(modes, vector, _AXIS, False, 1.0 / modes.size, 1)
+    return lambda source, target, forward: lowlevel.c2c(
+        source, target, _AXIS, forward, 1.0 if forward else 1.0 / source.size, 1
+    )
 
 
 @kernel
 def apply_filter(filtering, vector, result):
     """Apply a filter to a vector; return the product of vector and result."""
-    before, after = filtering.transform.before, filtering.transform.after
+    before, after = filtering.before, filtering.after
     straight, crossed = filtering.straight, filtering.crossed
-    if filtering.transform.paired:
-        _to_modes(vector.view(before.dtype), before)
+    if filtering.paired:
+        _transform(vector.view(before.dtype), before, True)
     else:
         for i in range(vector.size):
             before[i] = vector[i]
-        _to_modes(before, before)
+        _transform(before, before, True)
     modes, mixed = before.view(straight.dtype), after.view(straight.dtype)
     # The partner of the first mode is itself.
     product = 0.0 + _mix(modes[:2], modes[:2], straight[:1], crossed[:1], mixed[:2])
     product += _mix(modes[2:], modes[2:], straight[1:], crossed[1:], mixed[2:])
-    if filtering.transform.paired:
-        _from_modes(after, result.view(before.dtype))
+    if filtering.paired:
+        _transform(after, result.view(before.dtype), False)
     else:
-        _from_modes(after, after)
+        _transform(after, after, False)
         for i in range(result.size):
             result[i] = after[i].real
     return product / before.size

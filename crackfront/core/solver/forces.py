@@ -104,12 +104,6 @@ class Front(NamedTuple):
     drive: Array
 
 
-@jit
-def make_front(place):
-    """Front at given places, which its moves change, without the field and forces yet."""
-    return Front(place, np.zeros(place.size, np.int64), np.zeros(place.size), np.zeros(place.size))
-
-
 @kernel
 def largest_entry(vector):
     """Largest absolute value."""

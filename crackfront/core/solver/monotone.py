@@ -26,9 +26,9 @@ from crackfront.core.solver.forces import (
     LIMIT,
     STILL,
     TURNED,
+    Front,
     drive_sites,
     harden,
-    make_front,
     place_sites,
     touch_samples,
 )
@@ -85,7 +85,8 @@ def monotone_newton(place, problem, max_sweeps):
 def _relax(place, problem, max_sweeps):
     """Alternate between windows around the largest drives and steps of the whole front."""
     count, tolerance = place.size, problem.tolerance
-    front, work = make_front(place), make_workspace(place.size, problem.field.geometry)
+    work = make_workspace(count, problem.field.geometry)
+    front = Front(place, np.zeros(count, np.int64), np.zeros(count), np.zeros(count))
     line, before = np.zeros(count), np.zeros(count)
     runs = np.zeros((count // (2 * _BETWEEN + 1) + 2, 2), np.int64)
     # Forces of the line against one site alone.

@@ -17,7 +17,6 @@ from crackfront.core.solver.filters import (
     Filter,
     apply_filter,
     make_filter,
-    make_transform,
     set_filter,
 )
 from crackfront.core.solver.forces import (
@@ -63,38 +62,25 @@ class Workspace(NamedTuple):
 
     Attributes
     ----------
-    reach : array
-        Distance over which the hardening holds.
-    hardening : array
-        Stiffness of the site's own force, negative where the field softens.
-    step : array
-        Step along the motion.
-    right : array
-        Right side of the linear system.
-    line : array
-        Force of the line against the step.
+    reach, hardening : array
+        Distance ahead, and stiffness of the site's own force that holds over it, negative where
+        the field softens.
+    step, right, line : array
+        Step along the motion, right side of the linear system, force of the line against the step.
     stiffness : array, in single precision as all that follow
         Hardening that the linear system uses.
     scale : array
         Scale of the site in the linear system: 0 for one that is driven backward and held.
-    residual : array
-        Right side less the forces against the step, scaled.
-    preconditioned : array
-        Residual after the preconditioner.
-    search : array
-        Direction of search.
-    line_along : array
-        Force of the line along the direction of search.
-    force_along : array
-        The same with that of the sites.
-    softening : (1,) array
-        Part of the softening that the last step used.
-    rigid : (1,) array
-        Stiffness of a site, over that of the line against it, above which the system is scaled.
-    stiff_line, single_line : Filter
-        Stiffness of the line in double and in single precision.
-    preconditioner : Filter
-        Inverse of the stiffness of the line and a mean of the sites.
+    residual, preconditioned : array
+        Right side less the forces against the step, scaled; the same after the preconditioner.
+    search, line_along, force_along : array
+        Direction of search, force of the line along it, and the same with that of the sites.
+    softening, rigid : (1,) array
+        Part of the softening that the last step used; stiffness of a site, over that of the line
+        against it, above which the system is scaled.
+    stiff_line, single_line, preconditioner : Filter
+        Stiffness of the line in double and in single precision, and the inverse of that with a mean
+        stiffness of the sites.
     """
 
     reach: Array
@@ -119,8 +105,7 @@ class Workspace(NamedTuple):
 @jit
 def make_workspace(count, geometry):
     """Work space for a front of `count` sites."""
-    transform = make_transform(count, np.empty(0, np.complex128))
-    single = make_transform(count, np.empty(0, np.complex64))
+    double, single = np.empty(0, np.complex128), np.empty(0, np.complex64)
     work = Workspace(
         np.zeros(count),
         np.empty(count),
@@ -136,9 +121,9 @@ def make_workspace(count, geometry):
         np.empty(count, np.float32),
         np.ones(1),
         np.full(1, _RIGID),
-        make_filter(transform),
-        make_filter(single),
-        make_filter(single),
+        make_filter(count, double),
+        make_filter(count, single),
+        make_filter(count, single),
     )
     set_filter(work.stiff_line, geometry, 0.0, False)
     set_filter(work.single_line, geometry, 0.0, False)

@@ -47,16 +47,9 @@ class Window(NamedTuple):
 
     Attributes
     ----------
-    drive : (LONGEST + HALF_BAND,) array
-        Force along the motion, as of all arrays of this shape for each site.
-    reach : array
-        Distance over which the stiffness holds.
-    stiffness : array
-        Stiffness of the site's own force.
-    step : array
-        Step along the motion.
-    given : array
-        Step that is prescribed, negative for none.
+    drive, reach, stiffness, step, given : (LONGEST + HALF_BAND,) array
+        For each site the force along the motion, the distance over which its stiffness holds, this
+        stiffness of its own force, its step, and a step that is prescribed, negative for none.
     band : (LONGEST + HALF_BAND, HALF_BAND + 1) array
         Factors of the banded system.
     coupling : (2 LONGEST + 1,) array

@@ -4,7 +4,7 @@ import pytest
 from crackfront.core.field.fields import polar_field
 from crackfront.core.geometry.sphere import sphere
 from crackfront.core.outcome import Status
-from crackfront.core.solver.filters import apply_filter, make_filter, make_transform, set_filter
+from crackfront.core.solver.filters import apply_filter, make_filter, set_filter
 from crackfront.core.solver.forces import line_force
 from crackfront.core.solver.relax import Newton, Reference, relax
 
@@ -15,7 +15,7 @@ def test_a_filter_is_what_it_does_to_every_mode(count, kind):
     geometry, like = sphere(count), np.empty(0, kind)
     digit = float(np.finfo(kind).eps)
     front = np.random.default_rng(count).standard_normal(count).astype(like.real.dtype)
-    found, filtering = np.empty_like(front), make_filter(make_transform(count, like))
+    found, filtering = np.empty_like(front), make_filter(count, like)
     set_filter(filtering, geometry, 0.0, False)
     product = apply_filter(filtering, front, found)
     expected = line_force(geometry, front.astype(float))
