@@ -63,7 +63,7 @@ def test_the_readme_is_a_screen_with_two_commands_to_set_up_and_one_to_predict()
     assert predict.startswith(".venv/bin/crackfront predict")
     assert len(text.splitlines()) < 60
     # The picture, the finding and the commands stand before the links.
-    places = [text.index(word) for word in ("law.png", "finding of the law", "make test", "- **")]
+    places = [text.index(word) for word in ("law.png", "law: finding", "make test", "- **")]
     assert places == sorted(places)
 
 
