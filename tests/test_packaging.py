@@ -121,11 +121,6 @@ def test_the_version_is_that_of_the_installed_package():
     assert __version__ == version("crackfront")
 
 
-def test_the_extras_that_are_promised_exist():
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert {"surfaces", "docs", "dev", "workflow"} <= set(project["optional-dependencies"])
-
-
 def test_the_citation_names_the_paper_and_the_licence():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     assert citation["cff-version"] == "1.2.0"

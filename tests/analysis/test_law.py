@@ -77,13 +77,6 @@ def test_the_larkin_length_is_that_of_the_integrated_field(kind, spectrum):
     assert larkin_length(kind, spectrum, 0.3) == pytest.approx(2 * np.pi * length / 0.09, rel=1e-6)
 
 
-def test_xi_u_of_roughness_is_the_rms_height_over_the_rms_slope():
-    height, slope = SPECTRA[1].mean_square(0), SPECTRA[1].mean_square(1)
-    assert force_correlation_length("roughness", SPECTRA[1]) == pytest.approx(
-        np.sqrt(height / slope)
-    )
-
-
 @pytest.mark.parametrize(
     ("radius", "ratio"), [((3 / 2) ** (1 / 3), 2), ((8 / 3) ** (1 / 3), 3), (6 ** (1 / 3), 5)]
 )

@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import struve
+from SurfaceTopography import Topography
 
 from crackfront.core.adhesion import (
     chemical_adhesion,
@@ -109,27 +110,20 @@ def test_half_derivative_of_one_wave_is_half_its_wavevector():
 
 
 @pytest.mark.parametrize("spectrum", SPECTRA)
-@pytest.mark.parametrize("energy", [0.002, 0.05, 0.15])
-def test_rms_is_twice_the_root_of_the_elastic_energy_by_parseval(spectrum, energy):
-    adhesion = rough_adhesion(surface(spectrum, energy), 1 / 64)
-    assert adhesion.w_rms == pytest.approx(2 * np.sqrt(adhesion.e_el), rel=1e-12)
-    measured = np.std(adhesion.work_of_adhesion) / WORK_OF_ADHESION
-    assert measured == pytest.approx(2 * np.sqrt(adhesion.e_el), rel=1e-12)
+def test_the_energy_of_full_conformity_is_that_of_surface_topography(spectrum):
+    heights = surface(spectrum, 0.04)
+    half = Topography(heights, (1.0, 1.0), periodic=True).moment_power_spectrum(order=1)
+    energy = CONTACT_MODULUS / 4 * half / WORK_OF_ADHESION
+    assert energy == pytest.approx(rough_adhesion(heights, 1 / 64).e_el, rel=1e-10)
 
 
 @pytest.mark.parametrize("spectrum", SPECTRA)
-def test_rms_of_the_main_text_is_refuted(spectrum):
-    adhesion = rough_adhesion(surface(spectrum, 0.05), 1 / 64)
+@pytest.mark.parametrize(("energy", "n_point"), [(0.002, 64), (0.05, 41), (0.05, 42), (0.15, 81)])
+def test_rms_is_twice_the_root_of_the_elastic_energy_by_parseval(spectrum, energy, n_point):
+    adhesion = rough_adhesion(surface(spectrum, energy, n_point=n_point), 1 / n_point)
+    assert adhesion.w_rms == pytest.approx(2 * np.sqrt(adhesion.e_el), rel=1e-12)
     measured = np.std(adhesion.work_of_adhesion) / WORK_OF_ADHESION
-    printed = np.sqrt(2 * adhesion.e_el)
-    assert measured / printed == pytest.approx(np.sqrt(2), rel=1e-12)
-
-
-def test_parseval_holds_on_grids_of_any_size():
-    for n_point in (41, 42, 64, 81):
-        heights = surface(SPECTRA[0], 0.05, n_point=n_point)
-        adhesion = rough_adhesion(heights, 1 / n_point)
-        assert adhesion.w_rms == pytest.approx(2 * np.sqrt(adhesion.e_el), rel=1e-12)
+    assert measured == pytest.approx(2 * np.sqrt(adhesion.e_el), rel=1e-12)
 
 
 @pytest.mark.parametrize("spectrum", SPECTRA)
@@ -144,13 +138,6 @@ def test_peaks_raise_the_adhesion_of_a_front_that_runs_over_them():
     adhesion = rough_adhesion(0.1 * np.cos(2 * np.pi * y), 1 / 16).work_of_adhesion
     assert np.all(adhesion[:, 0] > adhesion[:, 8])
     assert np.all(np.argmax(adhesion, axis=1) == 0)
-
-
-@pytest.mark.parametrize("spectrum", SPECTRA)
-def test_height_and_adhesion_are_positively_correlated(spectrum):
-    heights = surface(spectrum, 0.05)
-    adhesion = rough_adhesion(heights, 1 / 64).work_of_adhesion
-    assert np.corrcoef(heights.ravel(), adhesion.ravel())[0, 1] > 0.3
 
 
 def test_a_flat_height_spectrum_gives_an_adhesion_spectrum_that_grows_with_the_wavevector():
@@ -178,12 +165,6 @@ def test_adhesion_computed_in_si_is_the_reduced_one_rescaled():
     reduced = rough_adhesion(heights, 1 / 64).work_of_adhesion
     back = scales.energy_per_area * reduced
     assert np.allclose(back, expected, rtol=0, atol=1e-13 * expected.max())
-
-
-def test_measured_elastic_energy_is_the_requested_one_in_the_mean_over_seeds():
-    measured = [rough_adhesion(surface(SPECTRA[0], 0.05, seed), 1 / 64).e_el for seed in range(60)]
-    error = np.std(measured) / np.sqrt(60)
-    assert np.mean(measured) == pytest.approx(0.05, abs=5 * error + 0.03 * 0.05)
 
 
 def test_no_roughness_is_the_smooth_sphere():

@@ -1,7 +1,5 @@
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -132,14 +130,6 @@ def test_a_larger_tile_comes_nearer_to_the_requested_elastic_energy():
         for n_point, length in ((21, 1.0), (84, 4.0))
     ]
     assert spread[1] < spread[0] / 2
-
-
-@given(st.integers(0, 2**32 - 1), st.sampled_from([20, 21, 22, 33]))
-def test_the_surface_is_real_and_finite_on_even_and_odd_grids(seed, n_point):
-    heights = gaussian_field(SHAPES[0], n_point, LENGTH, seeded(seed))
-    assert heights.shape == (n_point, n_point)
-    assert heights.dtype == float
-    assert np.all(np.isfinite(heights))
 
 
 def test_the_nyquist_modes_are_left_out_at_a_cutoff_of_exactly_two_pixels(rng):

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate import laws
 from crackfront.simulate.laws import KNOBS, LAW_SIZE, chosen_knobs, combined_error, read_laws
 from crackfront.simulate.simulation import numerical_error
 from studies.accuracy.scenes import SCENES, with_knob
@@ -170,29 +169,6 @@ def test_few_cutoffs_along_the_front_ask_for_finer_numerics():
         for size in (0.1, 0.02)
     )
     assert few.angles_per_cutoff > many.angles_per_cutoff
-
-
-def test_a_third_of_the_asked_error_is_enough_for_avalanches_of_any_size():
-    rng = np.random.default_rng(7)
-    for size in (0.3, 1.0, 3.0, 4.3, 6.0, 30.0):
-        # Avalanches of one size, up or down, as rare as an rms of 1 / 3 asks for.
-        up, down = rng.poisson((1 / 3 / size) ** 2 / 2, size=(2, 20000, 8))
-        rms = np.sqrt(np.mean((size * (up - down)) ** 2, axis=1))
-        assert np.mean(rms > 1.5) < 0.055
-
-
-@pytest.mark.parametrize("size", [2e3, 4e3, 1e5])
-def test_eight_surfaces_stay_within_the_bound_by_three_standard_deviations(size):
-    scene, error = SCENES["flat-0.04"], 0.03
-    place = laws._place(scene.kind, scene.spectrum, scene.elastic_energy, straight=False)
-    rarity = laws._rarity(error, place, size)
-    assert 1 < rarity < 3
-    square = (error / rarity) ** 2
-    largest = next(
-        law.avalanche for law in read_laws() if law.shape == "flat" and law.elastic_energy == 0.04
-    )
-    variance = square * ((largest * LAW_SIZE / size) ** 2 + 2 * square) / 8
-    assert square + 3 * math.sqrt(variance) == pytest.approx((1.5 * error) ** 2)
 
 
 def test_a_straight_front_asks_for_the_same_in_all_units():

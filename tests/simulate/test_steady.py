@@ -16,7 +16,6 @@ from crackfront.core.cycle.run import first_touch
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import polar_field
 from crackfront.core.field.rays import front_adhesion
-from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -181,19 +180,6 @@ def test_the_circle_of_the_start_moves_forward():
             assert np.all(direction * (circle - nearest) > 0)
 
 
-def test_a_circle_that_is_far_behind_the_most_pinned_front_needs_less_margin():
-    field, smooth = field_of(simulation(0.01)), jkr.equilibrium_radius(0.3)
-
-    def margin(length):
-        circle = forward_circle(field, 0.3, 1, smooth, length)
-        adhesion = front_adhesion(circle, field)
-        drive = np.mean(adhesion) - jkr.energy_release_rate(circle[0], 0.3)
-        return drive / np.std(adhesion)
-
-    # The drive k e_el over the rms 2 sqrt(e_el), for k = 2.6 and e_el = 0.01.
-    assert 0.13 < margin(1e-6) < 0.5 < 1.5 < margin(1.0)
-
-
 def test_where_the_surface_repels_the_start_is_the_edge_in_compression():
     radii = 0.05 * np.arange(1, 61)
     adhesion = np.full((60, 8), WORK_OF_ADHESION)
@@ -235,16 +221,6 @@ def test_a_rough_front_has_to_pass_three_times_its_depth():
     assert found == pytest.approx(spread / math.sqrt(1 + 1 / 0.6))
 
 
-def test_the_standard_error_covers_the_scatter_between_realisations():
-    estimates, values = [], []
-    for realisation in range(12):
-        record = run_simulation(simulation(realisation=realisation)).record
-        adhesion = steady_adhesion(record, LENGTH)
-        estimates.append(adhesion.w_retr_error)
-        values.append(adhesion.w_retr)
-    assert 0.4 < np.mean(estimates) / np.std(values, ddof=1) < 2.5
-
-
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
@@ -258,17 +234,3 @@ def test_the_standard_error_covers_the_scatter_between_realisations():
 def test_an_impossible_schedule_is_refused(change, sentence):
     with pytest.raises(ValueError, match=sentence):
         replace(SCHEDULE, **change)
-
-
-def test_progress_is_told_state_by_state():
-    told = []
-    record = run_steady(
-        field_of(simulation()),
-        SCHEDULE,
-        correlation_length=LENGTH,
-        elastic_energy=0.04,
-        solver=Newton(1e-6),
-        recorder=Recorder(observers=[lambda one: told.append(one.states[-1])]),
-    )
-    assert len(told) == record.states.penetration.size
-    assert isinstance(told[0], ContactState)

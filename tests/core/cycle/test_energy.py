@@ -5,36 +5,24 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
-from scipy.ndimage import gaussian_filter
 
 from crackfront.core import jkr
 from crackfront.core.cycle.energy import contact_energy, dissipated_energy
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import first_place, polar_field
+from crackfront.core.field.fields import first_place
 from crackfront.core.field.rays import front_adhesion, swept_adhesion
 from crackfront.core.geometry.sphere import line_energy
 from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
-
-every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
-
-
-def noisy_field(seed, n_angle=24, amplitude=0.3, spacing=0.06, largest=2.8):
-    rng = np.random.default_rng(seed)
-    radii = spacing * np.arange(1, int(largest / spacing))
-    noise = rng.standard_normal((radii.size, n_angle))
-    return polar_field(radii, WORK_OF_ADHESION * (1 + amplitude * noise))
-
-
-def smooth_field(n_angle=24, spacing=0.02, largest=2.4, adhesion=1.0):
-    radii = spacing * np.arange(1, int(largest / spacing))
-    return polar_field(radii, np.full((radii.size, n_angle), adhesion * WORK_OF_ADHESION))
-
-
-def branch(record, direction):
-    return record.states.direction == direction
+from tests.core.cycle.made import (
+    branch,
+    cycles_of_few_sites,
+    every_solver,
+    noisy_field,
+    smooth_field,
+)
 
 
 def energy(front, penetration, field, origin):
@@ -189,24 +177,6 @@ def test_energy_is_gained_only_where_an_edge_in_compression_is_closed_over_repel
     # It does happen, and the bound is of the same size.
     assert -0.02 < gained < -1e-3
     assert paid < 20 * -gained
-
-
-def few_sites(seed, interpolation):
-    """A field at three times w_int whose patches are as wide as a contact."""
-    rng = np.random.default_rng(seed)
-    n_angle, n_sample = int(rng.integers(4, 24)), int(rng.integers(16, 40))
-    noise = gaussian_filter(rng.standard_normal((n_sample, n_angle)), 1, mode=("nearest", "wrap"))
-    radii = np.linspace(rng.uniform(0.05, 0.1), 3.6, n_sample)
-    adhesion = WORK_OF_ADHESION * (1 + 3 * noise / noise.std())
-    return polar_field(radii, adhesion, interpolation)
-
-
-def cycles_of_few_sites(interpolation):
-    """Field and record of each of some cycles."""
-    for seed in range(40):
-        field = few_sites(seed, interpolation)
-        recorder = Recorder(fronts=True, energy=True)
-        yield field, run_cycle(field, LoadSchedule(0.6, 0.05), recorder=recorder)
 
 
 def test_making_contact_gains_no_more_than_the_first_circle_costs():

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.ndimage import gaussian_filter
 
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
-from crackfront.core.adhesion import AdhesionMap, rough_adhesion
+from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -20,25 +19,14 @@ from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
-
-every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
-
-
-def noisy_field(seed, n_angle=24, amplitude=0.3, spacing=0.06, largest=2.8):
-    rng = np.random.default_rng(seed)
-    radii = spacing * np.arange(1, int(largest / spacing))
-    noise = rng.standard_normal((radii.size, n_angle))
-    return polar_field(radii, WORK_OF_ADHESION * (1 + amplitude * noise))
-
-
-def smooth_field(n_angle=24, spacing=0.02, largest=2.4, adhesion=1.0):
-    radii = spacing * np.arange(1, int(largest / spacing))
-    return polar_field(radii, np.full((radii.size, n_angle), adhesion * WORK_OF_ADHESION))
-
-
-def branch(record, direction):
-    return record.states.direction == direction
-
+from tests.core.cycle.made import (
+    branch,
+    cycles_of_few_sites,
+    every_solver,
+    noisy_field,
+    patches,
+    smooth_field,
+)
 
 # --- smooth limit
 
@@ -56,14 +44,6 @@ def test_every_state_of_a_smooth_sphere_is_jkr(solver, n_angle):
 
 
 @every_solver
-def test_a_smooth_sphere_jumps_into_contact_at_zero_penetration(solver):
-    record = run_cycle(smooth_field(), LoadSchedule(0.2, 0.1), SOLVERS[solver](1e-13))
-    assert record.states.penetration[0] == 0
-    assert record.states.mean_radius[0] == pytest.approx((8 / 3) ** (1 / 3), abs=1e-11)
-    assert record.states.force[0] == pytest.approx(-4 / 3, abs=1e-11)
-
-
-@every_solver
 @pytest.mark.parametrize("step", [0.1, 0.03, 0.007])
 def test_a_smooth_sphere_is_lost_at_the_first_load_below_its_pull_off(solver, step):
     record = run_cycle(smooth_field(), LoadSchedule(0.0, step), SOLVERS[solver]())
@@ -71,15 +51,6 @@ def test_a_smooth_sphere_is_lost_at_the_first_load_below_its_pull_off(solver, st
     assert record.end_load < jkr.pull_off_penetration()
     assert record.states.penetration[-1] >= jkr.pull_off_penetration()
     assert record.end_load == pytest.approx(record.states.penetration[-1] - step, rel=1e-12)
-
-
-@every_solver
-def test_a_smooth_sphere_has_no_hysteresis_after_the_jump(solver):
-    record = run_cycle(smooth_field(), LoadSchedule(1.0, 0.125), SOLVERS[solver](1e-13))
-    up, down = branch(record, 1), branch(record, -1)
-    common = record.states.penetration[down] >= 0
-    back = record.states.mean_radius[down][common][::-1]
-    assert np.allclose(record.states.mean_radius[up][:-1], back, rtol=0, atol=1e-10)
 
 
 # --- axisymmetric disorder
@@ -215,13 +186,6 @@ def test_apparent_adhesion_is_the_mean_adhesion_along_the_front(solver, seed, n_
 
 
 @every_solver
-def test_fronts_and_energies_are_kept_only_where_asked_for(solver):
-    record = run_cycle(noisy_field(3), LoadSchedule(0.1, 0.1), SOLVERS[solver]())
-    assert record.fronts is None
-    assert record.dissipated_energy is None
-
-
-@every_solver
 def test_progress_is_told_of_every_state_in_order(solver):
     seen = []
     recorder = Recorder(observers=[lambda one: seen.append(one.states[-1])])
@@ -295,21 +259,6 @@ def test_a_finer_schedule_meets_the_same_states(solver):
         assert np.allclose(fine.fronts[same][0], coarse.fronts[row], rtol=0, atol=1e-8)
 
 
-@every_solver
-def test_a_tile_runs_through_a_whole_cycle(solver):
-    noise = np.random.default_rng(7).standard_normal((32, 32))
-    adhesion = AdhesionMap(WORK_OF_ADHESION * (1 + 0.2 * noise), 0.1, 0.0, 0.0)
-    field = tile_field(adhesion, sphere(32), 0.02, 2.8)
-    record = run_cycle(field, LoadSchedule(0.8, 0.1), SOLVERS[solver]())
-    assert record.status is Status.LOST_CONTACT
-    assert record.end_load < -0.5
-    up, down = branch(record, 1), branch(record, -1)
-    assert (
-        record.states.apparent_work_of_adhesion[down][6]
-        > record.states.apparent_work_of_adhesion[up][2]
-    )
-
-
 # --- rough spheres
 
 
@@ -371,21 +320,12 @@ def test_a_cycle_on_a_field_that_adheres_more_than_expected_may_leave_it_outward
 
 @every_solver
 def test_a_cycle_ends_at_the_limit_of_sweeps_with_the_states_before_it(solver):
-    record = run_cycle(noisy_field(14), LoadSchedule(0.5, 0.1), SOLVERS[solver](max_sweeps=1))
+    solver, recorder = SOLVERS[solver](max_sweeps=1), Recorder(fronts=True)
+    record = run_cycle(noisy_field(14), LoadSchedule(0.5, 0.1), solver, recorder)
     assert record.status is Status.STEP_LIMIT
     assert record.end_load == 0.0
     assert record.states.penetration.size == 0
     assert record.states.mean_radius.shape == (0,)
-
-
-@every_solver
-def test_a_record_without_states_keeps_the_shape_of_its_fronts(solver):
-    record = run_cycle(
-        noisy_field(14),
-        LoadSchedule(0.5, 0.1),
-        SOLVERS[solver](max_sweeps=1),
-        Recorder(fronts=True),
-    )
     assert record.fronts.shape == (0, 24)
 
 
@@ -404,24 +344,6 @@ def test_a_field_that_begins_too_far_outside_is_refused():
         run_cycle(field, LoadSchedule(0.5, 0.1))
 
 
-def few_sites(seed, interpolation):
-    """A field at three times w_int whose patches are as wide as a contact."""
-    rng = np.random.default_rng(seed)
-    n_angle, n_sample = int(rng.integers(4, 24)), int(rng.integers(16, 40))
-    noise = gaussian_filter(rng.standard_normal((n_sample, n_angle)), 1, mode=("nearest", "wrap"))
-    radii = np.linspace(rng.uniform(0.05, 0.1), 3.6, n_sample)
-    adhesion = WORK_OF_ADHESION * (1 + 3 * noise / noise.std())
-    return polar_field(radii, adhesion, interpolation)
-
-
-def cycles_of_few_sites(interpolation):
-    """Field and record of each of some cycles."""
-    for seed in range(40):
-        field = few_sites(seed, interpolation)
-        recorder = Recorder(fronts=True, energy=True)
-        yield field, run_cycle(field, LoadSchedule(0.6, 0.05), recorder=recorder)
-
-
 def test_the_apparent_work_is_less_in_retraction_only_where_the_mean_radius_has_grown_more():
     most = 0.0
     for _, record in cycles_of_few_sites("linear"):
@@ -438,24 +360,14 @@ def test_the_apparent_work_is_less_in_retraction_only_where_the_mean_radius_has_
     assert 0.01 < most < 0.2
 
 
-def many_patches(seed, interpolation):
-    """A field at three times w_int, and a length that its patches do not exceed."""
-    rng = np.random.default_rng([8, seed])
-    n_angle, n_sample = int(rng.integers(8, 64)), int(rng.integers(100, 251))
-    noise = gaussian_filter(rng.standard_normal((n_sample, n_angle)), 1, mode=("nearest", "wrap"))
-    radii = np.linspace(rng.uniform(0.05, 0.1), 3.6, n_sample)
-    adhesion = WORK_OF_ADHESION * (1 + 3 * noise / noise.std())
-    return polar_field(radii, adhesion, interpolation), 1.5 * (radii[1] - radii[0])
-
-
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize("interpolation", ["linear", "cubic"])
 def test_means_over_the_branches_are_not_reversed_by_more_than_their_errors(interpolation):
     found = []
     for seed in range(400):
-        field, length = many_patches(seed, interpolation)
-        steady = steady_adhesion(run_cycle(field, LoadSchedule(1.5, 0.05)), length)
+        field, spacing = patches([8, seed], (8, 64), (100, 251), interpolation)
+        steady = steady_adhesion(run_cycle(field, LoadSchedule(1.5, 0.05)), 1.5 * spacing)
         if not steady.sentence:
             found.append(steady)
     assert len(found) > 60

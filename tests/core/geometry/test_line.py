@@ -1,7 +1,5 @@
 """The straight front: closed forms, the scalar problem, the reference, and its command."""
 
-import signal
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -236,22 +234,6 @@ def test_the_command_writes_a_cycle_of_the_line(command):
     np.testing.assert_array_equal(fronts.get_lines()[0].get_xdata(), found.position[6])
     with pytest.raises(ValueError, match="straight fronts are drawn without a surface"):
         plot_fronts(found, surface=found.position)
-
-
-def test_a_cycle_of_the_line_with_its_fronts_goes_on_to_the_same_bits(command, monkeypatch):
-    assert command().exit_code == 0
-    undisturbed = xr.load_dataset(command.output)
-
-    def interrupted(self, recorder):
-        if len(recorder.states) == 9:
-            signal.raise_signal(signal.SIGTERM)
-
-    with monkeypatch.context() as patched:
-        patched.setattr("crackfront.cli.watch.Progress.__call__", interrupted)
-        assert command().exit_code == 75
-    again = command()
-    assert ", after state 9" in again.stderr
-    xr.testing.assert_equal(xr.load_dataset(command.output), undisturbed)
 
 
 @pytest.mark.parametrize(
