@@ -25,6 +25,7 @@ from crackfront.simulate.files import cycle_record
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.surfaces import chosen_simulation, surface_adhesion
 from crackfront.simulate.tiles import measured_correlation_length
+from crackfront.sweep import parallel, tasks
 from crackfront.topography.bands import scan
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.options import ReadingOptions, parsed_options
@@ -433,8 +434,8 @@ def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
         return len(asked) > 150
 
     with monkeypatch.context() as patched:
-        patched.setattr("crackfront.sweep.parallel.stop_is_requested", notice)
-        with pytest.raises(KeyboardInterrupt, match="what ran is kept; the same call goes on"):
+        patched.setattr(parallel, "stop_is_requested", notice)
+        with pytest.raises(KeyboardInterrupt, match="are stored; the same call continues"):
             cf.sweep(TEST, tmp_path, progress=False)
     assert 0 < len(list((tmp_path / "curves").iterdir())) < 8
     found = cf.sweep(TEST, tmp_path, progress=False)
@@ -446,7 +447,7 @@ def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
     def run_again(*arguments):
         raise AssertionError("nothing is missing")
 
-    monkeypatch.setattr("crackfront.sweep.tasks.run_simulation", run_again)
+    monkeypatch.setattr(tasks, "run_simulation", run_again)
     xr.testing.assert_equal(cf.sweep(str(TEST), str(tmp_path)), found)
 
 
