@@ -1,62 +1,25 @@
-"""w_appr and w_retr of exact records; the fit of planted laws."""
+"""The fit of planted laws, and what its pages say."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from crackfront.analysis.estimate import (
-    Estimate,
-    combination,
-    mean_estimate,
-    resample_counts,
-    student_estimate,
-)
+from crackfront.analysis.estimate import Estimate, mean_estimate
 from crackfront.analysis.law import law_value, shipped_law, slope_breadth
 from crackfront.analysis.report import fit_notes, fit_table, trend_sentence
 from crackfront.analysis.result import SweepFit, fit_columns
-from crackfront.analysis.steady import steady_adhesion
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import REALISATION, SweepTable
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
-from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.geometry.sphere import ContactState
-from crackfront.core.outcome import Status
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.variables import variables
 
 AMPLITUDES = np.array([0.005, 0.01, 0.02, 0.05, 0.1])
 LENGTHS = np.array([0.02, 0.04, 0.08])
 LAW = ("factor", "factor_by_sums", "exponent", "midpoint_slope", "disorder_slope")
-
-
-def smooth_record(w_appr, w_retr, n_state=9):
-    """Two branches of smooth JKR spheres between radius 1.2 and 1.8."""
-    radius = np.concatenate([np.linspace(1.2, 1.8, n_state), np.linspace(1.75, 0.9, n_state)])
-    direction = np.repeat([1, -1], n_state)
-    adhesion = np.where(direction > 0, w_appr, w_retr)
-    zero = np.zeros(radius.size)
-    return CycleRecord(
-        status=Status.LOST_CONTACT,
-        end_load=-0.5,
-        states=ContactState(
-            penetration=jkr.equilibrium_penetration(radius, adhesion),
-            direction=direction,
-            mean_radius=radius,
-            min_radius=radius,
-            max_radius=radius,
-            rms_radius=zero,
-            force=jkr.equilibrium_force(radius, adhesion),
-            contact_area=np.pi * radius**2,
-            apparent_work_of_adhesion=adhesion,
-            least_travel=np.abs(radius - np.where(direction > 0, 0.0, 1.8)),
-            iterations=zero.astype(int),
-            updates=zero.astype(int),
-            residual=zero,
-        ),
-    )
 
 
 def synthetic_table(
@@ -115,59 +78,6 @@ def with_gaps(table, gaps):
 def covered(estimate: Estimate, truth):
     """Whether the interval holds the truth."""
     return (estimate.low <= truth) & (truth <= estimate.high)
-
-
-def test_smooth_branches_return_their_works_of_adhesion_to_round_off():
-    steady = steady_adhesion(smooth_record(0.8, 1.3), correlation_length=0.1)
-    assert steady.sentence == ""
-    assert steady.w_appr == pytest.approx(0.8, rel=1e-14)
-    assert steady.w_retr == pytest.approx(1.3, rel=1e-14)
-    assert steady.hysteresis == pytest.approx(0.5, rel=1e-13)
-    assert steady.midpoint == pytest.approx(1.05, rel=1e-14)
-    assert steady.w_appr_from_force == pytest.approx(0.8, rel=1e-13)
-    assert steady.w_retr_from_force == pytest.approx(1.3, rel=1e-13)
-
-
-def test_both_branches_are_averaged_over_one_window_of_radii_without_transients():
-    record = smooth_record(0.8, 1.3)
-    states = replace(record.states, apparent_work_of_adhesion=record.states.mean_radius)
-    drifting = replace(record, states=states)
-    steady = steady_adhesion(drifting, correlation_length=0.2)
-    # Retraction starts at 1.8: its first steady state lies 0.2 below. Approach starts at 1.2.
-    window = (record.states.mean_radius >= 1.2) & (record.states.mean_radius <= 1.6)
-    approach = window & (record.states.direction > 0)
-    last = np.max(
-        record.states.mean_radius[
-            (record.states.direction < 0) & (record.states.mean_radius <= 1.6)
-        ]
-    )
-    assert steady.lowest_radius == 1.2
-    assert steady.highest_radius == last
-    assert steady.w_appr == pytest.approx(
-        np.mean(record.states.mean_radius[approach & (record.states.mean_radius <= last)])
-    )
-    assert steady.w_appr < 1.6
-    assert steady.n_approach == np.count_nonzero(approach & (record.states.mean_radius <= last))
-
-
-@pytest.mark.parametrize(
-    ("record", "length", "words"),
-    [
-        (smooth_record(0.8, 1.3), 0.9, "9 steady states in approach and 1 in retraction; 3 each"),
-        (smooth_record(0.8, 1.3, n_state=2), 0.1, "2 steady states in approach and 1"),
-        (smooth_record(0.8, 1.3), 0.55, "share"),
-    ],
-)
-def test_too_few_steady_states_give_no_value_and_say_why(record, length, words):
-    steady = steady_adhesion(record, correlation_length=length)
-    assert np.isnan([steady.w_appr, steady.w_retr, steady.w_appr_from_force]).all()
-    assert words in steady.sentence
-
-
-@pytest.mark.parametrize("length", [0.0, -1.0, np.nan, np.inf])
-def test_a_correlation_length_that_is_none_is_refused(length):
-    with pytest.raises(ValueError, match="correlation length"):
-        steady_adhesion(smooth_record(0.8, 1.3), length)
 
 
 def test_without_noise_the_fit_returns_the_planted_law_to_round_off(rng):
@@ -495,28 +405,3 @@ def test_a_sweep_in_which_everything_failed_is_refused(rng):
 def test_a_table_whose_arrays_disagree_is_refused(rng, name, values, words):
     with pytest.raises(ValueError, match=words):
         replace(synthetic_table(rng, constant), **{name: values})
-
-
-def test_a_mean_has_the_textbook_interval():
-    estimate, count = mean_estimate(np.array([1.0, 2.0, np.nan, 3.0, 6.0]))
-    assert count == 4
-    assert estimate.value == 3.0
-    assert estimate.standard_error == pytest.approx(np.sqrt(14 / 3 / 4))
-    assert estimate.high - 3.0 == pytest.approx(3.182446305284263 * np.sqrt(14 / 3 / 4))
-
-
-def test_bootstrap_samples_of_n_minus_one_give_the_standard_error_of_a_mean(rng):
-    values = rng.standard_normal(4)
-    counts = resample_counts(200_000, 4, rng)
-    assert np.all(np.sum(counts, axis=1) == 3)
-    assert np.std(counts @ values / 3) == pytest.approx(np.std(values, ddof=1) / 2, rel=0.01)
-
-
-def test_a_combination_of_independent_estimates_follows_welch():
-    parts = student_estimate(np.array([1.0, 2.0, np.nan]), np.array([0.3, 0.4, np.nan]), [3, 3, 0])
-    both = combination(parts, np.array([3, 3, 0]), np.array([1.0, 1.0, 0.0]))
-    assert both.value == 3.0
-    assert both.standard_error == pytest.approx(0.5)
-    freedom = 0.25**2 / (0.09**2 / 3 + 0.16**2 / 3)
-    assert both.high == pytest.approx(student_estimate(3.0, 0.5, freedom).high, rel=1e-12)
-    assert np.isnan(combination(parts, np.array([3, 3, 0]), np.zeros(3)).value)

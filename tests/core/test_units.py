@@ -19,23 +19,14 @@ def test_a_scene_that_is_given_in_reduced_units_is_left_as_it_is(name):
     assert getattr(reduced, name) == pytest.approx(1.0, rel=1e-14)
 
 
-def test_reduced_work_of_adhesion_turns_into_that_of_the_scene():
-    assert NANODIAMOND.energy_per_area * WORK_OF_ADHESION == pytest.approx(63e-3, rel=1e-14)
-
-
-def test_one_energy_is_the_same_as_force_times_height_and_as_adhesion_times_area():
-    by_load = NANODIAMOND.force * NANODIAMOND.vertical
-    by_area = NANODIAMOND.energy_per_area * NANODIAMOND.lateral**2
-    assert by_load == pytest.approx(by_area, rel=1e-14)
-
-
-def test_contact_modulus_turns_into_that_of_the_scene():
-    stiffness = NANODIAMOND.force / (NANODIAMOND.lateral * NANODIAMOND.vertical)
-    assert stiffness * CONTACT_MODULUS == pytest.approx(0.7e6 / 0.75, rel=1e-14)
-
-
-def test_a_sphere_curves_by_its_own_radius_in_its_own_units():
-    assert NANODIAMOND.lateral**2 / NANODIAMOND.vertical == pytest.approx(1.25e-3, rel=1e-14)
+def test_the_scales_give_back_the_constants_of_the_scene():
+    unit = NANODIAMOND
+    assert unit.lateral**2 / unit.vertical == pytest.approx(1.25e-3, rel=1e-14)
+    assert unit.energy_per_area * WORK_OF_ADHESION == pytest.approx(63e-3, rel=1e-14)
+    modulus = unit.force / (unit.lateral * unit.vertical) * CONTACT_MODULUS
+    assert modulus == pytest.approx(0.7e6 / 0.75, rel=1e-14)
+    by_area = unit.energy_per_area * unit.lateral**2
+    assert unit.force * unit.vertical == pytest.approx(by_area, rel=1e-14)
 
 
 def test_scales_do_not_depend_on_the_unit_of_length_that_the_scene_is_given_in():

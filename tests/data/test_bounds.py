@@ -20,7 +20,6 @@ from crackfront.data.bounds import (
     LENGTH,
     MOST_SECONDS,
     TooLargeError,
-    memory_at_hand,
     refuse_beyond_memory,
     refuse_beyond_time,
     refuse_outside,
@@ -62,11 +61,6 @@ def test_what_another_machine_may_hold_is_refused_only_where_it_will_be_run(monk
     refuse_beyond_memory("tiles", 1e12, "no", anywhere=True)
     with pytest.raises(TooLargeError, match=r"1 TB of memory; here are 8 GB"):
         refuse_beyond_memory("tiles", 1e12, "no")
-
-
-def test_the_memory_at_hand_is_that_of_the_machine_or_less():
-    machine = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    assert 0 < memory_at_hand() <= machine
 
 
 def test_a_limit_of_the_process_is_what_is_at_hand():

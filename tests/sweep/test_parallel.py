@@ -50,20 +50,6 @@ def test_without_mpi_tasks_run_one_after_the_other_in_order():
     assert not parallel.under_mpi()
 
 
-def test_without_mpi_an_exception_reaches_the_caller():
-    with pytest.raises(ZeroDivisionError):
-        list(run_tasks((1).__truediv__, [0]))
-
-
-def test_one_rank_does_not_import_mpi(tmp_path):
-    code = (
-        "import sys; from crackfront.cli import main; "
-        f"main(['simulate', {TEST!r}, '--output', {str(tmp_path)!r}], standalone_mode=False); "
-        "assert 'mpi4py' not in sys.modules"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=120, capture_output=True)
-
-
 @pytest.mark.parametrize("name", ["PMI_SIZE", "OMPI_COMM_WORLD_SIZE"])
 def test_a_command_that_a_launcher_starts_several_times_is_refused(monkeypatch, name):
     monkeypatch.setenv(name, "3")

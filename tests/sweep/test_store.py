@@ -21,18 +21,16 @@ from crackfront.core.outcome import DefectError
 from crackfront.data.bounds import TooLargeError
 from crackfront.data.comparison import comparison
 from crackfront.data.digests import Integrity
-from crackfront.data.files import leftover_parts, read_dataset
+from crackfront.data.files import read_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation, write_checkpoint
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import table as tables
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, Journal
 from crackfront.sweep.store import Store
-from crackfront.sweep.table import read_table
 from crackfront.sweep.verification import verification
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
@@ -55,12 +53,6 @@ def states(store):
     """Names and moments of the stored files."""
     files = (store.folder / "curves").iterdir()
     return {path.name: path.stat().st_mtime_ns for path in files}
-
-
-def test_an_empty_store_lacks_everything(store):
-    inventory = store.inventory(FLAT)
-    assert inventory.missing == FLAT
-    assert inventory.unreadable == ()
 
 
 def test_a_filled_store_lacks_nothing_and_holds_one_file_a_simulation(store):
@@ -91,28 +83,6 @@ def test_added_realisations_are_all_that_is_missing(store):
     assert {simulation.realisation for simulation in missing} == {2}
     fill(store, missing)
     assert before.items() < states(store).items()
-
-
-def test_a_truncated_file_is_named_and_computed_anew_and_the_others_are_not(store):
-    fill(store, FLAT)
-    before = states(store)
-    broken = store.path(FLAT[1])
-    content = broken.read_bytes()
-    broken.write_bytes(content[: len(content) // 2])
-    inventory = store.inventory(FLAT)
-    assert inventory.missing == (FLAT[1],)
-    assert len(inventory.unreadable) == 1
-    assert str(broken) in inventory.unreadable[0]
-    fill(store, inventory.missing)
-    after = states(store)
-    assert {name for name in before if before[name] != after[name]} == {broken.name}
-    assert store.inventory(FLAT).missing == ()
-
-
-def test_a_file_of_an_older_solver_is_not_found(store, monkeypatch):
-    fill(store, FLAT[:1])
-    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda _: "newer")
-    assert store.inventory(FLAT[:1]).missing == FLAT[:1]
 
 
 @pytest.mark.parametrize(
@@ -256,13 +226,6 @@ def test_the_list_of_a_shard_with_a_truncated_file_is_taken_back(store, block, l
     with pytest.raises(ValueError, match="1 of 8 simulations are missing or unreadable"):
         store.aggregate(SWEEP, provenance())
     assert sorted(path.name for path in (store.folder / "shards").iterdir()) == left
-
-
-def test_a_complete_sweep_is_aggregated(store):
-    fill(store, [one for item in SWEEP.spectra for one in SWEEP.shard(item)])
-    path, statuses = store.aggregate(SWEEP, provenance("text"))
-    assert statuses == {"lost_contact": 8}
-    assert read_table(path).w_appr.shape == (2, 2, 2)
 
 
 def test_a_sweep_is_aggregated_the_same_whatever_is_held_at_once(store, monkeypatch):
@@ -576,18 +539,3 @@ def test_the_fit_of_a_sweep_that_was_interrupted_is_that_of_an_undisturbed_one(
     assert {name for name in one if one[name] != other[name]} <= {"origin", "digest"}
     differing = {name for name, text in one["origin"].items() if text != other["origin"][name]}
     assert differing <= {"date", "command"}
-
-
-def test_a_part_that_its_writer_renames_meanwhile_is_left_alone(tmp_path, monkeypatch):
-    glob = Path.glob
-    gone = tmp_path / ".renamed.part"
-    monkeypatch.setattr(Path, "glob", lambda folder, pattern: [*glob(folder, pattern), gone])
-    assert leftover_parts(tmp_path) == []
-
-
-def test_keys_are_made_of_stored_simulations_alone_as_they_take_long(store, monkeypatch):
-    fill(store, FLAT[:1])
-    many, asked, key = replace(SWEEP, n_realisation=300), [], Simulation.key.fget
-    monkeypatch.setattr(Simulation, "key", property(lambda one: asked.append(one) or key(one)))
-    assert len(store.inventory(many.simulations()).missing) == many.n_simulation - 1
-    assert len(asked) < 10

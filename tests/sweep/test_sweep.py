@@ -6,8 +6,6 @@ from pathlib import Path
 import pytest
 
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.core.units import Scales
-from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.sweep import NamedSpectrum, shard_fingerprint
 
@@ -17,12 +15,6 @@ SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 def stems(sweep):
     """Names of all simulations."""
     return {one.stem for item in sweep.spectra for one in sweep.shard(item)}
-
-
-def test_a_shard_holds_every_amplitude_and_realisation_once():
-    shard = SWEEP.shard(SWEEP.spectra[0])
-    pairs = {(one.elastic_energy, one.realisation) for one in shard}
-    assert len(shard) == len(pairs) == len(SWEEP.elastic_energies) * SWEEP.n_realisation
 
 
 def test_additions_and_order_leave_all_other_simulations_as_they_are():
@@ -88,16 +80,3 @@ def test_a_misspelt_spectrum_is_refused_with_the_nearest_name(name, hint):
     with pytest.raises(ValueError, match="has no spectrum") as caught:
         SWEEP.named(name)
     assert hint in str(caught.value)
-
-
-def test_a_sweep_in_metres_is_the_reduced_one_to_round_off():
-    scales = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.93e6)
-    item = SWEEP.spectra[1]
-    lengths = (item.spectrum.short_cutoff, item.spectrum.roll_off)
-    there_and_back = [length * scales.lateral * 1.1 / scales.lateral / 1.1 for length in lengths]
-    assert there_and_back != list(lengths)
-    metres = NamedSpectrum("rough", SelfAffineSpectrum(*there_and_back, item.spectrum.hurst))
-    one, other = (run_simulation(SWEEP.simulation(one, 0.1, 0)) for one in (item, metres))
-    assert other.simulation.key != one.simulation.key
-    assert other.record.states.mean_radius == pytest.approx(one.record.states.mean_radius, rel=1e-9)
-    assert other.record.states.force == pytest.approx(one.record.states.force, rel=1e-9)

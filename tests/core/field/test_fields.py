@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crackfront.core.adhesion import AdhesionMap, chemical_adhesion
+from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.field.fields import first_place, last_place, polar_field, tile_field
 from crackfront.core.field.rays import front_adhesion, sampled_on_rays, swept_adhesion
-from crackfront.core.field.samples import evaluate, sample_count, sample_place
+from crackfront.core.field.samples import evaluate, sample_place
 from crackfront.core.geometry.sphere import sphere
 from crackfront.core.units import WORK_OF_ADHESION
 
@@ -75,17 +75,6 @@ def test_a_field_keeps_its_values_when_the_arrays_it_was_made_of_change():
     assert np.array_equal(front_adhesion(np.full(8, 0.5), field), before)
 
 
-def test_a_polar_field_states_its_rays_and_its_range():
-    radii, adhesion = noisy_polar()
-    field = polar_field(radii, adhesion)
-    assert field.geometry.n_site == 8
-    assert first_place(field) == radii[0]
-    assert last_place(field) == radii[-1]
-    assert sample_count(field) == radii.size
-    assert sample_place(field, 3) == radii[3]
-    assert evaluate(field, 5, 3)[0] == pytest.approx(radii[3] * adhesion[3, 5])
-
-
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 def test_a_value_that_is_not_finite_is_refused_with_its_place(value):
     radii, adhesion = noisy_polar()
@@ -108,20 +97,6 @@ def test_a_field_of_zeros_is_refused():
 def test_radii_that_do_not_increase_are_refused(radii):
     with pytest.raises(ValueError, match="not negative and strictly increasing; sort them"):
         polar_field(np.array(radii), np.ones((3, 8)))
-
-
-@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
-@pytest.mark.parametrize("innermost", [0.0, 0.1])
-def test_rings_are_one_ray_of_the_same_samples_and_slopes(interpolation, innermost, rng):
-    radii = innermost + 0.1 * np.arange(20)
-    rings = WORK_OF_ADHESION * rng.uniform(0.5, 1.5, 20)
-    one = polar_field(radii, rings, interpolation)
-    many = polar_field(radii, np.repeat(rings[:, None], 8, axis=1), interpolation)
-    assert one.geometry.n_site == 1
-    assert np.array_equal(one.places, many.places)
-    for found, expected in ((one.products, many.products), (one.slopes, many.slopes)):
-        assert np.array_equal(found, expected[:1])
-        assert found.flags.c_contiguous
 
 
 def test_a_cubic_field_on_rays_takes_hardly_more_memory_to_make_than_to_hold():
@@ -194,16 +169,6 @@ def test_interpolation_of_a_tile_converges_with_fourth_order():
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert np.all(orders > 3.7), (errors, orders)
     assert errors[-1] < 1e-4
-
-
-def test_a_tile_smaller_than_the_contact_repeats(rng):
-    values = 1 + 0.3 * rng.standard_normal((12, 12))
-    # Doubling moves the apex to a corner of the original cell: roll by half a side.
-    doubled = np.roll(np.tile(values, (2, 2)), (6, 6), axis=(0, 1))
-    front = rng.uniform(0.1, 4.0, 16)
-    small = tile_field(tile(values), sphere(16), 0.03, 4.0)
-    large = tile_field(tile(doubled), sphere(16), 0.03, 4.0)
-    assert np.allclose(front_adhesion(front, small), front_adhesion(front, large), rtol=1e-12)
 
 
 def test_a_tile_may_have_sides_of_different_length(rng):
@@ -296,13 +261,6 @@ def test_an_unknown_interpolation_is_refused():
         polar_field(*noisy_polar(), interpolation="quintic")
     with pytest.raises(ValueError, match="interpolation is 'quintic'; choose one of cubic, linear"):
         tile_field(tile(np.ones((8, 8))), sphere(8), 0.1, 1.0, "quintic")
-
-
-def test_a_chemical_map_serves_as_a_field(rng):
-    adhesion = chemical_adhesion(0.1 * rng.standard_normal((8, 8)), 0.1)
-    field = tile_field(adhesion, sphere(8), 0.05, 1.0)
-    assert field.geometry.n_site == 8
-    assert np.all(np.isfinite(front_adhesion(np.full(8, 0.5), field)))
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])

@@ -28,7 +28,7 @@ TIGHT = 1e-12
 SAME = 1e-8
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
-some = settings(max_examples=40)
+some = settings(max_examples=60)
 
 
 def random_field(seed, n_ray=24, amplitude=0.4, *, tile=False, interpolation="linear"):

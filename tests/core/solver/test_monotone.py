@@ -174,13 +174,6 @@ def test_over_a_dense_schedule_the_solvers_differ_by_the_tolerance_alone():
     assert differences[1] < differences[0] / 20
 
 
-@pytest.mark.parametrize("solver", ["reference", "newton"])
-def test_a_tolerance_below_round_off_is_refused(solver):
-    field = polar_field(np.linspace(0.2, 3.0, 60), np.full((60, 32), 1 / np.pi))
-    with pytest.raises(ValueError, match="below the round-off of a front of 32 sites"):
-        relax(np.full(32, 0.2), 0.0, 1, field, SOLVERS[solver](1e-15))
-
-
 def test_the_fast_solver_stops_at_an_edge_in_compression():
     # Adhesion that repels: the front recedes until its edge would be in compression.
     radii = np.linspace(0.2, 3.0, 60)
