@@ -787,6 +787,12 @@ def test_an_archive_has_the_whole_name_of_its_folder_and_an_empty_one_is_refused
     assert [path.name for path in tmp_path.glob("*.zip")] == ["of.2026.zip"]
 
 
-def test_the_solver_is_compiled_ahead_for_spheres_and_straight_fronts():
-    result = run("compile")
-    assert result.exit_code == 0, result.output
+def test_once_the_solver_is_compiled_ahead_no_run_compiles_it(smooth_tile, tmp_path):
+    assert run("compile").exit_code == 0
+    sphere = "--max-penetration 0.1 --step 0.1"
+    line = "--geometry line --spring 4 --from 0 --to 1 --step 1"
+    for loads in (sphere, line):
+        words = ("cycle", "--field", smooth_tile, "--output", tmp_path / "out.nc", *loads.split())
+        command = [sys.executable, "-m", "crackfront", *map(str, words)]
+        done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
+        assert "compiling" not in done.stdout + done.stderr
