@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 import crackfront as cf
@@ -30,22 +29,9 @@ from crackfront.data.files import write_text
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, Journal
 from crackfront.sweep.table import failed_row, row_fingerprint
+from tests.commands import refused, run
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
-
-
-def run(*arguments):
-    """Result of a command."""
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
-
-
-def refused(*arguments):
-    """Sentence of a command that is refused."""
-    result = run(*arguments)
-    assert result.exit_code == 2, result.output
-    assert "Traceback" not in result.output
-    [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
-    return sentence
 
 
 @pytest.fixture

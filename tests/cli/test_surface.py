@@ -7,17 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
-from crackfront.cli import main
 from crackfront.core.variables import variables
 from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import read_cycle
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.prediction import Prediction, predicted
 from crackfront.topography.reading import read_measurements
+from tests.commands import refused, run
 from tests.topography.made import DETAIL, OVERVIEW, SCENE, write_smooth
 
 ROOT = Path(__file__).parents[2]
@@ -35,20 +34,6 @@ def sphere(**changes):
     """Options of the sphere; None leaves one out."""
     named = SPHERE | {f"--{name.replace('_', '-')}": value for name, value in changes.items()}
     return [part for item in named.items() if item[1] is not None for part in item]
-
-
-def run(*arguments):
-    """Result of a command."""
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
-
-
-def refused(*arguments):
-    """Sentence of a command that is refused."""
-    result = run(*arguments)
-    assert result.exit_code == 2, result.output
-    assert "Traceback" not in result.output
-    [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
-    return sentence
 
 
 @pytest.fixture(scope="module")

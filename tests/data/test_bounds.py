@@ -11,10 +11,8 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner
 
 from crackfront import random_surface
-from crackfront.cli import main
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.bounds import (
     LENGTH,
@@ -28,15 +26,7 @@ from crackfront.data.bounds import (
 from crackfront.data.files import read_dataset
 from crackfront.data.written_units import si_value
 from crackfront.simulate.costs import affordable_seconds
-
-
-def refused(*arguments):
-    """Sentence of a command that is refused."""
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == 2, result.output
-    assert isinstance(result.exception, SystemExit)
-    [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
-    return sentence
+from tests.commands import refused
 
 
 @pytest.mark.parametrize("value", [1e300, -1.0, math.nan, math.inf, 0.0])

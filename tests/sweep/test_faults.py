@@ -11,12 +11,11 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from click.testing import CliRunner
 
-from crackfront.cli import main
 from crackfront.data.provenance import provenance
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.store import Store
+from tests.commands import run as run_command
 
 ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
@@ -50,11 +49,6 @@ def stored(folder):
     return {path.name: path.stat().st_mtime_ns for path in (folder / "curves").glob("[!.]*.nc")}
 
 
-def run_command(*arguments):
-    """Result of a command in this process."""
-    return CliRunner().invoke(main, [str(part) for part in arguments])
-
-
 def renewed(configuration, folder):
     """Sentences about what the workflow sets aside before it plans."""
     return list(Store(folder).renewed(load_configuration(configuration), configuration))
@@ -63,8 +57,7 @@ def renewed(configuration, folder):
 def rerun(configuration, folder, *more):
     """Run again what is missing; the number of simulations that were run."""
     before = stored(folder)
-    arguments = ["simulate", str(configuration), "--output", str(folder), *more]
-    done = CliRunner().invoke(main, arguments)
+    done = run_command("simulate", configuration, "--output", folder, *more)
     assert done.exit_code == 0, done.output
     after = stored(folder)
     assert len(after) == N_SIMULATION
@@ -224,14 +217,13 @@ def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_pat
 
 
 def test_a_killed_process_goes_on_from_its_last_checkpoint(configuration, same, tmp_path):
-    status = ["status", str(tmp_path)]
     with running(configuration, tmp_path, "--checkpoint", "0") as process:
         while not any((tmp_path / "checkpoints").glob("[!.]*.nc")):
             time.sleep(0.01)
         os.kill(process.pid, signal.SIGSTOP)
-        assert f"process {process.pid} on " in CliRunner().invoke(main, status).stdout
+        assert f"process {process.pid} on " in run_command("status", tmp_path).stdout
         process.kill()
-    assert CliRunner().invoke(main, status).stdout.endswith("have ended; nothing runs\n")
+    assert run_command("status", tmp_path).stdout.endswith("have ended; nothing runs\n")
     [checkpoint] = (tmp_path / "checkpoints").glob("[!.]*.nc")
     known = xr.load_dataset(checkpoint)["force"]
     kept = len(stored(tmp_path))
