@@ -31,19 +31,8 @@ def markdown_table(header: str, rows: Iterable[Sequence[str]]) -> str:
 def renewed(page: str, study: str, parts: Mapping[str, str]) -> str:
     r"""Page with the blocks of a study written anew; those of others are kept.
 
-    Parameters
-    ----------
-    page : str
-        The page. A block stands between `<!-- STUDY: PART -->` and `<!-- end -->`.
-    study : str
-        Name of the study.
-    parts : mapping
-        What the study has measured, in Markdown, by name.
-
-    Raises
-    ------
-    ValueError
-        If the page has a block of a part that there is not.
+    A block stands between `<!-- STUDY: PART -->` and `<!-- end -->`; the parts are what the study
+    has measured, in Markdown. A block of a part that there is not is a ValueError.
 
     Examples
     --------

@@ -19,24 +19,12 @@ from crackfront.data.bounds import Range
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.run import compile_solver
-from studies.accuracy import (
-    energies as synthetic,
-)
-from studies.accuracy import (
-    energy_balance as balance,
-)
-from studies.accuracy import (
-    forgetting as starts,
-)
-from studies.accuracy import (
-    independence as states,
-)
-from studies.accuracy import (
-    predictions as films,
-)
-from studies.accuracy import (
-    scans as instrument,
-)
+from studies.accuracy import energies as synthetic
+from studies.accuracy import energy_balance as balance
+from studies.accuracy import forgetting as starts
+from studies.accuracy import independence as states
+from studies.accuracy import predictions as films
+from studies.accuracy import scans as instrument
 from studies.accuracy.files import STUDIES
 from studies.accuracy.report import write_report
 from studies.accuracy.scenes import SCENES
@@ -105,23 +93,13 @@ def predictions() -> None:
     click.echo(films.comparison_table(films.comparisons()))
 
 
-@commands.command(
-    epilog=examples(
-        "python -m studies accuracy energies --scans 12",
-        "python -m studies accuracy energies --speed",
-    )
-)
+@commands.command(epilog=examples("python -m studies accuracy energies --scans 12"))
 @click.option(
     "--scans", type=whole(Range(1, 1e6)), default=14, show_default=True, help="Scans of each kind."
 )
-@click.option("--speed", is_flag=True, help="Time predictions from large maps instead.")
-def energies(scans: int, speed: bool) -> None:
+def energies(scans: int) -> None:
     """Hold e_el of synthetic scans against that of their spectra; print a table."""
-    if speed:
-        for one in synthetic.speeds():
-            click.echo(str(one))
-    else:
-        click.echo(synthetic.energy_table(synthetic.found_scans(scans)))
+    click.echo(synthetic.energy_table(synthetic.found_scans(scans)))
 
 
 @commands.command(epilog=examples("python -m studies accuracy scans"))

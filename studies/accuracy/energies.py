@@ -7,17 +7,12 @@ as `crackfront predict` reads it.
 from __future__ import annotations
 
 import math
-import os
-import resource
-import subprocess
-import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import grey_dilation
 
 from crackfront.analysis.estimate import Estimate
@@ -26,10 +21,10 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.measures import MeasuredSurface, measured_surface
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import read_measurements
-from studies.accuracy.scans import al3d, scanned
+from studies.accuracy.scans import scanned
+from studies.accuracy.scenes import Array
 from studies.pages import markdown_table
 
-Array = NDArray[np.float64]
 Distortion = Callable[[Array, np.random.Generator], Array]
 
 SEED = 20240229
@@ -40,32 +35,14 @@ MEAN_SQUARE = 1e-9
 
 _LINE_POINTS, _LINES = 600, 3
 
-_MAPS, _LARGE = 10, 1024
-"""Maps whose prediction is timed, and their points along a side."""
-
-_SPHERE = "--modulus 0.7MPa --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2"
-
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """Scans of one spectrum that are distorted in one way.
+    """Scans of one spectrum, in m, that are distorted in one way.
 
-    Attributes
-    ----------
-    name : str
-        What is done to them.
-    spectrum : Spectrum
-        Shape of their spectrum. (Units: m)
-    distortion : callable
-        What becomes of heights of twice the side, periodic, with some noise; by default nothing.
-    tile : int
-        Sides of the scan in the surface that it is cut from.
-    resolved : bool
-        Whether the scan resolves the scales that matter to e_el.
-    oblong : bool
-        Whether every other column is left out.
-    is_line : bool
-        Whether lines are scanned in place of a map.
+    The tile is the number of sides of the scan in the surface that it is cut from. A scan is
+    resolved where it holds the scales that matter to e_el; of an oblong one every other column is
+    left out, and of one of lines all but some of them.
     """
 
     name: str
@@ -271,45 +248,3 @@ def energy_table(found: Mapping[Kind, Sequence[Found]]) -> str:
         f"{table}\n\n{len(every)} scans: median error {error:.0%}, {covered:.0%} of the intervals "
         "hold the truth"
     )
-
-
-@dataclass(frozen=True, slots=True)
-class Speed:
-    """Processor time of predictions from large maps, one by one and together, in s."""
-
-    figure: bool
-    single: float
-    together: float
-
-    def __str__(self) -> str:
-        return (
-            f"{_MAPS} maps of {_LARGE} x {_LARGE} points, {'with' if self.figure else 'without'} "
-            f"figure: {self.single:.1f} s of one core one by one, {self.together:.1f} s together"
-        )
-
-
-def speeds() -> Iterator[Speed]:
-    """Predictions from large maps, without and with figures."""
-    with tempfile.TemporaryDirectory() as folder:
-        paths = [Path(folder) / f"{number}.al3d" for number in range(_MAPS)]
-        for number, path in enumerate(paths):
-            rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=(_LARGE, number)))
-            heights = gaussian_field(KINDS[0].truth, 2 * _LARGE, 2 * _LARGE * PIXEL, rng)
-            path.write_bytes(al3d(heights[:_LARGE, :_LARGE], PIXEL, "speed"))
-        for figure, option in ((False, ["--no-figure"]), (True, ["--figure", folder + "/f"])):
-            single = sum(_seconds([path], option) for path in paths)
-            yield Speed(figure, single, _seconds(paths, option))
-
-
-def _seconds(paths: Sequence[Path], options: Sequence[str]) -> float:
-    """Processor time of a prediction (Units: s)."""
-    command = [sys.executable, "-m", "crackfront", "predict", *map(str, paths), *_SPHERE.split()]
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    one_core = {**os.environ, "OMP_NUM_THREADS": "1"}
-    done = subprocess.run(
-        [*command, *options], env=one_core, stdout=subprocess.DEVNULL, check=False
-    )
-    # 3: it applies with reservations; 4: it does not.
-    assert done.returncode in (0, 3, 4)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

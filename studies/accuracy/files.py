@@ -91,10 +91,7 @@ def errors_dataset(study: SceneErrors) -> xr.Dataset:
 def read_study(path: Path, kind: type[Record]) -> tuple[Scene, tuple[Record, ...]]:
     """Scene and records of the file of a study.
 
-    Raises
-    ------
-    ValueError
-        If the file is missing, truncated, or of a scene that is not known.
+    A ValueError says if it is missing, truncated, or of a scene that is not known.
     """
     scene = SCENES.get(str(read_dataset(path).attrs.get("scene")))
     if scene is None:

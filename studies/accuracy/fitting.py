@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from crackfront.plots.style import (
@@ -24,9 +23,8 @@ from crackfront.plots.style import (
     house_style,
 )
 from crackfront.simulate.laws import KNOBS, LAW_SIZE, Knob, Law, abscissa
+from studies.accuracy.scenes import Array
 from studies.accuracy.study import SceneErrors, rms
-
-Array = NDArray[np.float64]
 
 _LEAST = 3e-4
 """Least error of k that counts, as nobody asks for less."""

@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
-from numpy.typing import NDArray
 
 from crackfront.data.files import write_text
 from crackfront.plots.style import (
@@ -26,11 +25,10 @@ from crackfront.plots.style import (
 from studies.accuracy.averages import Coverage, Sample
 from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
-from studies.accuracy.scenes import SCENES, Progress, Scene
+from studies.accuracy.scenes import SCENES, Array, Progress, Scene
 from studies.accuracy.study import Errors, SceneErrors, joined, pareto_front, rms
 from studies.pages import markdown_table, renewed
 
-Array = NDArray[np.float64]
 Found = TypeVar("Found")
 
 _TARGETS = (0.1, 0.03, 0.01, 0.003)
@@ -53,17 +51,8 @@ _NAMES = {
 def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     """Fit the laws, write the tables and draw the figures of all studies that a folder holds.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the studies' files, and of what is written.
-    page : Path or None
-        Page whose blocks `<!-- accuracy: TABLE -->` are written anew.
-
-    Raises
-    ------
-    ValueError
-        If the folder holds none, or the page has a block of a table that was not measured.
+    Blocks `<!-- accuracy: TABLE -->` of a page are written anew. A ValueError says if the folder
+    holds no study, or the page has a block of a table that was not measured.
     """
     knobs, asked, unseen = (
         _stored(folder, study, read_errors) for study in ("knobs", "asked", "unseen")

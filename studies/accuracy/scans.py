@@ -11,14 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.measures import MeasuredSurface, measured_surface
 from crackfront.topography.reading import read_measurements
-
-Array = NDArray[np.float64]
+from studies.accuracy.scenes import Array
 
 SEED = 20240229
 ROLL_OFF, HURST, PLATEAU = 2.1e-6, 1.0, 8.4e-27
@@ -31,17 +29,7 @@ END = b"\r\n"
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """A map to write.
-
-    Attributes
-    ----------
-    name : str
-        Name of the file without suffix.
-    n_point : int
-        Points along a side; even, as rows are padded to eight bytes.
-    pixel : float
-        Distance of points. (Units: m)
-    """
+    """A map to write: file without suffix, an even number of points a side, their distance in m."""
 
     name: str
     n_point: int
@@ -63,16 +51,10 @@ def scan_heights(scan: Scan, seed: np.random.SeedSequence) -> Array:
 
 
 def al3d(heights: Array, pixel: float | tuple[float, float], comment: str) -> bytes:
-    """Content of an AL3D file.
+    """Content of an AL3D file of (n_x, n_y) heights, n_x even (Units: m).
 
-    Parameters
-    ----------
-    heights : (n_x, n_y) array
-        Heights; n_x is even. (Units: m)
-    pixel : float or tuple of float
-        Distance of points, along x and y where these differ. (Units: m)
-    comment : str
-        What the file says of itself, in fewer than 255 characters of Latin-1.
+    The distance of points is one number, or two where it differs along x and y. A comment has fewer
+    than 255 characters of Latin-1.
     """
     columns, rows = heights.shape
     along_x, along_y = pixel if isinstance(pixel, tuple) else (pixel, pixel)

@@ -71,23 +71,9 @@ class Setting(NamedTuple):
 class Scene:
     """Surfaces, and the penetrations at which both branches are measured.
 
-    Attributes
-    ----------
-    name : str
-        What the tables call it: shape and amplitude.
-    kind, spectrum, elastic_energy
-        As of :class:`crackfront.simulate.simulation.Simulation`.
-    tile_cutoffs : float
-        Side of the tile in short cutoffs.
-    step : float
-        Difference of the eight penetrations, the largest of which is 1.
-        (Units: reduced vertical length)
-    reference : Knobs
-        What errors are measured against.
-    single_knobs : bool
-        Whether laws are fitted to the errors of single knobs.
-    authors_seconds : float or None
-        CPU time of the authors' code for its full cycle, where it is known. (Units: s)
+    The name is shape and amplitude, the tile has so many short cutoffs a side. Errors are measured
+    against the reference, at eight penetrations a step apart up to 1; laws are fitted to those of
+    single knobs. The authors' seconds are those of their code for a full cycle, where known.
     """
 
     name: str

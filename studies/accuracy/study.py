@@ -20,25 +20,17 @@ from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.costs import featured_cost, features
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.steady import forward_circle
-from studies.accuracy.scenes import Progress, Scene, Setting
-
-Array = NDArray[np.float64]
+from studies.accuracy.scenes import Array, Progress, Scene, Setting
 
 _RUN, _BRANCH, _PER_CUTOFF = "realisation", "branch", "1 / short cutoff"
 
 
 @dataclass(frozen=True, slots=True)
 class Branches:
-    """States of both branches at the loads of a scene, the approach first.
+    """States of both branches at the same loads, the approach first: (2, n_state, ...) arrays.
 
-    Attributes
-    ----------
-    apparent_work_of_adhesion, force : (2, n_state) array
-        At the same loads in both. (Units: w_int, pi w_int R)
-    radius : (2, n_state, n_angle) array
-        Fronts. (Units: reduced lateral length)
-    seconds : float
-        Processor time, synthesis of the surface included. (Units: s)
+    The processor time includes the synthesis of the surface.
+    (Units: w_int, pi w_int R, reduced lateral length, s)
     """
 
     apparent_work_of_adhesion: Array
@@ -166,10 +158,7 @@ def _errors(scene: Scene, setting: Setting, found: list[Branches], exact: list[B
 def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
     """Both branches of a scene, each begun at a circle that moves forward.
 
-    Raises
-    ------
-    RuntimeError
-        If there is a load without a state.
+    A load without a state is a RuntimeError.
     """
     begun = time.process_time()
     simulation = scene.simulation(knobs, realisation)

@@ -27,17 +27,10 @@ hysteresis by a third of the first. The length of the cohesive zone would sugges
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """Surfaces of one spectrum, amplitude, grid and load step.
-
-    Attributes
-    ----------
-    rows : tuple of Hysteresis
-        The surfaces.
-    coarse : tuple of Hysteresis
-        Where the rows are extrapolated: a longer range on them and on further surfaces.
-    """
+    """Surfaces of one spectrum, amplitude, grid and load step."""
 
     rows: tuple[Hysteresis, ...]
+    # Where the rows are extrapolated: a longer range on them and on further surfaces.
     coarse: tuple[Hysteresis, ...] = ()
 
     @property

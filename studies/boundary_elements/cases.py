@@ -21,9 +21,7 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.data.bounds import NUMBER, Range
 from crackfront.data.fingerprint import fingerprint
 from crackfront.data.section import Positive, Section, refusal, within
-from studies.boundary_elements.contact import HalfSpaceContact, half_space_contact
-
-Array = NDArray[np.float64]
+from studies.boundary_elements.contact import Array, HalfSpaceContact, half_space_contact
 
 _STEADY = (0.25, 0.75)
 """Where the branches of a whole loop are steady, relative to the largest penetration."""
@@ -46,13 +44,7 @@ class Loads(Section):
     then pressed to the largest penetration, and back in one step, so that its edge has turned
     everywhere.
 
-    Attributes
-    ----------
-    max_penetration, step, shown_penetration : float
-        Largest penetration, load step, and the penetration at which contacts are compared and
-        drawn. (Units: reduced vertical length)
-    steady : SteadyBranches, optional
-        The steady parts; without them the loop is whole.
+    Contacts are compared and drawn at the shown penetration. (Units: reduced vertical length)
 
     Examples
     --------

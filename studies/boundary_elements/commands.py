@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -58,32 +57,3 @@ def validate(configuration: Path, output: Path | None, finished: bool) -> None:
         write_validation(folder, parameters, origin, click.echo, compute=not finished)
     except KeyboardInterrupt as error:
         raise StoppedError("Run the same command to continue with the next load step") from error
-
-
-@commands.command()
-@click.argument("configuration", type=FILE, default="config/validation.yaml")
-def minimiser(configuration: Path) -> None:
-    """Time a load step of the rough cases of a configuration, and by NuMPI's minimiser.
-
-    At the disorder of the case, and at that of the paper's nanodiamond film, e_el/w_int = 0.177.
-    """
-    from studies.boundary_elements.benchmarks import MINIMISER, minimiser_row
-    from studies.boundary_elements.parameters import load_validation, validation_cases
-    from studies.pages import markdown_table
-
-    rows = (
-        minimiser_row(replace(case, elastic_energy=energy))
-        for case in validation_cases(load_validation(configuration))
-        if case.elastic_energy > 0
-        for energy in (case.elastic_energy, 0.177)
-    )
-    click.echo(markdown_table(MINIMISER, rows))
-
-
-@commands.command()
-def rotated() -> None:
-    """Time the mapping whose crack turns with the angle, and the plain sum over all modes."""
-    from studies.boundary_elements.benchmarks import ROTATED, TILES, rotated_row
-    from studies.pages import markdown_table
-
-    click.echo(markdown_table(ROTATED, (rotated_row(*tile) for tile in TILES)))

@@ -21,7 +21,6 @@ from scipy.fft import irfft2, rfft2
 
 from crackfront.core import jkr
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
-from crackfront.data.optional_libraries import MissingExtraError
 
 Array = NDArray[np.float64]
 Values = TypeVar("Values", NDArray[np.float64], NDArray[np.float32])
@@ -50,28 +49,14 @@ class HalfSpaceContact:
 
     Displacements live on a grid of twice the side, so that the half-space is not periodic; the
     sphere covers its first quadrant, with the apex half a side from the first point.
-
-    Attributes
-    ----------
-    system : Adhesion.System.BoundedSmoothContactSystem
-        The contact as the libraries know it.
-    surface : (n_point, n_point) array
-        Paraboloid and roughness, positive towards the half-space. (Units: reduced vertical length)
-    pixel : float
-        Grid spacing. (Units: reduced lateral length)
-    interaction_range : float
-        Gap g_c at which the attraction ends. (Units: reduced vertical length)
-    stiffness, compliance : (2 n_point, n_point + 1) array
-        Pressure of a Fourier mode of unit displacement, and its inverse.
-        (Units: reduced pressure / vertical length)
     """
 
-    system: Any
-    surface: Array
-    pixel: float
-    interaction_range: float
-    stiffness: Array
-    compliance: Array
+    system: Any  # Adhesion.System.BoundedSmoothContactSystem, the contact as the libraries know it
+    surface: Array  # (n_point, n_point) paraboloid and roughness, positive towards the half-space
+    pixel: float  # grid spacing (reduced lateral length)
+    interaction_range: float  # gap g_c at which the attraction ends (reduced vertical length)
+    stiffness: Array  # (2 n_point, n_point + 1) pressure of a mode of unit displacement
+    compliance: Array  # its inverse
 
     @property
     def n_point(self) -> int:
@@ -120,34 +105,21 @@ def half_space_contact(
 ) -> HalfSpaceContact:
     """Contact of a rough sphere whose attraction is cubic in the gap, with a hard wall.
 
-    Parameters
-    ----------
-    roughness : (n_point, n_point) array
-        Heights on the sphere, zero for a smooth one. (Units: reduced vertical length)
-    pixel, interaction_range : float
-        As of :class:`HalfSpaceContact`.
-    max_penetration : float
-        Largest penetration that the domain must hold. (Units: reduced vertical length)
-
-    Raises
-    ------
-    ValueError
-        If the grid is too coarse for the attraction, the domain too small for the contact, or the
-        libraries are missing.
+    The roughness is (n_point, n_point) heights on the sphere, the penetration the largest that the
+    domain must hold. (Units: reduced vertical length) A ValueError says if the grid is too coarse
+    for the attraction, or the domain too small for the contact.
 
     References
     ----------
     .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. III.
     """
     refuse_unresolved(pixel, len(roughness), interaction_range, max_penetration)
-    try:
-        from Adhesion.Interactions import PowerLaw
-        from Adhesion.System import BoundedSmoothContactSystem
-        from ContactMechanics import FreeFFTElasticHalfSpace
-        from SurfaceTopography import Topography
-        from SurfaceTopography.Special import make_sphere
-    except ModuleNotFoundError as error:
-        raise MissingExtraError("boundary elements", error, "bem") from error
+    from Adhesion.Interactions import PowerLaw
+    from Adhesion.System import BoundedSmoothContactSystem
+    from ContactMechanics import FreeFFTElasticHalfSpace
+    from SurfaceTopography import Topography
+    from SurfaceTopography.Special import make_sphere
+
     side = pixel * len(roughness)
     shape, sides = (len(roughness),) * 2, (side, side)
     sphere = make_sphere(1.0, shape, sides, kind="paraboloid")
@@ -199,31 +171,16 @@ def _attraction_radius(penetration: float, interaction_range: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Equilibrium:
-    """A stable state of the contact.
+    """A stable state of the contact."""
 
-    Attributes
-    ----------
-    displacement : (2 n_point, 2 n_point) array
-        Displacement into the half-space. (Units: reduced vertical length)
-    products, barriers, saddles : int
-        Conjugate-gradient products; steps that were shortened before a rise of the energy;
-        unstable states without forces that were left.
-    residual, radius : float
-        Largest pressure out of balance, relative to the largest tension; trust radius for the next
-        load step.
-    energy, released : float
-        Energy per area of a pixel, and how far it fell at this penetration; it never rises.
-        (Units: reduced pressure * vertical length)
-    """
-
-    displacement: Array
-    products: int
-    residual: float
-    radius: float
-    energy: float
-    released: float
-    barriers: int
-    saddles: int
+    displacement: Array  # into the half-space, (2 n_point, 2 n_point) (reduced vertical length)
+    products: int  # of conjugate gradients
+    residual: float  # largest pressure out of balance, relative to the largest tension
+    radius: float  # trust radius for the next load step
+    energy: float  # per area of a pixel (reduced pressure * vertical length)
+    released: float  # how far it fell at this penetration; it never rises
+    barriers: int  # steps that were shortened before a rise of the energy
+    saddles: int  # unstable states without forces that were left
 
 
 def equilibrium(
@@ -235,23 +192,11 @@ def equilibrium(
     radius: float,
     max_iterations: int = 500,
 ) -> Equilibrium:
-    """State in which a contact comes to rest from a given one.
+    """State in which a contact comes to rest from a given (2 n_point, 2 n_point) displacement.
 
-    Parameters
-    ----------
-    displacement : (2 n_point, 2 n_point) array
-        Where it starts. (Units: reduced vertical length)
-    penetration : float
-        Rigid body penetration b. (Units: reduced vertical length)
-    tolerance : float
-        Largest pressure out of balance that may be left, relative to the largest tension.
-    radius : float
-        Trust radius of the first step: root of twice its elastic energy per area of a pixel.
-
-    Raises
-    ------
-    ValueError
-        If it does not come to rest in `max_iterations` steps.
+    The tolerance is the largest pressure out of balance that may be left, relative to the largest
+    tension; the trust radius of the first step is the root of twice its elastic energy per area of
+    a pixel. A ValueError says if the contact does not come to rest in `max_iterations` steps.
 
     References
     ----------

@@ -9,14 +9,11 @@ from dataclasses import dataclass, replace
 from itertools import islice
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
 from crackfront.core.variables import ENERGY, FORCE, LATERAL, STEP, VERTICAL, variable, variables
 from studies.boundary_elements.cases import Case
-from studies.boundary_elements.contact import equilibrium
-
-Array = NDArray[np.float64]
+from studies.boundary_elements.contact import Array, equilibrium
 
 _ANGLE, _SHOWN, _X, _Y = "angle", "shown", "x", "y"
 PRESSURE = f"{FORCE} / ({LATERAL})^2"
@@ -73,17 +70,8 @@ def boundary_cycle(
 ) -> BoundaryCycle:
     """Quasi-static approach and retraction: a whole loop, or the steady parts of its branches.
 
-    Parameters
-    ----------
-    resume : BoundaryCycle, optional
-        An unfinished cycle of the same case.
-    keep : callable, optional
-        Called with the cycle so far after every load step.
-
-    Raises
-    ------
-    ValueError
-        If a state does not come to rest.
+    An unfinished cycle of the same case is resumed; the cycle so far is given to `keep` after every
+    load step. A ValueError says if a state does not come to rest.
     """
     contact, so_far = case.contact(), resume or _no_states(case.n_point)
     known, side = so_far.penetration.size, case.n_point

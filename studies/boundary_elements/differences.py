@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.variables import ADHESION, FORCE, VERTICAL, variable
 from studies.boundary_elements.cases import Case
+from studies.boundary_elements.contact import Array
 from studies.boundary_elements.cycle import BoundaryCycle
 from studies.boundary_elements.front import FrontCycle, shared_states, shown_states
-
-Array = NDArray[np.float64]
 
 _SAME_PLACE, _SAME_LOAD = 1.0, 0.1
 """Largest distance of matched jumps along the front, in short cutoffs, and in penetration."""

@@ -18,10 +18,10 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from studies.boundary_elements.cases import Case
+from studies.boundary_elements.contact import Array
 from studies.boundary_elements.cycle import N_ANGLE, BoundaryCycle
 from studies.boundary_elements.rotated import adhesion_on_rays
 
-Array = NDArray[np.float64]
 States = BoundaryCycle | ContactState[Any]
 
 _TOLERANCE = 1e-6
@@ -30,23 +30,17 @@ _TOLERANCE = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class FrontCycle:
-    """A cycle of the crack front on the heights of a case.
+    """A cycle of the crack front on the heights of a case; its crack turned with the angle or not.
 
     Attributes
     ----------
-    states : ContactState
-        Its states.
     radius : (n_step, N_ANGLE) array
-        Their fronts at the angles of the boundary elements' perimeters, by their Fourier series.
+        Fronts at the angles of the boundary elements' perimeters, by their Fourier series.
         (Units: reduced lateral length)
     energy : (n_step,) array
         Energies above that of no contact. (Units: pi w_int R times a reduced vertical length)
     end : float
         Penetration at which it lost contact. (Units: reduced vertical length)
-    rotated : bool
-        Whether the crack turned with the angle.
-    seconds : float
-        Processor time of the field and of the cycle. (Units: s)
     """
 
     states: ContactState[Any]
@@ -58,23 +52,9 @@ class FrontCycle:
 
 
 def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = True) -> FrontCycle:
-    """Cycle of the crack front on the heights of a case.
+    """Cycle of a crack front of so many sites, from samples along rays a spacing apart.
 
-    Parameters
-    ----------
-    case : Case
-        Heights and loads.
-    n_angle : int
-        Number of sites of the front.
-    spacing : float
-        Distance of samples along a ray. (Units: reduced lateral length)
-    rotated : bool, optional
-        As of :func:`studies.boundary_elements.rotated.adhesion_on_rays`.
-
-    Raises
-    ------
-    ValueError
-        If the front fails, or loses contact within the steady parts of its branches.
+    A ValueError says if it fails, or loses contact within the steady parts of its branches.
     """
     began = time.process_time()
     angles = 2 * np.pi * np.arange(n_angle) / n_angle
@@ -120,13 +100,7 @@ def shared_states(one: States, other: States) -> tuple[NDArray[np.int64], NDArra
 
 
 def shown_states(case: Case, states: States) -> list[int]:
-    """Indices of the states at the shown penetration, in approach and in retraction.
-
-    Raises
-    ------
-    ValueError
-        If a branch has no such state.
-    """
+    """Indices of the states at the shown penetration, in approach and in retraction."""
     shown, found = case.loads.shown_penetration, []
     for direction, branch in ((1, "approach"), (-1, "retraction")):
         at = np.isclose(states.penetration, shown, atol=1e-9) & (states.direction == direction)

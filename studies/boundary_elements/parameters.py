@@ -34,40 +34,22 @@ class FrontSection(Section):
 
 
 class CaseSection(Section):
-    """Cases of one grid, range, load step and spectrum: amplitudes, and surfaces of each.
-
-    Attributes
-    ----------
-    n_point, interaction_range, roll_off, hurst
-        As of :class:`Case`; flat by default.
-    elastic_energies : tuple of float
-        Amplitudes, 0 for a smooth sphere. (Units: w_int)
-    step : float, optional
-        A load step of its own. (Units: reduced vertical length)
-    surfaces : int, optional
-        Number of surfaces, whose seeds are drawn from that of the file; by default one surface,
-        whose seed is that of the file.
-    """
+    """Cases of one grid, range, load step and spectrum, flat by default, as of :class:`Case`."""
 
     n_point: Annotated[Count, Field(ge=16)]
     interaction_range: Positive
     elastic_energies: Annotated[
         tuple[Annotated[float, Field(ge=0, lt=1)], ...], Field(min_length=1)
-    ]
-    step: Positive | None = None
+    ]  # amplitudes, 0 for a smooth sphere (w_int)
+    step: Positive | None = None  # by default that of all cases (reduced vertical length)
     roll_off: Positive | None = None
     hurst: Annotated[float, Field(gt=0, le=1)] = 1.0
+    # Their seeds are drawn from that of the file; by default one surface with that seed.
     surfaces: Count | None = None
 
 
 class ValidationParameters(Section):
-    """The whole file.
-
-    Attributes
-    ----------
-    short_cutoff, side, tolerance, loads
-        Of all cases, as of :class:`Case`.
-    """
+    """The whole file; cutoff, side, tolerance and loads are those of all cases."""
 
     seed: Seed
     short_cutoff: Positive
@@ -111,11 +93,7 @@ class ValidationParameters(Section):
 def load_validation(path: Path) -> ValidationParameters:
     """Parameters of a YAML file like config/validation.yaml.
 
-    Raises
-    ------
-    ConfigurationError
-        If the file cannot be read, or anything in it is unknown, missing or out of range; one
-        sentence for each.
+    A ConfigurationError has a sentence for whatever is unknown, missing or out of range.
     """
     return validated(path, content_of(path), ValidationParameters)
 

@@ -12,7 +12,6 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.variables import FORCE, LATERAL, VERTICAL, variable
@@ -30,11 +29,10 @@ from crackfront.plots.style import (
 )
 from studies.boundary_elements.averages import Setting, limit_settings, rough_settings, settings
 from studies.boundary_elements.cases import Case
+from studies.boundary_elements.contact import Array
 from studies.boundary_elements.cycle import N_ANGLE, PRESSURE, BoundaryCycle
 from studies.boundary_elements.front import FrontCycle, shown_states
 from studies.boundary_elements.hysteresis import Hysteresis
-
-Array = NDArray[np.float64]
 
 _MOST_POINTS, _MARGIN = 320, 0.15
 """Points along a side of the part that is kept, and its margin around the contact."""

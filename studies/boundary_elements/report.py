@@ -29,24 +29,13 @@ _PULL_OFF = 1.5
 def validation_report(
     rows: Sequence[Hysteresis], loops: Sequence[Differences], short_cutoff: float
 ) -> str:
-    """Markdown tables of what is finished.
-
-    Parameters
-    ----------
-    rows : sequence of Hysteresis
-        Every case.
-    loops : sequence of Differences
-        Whole loops, twice where a crack that does not turn is compared too.
-    short_cutoff : float
-        Shortest wavelength of the roughness. (Units: reduced lateral length)
-    """
+    """Markdown tables of the finished cases, and of those that are whole loops."""
     found, limits = settings(rows), limit_settings(rows)
     told = [validity_row(one, short_cutoff) for one in rough_settings(limits)]
     parts = [
         ["# Crack front against boundary elements", ""],
         [validity_sentence(told), ""] if told else [],
         _hysteresis_table([*found, *limits]),
-        _resolution_table(rows),
         _run_table(found),
         _difference_table(loops),
         _jump_table([row for row in loops if row.elastic_energy > 0]),
@@ -107,27 +96,6 @@ def _hysteresis_table(found: Sequence[Setting]) -> list[str]:
             )
             for one in found
         ),
-    )
-
-
-def _resolution_table(rows: Sequence[Hysteresis]) -> list[str]:
-    """Hysteresis of the boundary elements on one surface at every resolution."""
-    lines = []
-    for scene in sorted({(*row.scene, row.seed) for row in rows if row.asked_energy > 0}):
-        alike = [row for row in rows if (*row.scene, row.seed) == scene]
-        alike.sort(key=lambda row: (-row.interaction_range, row.n_point, -row.step))
-        for row in alike if len(alike) > 1 else ():
-            change = row.boundary_hysteresis / alike[0].boundary_hysteresis - 1
-            lines.append(
-                f"{_setting(row, row.elastic_energy)} | {row.boundary_approach:.4f} | "
-                f"{row.boundary_retraction:.4f} | {row.boundary_hysteresis:.4f} | "
-                f"{change:+.1%} | {row.front_hysteresis:.4f}"
-            )
-    return _table(
-        "One surface by boundary elements at several resolutions: hysteresis, and its change from "
-        "the coarsest.",
-        f"{_SETTING} | w_appr | w_retr | hysteresis | change | front",
-        lines,
     )
 
 

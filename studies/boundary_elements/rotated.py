@@ -19,9 +19,7 @@ from scipy.fft import fft2, fftfreq
 
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
-from crackfront.data.optional_libraries import MissingExtraError
-
-Array = NDArray[np.float64]
+from studies.boundary_elements.contact import Array
 
 _PRECISION = 1e-13
 """Precision of the transforms, relative to the sum of the amplitudes."""
@@ -43,15 +41,9 @@ def adhesion_on_rays(
     heights : (n_x, n_y) array
         Periodic roughness without waves of two pixels, positive at peaks; the apex is the tile's
         centre. (Units: reduced vertical length)
-    pixel : float
-        Grid spacing. (Units: reduced lateral length)
-    angles : (n_angle,) array
-        Angles of the rays. (Units: rad)
     spacing : float
         Distance of the points; the first one is so far from the centre.
         (Units: reduced lateral length)
-    n_sample : int
-        Points of a ray.
     rotated : bool, optional
         Whether the crack turns; if not, it is parallel to y everywhere, as in the paper's
         statistics (SI II).
@@ -61,20 +53,13 @@ def adhesion_on_rays(
     (n_sample, n_angle) array
         w_loc. (Units: reduced energy / area, w_int = 1/pi)
 
-    Raises
-    ------
-    ValueError
-        If full conformity is not possible, or FINUFFT is missing.
-
     References
     ----------
     .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. I B, C and III.
     .. [2] Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41, C479 (2019).
     """
-    try:
-        from finufft import nufft1d1
-    except ModuleNotFoundError as error:
-        raise MissingExtraError("rotated cracks", error, "bem") from error
+    from finufft import nufft1d1
+
     energy = rough_adhesion(heights, pixel).e_el * WORK_OF_ADHESION
     wavevector, direction, amplitude = _modes(heights, pixel)
     # The transform counts its points from their middle one.

@@ -63,17 +63,9 @@ def write_validation(
 ) -> None:
     """Compare the front with boundary elements, case by case, and write what is found so far.
 
-    Parameters
-    ----------
-    folder : Path
-        Where every load step of the boundary elements is kept, and found again.
-    compute : bool, optional
-        Whether cases are computed that the folder does not hold; else they are left out.
-
-    Raises
-    ------
-    ValueError
-        If a front fails, or nothing is finished.
+    Every load step of the boundary elements is kept in the folder, and found again. Without
+    computing, cases that it does not hold are left out. A ValueError says if a front fails,
+    or nothing is finished.
     """
     fronts: dict[tuple[object, ...], FrontCycle] = {}
 

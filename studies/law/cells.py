@@ -121,13 +121,7 @@ def cell_means(kind: FieldKind, dataset: xr.Dataset) -> dict[tuple[int, int], Me
 
 
 def law_cells(configuration: Path) -> list[LawCell]:
-    """Cells of one sweep of straight fronts that has been run.
-
-    Raises
-    ------
-    ValueError
-        If the sweep runs spheres.
-    """
+    """Cells of one sweep of straight fronts that has been run; spheres are a ValueError."""
     sweep = load_configuration(configuration)
     load = sweep.schedule
     if not load.straight:

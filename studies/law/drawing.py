@@ -36,19 +36,7 @@ _LARGE = 3.0
 
 @dataclass(frozen=True, slots=True)
 class LawPoints:
-    """Measured k of one kind of front, arrays of one shape.
-
-    Attributes
-    ----------
-    name : str
-        Their name in the legend.
-    disorder, size : (n,) array
-        s and g.
-    factor, error : (n,) array
-        k and its standard error.
-    breadth : (n,) array
-        That of the spectra, as :func:`crackfront.analysis.law.slope_breadth`.
-    """
+    """Disorder s, size g, k with its standard error, and breadth of spectra of fronts of a name."""
 
     name: str
     disorder: Array
@@ -74,15 +62,7 @@ def spectra_points(cells: Sequence[LawCell]) -> tuple[LawPoints, ...]:
 
 
 def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
-    """Collapse of straight fronts and spheres on the shipped law, and its infinite contact.
-
-    Parameters
-    ----------
-    fronts : sequence of LawPoints
-        Straight fronts, an entry a spectrum.
-    spheres : LawPoints
-        Spheres, to which nothing is adjusted.
-    """
+    """Collapse of straight fronts and spheres on the shipped law, and its infinite contact."""
     styles = [
         _style(colour, marker)
         for _, colour, marker in zip(fronts, cycle(COLOURS), cycle(MARKERS), strict=False)

@@ -63,10 +63,7 @@ def _row(
 def sphere_rows(configuration: Path) -> Iterator[SphereRow]:
     """Spheres of a sweep that has been run.
 
-    Raises
-    ------
-    ValueError
-        If the sweep runs full cycles or straight fronts, or spectra that are not self-affine.
+    Full cycles, straight fronts, and spectra that are not self-affine are a ValueError.
     """
     sweep = load_configuration(configuration)
     if sweep.schedule.straight or sweep.schedule.full_cycle:

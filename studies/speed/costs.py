@@ -110,13 +110,7 @@ def least_of_passes(
 
 
 def worst_factor(held_out: bool) -> float:
-    """Largest factor between times that the law in use gives and those of its table.
-
-    Parameters
-    ----------
-    held_out : bool
-        Whether of the runs that the fit does without, or of the others.
-    """
+    """Largest factor between times of the law in use and of its table, held out of it or not."""
     runs = [run for run in measured_runs() if run.held_out == held_out]
     ratios = predicted_seconds(runs) / [run.cpu_seconds for run in runs]
     return float(np.max(np.maximum(ratios, 1 / ratios)))

@@ -46,17 +46,7 @@ RING_SAMPLES = 16
 class Scene:
     """The surface, the rings and the loads that all requests share.
 
-    Attributes
-    ----------
-    spectrum : SelfAffineSpectrum
-        That of the heights; its short cutoff is the period of the rings.
-        (Units: reduced lateral length)
-    tile_cutoffs : float
-        Side of the tile in short cutoffs, at the least; it holds four roll-offs.
-    cycle : LoadSchedule
-        Loads of the full cycles.
-    steady : SteadySchedule
-        Loads of the hysteresis alone.
+    The short cutoff of the heights is the period of the rings.
     """
 
     spectrum: SelfAffineSpectrum
@@ -79,21 +69,7 @@ SMALL = replace(SCENE, spectrum=SelfAffineSpectrum(0.2, 0.4, 0.8), tile_cutoffs=
 
 @dataclass(frozen=True, slots=True)
 class Need:
-    """One request.
-
-    Attributes
-    ----------
-    name : str
-        What the tables call it.
-    asked : str
-        What is computed and stored because of it.
-    load : {"cycle", "steady"}
-        Full cycle, or the steady parts of its branches.
-    rays : int
-        Rays of a field of rings; 0 for the surface.
-    fronts, energy : bool
-        What is recorded beside the curves.
-    """
+    """One request: what is asked of rings on some rays, or of the surface where these are 0."""
 
     name: str
     asked: str
@@ -194,12 +170,10 @@ def _way(record: CycleRecord) -> float:
     for direction in (1, -1):
         branch = record.states.direction == direction
         radius = record.states.mean_radius[branch]
-        way += float(
-            np.sum(record.states.least_travel[branch][:1]) + np.sum(np.abs(np.diff(radius)))
-        )
-    return way + (
-        float(record.states.mean_radius[-1]) if record.status is Status.LOST_CONTACT else 0.0
-    )
+        begun = np.sum(record.states.least_travel[branch][:1])
+        way += float(begun + np.sum(np.abs(np.diff(radius))))
+    lost = record.status is Status.LOST_CONTACT
+    return way + (float(record.states.mean_radius[-1]) if lost else 0.0)
 
 
 def _bytes(values: object) -> int:

@@ -29,25 +29,9 @@ PIXELS_PER_CUTOFF = 8
 class Problem:
     """One cycle from penetration 0 to 1 and back to pull-off, at a tolerance of 1e-8.
 
-    Attributes
-    ----------
-    group : {"disorder", "scaling", "smoke"}
-        Its table.
-    rms : float
-        w_rms / w_int.
-    spectrum : SelfAffineSpectrum
-        A flat one is the spectrum of the work of adhesion, another that of the heights.
-        (Units: reduced lateral length)
-    n_angle : int
-        Sites of the front.
-    step : float
-        Load step. (Units: reduced vertical length)
-    samples_per_cutoff : int
-        Samples along a ray per short cutoff.
-    interpolation : {"linear", "cubic"}
-        Pieces between samples.
-    on_tile : bool
-        Evaluate the field from its tile where the front is, instead of sampling all rays first.
+    Its rms is that of the work of adhesion in w_int. A flat spectrum is that of the work of
+    adhesion, another one that of the heights. (Units: reduced lateral length) On its tile a field
+    is evaluated where the front is, else sampled on all rays first.
     """
 
     group: Group
@@ -106,34 +90,28 @@ def _flat(cutoff: float) -> SelfAffineSpectrum:
     return SelfAffineSpectrum(cutoff, cutoff, 1.0)
 
 
+def _cubic(group: Group, rms: float, cutoff: float, n_angle: int) -> Problem:
+    """Problem on its tile, with five samples a cutoff and cubic pieces between them."""
+    return Problem(
+        group,
+        rms,
+        _flat(cutoff),
+        n_angle,
+        samples_per_cutoff=5,
+        interpolation="cubic",
+        on_tile=True,
+    )
+
+
 PROBLEMS = (
     *(Problem("disorder", rms, _flat(0.02), 4096) for rms in (0.05, 0.1, 0.2, 0.4, 0.84, 2.0)),
     Problem("disorder", 0.4, _flat(0.02), 4096, on_tile=True),
-    *(
-        Problem(
-            "disorder",
-            rms,
-            _flat(0.02),
-            4096,
-            samples_per_cutoff=5,
-            interpolation="cubic",
-            on_tile=True,
-        )
-        for rms in (0.1, 0.4)
-    ),
+    *(_cubic("disorder", rms, 0.02, 4096) for rms in (0.1, 0.4)),
     Problem("disorder", 0.4, _flat(0.02), 4096, step=0.002),
     Problem("disorder", 0.45, SelfAffineSpectrum(0.02, 0.4, 0.3), 4096),
     Problem("disorder", 0.45, SelfAffineSpectrum(0.02, 0.32, 0.8), 4096),
     *(
-        Problem(
-            "scaling",
-            rms,
-            _flat(cutoff),
-            round(81.92 / cutoff),
-            samples_per_cutoff=5,
-            interpolation="cubic",
-            on_tile=True,
-        )
+        _cubic("scaling", rms, cutoff, round(81.92 / cutoff))
         for rms in (0.1, 0.4)
         for cutoff in (0.08, 0.04, 0.02, 0.01, 0.005)
     ),

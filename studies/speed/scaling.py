@@ -49,17 +49,7 @@ RANKS_OF_A_JOB = 32
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """A sweep that was played through.
-
-    Attributes
-    ----------
-    n_rank : int
-        Ranks at once, managers included.
-    hours : float
-        Time from the first submission to the last result.
-    efficiency : float
-        Useful seconds over rank seconds.
-    """
+    """Hours and efficiency of a sweep on a number of ranks, managers included."""
 
     n_rank: int
     hours: float
@@ -67,15 +57,7 @@ class Played:
 
 
 def job_seconds(tasks: Sequence[float] | Array, n_worker: int) -> float:
-    """Time of a job whose manager hands out tasks, the longest first, to whoever is free.
-
-    Parameters
-    ----------
-    tasks : sequence of float
-        Times of the tasks. (Units: s)
-    n_worker : int
-        Ranks that compute.
-    """
+    """Time of a job whose manager hands out tasks, the longest first, to whoever is free."""
     free = [0.0] * n_worker
     manager = end = 0.0
     for seconds in sorted(tasks, reverse=True):
@@ -87,14 +69,9 @@ def job_seconds(tasks: Sequence[float] | Array, n_worker: int) -> float:
 
 
 def played(shards: Sequence[Array], rank_numbers: Sequence[int] = RANKS) -> list[Played]:
-    """Play a sweep through on different numbers of ranks.
+    """Play a sweep, given as seconds of the tasks of its shards, through on numbers of ranks.
 
-    Parameters
-    ----------
-    shards : sequence of (n_task,) array
-        Times of the tasks of every shard. (Units: s)
-    rank_numbers : sequence of int, optional
-        Ranks at once. Up to :data:`RANKS_OF_A_JOB` they are one job's, else those of several.
+    Up to :data:`RANKS_OF_A_JOB` ranks are those of one job, more those of several.
     """
     useful = float(sum(np.sum(shard) for shard in shards))
     sizes = {n_rank: min(n_rank, RANKS_OF_A_JOB) for n_rank in rank_numbers}
@@ -139,17 +116,7 @@ def million(n_simulation: int = 10**6, n_shard: int = 1000, seed: int = 1) -> li
 
 
 def dispatch_efficiency(n_worker: int, n_round: int, seconds: float = 0.5) -> float:
-    """Useful seconds over worker seconds of tasks that sleep, on ranks of MPI.
-
-    Parameters
-    ----------
-    n_worker : int
-        Ranks that work; one more hands out.
-    n_round : int
-        Tasks of each.
-    seconds : float, optional
-        Time of a task.
-    """
+    """Useful over worker seconds of tasks that sleep, on so many ranks and one that hands out."""
     script = (
         "import time\n"
         "from crackfront.sweep import parallel\n"

@@ -1,6 +1,5 @@
 """The boundary elements: against their libraries and against JKR."""
 
-import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -160,9 +159,3 @@ def test_a_coarse_smooth_sphere_has_the_force_and_the_radius_of_jkr(smooth):
 def test_grids_that_cannot_hold_the_contact_are_refused(n_point, side, sentence):
     with pytest.raises(ValueError, match=sentence):
         half_space_contact(np.zeros((n_point, n_point)), side / n_point, 0.24, max_penetration=1.0)
-
-
-def test_a_missing_extra_is_refused_with_the_command_that_installs_it(monkeypatch):
-    monkeypatch.setitem(sys.modules, "Adhesion.Interactions", None)
-    with pytest.raises(ValueError, match=r"need Adhesion, .* pip install '.\[bem\]'"):
-        half_space_contact(np.zeros((64, 64)), SIDE / 64, RANGE, max_penetration=1.0)

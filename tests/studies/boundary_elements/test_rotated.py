@@ -1,7 +1,6 @@
 """The mapping whose crack turns with the angle: against brute force and the mapping of a tile."""
 
 import itertools
-import sys
 
 import numpy as np
 import pytest
@@ -78,9 +77,3 @@ def test_turning_the_crack_changes_single_places_and_no_statistics():
     assert np.corrcoef(one.ravel(), other.ravel())[0, 1] < 0.95
     assert one.std() == pytest.approx(other.std(), rel=0.02)
     assert one.mean() == pytest.approx(other.mean(), rel=0.01)
-
-
-def test_a_missing_transform_is_refused_with_the_command_that_installs_it(monkeypatch):
-    monkeypatch.setitem(sys.modules, "finufft", None)
-    with pytest.raises(ValueError, match=r"need finufft, .* pip install '.\[bem\]'"):
-        adhesion_on_rays(np.ones((8, 8)), PIXEL, np.zeros(1), 0.1, 4)

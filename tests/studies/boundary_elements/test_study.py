@@ -11,7 +11,6 @@ from crackfront.analysis.validity import validity_of, validity_sentence
 from crackfront.core import jkr
 from crackfront.data.records import read_record, read_records
 from studies.boundary_elements.averages import limit_settings
-from studies.boundary_elements.benchmarks import minimiser_row, rotated_row
 from studies.boundary_elements.commands import commands
 from studies.boundary_elements.differences import Differences
 from studies.boundary_elements.hysteresis import Hysteresis, apparent_adhesion
@@ -157,18 +156,6 @@ def test_a_validation_without_its_extra_is_refused_before_it_computes(
     assert f"need {name}, which is not installed" in str(outcome.exception)
     assert "pip install '.[bem]'" in str(outcome.exception)
     assert not (tmp_path / "x").exists()
-
-
-def test_a_load_step_of_numpis_optimiser_ends_in_the_same_state(case):
-    cells = minimiser_row(case)
-    assert float(cells[-1]) < 1e-2  # apart, relative to the range
-    assert int(cells[3]) < int(cells[5])  # products
-
-
-def test_a_point_of_a_ray_costs_less_than_the_sum_over_its_modes():
-    cells = rotated_row(256, 0.05)
-    assert int(cells[2]) == round(np.pi * (5.12 / 0.05) ** 2 / 2)
-    assert float(cells[4]) < float(cells[5])
 
 
 def test_the_work_of_adhesion_of_a_force_is_that_of_the_open_edge():
