@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -26,7 +27,7 @@ from studies.accuracy.averages import Coverage, Sample
 from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
 from studies.accuracy.scenes import SCENES, Array, Progress, Scene
-from studies.accuracy.study import Errors, SceneErrors, joined, pareto_front, rms
+from studies.accuracy.study import Errors, SceneErrors, pareto_front, rms
 from studies.pages import markdown_table, renewed
 
 Found = TypeVar("Found")
@@ -61,11 +62,9 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     coverages = _stored(folder, "coverage", lambda path: read_study(path, Coverage))
     if not (knobs or asked or unseen or samples or coverages):
         raise ValueError(f"{folder} holds no errors; run python -m studies accuracy scene")
-    studies = {
-        name: joined(*(part[name] for part in (knobs, asked) if name in part))
-        for name in SCENES
-        if name in knobs | asked
-    }
+    studies = {name: (knobs | asked)[name] for name in SCENES if name in knobs | asked}
+    for name in knobs.keys() & asked.keys():
+        studies[name] = replace(knobs[name], errors=knobs[name].errors + asked[name].errors)
     tables = {}
     if studies:
         tables["Time to an error of the hysteresis"] = _target_table(studies.values())

@@ -124,12 +124,6 @@ def scene_errors(
     return replace(study, errors=tuple(errors))
 
 
-def joined(*studies: SceneErrors) -> SceneErrors:
-    """Studies of one scene, on the same surfaces, as one."""
-    errors = tuple(errors for study in studies for errors in study.errors)
-    return replace(studies[0], errors=errors)
-
-
 def _errors(scene: Scene, setting: Setting, found: list[Branches], exact: list[Branches]) -> Errors:
     """Differences of the found branches from the exact ones, surface by surface."""
     pairs = list(zip(found, exact, strict=True))

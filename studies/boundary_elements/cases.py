@@ -123,28 +123,17 @@ class Loads(Section):
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """Everything that determines one cycle by boundary elements.
+    """Everything that determines one cycle by boundary elements."""
 
-    Attributes
-    ----------
-    seed, short_cutoff, roll_off, hurst, elastic_energy
-        Of the surface: its spectrum, flat where the roll-off is the short cutoff, and the energy of
-        full conformity, 0 for a smooth sphere. (Units: reduced lateral length, w_int)
-    side, n_point, interaction_range, tolerance, loads
-        Of the boundary elements: side of the periodic domain and points along it, gap at which the
-        attraction ends, and largest pressure out of balance, relative to the largest tension.
-        (Units: reduced lateral length, reduced vertical length)
-    """
-
-    seed: int
-    short_cutoff: float
+    seed: int  # of the surface
+    short_cutoff: float  # of its spectrum, flat where the roll-off is as long (reduced lateral)
     roll_off: float
     hurst: float
-    side: float
-    n_point: int
-    interaction_range: float
-    elastic_energy: float
-    tolerance: float
+    side: float  # of the periodic domain (reduced lateral length)
+    n_point: int  # along it
+    interaction_range: float  # gap at which the attraction ends (reduced vertical length)
+    elastic_energy: float  # of full conformity, 0 for a smooth sphere (w_int)
+    tolerance: float  # largest pressure out of balance, relative to the largest tension
     loads: Loads
 
     @property

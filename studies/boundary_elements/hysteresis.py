@@ -51,12 +51,9 @@ class Hysteresis:
     @property
     def setting(self) -> tuple[float, ...]:
         """What surfaces share that are averaged: grid, range, load step, spectrum, amplitude."""
-        return (*self.resolution, *self.scene)
-
-    @property
-    def resolution(self) -> tuple[float, ...]:
-        """Grid, range of the attraction, load step; where there is no range no grid is told."""
-        return self.n_point if self.interaction_range else 0, self.interaction_range, self.step
+        # Where there is no range no grid is told.
+        grid = self.n_point if self.interaction_range else 0
+        return grid, self.interaction_range, self.step, *self.scene
 
     @property
     def scene(self) -> tuple[float, ...]:

@@ -52,17 +52,12 @@ def _table(text: str, header: str, lines: Iterable[str]) -> list[str]:
 _SETTING = "roll-off | e_el | points | range | step"
 
 
-def _setting(row: Hysteresis, energy: float) -> str:
-    """First cells of a row."""
-    grid = f"{row.n_point} | {row.interaction_range:g} | {row.step:g}"
-    return f"{row.roll_off:g} | {energy:.4f} | {grid}"
-
-
 def _cells(found: Setting, *names: str) -> list[str]:
     """Cells of the setting, of the number of surfaces, and of means over them by their fields."""
-    energy = float(found.mean(attrgetter("elastic_energy")).value)
+    row, energy = found.rows[0], float(found.mean(attrgetter("elastic_energy")).value)
+    grid = f"{row.n_point} | {row.interaction_range:g} | {row.step:g}"
     means = (_shown(found.mean(attrgetter(name))) for name in names)
-    return [_setting(found.rows[0], energy), f"{found.surfaces}", *means]
+    return [f"{row.roll_off:g} | {energy:.4f} | {grid}", f"{found.surfaces}", *means]
 
 
 def _shown(found: Estimate, digits: int = 4) -> str:

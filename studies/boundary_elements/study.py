@@ -49,7 +49,7 @@ def expected_seconds(cases: Iterable[Case], folder: Path) -> float:
     return sum(
         _STEP_SECONDS * case.n_point**3 * case.loads.n_load
         for case in cases
-        if not _path(folder, case).exists()
+        if not (folder / f"{case.stem}.nc").exists()
     )
 
 
@@ -112,16 +112,11 @@ def write_validation(
     progress(f"tables: {folder / 'validation.md'}")
 
 
-def _path(folder: Path, case: Case) -> Path:
-    """File of a case's boundary elements."""
-    return folder / f"{case.stem}.nc"
-
-
 def _cycle(
     folder: Path, case: Case, origin: Provenance, progress: Progress, compute: bool
 ) -> BoundaryCycle | None:
     """Cycle of a case: read, else continued or computed, or none where it is not to be."""
-    path, known = _path(folder, case), None
+    path, known = folder / f"{case.stem}.nc", None
     try:
         known = read_record(path, BoundaryCycle) if path.exists() else None
     except UnreadableFileError as error:

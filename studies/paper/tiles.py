@@ -10,22 +10,10 @@ from crackfront.core.spectrum import Spectrum
 
 
 def tile_mean_square(spectrum: Spectrum, side: float, order: float) -> tuple[float, float]:
-    """What the mean square of a derivative is on a synthesised tile, on average.
+    """Mean square of a derivative of an order on synthesised tiles, which hold but their modes.
 
-    Parameters
-    ----------
-    spectrum : Spectrum
-        Spectrum of the field. (Lengths in the unit of `side`)
-    side : float
-        Side of the tile. (Units: length)
-    order : float
-        Order of the derivative, as in :meth:`~crackfront.core.spectrum.Spectrum.mean_square`.
-
-    Returns
-    -------
-    tuple of float
-        Mean over realisations, which holds only the modes of the tile, and standard deviation of
-        one of them.
+    The mean over realisations, and the standard deviation of one of them; the side is in the unit
+    of the spectrum.
     """
     highest = math.ceil(side / spectrum.short_cutoff)
     step = 2 * np.pi / side

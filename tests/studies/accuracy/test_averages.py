@@ -1,10 +1,7 @@
 """Steady runs: schedules and tiles, and whether runs state their true errors."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from scipy import stats
 
 from studies.accuracy.averages import held_out_coverage, sampling_errors
 from studies.accuracy.scenes import SCENES
@@ -49,18 +46,6 @@ def test_the_stated_errors_cover_nine_in_ten_over_shapes_and_amplitudes():
     check_stated_errors(
         [item for name in names for item in held_out_coverage(SCENES[name], (0.1, 0.03), 8)]
     )
-
-
-def test_student_intervals_are_wider_than_normal_ones_where_states_are_few(coverage):
-    item = coverage[0]
-    none = np.zeros_like(item.total)
-    exact = replace(item, run_numerical=none, truth_error=none)
-    few, many = (
-        replace(exact, n_state=np.full(item.total.shape, count)).total_interval
-        for count in (3.0, 1e9)
-    )
-    assert few / many == pytest.approx(stats.t.ppf(0.96, 2) / stats.norm.ppf(0.96))
-    assert np.all(item.total_interval > item.run_numerical)
 
 
 @pytest.mark.slow

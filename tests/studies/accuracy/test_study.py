@@ -94,13 +94,6 @@ def test_a_branch_has_the_states_of_a_full_cycle_at_the_same_loads():
     assert np.allclose(branches.radius[1, 1::-1], retraction, rtol=0, atol=1e-7)
 
 
-def test_fronts_are_compared_as_trigonometric_ones():
-    angle = [2 * np.pi * np.arange(n) / n for n in (16, 40)]
-    coarse, fine = (2 + 0.1 * np.cos(3 * t) + 0.05 * np.sin(5 * t) for t in angle)
-    assert np.max(np.abs(front_difference(coarse, fine))) < 1e-14
-    assert front_difference(coarse + 0.25, fine) == pytest.approx(0.25)
-
-
 @pytest.fixture(scope="module")
 def small_study():
     finer = [setting for setting in SMALL.single_settings if setting[0] == "finer"]

@@ -51,16 +51,12 @@ def test_an_arc_that_moves_far_is_a_jump_where_it_moved_furthest(circle):
     assert [jump.distance for jump in found] == pytest.approx([0.1, 0.06])
 
 
-def test_turning_round_is_no_jump(circle):
-    radius = np.stack([circle, circle + 0.1])
-    assert jumps(np.array([0.1, 0.0]), np.array([1, -1]), radius, 0.05) == []
-
-
-def test_a_receding_arc_is_a_jump_in_retraction_only(circle):
+def test_a_receding_arc_is_a_jump_in_retraction_only_and_turning_round_is_none(circle):
     radius = np.stack([circle, circle - 0.1 * (np.arange(360) < 30)])
     loads = np.array([0.1, 0.0])
     assert len(jumps(loads, np.array([-1, -1]), radius, 0.05)) == 1
     assert jumps(loads, np.array([1, 1]), radius, 0.05) == []
+    assert jumps(loads, np.array([1, -1]), np.stack([circle, circle + 0.1]), 0.05) == []
 
 
 def test_jumps_are_matched_once_at_one_place_the_closest_first():

@@ -3,17 +3,15 @@
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from crackfront.analysis.validity import validity_of, validity_sentence
-from crackfront.core import jkr
 from crackfront.data.records import read_record, read_records
 from studies.boundary_elements.averages import limit_settings
 from studies.boundary_elements.commands import commands
 from studies.boundary_elements.differences import Differences
-from studies.boundary_elements.hysteresis import Hysteresis, apparent_adhesion
+from studies.boundary_elements.hysteresis import Hysteresis
 from studies.boundary_elements.parameters import load_validation, validation_cases
 from studies.boundary_elements.picture import ValidationPicture, validation_figure
 from studies.boundary_elements.report import validation_report
@@ -156,11 +154,3 @@ def test_a_validation_without_its_extra_is_refused_before_it_computes(
     assert f"need {name}, which is not installed" in str(outcome.exception)
     assert "pip install '.[bem]'" in str(outcome.exception)
     assert not (tmp_path / "x").exists()
-
-
-def test_the_work_of_adhesion_of_a_force_is_that_of_the_open_edge():
-    radius = np.array([0.9, 1.3, 1.8])
-    for work in (0.5, 1.0, 1.5):
-        penetration = jkr.equilibrium_penetration(radius, work)
-        force = jkr.equilibrium_force(radius, work)
-        assert apparent_adhesion(force, penetration) == pytest.approx([work] * 3)

@@ -12,20 +12,12 @@ from studies.__main__ import main
 from studies.paper.drawing import save_animation
 from studies.paper.figure import figure
 from studies.paper.rough import RoughCycleParameters
-
-
-def ignore(line):
-    """No progress."""
-
-
-def failing(record):
-    """Claims that fail."""
-    return [check.claim for check in figure("beyond-animation").checks(record) if not check.passed]
+from tests.studies.paper.made import computed, failed
 
 
 @pytest.fixture(scope="module")
 def shown():
-    parameters = RoughCycleParameters(
+    given = RoughCycleParameters(
         seed=1,
         error=0.5,
         tile_roll_offs=10.0,
@@ -34,13 +26,13 @@ def shown():
         max_penetration=0.6,
         step=0.2,
     )
-    return figure("beyond-animation").compute(parameters, ignore)
+    return computed("beyond-animation", given)
 
 
 def test_the_animation_shows_a_cycle_whose_energies_close(shown):
-    assert failing(shown) == []
+    assert failed(shown) == []
     wrong = replace(shown, dissipated_energy=shown.dissipated_energy - 0.1, front=shown.front[::-1])
-    assert len(failing(wrong)) == 4
+    assert len(failed(wrong)) == 4
 
 
 def test_an_animation_has_a_frame_for_every_state(shown, tmp_path):

@@ -1,25 +1,19 @@
 """Avalanches: their law, their lengths, and what makes the checks fail."""
 
 from dataclasses import replace
-from pathlib import Path
 from unittest import mock
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from pydantic import ValidationError
 
 from studies.paper.beyond_avalanches import AvalancheRecord
 from studies.paper.events import cutoff_slope, depth_slope, event_law, event_record
-from studies.paper.figure import figure, load_figure
+from studies.paper.figure import figure
 from studies.paper.power_law import joint_power_law
+from tests.studies.paper.made import computed, failed, parameters
 
-CONFIGURATION = Path(__file__).parents[3] / "config" / "figures" / "beyond-avalanches.yaml"
 SCENE = figure("beyond-avalanches")
-
-
-def parameters(**changes):
-    return load_figure(CONFIGURATION, "quick").model_copy(update=changes)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -40,6 +34,7 @@ def _each_fit_once():
 @pytest.fixture(scope="module")
 def record():
     small = parameters(
+        "beyond-avalanches",
         short_cutoff=0.07,
         n_surface=1,
         first_penetration=-0.2,
@@ -52,7 +47,7 @@ def record():
     # More than a site a Larkin length, so that short springs have events.
     fine = {"elastic_energy": 0.9, "pixels_per_cutoff": 3.0, "smallest_area": 5.0, "length": 5.0}
     small = small.model_copy(update={"line": small.line.model_copy(update=fine)})
-    return SCENE.compute(small, lambda line: None)
+    return computed("beyond-avalanches", small)
 
 
 def scaling_events(exponent, roughness=0.388, count=4000):
@@ -108,10 +103,6 @@ def synthetic(rng, exponent=1.28, count=1500, *, event_exponent=1.28, roughness=
     )
 
 
-def failed(record):
-    return [check.claim for check in SCENE.checks(record) if not check.passed]
-
-
 def test_avalanches_of_the_theory_pass(rng):
     assert failed(synthetic(rng)) == []
 
@@ -164,7 +155,7 @@ def test_whole_events_sweep_the_way_of_the_load(record):
 
 
 def test_a_finer_precision_finds_the_same_whole_events():
-    line = parameters().line.model_copy(update={"length": 5.0})
+    line = parameters("beyond-avalanches").line.model_copy(update={"length": 5.0})
     coarse, fine = (
         event_record(
             line.model_copy(update={"precision": precision}), (6.0,), 1, 7, lambda line: None
@@ -195,12 +186,13 @@ def test_avalanches_and_smooth_steps_sweep_the_whole_area(record):
 
 def test_penetrations_in_the_wrong_order_are_refused():
     with pytest.raises(ValidationError, match="penetrations must fall from max_penetration"):
-        SCENE.parameters.model_validate(parameters().model_dump() | {"last_penetration": 0.0})
+        SCENE.parameters.model_validate(
+            parameters("beyond-avalanches").model_dump() | {"last_penetration": 0.0}
+        )
 
 
 def test_its_drawing_has_six_labelled_panels(rng):
-    drawn = figure("beyond-avalanches").draw(synthetic(rng))
-    assert isinstance(drawn, Figure)
+    drawn = SCENE.draw(synthetic(rng))
     assert len(drawn.axes) == 6
     assert len(drawn.subfigs[0].legends[0].texts) == SPRINGS.size
     assert all(axes.get_xlabel() and axes.get_ylabel() for axes in drawn.axes)

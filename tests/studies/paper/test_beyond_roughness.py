@@ -1,11 +1,9 @@
 """Roughness of fronts: the fit recovers what was put in, and a small contact is measured."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from pydantic import ValidationError
 
 from studies.paper.beyond_roughness import (
@@ -13,15 +11,11 @@ from studies.paper.beyond_roughness import (
     fitted_roughness,
     stiffness_wavevector,
 )
-from studies.paper.figure import figure, load_figure
+from studies.paper.figure import figure
 from studies.paper.rough import STRONG, WEAK
+from tests.studies.paper.made import computed, failed, parameters
 
-CONFIGURATION = Path(__file__).parents[3] / "config" / "figures" / "beyond-roughness.yaml"
 SCENE = figure("beyond-roughness")
-
-
-def parameters(**changes):
-    return load_figure(CONFIGURATION, "quick").model_copy(update=changes)
 
 
 def synthetic(exponents, rng, n_surface=8):
@@ -52,6 +46,7 @@ def synthetic(exponents, rng, n_surface=8):
 @pytest.fixture(scope="module")
 def record():
     small = parameters(
+        "beyond-roughness",
         short_cutoff=0.06,
         max_penetration=0.6,
         first_penetration=0.4,
@@ -64,7 +59,7 @@ def record():
         "weak_line": small.weak_line.model_copy(update={"elastic_energy": 0.09, "spring": 1.2}),
     }
     small = small.model_copy(update=lines)
-    return SCENE.compute(small, lambda line: None)
+    return computed("beyond-roughness", small)
 
 
 def test_the_fit_recovers_exponents_within_its_intervals(rng):
@@ -76,14 +71,11 @@ def test_the_fit_recovers_exponents_within_its_intervals(rng):
 
 
 def test_other_exponents_fail_the_checks(rng):
-    assert [check.passed for check in SCENE.checks(synthetic((0.5, 0.388), rng))] == [False] * 5
-    assert [check.passed for check in SCENE.checks(synthetic((0.388, 0.388), rng))] == [
-        True,
-        False,
-        True,
-        False,
-        False,
-    ]
+    assert len(failed(synthetic((0.5, 0.388), rng))) == 5
+    sphere, line, both = failed(synthetic((0.388, 0.388), rng))
+    assert "sphere, weak disorder" in sphere
+    assert "straight front, below" in line
+    assert "the two exponents differ" in both
 
 
 def test_without_the_stiffness_of_the_circle_the_exponent_is_lower(rng):
@@ -124,18 +116,19 @@ def test_weak_disorder_roughens_less(record):
 )
 def test_parameters_that_cannot_be_fitted_are_refused(changes, sentence):
     with pytest.raises(ValidationError, match=sentence):
-        SCENE.parameters.model_validate(parameters().model_dump() | changes)
+        SCENE.parameters.model_validate(parameters("beyond-roughness").model_dump() | changes)
 
 
 def test_a_range_of_a_straight_front_that_holds_no_wavelength_is_refused():
-    line = parameters().weak_line.model_dump() | {"fit_from": 1.0}
+    line = parameters("beyond-roughness").weak_line.model_dump() | {"fit_from": 1.0}
     with pytest.raises(ValidationError, match=r"fit_from is 1; it must be below fit_to, 0\.07"):
-        SCENE.parameters.model_validate(parameters().model_dump() | {"weak_line": line})
+        SCENE.parameters.model_validate(
+            parameters("beyond-roughness").model_dump() | {"weak_line": line}
+        )
 
 
 def test_its_drawing_has_four_labelled_panels(record):
     wide = replace(record, longest=np.full(4, 1.0), shortest=np.full(4, 0.2))
-    drawn = figure("beyond-roughness").draw(wide)
-    assert isinstance(drawn, Figure)
+    drawn = SCENE.draw(wide)
     assert len(drawn.axes) == 4
     assert all(axes.get_xlabel() and axes.get_ylabel() for axes in drawn.axes)

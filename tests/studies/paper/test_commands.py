@@ -11,8 +11,7 @@ from click.testing import CliRunner
 
 from studies.__main__ import STUDIES, main
 from studies.paper.figure import figure
-
-CONFIGURATIONS = Path(__file__).parents[3] / "config" / "figures"
+from tests.studies.paper.made import CONFIGURATIONS
 
 
 def run(*arguments):

@@ -9,12 +9,12 @@ from pydantic import ValidationError
 from crackfront.data.section import ConfigurationError
 from studies.paper.figure import figure, load_figure
 from studies.paper.film import conformity_energy
-from studies.paper.main_5a import FilmScalesParameters, film_scales
+from studies.paper.main_5a import FilmScalesParameters
 from studies.paper.si_6 import (
     SyntheticFilmParameters,
     profile_periodogram,
-    synthetic_film,
 )
+from tests.studies.paper.made import computed, failed
 
 FILM = {
     "young_modulus": 0.7e6,
@@ -29,22 +29,14 @@ SCALES = FILM | {"work_of_adhesion": 63e-3}
 SYNTHETIC = FILM | {"shortest": 0.5e-6, "tile_roll_offs": 10.0, "realisations": 4, "seed": 3}
 
 
-def ignore(line):
-    """No progress."""
-
-
 @pytest.fixture(scope="module")
 def scales():
-    return film_scales(FilmScalesParameters(**SCALES), ignore)
+    return computed("main-5a", FilmScalesParameters(**SCALES))
 
 
 @pytest.fixture(scope="module")
 def synthetic():
-    return synthetic_film(SyntheticFilmParameters(**SYNTHETIC), ignore)
-
-
-def failed(name, record):
-    return [check.claim for check in figure(name).checks(record) if not check.passed]
+    return computed("si-6", SyntheticFilmParameters(**SYNTHETIC))
 
 
 def table(tmp_path, text):
@@ -54,29 +46,29 @@ def table(tmp_path, text):
 
 
 def test_the_film_has_the_numbers_of_the_paper(scales):
-    assert failed("main-5a", scales) == []
+    assert failed(scales) == []
 
 
 def test_a_film_of_half_the_plateau_fails_the_numbers_of_the_paper(scales):
     thinner = FilmScalesParameters(**SCALES | {"plateau": 4.2e-27})
-    assert len(failed("main-5a", film_scales(thinner, ignore))) == 4
+    assert len(failed(computed("main-5a", thinner))) == 4
 
 
 def test_a_range_that_is_too_narrow_fails_its_check(scales):
-    claims = failed("main-5a", replace(scales, longest=scales.longest * 0.9))
+    claims = failed(replace(scales, longest=scales.longest * 0.9))
     assert len([claim for claim in claims if "share" in claim]) == 3
 
 
 def test_synthetic_surfaces_have_the_density_of_their_spectrum(synthetic):
     # The cutoff is longer here than the scales that carry e_el, and that is said.
-    assert failed("si-6", synthetic) == [
+    assert failed(synthetic) == [
         "density of the lines over that of the film's spectrum, in the same range",
         "the included scales hold those that carry 80% of e_el",
     ]
 
 
 def test_a_density_of_the_wrong_convention_fails_its_checks(synthetic):
-    claims = failed("si-6", replace(synthetic, synthetic=2 * synthetic.synthetic))
+    claims = failed(replace(synthetic, synthetic=2 * synthetic.synthetic))
     assert len(claims) == 5
 
 
@@ -107,8 +99,8 @@ def measured_film(tmp_path):
 
 def test_measured_profiles_are_drawn_and_give_their_own_energy(tmp_path):
     path = measured_film(tmp_path)
-    record = film_scales(FilmScalesParameters(**SCALES, measured=str(path)), ignore)
-    assert failed("main-5a", record) == []
+    record = computed("main-5a", FilmScalesParameters(**SCALES, measured=str(path)))
+    assert failed(record) == []
     assert len(figure("main-5a").checks(record)) == 11
     found = conformity_energy(
         record.measured_wavevector, record.measured_profile, record.contact_modulus

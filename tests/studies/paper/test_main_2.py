@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from studies.paper.figure import figure
 from studies.paper.main_2 import INNERMOST, Rings, RingsParameters, first_stops
+from tests.studies.paper.made import computed, failed
 
 GIVEN = {
     "amplitude": 0.4,
@@ -24,11 +25,7 @@ GIVEN = {
 
 @pytest.fixture(scope="module")
 def loops():
-    return figure("main-2").compute(RingsParameters(**GIVEN), lambda line: None)
-
-
-def failed(record):
-    return [check.claim for check in figure("main-2").checks(record) if not check.passed]
+    return computed("main-2", RingsParameters(**GIVEN))
 
 
 def test_fronts_on_rings_rest_at_the_first_stopping_points(loops):

@@ -1,16 +1,14 @@
 """Main Fig. 3a, b on a coarse contact, and what makes its checks fail."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from pydantic import ValidationError
 
-from studies.paper.figure import figure, load_figure
+from studies.paper.figure import figure
+from tests.studies.paper.made import computed, failed, parameters
 
-CONFIGURATION = Path(__file__).parents[3] / "config" / "figures" / "main-3ab.yaml"
 SCENE = figure("main-3ab")
 COARSE = {
     "short_cutoff": 0.14,
@@ -21,17 +19,9 @@ COARSE = {
 }
 
 
-def parameters(**changes):
-    return load_figure(CONFIGURATION, "quick").model_copy(update=COARSE | changes)
-
-
 @pytest.fixture(scope="module")
 def record():
-    return SCENE.compute(parameters(), lambda line: None)
-
-
-def failed(record):
-    return [check.claim for check in SCENE.checks(record) if not check.passed]
+    return computed("main-3ab", parameters("main-3ab", **COARSE))
 
 
 def test_its_claims_hold_for_a_coarse_contact(record):
@@ -64,23 +54,23 @@ def test_wrong_signs_extents_and_branches_fail(record):
 
 def test_disorder_in_the_wrong_order_is_refused():
     with pytest.raises(ValidationError, match="the first must be the larger"):
-        SCENE.parameters.model_validate(parameters().model_dump() | {"weak": 0.1})
+        SCENE.parameters.model_validate(
+            parameters("main-3ab", **COARSE).model_dump() | {"weak": 0.1}
+        )
 
 
 def test_both_contacts_take_the_sites_of_the_larger():
-    coarse = parameters(error=0.1, least_angles=4)
+    coarse = parameters("main-3ab", **COARSE | {"error": 0.1, "least_angles": 4})
     sites = [
         coarse.contact(energy, coarse.precision / 10).field.geometry.n_site
         for energy in (coarse.strong, coarse.weak)
     ]
     assert sites[0] != sites[1]
-    computed = SCENE.compute(coarse, lambda line: None)
-    assert computed.before.shape[1] == max(sites)
+    assert computed("main-3ab", coarse).before.shape[1] == max(sites)
 
 
 def test_its_drawing_has_patches_and_a_cycle(record):
-    drawn = figure("main-3ab").draw(record)
-    assert isinstance(drawn, Figure)
+    drawn = SCENE.draw(record)
     patches, cycle = drawn.axes[:2]
     assert len(patches.collections) == 2
     assert "force" in cycle.get_ylabel()

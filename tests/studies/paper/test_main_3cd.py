@@ -6,21 +6,10 @@ import numpy as np
 import pytest
 
 from crackfront.core.field.rays import front_adhesion
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
 from crackfront.simulate.contact import simulation_field
-from studies.paper.figure import figure
 from studies.paper.main_3cd import PinnedLoopParameters
 from studies.paper.rough import patch_of
-
-
-def ignore(line):
-    """No progress."""
-
-
-def failing(record):
-    """Claims that fail."""
-    return [check.claim for check in figure("main-3cd").checks(record) if not check.passed]
+from tests.studies.paper.made import computed, drawn_from_file, failed
 
 
 def coarse(**others):
@@ -41,28 +30,28 @@ def coarse(**others):
 
 @pytest.fixture(scope="module")
 def loop():
-    return figure("main-3cd").compute(coarse(), ignore)
+    return computed("main-3cd", coarse())
 
 
 def test_a_coarse_loop_fails_no_check_but_those_of_the_paper(loop):
-    assert [claim for claim in failing(loop) if "main text" not in claim] == []
+    assert [claim for claim in failed(loop) if "main text" not in claim] == []
 
 
 def test_the_loop_of_k_3_passes_the_checks_of_the_paper(loop):
     e_el = loop.elastic_energy
     right = replace(loop, approach=1 - 4 * e_el, retraction=1 + 2 * e_el)
-    assert failing(right) == []
+    assert failed(right) == []
     wrong = replace(loop, approach=1 - 2 * e_el, retraction=1 + 1.2 * e_el)
-    assert len(failing(wrong)) == 3
+    assert len(failed(wrong)) == 3
 
 
 def test_fronts_that_sample_the_wrong_places_fail_their_checks(loop):
     swapped = replace(loop, front_adhesion=loop.front_adhesion[[1, 0, 2]])
-    claims = " ".join(failing(swapped))
+    claims = " ".join(failed(swapped))
     for words in ("approach: below", "retraction: above", "<a G>"):
         assert words in claims
     rigid = replace(loop, front_adhesion=loop.front_adhesion[[0, 1, 0]])
-    assert "rigid circle: at" in " ".join(failing(rigid))
+    assert "rigid circle: at" in " ".join(failed(rigid))
 
 
 def test_a_patch_is_the_field_that_the_front_feels():
@@ -75,9 +64,7 @@ def test_a_patch_is_the_field_that_the_front_feels():
 
 
 def test_the_drawing_of_its_file_has_labelled_axes(loop, tmp_path):
-    path = tmp_path / "main-3cd.nc"
-    write_record(path, loop, provenance(), title="test")
-    drawn = figure("main-3cd").draw(read_record(path, figure("main-3cd").record))
+    drawn = drawn_from_file(loop, tmp_path)
     for axes in drawn.axes[:2]:
         assert axes.get_xlabel()
         assert axes.get_ylabel()
@@ -97,4 +84,4 @@ def test_a_loop_that_cannot_be_computed_is_refused(others, sentence):
 
 def test_a_cycle_without_steady_branches_is_refused():
     with pytest.raises(ValueError, match="steady states in approach"):
-        figure("main-3cd").compute(coarse(max_penetration=0.1), ignore)
+        computed("main-3cd", coarse(max_penetration=0.1))

@@ -8,7 +8,8 @@ import pytest
 from pydantic import ValidationError
 
 from studies.paper.figure import figure
-from studies.paper.main_4 import MappingParameters, mapping
+from studies.paper.main_4 import MappingParameters
+from tests.studies.paper.made import computed, failed
 
 GIVEN = {
     "seed": 1,
@@ -24,11 +25,7 @@ GIVEN = {
 
 @pytest.fixture(scope="module")
 def record():
-    return mapping(MappingParameters(**GIVEN), lambda line: None)
-
-
-def failed(record):
-    return [check.claim for check in figure("main-4").checks(record) if not check.passed]
+    return computed("main-4", MappingParameters(**GIVEN))
 
 
 def test_a_mapped_surface_keeps_parseval_its_mean_and_its_peaks(record):

@@ -1,26 +1,15 @@
 """Main Fig. 5b, c: the contact on nanodiamond in SI units, its instabilities and fits."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
 from studies.paper.figure import figure, settings_fingerprint
-from studies.paper.main_5bc import NanodiamondParameters, Perimeters, advances
+from studies.paper.main_5bc import NanodiamondParameters, advances
+from tests.studies.paper.made import CONFIGURATIONS, computed, drawn_from_file, failed
 
-CONFIGURATION = Path(__file__).parents[3] / "config" / "figures" / "main-5bc.yaml"
-
-
-def ignore(line):
-    """No progress."""
-
-
-def failing(record):
-    """Claims that fail."""
-    return [check.claim for check in figure("main-5bc").checks(record) if not check.passed]
+CONFIGURATION = CONFIGURATIONS / "main-5bc.yaml"
 
 
 def film_parameters(**others):
@@ -47,12 +36,12 @@ def film_parameters(**others):
 
 @pytest.fixture(scope="module")
 def contact():
-    return figure("main-5bc").compute(film_parameters(), ignore)
+    return computed("main-5bc", film_parameters())
 
 
 def test_nanodiamond_has_the_numbers_of_the_paper(contact):
-    failed = failing(contact)
-    assert not [claim for claim in failed if "k = 3 predicts" in claim or "wavelengths" in claim]
+    claims = failed(contact)
+    assert not [claim for claim in claims if "k = 3 predicts" in claim or "wavelengths" in claim]
     assert contact.force.max() >= 1e-3
     assert np.all(np.diff(contact.line, axis=0) >= 0)
     assert np.all(contact.line_force <= 0.64e-3)
@@ -65,7 +54,7 @@ def test_a_wrong_nanodiamond_contact_fails_its_checks(contact):
         "approach": np.array([63e-3 - 4 * contact.elastic_energy, 1e-4]),
         "retraction": np.array([63e-3 + 2 * contact.elastic_energy, 1e-4]),
     }
-    claims = failing(replace(contact, **k3))
+    claims = failed(replace(contact, **k3))
     assert not [claim for claim in claims if "hysteresis of" in claim]
     wrong = replace(
         contact,
@@ -76,7 +65,7 @@ def test_a_wrong_nanodiamond_contact_fails_its_checks(contact):
         synthetic_fit=contact.synthetic_fit * 1.1,
         simulated_fit=contact.simulated_fit * 2,
     )
-    assert len(failing(wrong)) == 11
+    assert len(failed(wrong)) == 11
 
 
 def test_an_advance_goes_on_across_the_first_ray():
@@ -93,21 +82,8 @@ def test_an_advance_goes_on_across_the_first_ray():
     assert whole.extent == pytest.approx(2 * np.pi * 1.5)
 
 
-def test_longer_load_steps_see_wider_advances():
-    perimeters = Perimeters(0.1, highest=1.0, every=1, strides=(1, 2))
-    front = np.ones(32)
-    for sites in ([], [3, 4], [5, 6, 7], [20], []):
-        front = front.copy()
-        front[sites] += 0.5
-        perimeters.follow(front)
-    assert [advance.angle.size for advance in perimeters.widest.values()] == [3, 5]
-    assert [len(extents) for extents in perimeters.extents.values()] == [3, 2]
-
-
 def test_the_drawing_of_its_file_has_labelled_axes(contact, tmp_path):
-    path = tmp_path / "main-5bc.nc"
-    write_record(path, contact, provenance(), title="test")
-    drawn = figure("main-5bc").draw(read_record(path, figure("main-5bc").record))
+    drawn = drawn_from_file(contact, tmp_path)
     for axes in drawn.axes[:2]:
         assert axes.get_xlabel()
         assert axes.get_ylabel()
@@ -124,7 +100,7 @@ MEASURED = """force (mN),radius (um),branch
 def test_measured_points_are_fitted_checked_and_drawn(tmp_path):
     path = tmp_path / "measured.csv"
     path.write_text(MEASURED)
-    record = figure("main-5bc").compute(film_parameters(measured=str(path), step=960e-9), ignore)
+    record = computed("main-5bc", film_parameters(measured=str(path), step=960e-9))
     value, low, high = record.measured_fit
     assert 0.02 < low < value < high
     assert "w_int from the measured approach with k = 3" in [
@@ -166,6 +142,6 @@ def test_a_contact_that_cannot_be_computed_is_refused(others, sentence):
 
 
 def test_a_force_below_that_of_jump_in_shows_no_perimeter():
-    parameters = film_parameters().model_copy(update={"shown_force": -1.0})
+    given = film_parameters().model_copy(update={"shown_force": -1.0})
     with pytest.raises(ValueError, match="no state between jump-in and shown_force"):
-        figure("main-5bc").compute(parameters, ignore)
+        computed("main-5bc", given)

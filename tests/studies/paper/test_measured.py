@@ -69,33 +69,28 @@ def test_a_file_that_is_no_text_or_missing_is_refused(tmp_path):
 
 
 GOOD = ["force (mN),radius (um),branch", "-0.1,70,approach", "0.1,90,approach", "0.5,110,approach"]
+PROFILE = "q (1/m),C1D (m^3)"
 
 
 @pytest.mark.parametrize(
-    ("rows", "sentence"),
+    ("read", "rows", "sentence"),
     [
-        ([*GOOD, "nan,120,approach"], "line 5: force is 'nan'; it must be a finite number"),
-        ([*GOOD, "0.6,120,up"], "line 5: branch is 'up'; it must be approach or retraction"),
-        ([*GOOD, "0,90,retraction", "0.1,90,approach"], "line 6: an approach follows"),
-        (GOOD[:3], "line 3: the approach has 2 points"),
-        ([GOOD[0], *GOOD[:0:-1]], "line 4: the approach ends at -0.0001 N and begins at 0.0005"),
+        (read_force_radius, [*GOOD, "nan,9,approach"], "line 5: force is 'nan'; it must be a fin"),
+        (
+            read_force_radius,
+            [*GOOD, "0.6,120,up"],
+            "line 5: branch is 'up'; it must be approach or",
+        ),
+        (read_force_radius, [*GOOD, "0,90,retraction", GOOD[1]], "line 6: an approach follows"),
+        (read_force_radius, GOOD[:3], "line 3: the approach has 2 points"),
+        (read_force_radius, [GOOD[0], *GOOD[:0:-1]], "line 4: the approach ends at -0.0001 N and"),
+        (read_profile_density, [PROFILE, "1,1", "3,1", "2,1"], "line 4: q is 2 1/m after 3 1/m"),
+        (read_profile_density, [PROFILE, "1,1"], "line 2 is the only row"),
     ],
 )
-def test_wrong_forces_are_refused_with_their_line(tmp_path, rows, sentence):
+def test_wrong_points_are_refused_with_their_line(tmp_path, read, rows, sentence):
     with pytest.raises(PydanticCustomError, match=sentence):
-        read_force_radius(written(tmp_path, "\n".join(rows)))
-
-
-@pytest.mark.parametrize(
-    ("rows", "sentence"),
-    [
-        ("1,1\n3,1\n2,1\n", "line 4: q is 2 1/m after 3 1/m; wavevectors must"),
-        ("1,1\n", "line 2 is the only row"),
-    ],
-)
-def test_wrong_profiles_are_refused_with_their_line(tmp_path, rows, sentence):
-    with pytest.raises(PydanticCustomError, match=sentence):
-        read_profile_density(written(tmp_path, f"q (1/m),C1D (m^3)\n{rows}"))
+        read(written(tmp_path, "\n".join(rows)))
 
 
 def test_forces_are_read_with_their_branches(tmp_path):

@@ -51,11 +51,6 @@ def test_its_density_is_normalised():
     assert integral == pytest.approx(1.0, abs=1e-7)
 
 
-def test_too_few_values_are_refused(rng):
-    with pytest.raises(ValueError, match="3 values lie above 1; a power law needs 20"):
-        truncated_power_law(np.array([0.5, 1.0, 2.0, 3.0]), 1.0, rng)
-
-
 SCALES = (600.0, 3000.0, 15000.0)
 
 
@@ -103,6 +98,8 @@ def test_the_density_of_a_joint_law_is_normalised_for_every_sample():
         assert np.trapezoid(law.density(grid, sample), grid) == pytest.approx(1.0, abs=1e-5)
 
 
-def test_a_joint_law_needs_values_of_every_sample(rng):
+def test_too_few_values_of_any_sample_are_refused(rng):
+    with pytest.raises(ValueError, match="3 values lie above 1; a power law needs 20"):
+        truncated_power_law(np.array([0.5, 1.0, 2.0, 3.0]), 1.0, rng)
     with pytest.raises(ValueError, match="2 values of a sample lie above 30; a power law needs 20"):
         joint_power_law([np.full(50, 40.0), np.array([1.0, 35.0, 50.0])], 30.0, rng)

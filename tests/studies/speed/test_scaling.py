@@ -9,14 +9,14 @@ import pytest
 from studies.speed import scaling
 
 
-def test_a_job_of_equal_tasks_takes_whole_rounds():
-    seconds = scaling.job_seconds([2.0] * 12, 4) - scaling.START_SECONDS
-    assert seconds == pytest.approx(6.0, abs=13 * scaling.HAND_OUT_SECONDS)
-
-
-def test_the_longest_first_fills_the_gap_that_it_leaves():
-    seconds = scaling.job_seconds([1.0, 1.0, 1.0, 3.0], 2) - scaling.START_SECONDS
-    assert seconds == pytest.approx(3.0, abs=5 * scaling.HAND_OUT_SECONDS)
+@pytest.mark.parametrize(
+    ("tasks", "n_worker", "expected"),
+    [([2.0] * 12, 4, 6.0), ([1.0, 1.0, 1.0, 3.0], 2, 3.0)],
+    ids=["whole rounds", "the longest first"],
+)
+def test_a_job_has_no_gaps(tasks, n_worker, expected):
+    seconds = scaling.job_seconds(tasks, n_worker) - scaling.START_SECONDS
+    assert seconds == pytest.approx(expected, abs=13 * scaling.HAND_OUT_SECONDS)
 
 
 def test_a_manager_hands_out_no_faster_than_it_can():

@@ -1,0 +1,35 @@
+"""What tests of figures share: parameters of their files, records, and the claims that fail."""
+
+from pathlib import Path
+
+from crackfront.data.provenance import provenance
+from crackfront.data.records import read_record, write_record
+from studies.paper.figure import FIGURES, figure, load_figure
+
+CONFIGURATIONS = Path(__file__).parents[3] / "config" / "figures"
+
+
+def parameters(name, **changes):
+    """Parameters of the file of a figure at the scale quick, with changes."""
+    return load_figure(CONFIGURATIONS / f"{name}.yaml", "quick").model_copy(update=changes)
+
+
+def computed(name, given):
+    """Data of a figure."""
+    return figure(name).compute(given, lambda line: None)
+
+
+def figure_of(record):
+    """Figure that has such data."""
+    return next(one for one in map(figure, FIGURES) if one.record is type(record))
+
+
+def failed(record):
+    """Claims of a figure's data that fail."""
+    return [check.claim for check in figure_of(record).checks(record) if not check.passed]
+
+
+def drawn_from_file(record, folder):
+    """Drawing of a record that was written and read."""
+    write_record(folder / "record.nc", record, provenance(), title="test")
+    return figure_of(record).draw(read_record(folder / "record.nc", type(record)))
