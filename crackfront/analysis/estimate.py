@@ -94,14 +94,9 @@ def student_estimate(value: ArrayLike, standard_error: ArrayLike, freedom: Array
         np.asarray(value, dtype=float), np.asarray(standard_error, dtype=float), freedom
     )
     known = np.isfinite(error) & (degrees >= 1)
-    reach = np.full(centre.shape, np.nan)
-    reach[known] = error[known] * stdtrit(degrees[known], (1 + _CONFIDENCE) / 2)
-    return Estimate(
-        centre.copy(),
-        np.where(known, error, np.nan),
-        np.asarray(centre - reach),
-        np.asarray(centre + reach),
-    )
+    error, degrees = np.where(known, error, np.nan), np.where(known, degrees, 1)
+    reach = error * stdtrit(degrees, (1 + _CONFIDENCE) / 2)
+    return Estimate(*map(np.array, (centre, error, centre - reach, centre + reach)))
 
 
 def mean_estimate(values: Array) -> tuple[Estimate, NDArray[np.int64]]:

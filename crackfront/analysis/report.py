@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import astuple
 
 import numpy as np
 
@@ -22,18 +23,22 @@ MISSING = "-"
 ONSET = 0.5
 """A k below this part of the spectrum's largest counts as below the onset of hysteresis."""
 
+_FITTED = "factor", "factor_by_sums", "exponent", "midpoint_slope", "disorder_slope"
+"""What the table of the law shows of its estimates."""
+
 
 def fit_table(fit: SweepFit) -> str:
     """Markdown tables of a fit beside the theory, and its notes."""
     in_range = int(np.count_nonzero(fit.in_range))
     n_simulation = in_range * fit.table.spectrum.size * fit.table.e_el.shape[-1]
+    pooled = _pooled_entry(fit, fit.pooled.factor, fit.spectra.factor)
     return "\n".join(
         [
             f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el",
             "",
             finding(_departure(fit)),
             "",
-            f"This sweep, {n_simulation} simulations: k = {pooled_text(fit)}.",
+            f"This sweep, {n_simulation} simulations: k = {pooled}.",
             "",
             "## The fit",
             "",
@@ -109,7 +114,7 @@ def _law_rows(fit: SweepFit) -> list[str]:
             str(np.sum(fit.n_realisation)),
             *(
                 _pooled_entry(fit, getattr(fit.pooled, name), getattr(fit.spectra, name))
-                for name in ("factor", "factor_by_sums")
+                for name in _FITTED[:2]
             ),
             *_law_entries(fit.pooled, ())[2:],
         ),
@@ -121,19 +126,7 @@ def _law_rows(fit: SweepFit) -> list[str]:
 
 def _law_entries(law: LawEstimates, index: tuple[int, ...]) -> tuple[str, ...]:
     """The fitted numbers of one row."""
-    columns = (
-        law.factor,
-        law.factor_by_sums,
-        law.exponent,
-        law.midpoint_slope,
-        law.disorder_slope,
-    )
-    return tuple(_with_interval(column, index) for column in columns)
-
-
-def pooled_text(fit: SweepFit) -> str:
-    """The pooled k with its interval, how far spectra lie apart, and what the numerics may do."""
-    return _pooled_entry(fit, fit.pooled.factor, fit.spectra.factor)
+    return tuple(_with_interval(getattr(law, name), index) for name in _FITTED)
 
 
 def _pooled_entry(fit: SweepFit, pooled: Estimate, spectra: Estimate) -> str:
@@ -200,24 +193,20 @@ def _cell(fit: SweepFit, spectrum: int, amplitude: int) -> str:
 
 def _midpoint_sentence(fit: SweepFit) -> str:
     """Whether any midpoint contradicts w_int - e_el."""
+    chance = float(fit.midpoint_probability)
     if not np.isfinite(fit.midpoint_largest):
         return "No midpoint has a standard error, so none can be tested against the mean of w_loc."
     return (
         f"The midpoint (w_retr + w_appr)/2 deviates from {_mean_adhesion(fit)} by at most "
         f"{fit.midpoint_largest:.2g} standard errors at any spectrum and amplitude in the range; "
         "one as large or larger somewhere has a probability of "
-        f"{_probability(float(fit.midpoint_probability))} if the law holds."
+        f"{f'about {chance:.2g}' if chance >= 0.001 else 'less than 0.001'} if the law holds."
     )
 
 
 def _mean_adhesion(fit: SweepFit) -> str:
     """Mean of w_loc in words."""
     return "w_int - e_el" if fit.kind == "roughness" else "w_int"
-
-
-def _probability(value: float) -> str:
-    """A probability in words that claim no false accuracy."""
-    return "less than 0.001" if value < 0.001 else f"about {value:.2g}"
 
 
 def _force_rows(fit: SweepFit) -> list[str]:
@@ -230,14 +219,11 @@ def _force_rows(fit: SweepFit) -> list[str]:
         "w_retr, largest",
         "k from force",
     )
-    force = fit.from_force
+    differences = np.transpose(astuple(fit.from_force))
     rows = [
         (
             str(name),
-            _difference(force.approach[index]),
-            _difference(force.approach_largest[index]),
-            _difference(force.retraction[index]),
-            _difference(force.retraction_largest[index]),
+            *(f"{one:.4f}" if np.isfinite(one) else MISSING for one in differences[index]),
             _with_interval(fit.spectra.factor_from_force, (index,)),
         )
         for index, name in enumerate(fit.table.spectrum)
@@ -246,16 +232,10 @@ def _force_rows(fit: SweepFit) -> list[str]:
     return _markdown(header, [*rows, ("**pooled**", "", "", "", "", pooled)])
 
 
-def _difference(value: float) -> str:
-    """A difference of works of adhesion."""
-    return f"{value:.4f}" if np.isfinite(value) else MISSING
-
-
 def _with_interval(estimate: Estimate, index: tuple[int, ...]) -> str:
     """Value and interval, as far as there are any."""
-    value, low, high = (
-        float(numbers[index]) for numbers in (estimate.value, estimate.low, estimate.high)
-    )
+    here = estimate.at(index)
+    value, low, high = here.value, here.low, here.high
     if not np.isfinite(value):
         return MISSING
     if not np.isfinite(low):
@@ -378,8 +358,7 @@ def _exponent_sentences(fit: SweepFit) -> Iterator[str]:
     """Amplitudes without a logarithm of their hysteresis."""
     hysteresis = fit.cells.hysteresis.value
     for index, name in enumerate(fit.table.spectrum):
-        known = fit.in_range & np.isfinite(hysteresis[index])
-        negative = known & (np.where(known, hysteresis[index], 1.0) <= 0)
+        negative = fit.in_range & (hysteresis[index] <= 0)
         if np.any(negative):
             gaps = ", ".join(f"{value:.4g}" for value in fit.table.e_el_requested[negative])
             yield (

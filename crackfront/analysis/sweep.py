@@ -281,12 +281,10 @@ def _largest_deviation(cells: CellEstimates, in_range: NDArray[np.bool_]) -> tup
 
 def _size_slopes(table: SweepTable, cells: CellEstimates) -> Estimate:
     """Change of k per doubling of the correlation length at every amplitude."""
-
-    def slope_at(index: int) -> Estimate:
-        factor = cells.factor.each(lambda values: values[:, index])
-        return _size_slope(table, factor, cells.count[:, index] - 1)
-
-    slopes = [slope_at(index) for index in range(table.e_el_requested.size)]
+    slopes = [
+        _size_slope(table, cells.factor.at((slice(None), index)), cells.count[:, index] - 1)
+        for index in range(table.e_el_requested.size)
+    ]
     return Estimate(*np.transpose([astuple(one) for one in slopes]))
 
 
@@ -304,12 +302,13 @@ def _size_slope(table: SweepTable, factor: Estimate, freedom: NDArray[np.int64])
 
 def _force_difference(table: SweepTable, in_range: NDArray[np.bool_]) -> ForceDifference:
     """Differences of the experimenter's estimates over the simulations in the range."""
-    differences = (
-        table.w_appr_from_force - table.w_appr,
-        table.w_retr_from_force - table.w_retr,
+    approach, retraction = (
+        one[:, in_range].reshape(table.spectrum.size, -1)
+        for one in (table.w_appr_from_force - table.w_appr, table.w_retr_from_force - table.w_retr)
     )
-    chosen = [one[:, in_range].reshape(table.spectrum.size, -1) for one in differences]
-    return ForceDifference(*(measure(one) for one in chosen for measure in (_mean, _largest)))
+    # The larger of a number and NaN is the number.
+    largest = [np.fmax.reduce(np.abs(one), axis=-1) for one in (approach, retraction)]
+    return ForceDifference(_mean(approach), largest[0], _mean(retraction), largest[1])
 
 
 def _sum(values: Array) -> Array:
@@ -320,9 +319,3 @@ def _sum(values: Array) -> Array:
 def _mean(values: Array) -> Array:
     """Mean over the last axis, NaN left out."""
     return ratio(_sum(values), np.count_nonzero(np.isfinite(values), axis=-1))
-
-
-def _largest(values: Array) -> Array:
-    """Largest magnitude over the last axis, NaN left out and alone if there is nothing else."""
-    largest = np.max(np.abs(values), axis=-1, where=np.isfinite(values), initial=-1.0)
-    return np.where(largest < 0, np.nan, largest)

@@ -49,8 +49,6 @@ def draw_spectrum(
         Wavelengths between which 80% of their squares lie. (Units: reduced lateral length)
     ideal : (n_wave,) array, optional
         Density of the spectrum that the surface was made from, zero where it has none.
-    units : AxisUnits, optional
-        In which all of it is drawn.
     """
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -58,7 +56,7 @@ def draw_spectrum(
     axes.plot(wave, power * density, color=BLUE, label="surface")
     axes.set_xlim(0.7 * wave[0], 1.4 * wave[-1])
     waves = (2 * np.pi / (units.lateral * ends) for ends in (longest, shortest))
-    if units.scales is None:
+    if not units.is_si:
         names = [
             rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$"
             for order, value in zip(("0", "1/2", "1"), rms, strict=True)

@@ -41,8 +41,6 @@ def draw_field(
         Work of adhesion. (Units: w_int)
     mean, reach : float
         Middle of the shades, and how far they go to either side. (Units: w_int)
-    units : AxisUnits, optional
-        In which they are drawn.
     """
     ends = units.adhesion * (mean - reach), units.adhesion * (mean + reach)
     levels = MaxNLocator(_MOST_GREYS).tick_values(*ends)

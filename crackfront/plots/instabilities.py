@@ -33,8 +33,6 @@ def draw_instabilities(
 
     Parameters
     ----------
-    axes : Axes
-        Where to draw.
     angle : (n_angle,) array
         Angles of the sites. (Units: rad)
     before, after : (n_jump, n_angle) array
@@ -43,8 +41,6 @@ def draw_instabilities(
         Dissipated energies. (Units: pi w_int R times a reduced vertical length)
     travel : float
         Smallest motion of a site that is drawn. (Units: reduced lateral length)
-    units : AxisUnits, optional
-        In which they are drawn.
 
     Raises
     ------
@@ -83,8 +79,6 @@ def draw_patches(
 
     Parameters
     ----------
-    axes : Axes
-        Where to draw.
     angle : (n_jump, n_angle) array
         Angles of the sites of each front. (Units: rad)
     fronts : two (n_jump, n_angle) arrays

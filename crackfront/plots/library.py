@@ -19,7 +19,7 @@ from crackfront.plots.fronts import draw_field, draw_fronts, draw_heights, draw_
 from crackfront.plots.instabilities import draw_instabilities
 from crackfront.plots.loop import draw_loop, draw_pinning
 from crackfront.plots.style import shown_axes
-from crackfront.plots.units import AxisUnits
+from crackfront.plots.units import REDUCED, AxisUnits
 from crackfront.simulate.files import cycle_record
 from crackfront.simulate.si_units import Labelled, in_reduced_units, stated_scales
 from crackfront.simulate.surfaces import surface_adhesion, surface_kind
@@ -41,8 +41,8 @@ def _reduced(data: Labelled) -> tuple[Labelled, AxisUnits]:
     """Data in reduced units, and the units that they had."""
     scales = stated_scales(data)
     if scales is None:
-        return data, AxisUnits()
-    return in_reduced_units(data, scales), AxisUnits(scales)
+        return data, REDUCED
+    return in_reduced_units(data, scales), AxisUnits.by(scales)
 
 
 def _refuse_no_loop(loop: object) -> None:

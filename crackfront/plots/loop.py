@@ -62,39 +62,23 @@ def simulation_figure(result: SimulationResult) -> Figure:
         rf"{simulation.spectrum_name}, $e_\mathrm{{el}} = {simulation.elastic_energy:g}\,"
         rf"w_\mathrm{{int}}$, realisation {simulation.realisation}"
     )
-    if schedule.n_period is not None:
-        return pinning_figure(states, schedule.n_period, elastic_energy=energy, title=title)
-    steady = steady_adhesion(result.record, simulation.correlation_length)
-    works = steady.w_appr, steady.w_retr
-    # Steady parts have no loop to draw but the one that they stand for.
-    whole = schedule.full_cycle or not np.all(np.isfinite(works))
-    return (loop_figure if whole else steady_loop_figure)(
-        states,
-        works,
-        (steady.lowest_radius, steady.highest_radius),
-        elastic_energy=energy,
-        kind=simulation.kind,
-        title=title,
-    )
-
-
-def loop_figure(
-    states: LoopStates,
-    works: tuple[float, float],
-    window: tuple[float, float],
-    *,
-    elastic_energy: float | None = None,
-    kind: FieldKind = "roughness",
-    title: str = "",
-) -> Figure:
-    """Force against mean radius of one cycle between its two JKR curves (main Fig. 3c).
-
-    Parameters are those of :func:`draw_loop`; the figure is one column wide.
-    """
+    is_line = schedule.n_period is not None
+    if not is_line:
+        steady = steady_adhesion(result.record, simulation.correlation_length)
+        works = steady.w_appr, steady.w_retr
+        drawn = states, works, (steady.lowest_radius, steady.highest_radius)
+        # Steady parts have no loop to draw but the one that they stand for.
+        if not schedule.full_cycle and np.all(np.isfinite(works)):
+            return steady_loop_figure(
+                *drawn, elastic_energy=energy, kind=simulation.kind, title=title
+            )
     with house_style():
-        figure = blank_figure(COLUMN, 0.82 * COLUMN)
+        figure = blank_figure(COLUMN, (0.72 if is_line else 0.82) * COLUMN)
         axes = figure.add_subplot()
-        draw_loop(axes, states, works, window, elastic_energy=elastic_energy, kind=kind)
+        if is_line:
+            draw_pinning(axes, states, schedule.n_period, elastic_energy=energy)
+        else:
+            draw_loop(axes, *drawn, elastic_energy=energy, kind=simulation.kind)
         axes.set_title(title)
         return figure
 
@@ -203,8 +187,6 @@ def draw_loop(
 
     Parameters
     ----------
-    axes : Axes
-        Where to draw.
     states : LoopStates
         States of the cycle.
     works : tuple of float
@@ -217,8 +199,6 @@ def draw_loop(
         Whether they lie around w_int - e_el or w_int.
     arrows : bool, optional
         Whether an arrow beside each branch has its direction.
-    units : AxisUnits, optional
-        In which all of it is drawn.
 
     Raises
     ------
@@ -278,21 +258,6 @@ def _name_axes(axes: Axes, units: AxisUnits = REDUCED) -> None:
     units.name(axes.yaxis, "normal force", "force")
 
 
-def pinning_figure(
-    states: LineState[Array], n_period: int, *, elastic_energy: float, title: str = ""
-) -> Figure:
-    """Pinning force of a straight front against its load, on a figure one column wide.
-
-    Parameters are those of :func:`draw_pinning`.
-    """
-    with house_style():
-        figure = blank_figure(COLUMN, 0.72 * COLUMN)
-        axes = figure.add_subplot()
-        draw_pinning(axes, states, n_period, elastic_energy=elastic_energy)
-        axes.set_title(title)
-        return figure
-
-
 def draw_pinning(
     axes: Axes,
     states: LineState[Array],
@@ -304,8 +269,6 @@ def draw_pinning(
 
     Parameters
     ----------
-    axes : Axes
-        Where to draw.
     states : LineState
         States of a straight front, forward and back.
     n_period : int, optional

@@ -12,7 +12,6 @@ from dataclasses import replace
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
@@ -181,20 +180,13 @@ def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     axes.set_xlabel(r"disorder $(w_\mathrm{rms}/w_\mathrm{int})^2$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
     handles, labels = legend_entries(axes)
-    springs, lengths = _spring_entries(fit)
-    axes.legend([*handles, *springs], [*labels, *lengths], loc="upper left")
-
-
-def _spring_entries(fit: SweepFit) -> tuple[list[Artist], list[str]]:
-    """Markers of the springs of the first spectrum of straight fronts, and their lengths."""
-    families, series = spectrum_families(fit.table), sweep_series(fit.table)
-    first = [index for index, family in enumerate(families) if family == 0]
-    shown = first if fit.table.straight else []
-    handles: list[Artist] = [
-        Line2D([], [], color="0.4", linestyle="none", marker=series[index].marker)
-        for index in shown
-    ]
-    return handles, [spring_label(fit, index) for index in shown]
+    if table.straight:
+        families = spectrum_families(table)
+        for index in (index for index, family in enumerate(families) if family == 0):
+            marker = sweep_series(table)[index].marker
+            handles.append(Line2D([], [], color="0.4", linestyle="none", marker=marker))
+            labels.append(spring_label(fit, index))
+    axes.legend(handles, labels, loc="upper left")
 
 
 def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -> None:

@@ -14,20 +14,14 @@ if TYPE_CHECKING:
 
 Quantity = Literal["lateral", "vertical", "force", "adhesion", "energy"]
 
-_REDUCED: dict[Quantity, str] = {
-    "lateral": LATERAL_UNIT,
-    "vertical": VERTICAL_UNIT,
-    "force": FORCE_UNIT,
-    "adhesion": r"$w_\mathrm{int}$",
-    "energy": ENERGY_UNIT,
+_WRITTEN: dict[Quantity, tuple[str, str]] = {
+    "lateral": (LATERAL_UNIT, "m"),
+    "vertical": (VERTICAL_UNIT, "m"),
+    "force": (FORCE_UNIT, "N"),
+    "adhesion": (r"$w_\mathrm{int}$", "J/m²"),
+    "energy": (ENERGY_UNIT, "J"),
 }
-_SI: dict[Quantity, str] = {
-    "lateral": "m",
-    "vertical": "m",
-    "force": "N",
-    "adhesion": "J/m²",
-    "energy": "J",
-}
+"""Reduced unit and that of SI of each quantity."""
 
 _MOST_TICKS = 5
 """Places at which a length stands with its unit, which takes room."""
@@ -35,29 +29,19 @@ _MOST_TICKS = 5
 
 @dataclass(frozen=True, slots=True)
 class AxisUnits:
-    """Units in which reduced quantities are drawn: SI by a sphere, reduced without one."""
+    """What a reduced length, height, force and w_int are on an axis, in SI or themselves."""
 
-    scales: Scales | None = None
+    lateral: float = 1.0
+    vertical: float = 1.0
+    force: float = 1.0
+    adhesion: float = 1.0
+    is_si: bool = False
 
-    @property
-    def lateral(self) -> float:
-        """What a reduced lateral length is on an axis."""
-        return 1.0 if self.scales is None else self.scales.lateral
-
-    @property
-    def vertical(self) -> float:
-        """What a reduced vertical length is on an axis."""
-        return 1.0 if self.scales is None else self.scales.vertical
-
-    @property
-    def force(self) -> float:
-        """What a reduced force is on an axis."""
-        return 1.0 if self.scales is None else self.scales.force
-
-    @property
-    def adhesion(self) -> float:
-        """What w_int is on an axis."""
-        return 1.0 if self.scales is None else self.scales.work_of_adhesion
+    @classmethod
+    def by(cls, scales: Scales) -> AxisUnits:
+        """Units of SI, by the sphere that makes reduced units."""
+        reduced = scales.lateral, scales.vertical, scales.force, scales.work_of_adhesion
+        return cls(*reduced, is_si=True)
 
     @property
     def energy(self) -> float:
@@ -66,19 +50,20 @@ class AxisUnits:
 
     def name(self, axis: Axis, what: str, quantity: Quantity) -> None:
         """Write on an axis, or on that of a colour bar, what it shows."""
-        if self.scales is None:
-            axis.set_label_text(f"{what} / {_REDUCED[quantity]}")
+        reduced, si = _WRITTEN[quantity]
+        if not self.is_si:
+            axis.set_label_text(f"{what} / {reduced}")
             return
         from matplotlib.ticker import EngFormatter, MaxNLocator
 
         axis.set_label_text(what)
         if quantity == "lateral":
             axis.set_major_locator(MaxNLocator(_MOST_TICKS))
-        axis.set_major_formatter(EngFormatter(_SI[quantity]))
+        axis.set_major_formatter(EngFormatter(si))
 
     def adhesion_text(self, value: float) -> str:
         """A work of adhesion that is given in w_int, in the mathematics of a label."""
-        if self.scales is None:
+        if not self.is_si:
             return rf"{value:.3f}\,w_\mathrm{{int}}"
         number, unit = prefixed("J/m^2", value * self.adhesion).split(" ")
         return rf"{number}\ \mathrm{{{unit}}}"

@@ -13,7 +13,8 @@ from crackfront.core.field.fields import polar_field
 from crackfront.core.geometry.line import LineState
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.plots.loop import loop_figure, pinning_figure, steady_loop_figure
+from crackfront.plots.loop import draw_loop, draw_pinning, steady_loop_figure
+from crackfront.plots.style import COLUMN, blank_figure, house_style
 
 
 @pytest.fixture(scope="module")
@@ -25,6 +26,14 @@ def record():
     return run_cycle(
         polar_field(radii, WORK_OF_ADHESION * bumps), LoadSchedule(1.0, 0.05), Newton(1e-6)
     )
+
+
+def drawn(draw, *states, **options):
+    """Axes of one column, drawn on."""
+    with house_style():
+        axes = blank_figure(COLUMN, 0.8 * COLUMN).add_subplot()
+        draw(axes, *states, **options)
+    return axes
 
 
 def line_labelled(axes, words):
@@ -51,8 +60,7 @@ def line_states(n_step=9):
 
 
 def test_the_pinning_force_is_averaged_over_the_last_period_of_each_branch():
-    axes = pinning_figure(line_states(), 5, elastic_energy=0.1, title="front").axes[0]
-    assert axes.get_title() == "front"
+    axes = drawn(draw_pinning, line_states(), 5, elastic_energy=0.1)
     forward, back = (line_labelled(axes, words) for words in ("k=2.00", "k=1.00"))
     np.testing.assert_allclose(forward.get_data(), ([4, 8], [0.2, 0.2]))
     np.testing.assert_allclose(back.get_data(), ([4, 0], [-0.1, -0.1]))
@@ -61,7 +69,7 @@ def test_the_pinning_force_is_averaged_over_the_last_period_of_each_branch():
 
 def test_a_front_that_was_left_before_a_period_is_refused():
     with pytest.raises(ValueError, match="has 9 states, fewer than the 20"):
-        pinning_figure(line_states(), 20, elastic_energy=0.1)
+        drawn(draw_pinning, line_states(), 20, elastic_energy=0.1)
 
 
 def measured(steady):
@@ -71,19 +79,18 @@ def measured(steady):
 
 def test_the_loop_lies_between_its_curves(record):
     steady = steady_adhesion(record, correlation_length=0.1)
-    axes = loop_figure(record.states, *measured(steady), elastic_energy=0.01, title="loop").axes[0]
-    assert axes.get_title() == "loop"
+    axes = drawn(draw_loop, record.states, *measured(steady), elastic_energy=0.01)
     for words, adhesion in (("appr", steady.w_appr), ("retr", steady.w_retr)):
         radius, force = line_labelled(axes, f"\\mathrm{{{words}}}").get_data()
         np.testing.assert_allclose(force, jkr.equilibrium_force(radius, adhesion))
-    drawn = line_labelled(axes, "approach").get_xdata()
-    np.testing.assert_array_equal(drawn, record.states.mean_radius[record.states.direction > 0])
+    places = line_labelled(axes, "approach").get_xdata()
+    np.testing.assert_array_equal(places, record.states.mean_radius[record.states.direction > 0])
 
 
 @pytest.mark.parametrize("energy", [0.002, 0.01, 0.1])
 def test_the_arrows_of_a_loop_lie_beside_all_curves_and_in_the_direction_of_motion(record, energy):
     works = measured(steady_adhesion(record, correlation_length=0.1))
-    axes = loop_figure(record.states, *works, elastic_energy=energy).axes[0]
+    axes = drawn(draw_loop, record.states, *works, elastic_energy=energy)
     to_axes = axes.transData + axes.transAxes.inverted()
     curves = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.get_lines()])
     arrows = [(np.array(text.xyann), np.array(text.xy)) for text in axes.texts]
@@ -113,11 +120,11 @@ def test_steady_parts_are_drawn_on_the_loop_that_they_stand_for(record):
 
 def test_a_loop_without_steady_states_is_drawn_without_curves(record):
     steady = steady_adhesion(record, correlation_length=10.0)
-    axes = loop_figure(record.states, *measured(steady)).axes[0]
+    axes = drawn(draw_loop, record.states, *measured(steady))
     assert not [line for line in axes.get_lines() if "JKR" in str(line.get_label())]
 
 
 def test_an_empty_record_is_refused(record):
     empty = replace(record.states, mean_radius=np.array([]))
     with pytest.raises(ValueError, match="holds no state"):
-        loop_figure(empty, *measured(steady_adhesion(record, 0.1)))
+        drawn(draw_loop, empty, *measured(steady_adhesion(record, 0.1)))
