@@ -68,10 +68,6 @@ class _Samples(NamedTuple):
     factor_from_force: Array
 
 
-_STATISTICS = tuple(item.name for item in fields(LawEstimates))
-"""What is fitted to one spectrum, in the order of :func:`_statistics`."""
-
-
 def fit_sweep(
     table: SweepTable,
     *,
@@ -120,7 +116,7 @@ def fit_sweep(
     chosen = _Samples(*(values[:, in_range] for values in samples))
     n_realisation = np.count_nonzero(np.any(np.isfinite(chosen.factor), axis=1), axis=-1)
     parts, shares = _fit_spectra(chosen, n_realisation - 1, n_bootstrap, seed)
-    spectra = LawEstimates(**dict(zip(_STATISTICS, parts, strict=True)))
+    spectra = LawEstimates(*parts)
     law = SweepLaw(table, kind, uncorrelated)
     cells = _cell_estimates(samples, 1.0 if kind == "roughness" else 0.0, law)
     n_large, departure = law_departure(cells.factor, cells.law_factor, cells.size)
@@ -207,7 +203,7 @@ def _fit_spectra(
     samples: _Samples, freedom: NDArray[np.int64], n_bootstrap: int, seed: int
 ) -> tuple[list[Estimate], Array]:
     """Estimates of every statistic for the spectra, and their (statistic, spectrum) weights."""
-    shape = len(_STATISTICS), freedom.size
+    shape = len(fields(LawEstimates)), freedom.size
     values, errors, weights = np.empty(shape), np.full(shape, np.nan), np.empty(shape)
     streams = np.random.SeedSequence(seed).spawn(freedom.size)
     for index, stream in enumerate(streams):
@@ -239,7 +235,7 @@ def _means(samples: _Samples, counts: Array) -> _Samples:
 
 
 def _statistics(means: _Samples) -> tuple[Array, Array]:
-    """Statistics of every bootstrap sample and their weights, (n_statistic, n_sample)."""
+    """Entries of LawEstimates for every bootstrap sample, and weights, (n_entry, n_sample)."""
     doublings = np.log2(means.rms)
     positive = means.hysteresis > 0
     logarithm = np.log2(means.hysteresis, where=positive, out=np.full(positive.shape, np.nan))
@@ -260,11 +256,12 @@ def _statistics(means: _Samples) -> tuple[Array, Array]:
 
 def _pooled(parts: list[Estimate], shares: Array, freedom: NDArray[np.int64]) -> LawEstimates:
     """Weighted means of the spectra's estimates."""
-    pooled = (
-        combination(estimate, freedom, ratio(share, np.sum(share)))
-        for estimate, share in zip(parts, shares, strict=True)
+    return LawEstimates(
+        *(
+            combination(estimate, freedom, ratio(share, np.sum(share)))
+            for estimate, share in zip(parts, shares, strict=True)
+        )
     )
-    return LawEstimates(**dict(zip(_STATISTICS, pooled, strict=True)))
 
 
 def _largest_deviation(cells: CellEstimates, in_range: NDArray[np.bool_]) -> tuple[Array, Array]:

@@ -65,10 +65,8 @@ def draw_spectrum(
         axes.set_xlabel(rf"wavevector $q$ $\times$ {LATERAL_UNIT}")
         axes.set_ylabel(r"$C^\mathrm{iso}$ / $(3\pi w_\mathrm{int}R/4E')^2$")
     else:
-        orders = np.array([0.0, 0.5, 1.0])
-        _add_bars(
-            axes, _measured_names((units.vertical * rms / units.lateral**orders) ** 2), *waves
-        )
+        measured = units.vertical * rms / units.lateral ** np.array([0.0, 0.5, 1.0])
+        _add_bars(axes, _measured_names(measured**2), *waves)
         axes.set_xlabel(WAVEVECTOR_LABEL)
         axes.set_ylabel(ISOTROPIC_LABEL)
     if ideal is not None:

@@ -132,8 +132,8 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
         return drawn
     loop, units = _reduced(loop)
     states = cycle_record(loop).states
-    names = (("w_appr", "w_retr"), ("lowest_radius", "highest_radius"))
-    works, window = ((_number(loop, one), _number(loop, other)) for one, other in names)
+    works = _number(loop, "w_appr"), _number(loop, "w_retr")
+    window = _number(loop, "lowest_radius"), _number(loop, "highest_radius")
     energy = _number(loop, "e_el")
     with _drawing(axes) as drawn:
         draw_loop(

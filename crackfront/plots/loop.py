@@ -361,8 +361,8 @@ def _draw_prediction(
     axes: Axes, radius: Array, centre: float, reach: float, units: AxisUnits
 ) -> None:
     """JKR curves of the works of adhesion centre - reach, not below zero, and centre + reach."""
-    label: str | None = f"JKR, $k = {PAPER_FACTOR:g}$ (paper)"
-    for adhesion in (max(centre - reach, 0.0), centre + reach):
+    lower, upper = max(centre - reach, 0.0), centre + reach
+    for adhesion, label in ((lower, f"JKR, $k = {PAPER_FACTOR:g}$ (paper)"), (upper, None)):
         axes.plot(
             units.lateral * radius,
             units.force * jkr.equilibrium_force(radius, adhesion),
@@ -372,4 +372,3 @@ def _draw_prediction(
             label=label,
             zorder=1,
         )
-        label = None

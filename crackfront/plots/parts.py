@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,20 +43,19 @@ def field_colours() -> Colormap:
     return LinearSegmentedColormap.from_list("field", ["white", "0.45"])
 
 
+def _arrow(style: str, colour: str, width: float, head: float) -> dict[str, Any]:
+    """Look of an arrow that reaches both of its ends."""
+    look = {"arrowstyle": style, "color": colour, "linewidth": width, "mutation_scale": head}
+    return {**look, "shrinkA": 0, "shrinkB": 0}
+
+
 def draw_arrow(axes: Axes, abscissa: Array, ordinate: Array, colour: str) -> None:
     """Arrow head on a curve, from the first to the last of a few of its points."""
     axes.annotate(
         "",
         xy=(abscissa[-1], ordinate[-1]),
         xytext=(abscissa[0], ordinate[0]),
-        arrowprops={
-            "arrowstyle": "-|>",
-            "color": colour,
-            "linewidth": 1.0,
-            "mutation_scale": 8,
-            "shrinkA": 0,
-            "shrinkB": 0,
-        },
+        arrowprops=_arrow("-|>", colour, 1.0, 8),
         zorder=4,
     )
 
@@ -143,14 +142,7 @@ def draw_below(axes: Axes, index: int, colour: str, abscissa: Array) -> None:
             xy=(position, 0.005),
             xytext=(position, 0.05),
             xycoords=axes.get_xaxis_transform(),
-            arrowprops={
-                "arrowstyle": "->",
-                "color": colour,
-                "linewidth": 0.8,
-                "mutation_scale": 5,
-                "shrinkA": 0,
-                "shrinkB": 0,
-            },
+            arrowprops=_arrow("->", colour, 0.8, 5),
         )
 
 
