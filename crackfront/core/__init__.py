@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from crackfront.core.cycle.follow import Load as Load
     from crackfront.core.cycle.follow import follow as follow
     from crackfront.core.cycle.record import Recorder as Recorder
-    from crackfront.core.cycle.run import first_touch as first_touch
     from crackfront.core.cycle.run import run_cycle as run_cycle
     from crackfront.core.cycle.schedule import LoadSchedule as LoadSchedule
+    from crackfront.core.cycle.touch import first_touch as first_touch
     from crackfront.core.geometry.line import line_field as line_field
     from crackfront.core.solver.relax import SOLVERS as SOLVERS
     from crackfront.core.spectrum import SelfAffineSpectrum as SelfAffineSpectrum
@@ -34,7 +34,7 @@ _HOMES = {
     "SelfAffineSpectrum": "spectrum",
     "chemical_adhesion": "adhesion",
     "contact_field": "contact",
-    "first_touch": "cycle.run",
+    "first_touch": "cycle.touch",
     "follow": "cycle.follow",
     "gaussian_field": "synthesis",
     "line_field": "geometry.line",

@@ -95,8 +95,8 @@ class SphereCase:
         from crackfront.core import jkr
         from crackfront.core.adhesion import AdhesionMap
         from crackfront.core.contact import contact_field
-        from crackfront.core.cycle.run import checked_touch
         from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
+        from crackfront.core.cycle.touch import checked_touch
         from crackfront.simulate.costs import affordable_seconds
         from crackfront.simulate.tiles import tile_measures
 

@@ -17,8 +17,9 @@ from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.run import first_touch, run_cycle
+from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.touch import first_touch
 from crackfront.core.field.fields import TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import LineState

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crackfront.core.cycle.energy import contact_energy
 from crackfront.core.cycle.record import Recorder
-from crackfront.core.cycle.run import checked_touch
+from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.field.fields import polar_field
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status

@@ -15,8 +15,8 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.run import first_touch, refuse_outgrown
 from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.touch import first_touch, refuse_outgrown
 from crackfront.core.field.fields import TileField
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Newton, Solver

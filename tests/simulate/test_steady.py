@@ -12,8 +12,8 @@ from crackfront.core.adhesion import correlation_length
 from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
-from crackfront.core.cycle.run import first_touch
 from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.touch import first_touch
 from crackfront.core.field.fields import polar_field
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.outcome import Status

@@ -13,7 +13,7 @@ from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.run import run_cycle
+from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.field.fields import Field, Interpolation, TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.sphere import sphere
@@ -201,9 +201,12 @@ class LoadSchedule(SphereSchedule):
         yield from (Load(penetration, 1) for penetration in self.approach())
         yield from (Load(penetration, -1) for penetration in self.retraction())
 
-    def run(self, field: Field, solver: Solver, recorder: Recorder, **_: float) -> CycleRecord:
+    def run(
+        self, field: Field, solver: Solver | None, recorder: Recorder, **_: float
+    ) -> CycleRecord:
         """States from first contact to pull-off."""
-        return run_cycle(field, self, solver, recorder)
+        recorder.run(field, checked_touch(field, self.max_penetration), self.loads(), solver)
+        return recorder.record()
 
 
 def there_and_back(first: float, last: float, step: float) -> list[Load]:
