@@ -1,16 +1,10 @@
-"""What a reader must know of a measured surface and of a prediction, one sentence each."""
+"""What a reader must know of a measured surface, one sentence each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
-from crackfront.analysis.law import shipped_law
-from crackfront.analysis.validity import validity_sentence
 from crackfront.topography.measures import MeasuredSurface
-
-if TYPE_CHECKING:
-    from crackfront.topography.prediction import Prediction
 
 _MOST_ANISOTROPY = 1.25
 _MOST_UNMEASURED = 0.1
@@ -20,26 +14,6 @@ _MOST_CONTINUED = 0.5
 _EDGE, _MATTERS = 0.05, 0.1
 """Distance of a Hurst exponent from 0 and from 1 below which it is at the edge of what is fitted,
 and part of e_el that is continued from which on that matters."""
-
-
-def prediction_notes(prediction: Prediction) -> Iterator[str]:
-    """Treatments of the measurements, where k comes from, and where the numbers are weak."""
-    yield from surface_notes(prediction.surface, prediction.contact_radius)
-    yield (
-        "k is that of a straight front on springs of the length L_kappa, by the law that was "
-        "fitted to simulations of such fronts; its interval holds the errors of both."
-    )
-    _, largest = shipped_law().size
-    if prediction.size > largest:
-        yield (
-            f"Size g {prediction.size:.3g} is above the largest that was measured "
-            f"({largest:.3g}): k follows the finite-size exponent of the elastic line from there."
-        )
-    yield validity_sentence()
-    if prediction.w_appr.value <= 0:
-        yield (
-            "w_appr is not positive: the sphere is not drawn into contact, it has to be pressed on."
-        )
 
 
 def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None) -> Iterator[str]:

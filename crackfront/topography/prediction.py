@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.finding import PAPER_FACTOR
+from crackfront.analysis.law import shipped_law
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
+from crackfront.analysis.validity import validity_sentence
 from crackfront.core import jkr
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
+from crackfront.topography.cautions import surface_notes
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.tile import zero_load_radius
 from crackfront.topography.verdict import Verdict, verdict
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, slots=True)
 class Prediction:
-    """Adhesion that is predicted for a surface, in SI units; printed, it says all that is known.
+    """Adhesion that is predicted for a surface, in SI units.
 
     The intervals of the works of adhesion hold those of k and of e_el.
     """
@@ -50,10 +54,25 @@ class Prediction:
     paper_w_appr: float = variable("work of adhesion of the approach by that factor", "J m-2")
     paper_w_retr: float = variable("work of adhesion of the retraction by that factor", "J m-2")
 
-    def __repr__(self) -> str:
-        from crackfront.topography.report import report_text
 
-        return report_text(self.surface, ruling=self.verdict, prediction=self)
+def prediction_notes(prediction: Prediction) -> Iterator[str]:
+    """Treatments of the measurements, where k comes from, and where the numbers are weak."""
+    yield from surface_notes(prediction.surface, prediction.contact_radius)
+    yield (
+        "k is that of a straight front on springs of the length L_kappa, by the law that was "
+        "fitted to simulations of such fronts; its interval holds the errors of both."
+    )
+    _, largest = shipped_law().size
+    if prediction.size > largest:
+        yield (
+            f"Size g {prediction.size:.3g} is above the largest that was measured "
+            f"({largest:.3g}): k follows the finite-size exponent of the elastic line from there."
+        )
+    yield validity_sentence()
+    if prediction.w_appr.value <= 0:
+        yield (
+            "w_appr is not positive: the sphere is not drawn into contact, it has to be pressed on."
+        )
 
 
 def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSpectrum:

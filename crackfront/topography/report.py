@@ -14,12 +14,12 @@ from crackfront.core.units import Scales
 from crackfront.core.variables import variables
 from crackfront.data.written_units import prefixed
 from crackfront.topography.bands import BandLimit, Scan
-from crackfront.topography.cautions import prediction_notes, surface_doubts, surface_notes
+from crackfront.topography.cautions import surface_doubts, surface_notes
 from crackfront.topography.densities import Density
 from crackfront.topography.fitting import Fit
 from crackfront.topography.joining import JointSpectrum
 from crackfront.topography.measures import MeasuredSurface
-from crackfront.topography.prediction import Prediction
+from crackfront.topography.prediction import Prediction, prediction_notes
 from crackfront.topography.verdict import Condition, Verdict
 
 if TYPE_CHECKING:

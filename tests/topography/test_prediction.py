@@ -11,8 +11,8 @@ from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import TabulatedSpectrum
-from crackfront.topography.cautions import prediction_notes, surface_doubts
-from crackfront.topography.prediction import predicted, reduced_spectrum
+from crackfront.topography.cautions import surface_doubts
+from crackfront.topography.prediction import predicted, prediction_notes, reduced_spectrum
 from tests.topography.made import DETAIL, OVERVIEW, SCENE
 
 
