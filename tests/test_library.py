@@ -31,6 +31,7 @@ from crackfront.topography.measures import measured_surface
 from crackfront.topography.options import ReadingOptions, parsed_options
 from crackfront.topography.prediction import predicted
 from crackfront.topography.reading import read_measurements
+from crackfront.topography.report import report_text
 from crackfront.topography.tile import measured_adhesion
 
 ROOT = Path(__file__).parents[1]
@@ -414,7 +415,7 @@ def test_a_prediction_shows_itself_with_intervals_limits_and_notes():
     assert found.w_retr == expected.w_retr
     assert found.surface.checksum == surface.checksum
     shown = repr(found)
-    assert shown == repr(expected)
+    assert shown == report_text(surface, ruling=expected.verdict, prediction=expected)
     for text in (
         "al3d, 144 x 144",
         "\nThe theory applies",

@@ -13,6 +13,7 @@ from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.cautions import surface_doubts
 from crackfront.topography.prediction import predicted, prediction_notes, reduced_spectrum
+from crackfront.topography.report import report_text
 from tests.topography.made import DETAIL, OVERVIEW, SCENE
 
 
@@ -80,7 +81,7 @@ def test_every_radius_from_a_micrometre_to_a_metre_is_predicted(surface):
     _, largest = shipped_law().size
     for radius in np.geomspace(1e-6, 1.0, 7):
         found = predicted(surface, replace(SCENE, radius=radius))
-        text = repr(found)
+        text = report_text(surface, ruling=found.verdict, prediction=found)
         notes = "\n".join(prediction_notes(found))
         assert f"{found.size:.3g}\n" in text
         assert 0 <= found.k_appr.low < found.k_appr.value < found.k_appr.high
