@@ -83,7 +83,7 @@ class Schedule(ABC):
     def field(
         self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
     ) -> TileField:
-        """Field of a tile that no front leaves, as :func:`crackfront.core.contact.contact_field`."""
+        """Field of a tile, as of :func:`crackfront.core.contact.contact_field`."""
 
     @abstractmethod
     def run(
