@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import resource
@@ -51,9 +52,12 @@ MOST_MEMORY = 64e12
 MOST_SECONDS = 1e3 * 365.25 * 86400
 """Processor time of a command: a thousand years."""
 
-
 TOLERANCE = Range(1e-16, 1.0)
 """Force that may be left, relative to w_int per front length."""
+
+
+_KINDS = {"d": "a folder", "p": "a pipe", "s": "a socket", "c": "a device", "b": "a device"}
+"""What a path names that is no file, by the first letter of its mode."""
 
 
 class TooLargeError(ValueError):
@@ -61,12 +65,7 @@ class TooLargeError(ValueError):
 
 
 def refuse_outside(what: str, value: float, bounds: Range, unit: str = "") -> None:
-    """Raise if a number is not within its bounds.
-
-    Raises
-    ------
-    ValueError
-        That names it.
+    """Raise a ValueError that names a number if it is not within its bounds.
 
     Examples
     --------
@@ -135,18 +134,12 @@ def _group_limits() -> Iterator[float]:
         _, controllers, name = line.split(":", 2)
         if controllers not in ("", "memory"):
             continue
-        root = Path("/sys/fs/cgroup") / controllers
+        root = Path("/sys/fs/cgroup", controllers)
         file = "memory.limit_in_bytes" if controllers else "memory.max"
         here = root / name.lstrip("/")
-        for folder in (here, *here.parents):
-            try:
-                text = (folder / file).read_text().strip()
-            except OSError:
-                text = "max"
-            if text.isdecimal():
-                yield float(text)
-            if folder == root:
-                break
+        for path in (folder / file for folder in (here, *here.parents)):
+            with contextlib.suppress(OSError, ValueError):  # no file, or no number but "max"
+                yield float(int(path.read_text()))
 
 
 def in_bytes(number: float) -> str:
@@ -191,19 +184,10 @@ def regular_file(path: Path, most_bytes: float = math.inf) -> Path:
     """
     about = path.stat()
     if not stat.S_ISREG(about.st_mode):
-        kind = next((name for test, name in _KINDS if test(about.st_mode)), "something else")
+        kind = _KINDS.get(stat.filemode(about.st_mode)[0], "something else")
         raise ValueError(f"{path} is {kind}, no file; name a file")
     if about.st_size > most_bytes:
         raise ValueError(
             f"{path} has {in_bytes(about.st_size)}; more than {in_bytes(most_bytes)} are not read"
         )
     return path
-
-
-_KINDS = (
-    (stat.S_ISDIR, "a folder"),
-    (stat.S_ISFIFO, "a pipe"),
-    (stat.S_ISSOCK, "a socket"),
-    (stat.S_ISCHR, "a device"),
-    (stat.S_ISBLK, "a device"),
-)

@@ -119,12 +119,12 @@ def _pairs(
     for side, paths in enumerate((ones, others)):
         for name in sorted(paths.keys() - pairs.keys()):
             alike[_KEY.sub("", name)][side].append(paths[name])
-    alone = []
+    alone: list[Path] = []
     for name, (first, second) in sorted(alike.items()):
         if len(first) == len(second) == 1:
             pairs[name] = first[0], second[0]
         else:
-            alone += [*first, *second]
+            alone += first + second
     return pairs, tuple(alone)
 
 
@@ -151,13 +151,12 @@ def _differences(file: str, one: Path, other: Path) -> Iterator[Difference]:
 
 def _difference(file: str, name: str, one: NDArray[Any], other: NDArray[Any]) -> Difference:
     """How much two arrays differ."""
-    if one.shape != other.shape or (one.dtype.kind in "OU") != (other.dtype.kind in "OU"):
+    texts = [array.dtype.kind in "OU" for array in (one, other)]
+    if one.shape != other.shape or any(texts) != all(texts):
         return Difference(file, name, math.inf, in_bits=False)
-    if one.dtype.kind in "OU":
-        equal = [_KEY.sub("", str(text)) for text in one.flat] == [
-            _KEY.sub("", str(text)) for text in other.flat
-        ]
-        return Difference(file, name, float(not equal), in_bits=equal)
+    if all(texts):
+        first, second = ([_KEY.sub("", str(text)) for text in array.flat] for array in (one, other))
+        return Difference(file, name, float(first != second), in_bits=first == second)
     if one.dtype == other.dtype and one.tobytes() == other.tobytes():
         return Difference(file, name, 0.0, in_bits=True)
     if np.array_equal(one, other, equal_nan=True):

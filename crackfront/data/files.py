@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
-import math
 import os
 import secrets
 import tempfile
@@ -29,7 +29,6 @@ _SECONDS_TO_WRITE = 3600.0
 
 DAMAGED_SUFFIX = ".damaged"
 """Ending of the name of a file that was set aside."""
-
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 """Numbers of the errors of a full disk and of a used-up quota."""
@@ -145,23 +144,17 @@ def _refuse_full_disk(path: Path, error: Exception) -> None:
             raise OSError(full.errno, os.strerror(full.errno), str(path)) from error
 
 
-def leftover_parts(folder: Path) -> list[Path]:
+def leftover_parts(folder: Path) -> Iterator[Path]:
     """Files that writers began in a folder and did not finish within the last hour.
 
     Their age is that against a file which is created now, by the clock of the file system.
     """
     with tempfile.NamedTemporaryFile(prefix=".", suffix=".part", dir=folder) as new:
         now = Path(new.name).stat().st_mtime
-        parts = [path for path in folder.glob(".*.part") if path.name != Path(new.name).name]
-        return [path for path in parts if now - _changed(path) > _SECONDS_TO_WRITE]
-
-
-def _changed(path: Path) -> float:
-    """Moment of the last change of a file; never, where its writer has just renamed it."""
-    try:
-        return path.stat().st_mtime
-    except FileNotFoundError:
-        return math.inf
+        for path in folder.glob(".*.part"):
+            with contextlib.suppress(FileNotFoundError):  # its writer has just renamed it
+                if now - path.stat().st_mtime > _SECONDS_TO_WRITE:
+                    yield path
 
 
 def read_dataset(

@@ -11,6 +11,7 @@ import ast
 import contextlib
 import functools
 import hashlib
+import itertools
 import json
 import os
 import sys
@@ -50,24 +51,22 @@ def fingerprint(*names: str) -> str:
     >>> fingerprint("crackfront.core.units") == fingerprint("crackfront.core.units.Scales")
     False
     """
-    folder = private_folder("fingerprints")
     places = [place for package in _PACKAGES for place in _modules(package)]
     asked = repr((names, str(ROOT), places, sys.version_info[:2])).encode()
     asked += Path(__file__).read_bytes()
-    kept = None if folder is None else folder / _digest(asked)
+    # Without a folder of the user's own nothing is kept.
+    kept = (private_folder("fingerprints") or Path(os.devnull)) / _digest(asked)
     with contextlib.suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-        if kept is not None:
-            known = json.loads(kept.read_text("utf-8"))
-            if known["files"] == _file_digests(known["files"]):
-                return str(known["fingerprint"])
+        known = json.loads(kept.read_text("utf-8"))
+        if known["files"] == _file_digests(known["files"]):
+            return str(known["fingerprint"])
     reach = _Reach(names)
     found = reach.digest()[:12]
-    if kept is not None:
-        with contextlib.suppress(OSError):
-            part = kept.with_name(f"{kept.name}.{os.getpid()}")
-            known = {"fingerprint": found, "files": _file_digests(reach.files)}
-            part.write_text(json.dumps(known), "utf-8")
-            part.replace(kept)
+    with contextlib.suppress(OSError):
+        part = kept.with_name(f"{kept.name}.{os.getpid()}")
+        known = {"fingerprint": found, "files": _file_digests(reach.files)}
+        part.write_text(json.dumps(known), "utf-8")
+        part.replace(kept)
     return found
 
 
@@ -150,6 +149,7 @@ class _Module:
 
 
 _parsed = functools.cache(_Module)
+"""The module of a name, parsed once for the same bytes."""
 
 
 class _Reach:
@@ -166,7 +166,7 @@ class _Reach:
             if not origins:
                 raise ValueError(f"there is no module or definition {name}; correct the name")
             for module, defined, _ in origins:
-                for one in [defined] if defined else list(module.defined):
+                for one in [defined] if defined else module.defined:
                     self._take(module.defined[one])
         while self._waiting:
             self._follow(*self._waiting.pop())
@@ -194,7 +194,10 @@ class _Reach:
     def _module(self, name: str) -> _Module | None:
         """A module of the packages, if there is one of this full name."""
         if name not in self._modules:
-            self._modules[name] = None if name in _NO_PART else _module(name)
+            place = ROOT / name.replace(".", "/")
+            paths = place.with_suffix(".py"), place / "__init__.py"
+            path = None if name in _NO_PART else next(filter(Path.is_file, paths), None)
+            self._modules[name] = None if path is None else _parsed(name, path, path.read_bytes())
         return self._modules[name]
 
     def _origins(self, name: str) -> Iterator[tuple[_Module, str, str]]:
@@ -249,16 +252,13 @@ class _Reach:
 
     def _take_subclasses(self) -> None:
         """Count the subclasses of what counts, of an abstract class wherever they are."""
-        parents = dict.fromkeys((one.module for one in self._taken), self._taken)
-        for module, known in [*parents.items(), *self._where()]:
-            for statement in [one for ones in module.defined.values() for one in ones]:
+        searched = [(module, self._taken) for module in {one.module for one in self._taken}]
+        for abstract, modules in self._searched.items():
+            searched += [(module, {abstract}) for module in modules]
+        for module, known in searched:
+            for statement in itertools.chain(*module.defined.values()):
                 if known & self._bases(statement):
                     self._take([statement])
-
-    def _where(self) -> Iterator[tuple[_Module, set[_Statement]]]:
-        """Modules to search for subclasses, each with an abstract class."""
-        for abstract, modules in self._searched.items():
-            yield from ((module, {abstract}) for module in modules)
 
     def _text(self, statement: _Statement) -> str:
         """Meaning of a statement, with names that tell definitions of several modules apart."""
@@ -270,15 +270,6 @@ class _Reach:
                     parts[2 * k + 1] = f"{own}{name}{rest}"
                     break
         return "".join(parts)
-
-
-def _module(name: str) -> _Module | None:
-    """A module of this full name, parsed once for the same bytes."""
-    place = ROOT / name.replace(".", "/")
-    for path in (place.with_suffix(".py"), place / "__init__.py"):
-        if path.is_file():
-            return _parsed(name, path, path.read_bytes())
-    return None
 
 
 def _dotted(node: object) -> str:

@@ -17,16 +17,11 @@ from crackfront.data.fingerprint import solver_fingerprint
 PACKAGE = Path(__file__).parents[1]
 
 
-def _version() -> str:
-    """Version that setuptools-scm took from git; 0+unknown where the package is not installed."""
-    try:
-        return version("crackfront")
-    except PackageNotFoundError:
-        return "0+unknown"
-
-
-__version__ = _version()
-"""Version of the package."""
+try:
+    __version__ = version("crackfront")
+except PackageNotFoundError:
+    __version__ = "0+unknown"
+"""Version of the package, which setuptools-scm took from git."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,21 +52,17 @@ class Provenance:
 
 def provenance(configuration: str = "") -> Provenance:
     """Origin of what this process computes for a configuration of this text."""
+    program = Path(sys.argv[0])
+    # Without its folder, which is that of one machine.
+    name = program.parent.name if program.name == "__main__.py" else program.name
     return Provenance(
         crackfront_version=__version__,
         git_commit=git_commit(),
         solver_fingerprint=solver_fingerprint(),
-        command=_command(),
+        command=shlex.join([name, *sys.argv[1:]]),
         platform=f"{platform.platform()}, Python {platform.python_version()}",
         configuration=configuration,
     )
-
-
-def _command() -> str:
-    """Command line without the folder of the program, which is that of one machine."""
-    program = Path(sys.argv[0])
-    name = program.parent.name if program.name == "__main__.py" else program.name
-    return shlex.join([name, *sys.argv[1:]])
 
 
 def utc_now() -> str:
@@ -83,16 +74,8 @@ def utc_now() -> str:
 def git_commit() -> str:
     """Commit of the sources, with "-dirty" where they were changed since; or "unknown"."""
     # Without the tags, whose names would stand for the commit.
-    command = [
-        "git",
-        "-C",
-        str(PACKAGE),
-        "describe",
-        "--always",
-        "--dirty",
-        "--abbrev=40",
-    ]
-    command.append("--exclude=*")
+    options = "--always", "--dirty", "--abbrev=40", "--exclude=*"
+    command = "git", "-C", str(PACKAGE), "describe", *options
     try:
         result = subprocess.run(command, capture_output=True, text=True, timeout=10, check=False)
     except (OSError, subprocess.TimeoutExpired):

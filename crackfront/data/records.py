@@ -81,8 +81,6 @@ def write_records_in_blocks(
             for place, rows in blocks:
                 for variable in known:
                     values = _column(variable, rows)
-                    if values.dtype.kind == "U":
-                        values = values.astype(object)
                     if variable.name not in file.variables:
                         _create(file, variable, values)
                     file[variable.name][place] = values
@@ -92,7 +90,7 @@ def write_records_in_blocks(
 
 def _create(file: netCDF4.Dataset, variable: Variable, values: NDArray[Any]) -> None:
     """Create a variable for values like those of a block, in chunks of a block's size."""
-    text = values.dtype == object
+    text = values.dtype.kind == "U"
     sizes = [len(file.dimensions[name]) for name in variable.dims]
     created = file.createVariable(
         variable.name,
@@ -131,39 +129,23 @@ def read_record(path: Path, kind: type[Record]) -> Record:
 
 def read_records(path: Path, kind: type[Record], along: str) -> tuple[Record, ...]:
     """Records that :func:`write_records` wrote along a dimension; as :func:`read_record`."""
-    return tuple(kind(**row) for row in unstacked(path, read_dataset(path), kind, along))
-
-
-def unstacked(path: Path, dataset: xr.Dataset, kind: type[Any], along: str) -> list[dict[str, Any]]:
-    """Fields of the records of a kind that :func:`stacked` made variables of.
-
-    Raises
-    ------
-    UnreadableFileError
-        If a variable is missing or has other dimensions; it names the path.
-    """
+    dataset = read_dataset(path)
     columns = _columns(path, dataset, kind, along)
-    return [
+    rows = (
         {name: values[row].item() if values.ndim == 1 else values[row] for name, values in columns}
         for row in range(dataset.sizes[along])
-    ]
+    )
+    return tuple(kind(**row) for row in rows)
 
 
 def _columns(
     path: Path, dataset: xr.Dataset, kind: type[Any], *along: str
 ) -> list[tuple[str, NDArray[Any]]]:
     """Values of all variables of records of a kind."""
-    optional = {item.name for item in fields(kind) if item.default is None}
-    known = [
-        item
-        for item in variables(kind, *along)
-        if item.name in dataset or item.name not in optional
-    ]
-    wrong = [
-        item.name
-        for item in known
-        if item.name not in dataset or dataset[item.name].dims != item.dims
-    ]
+    dims = {name: values.dims for name, values in dataset.variables.items()}
+    absent = {item.name for item in fields(kind) if item.default is None} - dims.keys()
+    known = [item for item in variables(kind, *along) if item.name not in absent]
+    wrong = [item.name for item in known if dims.get(item.name) != item.dims]
     if wrong:
         raise UnreadableFileError(
             f"{path} holds no {kind.__name__}: {', '.join(wrong)} is missing or of other "

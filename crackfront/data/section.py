@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import re
 import reprlib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
@@ -87,7 +86,10 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
         return schema.model_validate(content)
     except ValidationError as error:
         found = error.errors(include_url=False, include_context=False)
-        lines = [f"{path}: {line}" for line in _sentences(found[:_MOST_SENTENCES], schema)]
+        around = {item["loc"][:depth] for item in found for depth in range(len(item["loc"]))}
+        # A list whose entries are refused is also called too short.
+        found = [item for item in found if item["type"] != "too_short" or item["loc"] not in around]
+        lines = [f"{path}: {_sentence(item, schema)}" for item in found[:_MOST_SENTENCES]]
         if len(found) > _MOST_SENTENCES:
             lines.append(f"{path}: and {len(found) - _MOST_SENTENCES} more such keys and values")
         raise ConfigurationError("\n".join(lines)) from error
@@ -116,10 +118,6 @@ _Loader.add_implicit_resolver(
 )
 
 
-_NO_VALUE = (ValueError, KeyError, AttributeError, IndexError, TypeError, OverflowError)
-"""What the constructors of YAML raise at dates, numbers and tags that are none."""
-
-
 def content_of(path: Path) -> dict[str, Any]:
     """Mapping that a YAML file holds, with tuples for lists.
 
@@ -146,7 +144,7 @@ def content_of(path: Path) -> dict[str, Any]:
         raise ConfigurationError(
             f"{path}: more than {_DEEPEST} lists and mappings are nested; write it flatter"
         ) from error
-    except (yaml.YAMLError, *_NO_VALUE) as error:
+    except Exception as error:  # what constructors raise at dates and numbers that are none, too
         raise ConfigurationError(f"{path} is no valid YAML: {error}") from error
     if content is None:
         raise ConfigurationError(f"{path} is empty; write a configuration like config/test.yaml")
@@ -167,15 +165,6 @@ def _frozen(value: Any, depth: int = 0) -> Any:
     return value
 
 
-def _sentences(errors: list[ErrorDetails], schema: type[Section]) -> Iterator[str]:
-    """What errors of pydantic mean, one sentence each."""
-    around = {item["loc"][:depth] for item in errors for depth in range(len(item["loc"]))}
-    for error in errors:
-        # A list whose entries are refused is also called too short.
-        if error["type"] != "too_short" or error["loc"] not in around:
-            yield _sentence(error, schema)
-
-
 def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
     """What one error of pydantic means."""
     place = "".join(
@@ -190,7 +179,8 @@ def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
     must = re.sub(r"^(Input|String|Tuple|Value) should", "it must", error["msg"])
     must = _SHORT.get(error["type"], must)
     value = list(error["input"]) if isinstance(error["input"], tuple) else error["input"]
-    meaning = "" if error["type"] == "too_short" else _MEANING.get(_field(error["loc"]), "")
+    key = next((part for part in reversed(error["loc"]) if isinstance(part, str)), "")
+    meaning = "" if error["type"] == "too_short" else _MEANING.get(key, "")
     return f"{place} is {_SHOWN.repr(value)}; {must}{meaning}"
 
 
@@ -213,11 +203,6 @@ _MEANING = {
     "work_of_adhesion_rms": " (in units of w_int: at 2 the energy of full conformity is w_int)",
     "hurst": " (a Hurst exponent lies in (0, 1])",
 }
-
-
-def _field(location: tuple[int | str, ...]) -> str:
-    """Last key of a location."""
-    return next((part for part in reversed(location) if isinstance(part, str)), "")
 
 
 def _known_keys(location: tuple[int | str, ...], schema: type[BaseModel]) -> str:

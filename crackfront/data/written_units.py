@@ -14,6 +14,9 @@ from crackfront.data.bounds import SI, refuse_outside
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 """A number and what stands behind it."""
 
+_NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area"}
+_EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2"}
+
 _POWER = re.compile(r"([A-Za-zµ]+)([2-9])(?!\w)")
 """A power without a sign for it, as in J/m2."""
 
@@ -41,7 +44,8 @@ def si_value(text: str, unit: str, *, what: str) -> float:
     >>> round(si_value("63mJ/m2", "J/m^2", what="work of adhesion"), 12)
     0.063
     """
-    example = _EXAMPLE.format(_NAMES[unit], _EXAMPLES[unit])
+    dimension = _NAMES[unit]
+    example = f"write a number and a unit of {dimension}, as in {_EXAMPLES[unit]}"
     found = _QUANTITY.fullmatch(text)
     if found is None:
         raise ValueError(f"{what} is {text!r}, which is no number with a unit; {example}")
@@ -50,7 +54,7 @@ def si_value(text: str, unit: str, *, what: str) -> float:
     try:
         value = _converted(float(found[1]), _POWER.sub(r"\1^\2", found[2]), unit)
     except DimensionError as error:
-        raise ValueError(f"{what} is {text!r}, which is no {_NAMES[unit]}; {example}") from error
+        raise ValueError(f"{what} is {text!r}, which is no {dimension}; {example}") from error
     except ValueError as error:
         raise ValueError(
             f"{what} is {text!r}, whose unit {found[2]} is unknown; {example}"
@@ -73,11 +77,6 @@ def unit_value(given: str, unit: str) -> float:
         return _converted(1.0, given, unit)
     except ValueError as error:
         raise ValueError(f"a {given} is not to be had in {unit}") from error
-
-
-_EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2"}
-_EXAMPLE = "write a number and a unit of {}, as in {}"
-_NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area"}
 
 
 class DimensionError(ValueError):
