@@ -90,9 +90,8 @@ def student_estimate(value: ArrayLike, standard_error: ArrayLike, freedom: Array
         Point estimate, its standard error and the degrees of freedom of the latter; fewer than
         one give no interval.
     """
-    centre, error, degrees = np.broadcast_arrays(
-        np.asarray(value, dtype=float), np.asarray(standard_error, dtype=float), freedom
-    )
+    numbers = (np.asarray(number, dtype=float) for number in (value, standard_error))
+    centre, error, degrees = np.broadcast_arrays(*numbers, freedom)
     known = np.isfinite(error) & (degrees >= 1)
     error, degrees = np.where(known, error, np.nan), np.where(known, degrees, 1)
     reach = error * stdtrit(degrees, (1 + _CONFIDENCE) / 2)
@@ -104,11 +103,9 @@ def mean_estimate(values: Array) -> tuple[Estimate, NDArray[np.int64]]:
 
     The bootstrap's standard error of a mean is known in closed form and not resampled.
     """
-    finite = np.isfinite(values)
-    count = np.count_nonzero(finite, axis=-1)
-    mean = ratio(np.sum(values, axis=-1, where=finite), count)
+    count = np.asarray(np.count_nonzero(np.isfinite(values), axis=-1))
     error = scatter(values) / np.sqrt(np.maximum(count, 1))
-    return student_estimate(mean, error, count - 1), np.asarray(count)
+    return student_estimate(finite_mean(values), error, count - 1), count
 
 
 def resample_counts(n_sample: int, n_realisation: int, rng: np.random.Generator) -> Array:
@@ -133,11 +130,19 @@ def resample_counts(n_sample: int, n_realisation: int, rng: np.random.Generator)
 
 def scatter(draws: Array) -> Array:
     """Standard deviation over the last axis, NaN left out; NaN with fewer than two values."""
-    finite = np.isfinite(draws)
-    count = np.count_nonzero(finite, axis=-1)
-    centre = ratio(np.sum(draws, axis=-1, where=finite), count)
-    square = np.sum((draws - centre[..., None]) ** 2, axis=-1, where=finite)
-    return np.asarray(np.sqrt(ratio(square, count - 1)))
+    square = finite_sum((draws - finite_mean(draws)[..., None]) ** 2)
+    freedom = np.count_nonzero(np.isfinite(draws), axis=-1) - 1
+    return np.asarray(np.sqrt(ratio(square, freedom)))
+
+
+def finite_sum(values: Array) -> Array:
+    """Sum over the last axis, NaN left out."""
+    return np.asarray(np.sum(values, axis=-1, where=np.isfinite(values)))
+
+
+def finite_mean(values: Array) -> Array:
+    """Mean over the last axis, NaN left out."""
+    return ratio(finite_sum(values), np.count_nonzero(np.isfinite(values), axis=-1))
 
 
 def combination(parts: Estimate, freedom: ArrayLike, coefficients: Array) -> Estimate:
@@ -169,9 +174,7 @@ def combination(parts: Estimate, freedom: ArrayLike, coefficients: Array) -> Est
 
 def ratio(numerator: ArrayLike, denominator: ArrayLike) -> Array:
     """Quotient, NaN where the denominator is not positive."""
-    above, below = np.broadcast_arrays(
-        np.asarray(numerator, dtype=float), np.asarray(denominator, dtype=float)
-    )
+    above, below = np.broadcast_arrays(np.asarray(numerator, float), np.asarray(denominator, float))
     return np.divide(above, below, out=np.full(above.shape, np.nan), where=below > 0)
 
 
@@ -187,9 +190,8 @@ def slope(abscissa: Array, ordinate: Array) -> tuple[Array, Array]:
         several lines share one.
     """
     finite = np.isfinite(abscissa) & np.isfinite(ordinate)
-    count = np.count_nonzero(finite, axis=-1)
-    centre = ratio(np.sum(abscissa, axis=-1, where=finite), count)
+    centre = finite_mean(np.where(finite, abscissa, np.nan))
     deviation = np.where(finite, abscissa - centre[..., None], 0.0)
     spread = np.sum(deviation**2, axis=-1)
-    resolved = np.where(count > 1, spread, 0.0)
+    resolved = np.where(np.count_nonzero(finite, axis=-1) > 1, spread, 0.0)
     return ratio(np.sum(deviation * ordinate, axis=-1, where=finite), resolved), resolved

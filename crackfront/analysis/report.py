@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import astuple
+from typing import Any
 
 import numpy as np
 
@@ -31,107 +32,71 @@ def fit_table(fit: SweepFit) -> str:
     """Markdown tables of a fit beside the theory, and its notes."""
     in_range = int(np.count_nonzero(fit.in_range))
     n_simulation = in_range * fit.table.spectrum.size * fit.table.e_el.shape[-1]
-    pooled = _pooled_entry(fit, fit.pooled.factor, fit.spectra.factor)
-    return "\n".join(
-        [
-            f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el",
-            "",
-            finding(_departure(fit)),
-            "",
-            f"This sweep, {n_simulation} simulations: k = {pooled}.",
-            "",
-            "## The fit",
-            "",
-            f"Range: e_el/w_int from {fit.lowest_elastic_energy:g} to "
-            f"{fit.highest_elastic_energy:g} ({in_range} of {fit.in_range.size} amplitudes); "
-            f"{n_simulation} simulations, {int(np.sum(fit.n_failed))} without a value. "
-            "Values with 95% intervals (Student's t with the bootstrap's standard error, "
-            f"{fit.n_bootstrap} samples of realisations). k is the mean over the amplitudes with "
-            "equal weights. Behind a pooled k stand how far the spectra lie apart, and the largest "
-            "bias that the numerics may leave; its interval holds neither.",
-            "",
-            *_law_rows(fit),
-            "",
-            _midpoint_sentence(fit),
-            "",
-            "## k at every amplitude",
-            "",
-            "Mean and standard error over the realisations (their number); amplitudes outside the "
-            "range of the fit in parentheses.",
-            "",
-            *_cell_rows(fit),
-            "",
-            "## k by the law of docs/law.md",
-            "",
-            "k of the straight front at the same disorder and size g, from which nothing was "
-            "adjusted to this sweep; and the measured k extrapolated by it to the infinite "
-            f"contact, where g is {LEAST_SIZE:g} or more. In the limit of weak disorder that is "
-            f"k_0 = {_with_interval(fit.k_0, ())} on every surface.",
-            "",
-            *_sizes_rows(fit),
-            "",
-            "## What an experimenter would find",
-            "",
-            "Work of adhesion from a JKR fit of force against mean radius, less that of the front "
-            "(in w_int): mean, and largest magnitude in one simulation.",
-            "",
-            *_force_rows(fit),
-            "",
-            "## Notes",
-            "",
-            *(f"- {sentence}" for sentence in fit_notes(fit)),
-            "",
-        ]
-    )
+    pooled = _pooled_entry(fit, "factor")
+    blocks = [
+        f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el",
+        finding(_departure(fit)),
+        f"This sweep, {n_simulation} simulations: k = {pooled}.",
+        "## The fit",
+        f"Range: e_el/w_int from {fit.lowest_elastic_energy:g} to "
+        f"{fit.highest_elastic_energy:g} ({in_range} of {fit.in_range.size} amplitudes); "
+        f"{n_simulation} simulations, {int(np.sum(fit.n_failed))} without a value. "
+        "Values with 95% intervals (Student's t with the bootstrap's standard error, "
+        f"{fit.n_bootstrap} samples of realisations). k is the mean over the amplitudes with "
+        "equal weights. Behind a pooled k stand how far the spectra lie apart, and the largest "
+        "bias that the numerics may leave; its interval holds neither.",
+        _law_table(fit),
+        _midpoint_sentence(fit),
+        "## k at every amplitude",
+        "Mean and standard error over the realisations (their number); amplitudes outside the "
+        "range of the fit in parentheses.",
+        _cell_table(fit),
+        "## k by the law of docs/law.md",
+        "k of the straight front at the same disorder and size g, from which nothing was "
+        "adjusted to this sweep; and the measured k extrapolated by it to the infinite "
+        f"contact, where g is {LEAST_SIZE:g} or more. In the limit of weak disorder that is "
+        f"k_0 = {_with_interval(fit.k_0, ())} on every surface.",
+        _sizes_table(fit),
+        "## What an experimenter would find",
+        "Work of adhesion from a JKR fit of force against mean radius, less that of the front "
+        "(in w_int): mean, and largest magnitude in one simulation.",
+        _force_table(fit),
+        "## Notes",
+        "\n".join(f"- {sentence}" for sentence in fit_notes(fit)),
+    ]
+    return "\n\n".join(blocks) + "\n"
 
 
-def _law_rows(fit: SweepFit) -> list[str]:
+def _law_table(fit: SweepFit) -> str:
     """The law of every spectrum, pooled, and in theory."""
     header = (
-        "spectrum",
-        "correlation length",
-        "realisations",
-        "k",
-        "k, ratio of sums",
-        "exponent of w_rms",
-        "midpoint slope m",
-        "change of k per doubling of w_rms",
+        "spectrum | correlation length | realisations | k | k, ratio of sums | exponent of w_rms "
+        "| midpoint slope m | change of k per doubling of w_rms"
     )
+    lengths, counts = fit.table.correlation_length, fit.n_realisation
     rows = [
-        (
-            str(name),
-            f"{fit.table.correlation_length[index]:.3g}",
-            str(fit.n_realisation[index]),
-            *_law_entries(fit.spectra, (index,)),
-        )
+        [str(name), f"{lengths[index]:.3g}", str(counts[index]), *_law_entries(fit.spectra, index)]
         for index, name in enumerate(fit.table.spectrum)
     ]
+    pooled = *(_pooled_entry(fit, name) for name in _FITTED[:2]), *_law_entries(fit.pooled, ())[2:]
     law = "2", "1" if fit.kind == "roughness" else "0", "0"
     rows += [
-        (
-            "**pooled**",
-            "",
-            str(np.sum(fit.n_realisation)),
-            *(
-                _pooled_entry(fit, getattr(fit.pooled, name), getattr(fit.spectra, name))
-                for name in _FITTED[:2]
-            ),
-            *_law_entries(fit.pooled, ())[2:],
-        ),
-        ("paper", "", "", *[f"{PAPER_FACTOR:g}"] * 2, *law),
-        ("2nd-order perturbation theory", "", "", *[f"{PERTURBATION_FACTOR:g}"] * 2, *law),
+        ["**pooled**", "", str(np.sum(counts)), *pooled],
+        ["paper", "", "", *[f"{PAPER_FACTOR:g}"] * 2, *law],
+        ["2nd-order perturbation theory", "", "", *[f"{PERTURBATION_FACTOR:g}"] * 2, *law],
     ]
-    return _markdown(header, rows)
+    return _markdown(header.split(" | "), rows)
 
 
-def _law_entries(law: LawEstimates, index: tuple[int, ...]) -> tuple[str, ...]:
+def _law_entries(law: LawEstimates, index: Any) -> tuple[str, ...]:
     """The fitted numbers of one row."""
     return tuple(_with_interval(getattr(law, name), index) for name in _FITTED)
 
 
-def _pooled_entry(fit: SweepFit, pooled: Estimate, spectra: Estimate) -> str:
+def _pooled_entry(fit: SweepFit, name: str) -> str:
     """A pooled k, which without the scatter of its spectra and its bias would say too much."""
-    return "; ".join([_with_interval(pooled, ()), *pooled_limits(fit, spectra)])
+    pooled = _with_interval(getattr(fit.pooled, name), ())
+    return "; ".join([pooled, *pooled_limits(fit, getattr(fit.spectra, name))])
 
 
 def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
@@ -142,53 +107,42 @@ def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
     return (*apart, f"numerical bias to {bias[0]:.2f}") if bias else apart
 
 
-def _cell_rows(fit: SweepFit) -> list[str]:
+def _cell_table(fit: SweepFit) -> str:
     """Rows of k at every amplitude, and of its change with size where there is one."""
-    header = ["e_el/w_int", *(str(name) for name in fit.table.spectrum)]
-    sized = bool(np.any(np.isfinite(fit.size_slope.value)))
-    if sized:
-        header.append("change of k per doubling of the correlation length")
-    rows = []
+    header, rows = ["e_el/w_int", *map(str, fit.table.spectrum)], []
     for index, energy in enumerate(fit.table.e_el_requested):
-        row = [f"{energy:.4g}" if fit.in_range[index] else f"({energy:.4g})"]
-        row += [_cell(fit, spectrum, index) for spectrum in range(fit.table.spectrum.size)]
-        if sized:
-            row.append(_with_interval(fit.size_slope, (index,)))
-        rows.append(row)
-    if sized:
+        cells = (_cell(fit, spectrum, index) for spectrum in range(fit.table.spectrum.size))
+        rows.append([f"{energy:.4g}" if fit.in_range[index] else f"({energy:.4g})", *cells])
+    if np.any(np.isfinite(fit.size_slope.value)):
+        header.append("change of k per doubling of the correlation length")
+        for index, row in enumerate(rows):
+            row.append(_with_interval(fit.size_slope, index))
         blank = [""] * fit.table.spectrum.size
         rows.append(["mean over the range", *blank, _with_interval(fit.pooled_size_slope, ())])
     return _markdown(header, rows)
 
 
-def _sizes_rows(fit: SweepFit) -> list[str]:
+def _sizes_table(fit: SweepFit) -> str:
     """Measured k beside the law's at every spectrum and amplitude."""
     header = ("spectrum", "e_el/w_int", "g", "k, measured", "k, law", "k, infinite contact")
     cells, rows = fit.cells, []
     for cell in np.ndindex(cells.size.shape):
         size = cells.size[cell]
-        rows.append(
-            (
-                str(fit.table.spectrum[cell[0]]),
-                f"{fit.table.e_el_requested[cell[1]]:.4g}",
-                f"{size:.2g}" if np.isfinite(size) else MISSING,
-                *(
-                    _with_interval(estimate, cell)
-                    for estimate in (cells.factor, cells.law_factor, cells.infinite_factor)
-                ),
-            )
-        )
+        name, energy = fit.table.spectrum[cell[0]], fit.table.e_el_requested[cell[1]]
+        estimates = cells.factor, cells.law_factor, cells.infinite_factor
+        factors = (_with_interval(estimate, cell) for estimate in estimates)
+        known = f"{size:.2g}" if np.isfinite(size) else MISSING
+        rows.append((str(name), f"{energy:.4g}", known, *factors))
     return _markdown(header, rows)
 
 
 def _cell(fit: SweepFit, spectrum: int, amplitude: int) -> str:
     """Mean k, standard error and number of realisations of one cell."""
-    count = fit.cells.count[spectrum, amplitude]
-    if count == 0:
-        return MISSING
-    value = fit.cells.factor.value[spectrum, amplitude]
-    error = fit.cells.factor.standard_error[spectrum, amplitude]
-    return f"{with_error(value, error)} ({count})" if count > 1 else f"{value:.2f} (1)"
+    place = spectrum, amplitude
+    count, factor = fit.cells.count[place], fit.cells.factor.at(place).each(float)
+    if count < 2:
+        return f"{factor.value:.2f} (1)" if count else MISSING
+    return f"{with_error(factor.value, factor.standard_error)} ({count})"
 
 
 def _midpoint_sentence(fit: SweepFit) -> str:
@@ -209,33 +163,21 @@ def _mean_adhesion(fit: SweepFit) -> str:
     return "w_int - e_el" if fit.kind == "roughness" else "w_int"
 
 
-def _force_rows(fit: SweepFit) -> list[str]:
+def _force_table(fit: SweepFit) -> str:
     """Differences of the experimenter's estimates."""
-    header = (
-        "spectrum",
-        "w_appr, mean",
-        "w_appr, largest",
-        "w_retr, mean",
-        "w_retr, largest",
-        "k from force",
-    )
+    header = "spectrum; w_appr, mean; w_appr, largest; w_retr, mean; w_retr, largest; k from force"
     differences = np.transpose(astuple(fit.from_force))
-    rows = [
-        (
-            str(name),
-            *(f"{one:.4f}" if np.isfinite(one) else MISSING for one in differences[index]),
-            _with_interval(fit.spectra.factor_from_force, (index,)),
-        )
-        for index, name in enumerate(fit.table.spectrum)
-    ]
-    pooled = _pooled_entry(fit, fit.pooled.factor_from_force, fit.spectra.factor_from_force)
-    return _markdown(header, [*rows, ("**pooled**", "", "", "", "", pooled)])
+    rows = []
+    for index, name in enumerate(fit.table.spectrum):
+        found = (f"{one:.4f}" if np.isfinite(one) else MISSING for one in differences[index])
+        rows.append((str(name), *found, _with_interval(fit.spectra.factor_from_force, index)))
+    pooled = _pooled_entry(fit, "factor_from_force")
+    return _markdown(header.split("; "), [*rows, ("**pooled**", "", "", "", "", pooled)])
 
 
-def _with_interval(estimate: Estimate, index: tuple[int, ...]) -> str:
-    """Value and interval, as far as there are any."""
-    here = estimate.at(index)
-    value, low, high = here.value, here.low, here.high
+def _with_interval(estimate: Estimate, index: Any) -> str:
+    """Value and interval at a place, as far as there are any."""
+    value, _, low, high = astuple(estimate.at(index))
     if not np.isfinite(value):
         return MISSING
     if not np.isfinite(low):
@@ -243,9 +185,10 @@ def _with_interval(estimate: Estimate, index: tuple[int, ...]) -> str:
     return f"{value:.2f} ({low:.2f} to {high:.2f})"
 
 
-def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """Lines of a Markdown table."""
-    return [f"| {' | '.join(row)} |" for row in (header, ["---"] * len(header), *rows)]
+def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table in Markdown."""
+    lines = (header, ["---"] * len(header), *rows)
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
 def fit_notes(fit: SweepFit) -> tuple[str, ...]:
@@ -291,7 +234,7 @@ def _departure(fit: SweepFit) -> str:
 
 def _change(trend: Estimate, unit: str) -> str:
     """Words for a trend; empty if there is none to speak of."""
-    value, low, high = float(trend.value), float(trend.low), float(trend.high)
+    value, _, low, high = map(float, astuple(trend))
     if not np.isfinite(value):
         return ""
     if not np.isfinite(low):

@@ -15,6 +15,7 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.variables import ADHESION, Variable, variable, variables
 
 Array = NDArray[np.float64]
+Counts = NDArray[np.int64]
 
 _SIZE_SLOPE = "change of k per doubling of the correlation length among spectra of one shape"
 
@@ -29,7 +30,7 @@ _ENDINGS = {
 class CellEstimates:
     """Means over the realisations at every spectrum and amplitude, in the range or not."""
 
-    count: NDArray[np.int64] = variable("number of simulations with a value", "1")
+    count: Counts = variable("number of simulations with a value", "1")
     e_el: Array = variable("mean measured e_el", ADHESION)
     w_rms: Array = variable("mean measured w_rms", ADHESION)
     hysteresis: Estimate = variable("mean hysteresis w_retr - w_appr", ADHESION)
@@ -107,18 +108,14 @@ class SweepFit:
     pooled: LawEstimates
     from_force: ForceDifference
     in_range: NDArray[np.bool_] = variable("amplitude is in the fit", "1", AMPLITUDE)
-    n_realisation: NDArray[np.int64] = variable(
-        "realisations with a value in the range", "1", SPECTRUM
-    )
-    n_failed: NDArray[np.int64] = variable(
-        "simulations without a value in the range", "1", SPECTRUM
-    )
+    n_realisation: Counts = variable("realisations with a value in the range", "1", SPECTRUM)
+    n_failed: Counts = variable("simulations without a value in the range", "1", SPECTRUM)
     midpoint_largest: Array = variable("largest deviation of a midpoint in standard errors", "1")
     midpoint_probability: Array = variable("probability of that deviation among all cells", "1")
     size_slope: Estimate = variable(_SIZE_SLOPE, "1", AMPLITUDE)
     pooled_size_slope: Estimate = variable(_SIZE_SLOPE, "1")
     k_0: Estimate = variable("k of weak disorder in the infinite contact, by the law", "1")
-    n_large: NDArray[np.int64] = variable("spectra and amplitudes with g above 1", "1")
+    n_large: Counts = variable("spectra and amplitudes with g above 1", "1")
     law_departure: Array = variable("rms departure of their k from the law, relative", "1")
 
 
@@ -147,10 +144,8 @@ def _columns(record: Any, prefix: str = "", *along: str) -> Iterator[tuple[Varia
     """Columns of a record, their names with a prefix, along dimensions that all of them have."""
     for item in variables(type(record), *along):
         entry, column = getattr(record, item.name), replace(item, name=prefix + item.name)
-        if not isinstance(entry, Estimate):
-            yield column, entry
-            continue
-        yield column, entry.value
-        for ending, words in _ENDINGS.items():
+        is_estimate = isinstance(entry, Estimate)
+        yield column, entry.value if is_estimate else entry
+        for ending, words in _ENDINGS.items() if is_estimate else ():
             name, text = f"{column.name}_{ending}", f"{item.long_name}: {words}"
             yield replace(column, name=name, long_name=text), getattr(entry, ending)

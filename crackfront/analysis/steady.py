@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,31 +107,23 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
     states, radius = record.states, record.states.mean_radius
     steady = states.least_travel >= correlation_length
     branches = [np.flatnonzero(steady & (sign * states.direction > 0)) for sign in (1, -1)]
+    needed = f"{FEWEST_STATES} each are needed, so penetrate deeper or use a smaller load step"
     counts = branches[0].size, branches[1].size
     if min(counts) < FEWEST_STATES:
-        return _no_value(
-            counts,
-            f"{counts[0]} steady states in approach and {counts[1]} in retraction; "
-            f"{FEWEST_STATES} each are needed, so penetrate deeper or use a smaller load step",
-        )
+        found = f"{counts[0]} steady states in approach and {counts[1]} in retraction"
+        return _no_value(counts, f"{found}; {needed}")
     lowest = float(max(radius[branch].min() for branch in branches))
     highest = float(min(radius[branch].max() for branch in branches))
     shared = (radius >= lowest) & (radius <= highest)
     branches = [branch[shared[branch]] for branch in branches]
     counts = branches[0].size, branches[1].size
     if min(counts) < FEWEST_STATES:
-        return _no_value(
-            counts,
-            f"the steady branches share {counts[0]} states of approach and {counts[1]} of "
-            f"retraction at equal mean radii; {FEWEST_STATES} each are needed, so penetrate "
-            "deeper or use a smaller load step",
-        )
+        found = f"{counts[0]} states of approach and {counts[1]} of retraction at equal mean radii"
+        return _no_value(counts, f"the steady branches share {found}; {needed}")
     from_force = [_adhesion_from_force(radius[branch], states.force[branch]) for branch in branches]
-    return _measures(
-        (states.apparent_work_of_adhesion, radius, states.rms_radius),
-        branches,
-        correlation_length,
-        from_force=from_force,
+    columns = states.apparent_work_of_adhesion, radius, states.rms_radius
+    return replace(
+        _measures(columns, branches, correlation_length, from_force),
         hysteresis_error=_error_of_difference(states, branches, correlation_length),
         lowest_radius=lowest,
         highest_radius=highest,
@@ -159,34 +151,24 @@ def period_adhesion(
     if min(branch.size for branch in branches) < n_period:
         counts = branches[0].size, branches[1].size
         return _no_value(counts, f"the front was left before it had passed the tile: {counts}")
-    values = mean - states.pinning_force
-    return _measures(
-        (values, states.mean_position, states.rms_position), branches, correlation_length
-    )
+    columns = mean - states.pinning_force, states.mean_position, states.rms_position
+    return _measures(columns, branches, correlation_length)
 
 
 def _measures(
     columns: tuple[Array, Array, Array],
     branches: Sequence[NDArray[np.int64]],
     correlation_length: float,
-    *,
     from_force: Sequence[float] | None = None,
-    hysteresis_error: float | None = None,
-    lowest_radius: float = math.nan,
-    highest_radius: float = math.nan,
 ) -> SteadyAdhesion:
-    """Means over the states of both branches.
-
-    Columns are the apparent work of adhesion, mean place and rms of the front. Where no curve is
-    fitted to the force, that of the springs is the force; where no other error of the hysteresis is
-    given, those of the branches are independent.
-    """
+    """Means of work of adhesion, place and rms of the front over the states of both branches."""
     values, place, roughness = columns
     works = [float(np.mean(values[branch])) for branch in branches]
     errors = [
         standard_error(values[branch], place[branch], roughness[branch], correlation_length)
         for branch in branches
     ]
+    # Where no curve is fitted to the force, the springs' force is that of the works of adhesion.
     (w_appr, w_retr), from_force = works, from_force or works
     return SteadyAdhesion(
         w_appr=w_appr,
@@ -194,15 +176,15 @@ def _measures(
         w_appr_error=errors[0],
         w_retr_error=errors[1],
         hysteresis=w_retr - w_appr,
-        hysteresis_error=math.hypot(*errors) if hysteresis_error is None else hysteresis_error,
+        hysteresis_error=math.hypot(*errors),
         midpoint=(w_retr + w_appr) / 2,
         w_appr_from_force=from_force[0],
         w_retr_from_force=from_force[1],
         hysteresis_from_force=from_force[1] - from_force[0],
         n_approach=branches[0].size,
         n_retraction=branches[1].size,
-        lowest_radius=lowest_radius,
-        highest_radius=highest_radius,
+        lowest_radius=math.nan,
+        highest_radius=math.nan,
         front_rms=float(np.mean(roughness[np.concatenate(branches)])),
     )
 

@@ -12,6 +12,8 @@ from scipy.special import stdtr
 from crackfront.analysis.estimate import (
     Estimate,
     combination,
+    finite_mean,
+    finite_sum,
     mean_estimate,
     ratio,
     resample_counts,
@@ -111,12 +113,14 @@ def fit_sweep(
     """
     in_range = _amplitudes_in_range(table, lowest_elastic_energy, highest_elastic_energy)
     if n_bootstrap < FEWEST_BOOTSTRAP:
-        raise ValueError(f"n_bootstrap is {n_bootstrap}; ask for {FEWEST_BOOTSTRAP} or more")
+        raise ValueError(f"n_bootstrap is {n_bootstrap}; use {FEWEST_BOOTSTRAP} or more")
     samples = _samples(table)
     chosen = _Samples(*(values[:, in_range] for values in samples))
     n_realisation = np.count_nonzero(np.any(np.isfinite(chosen.factor), axis=1), axis=-1)
-    parts, shares = _fit_spectra(chosen, n_realisation - 1, n_bootstrap, seed)
-    spectra = LawEstimates(*parts)
+    freedom = n_realisation - 1
+    parts, weights = _fit_spectra(chosen, freedom, n_bootstrap, seed)
+    spectra, shares = LawEstimates(*parts), ratio(weights, np.sum(weights, axis=1, keepdims=True))
+    pooled = [combination(part, freedom, share) for part, share in zip(parts, shares, strict=True)]
     law = SweepLaw(table, kind, uncorrelated)
     cells = _cell_estimates(samples, 1.0 if kind == "roughness" else 0.0, law)
     n_large, departure = law_departure(cells.factor, cells.law_factor, cells.size)
@@ -134,9 +138,9 @@ def fit_sweep(
         n_failed=np.count_nonzero(~np.isfinite(chosen.factor), axis=(1, 2)),
         cells=cells,
         spectra=spectra,
-        pooled=_pooled(parts, shares, n_realisation - 1),
+        pooled=LawEstimates(*pooled),
         size_slope=_size_slopes(table, cells),
-        pooled_size_slope=_size_slope(table, spectra.factor, n_realisation - 1),
+        pooled_size_slope=_size_slope(table, spectra.factor, freedom),
         midpoint_largest=largest,
         midpoint_probability=probability,
         from_force=_force_difference(table, in_range),
@@ -222,10 +226,7 @@ def _fit_spectra(
 
 
 def _means(samples: _Samples, counts: Array) -> _Samples:
-    """Means over realisations for every bootstrap sample, (n_sample, n_amplitude).
-
-    An amplitude of which a sample holds no value is NaN there and left out of what is fitted.
-    """
+    """Means over realisations of every bootstrap sample, (n_sample, n_amplitude); NaN of none."""
     means = []
     for quantity in samples:
         finite = np.isfinite(quantity)
@@ -239,29 +240,19 @@ def _statistics(means: _Samples) -> tuple[Array, Array]:
     doublings = np.log2(means.rms)
     positive = means.hysteresis > 0
     logarithm = np.log2(means.hysteresis, where=positive, out=np.full(positive.shape, np.nan))
-    energy, one = _sum(means.energy), np.ones(positive.shape[0])
+    energy, one = finite_sum(means.energy), np.ones(positive.shape[0])
     exponent, spread = slope(doublings, logarithm)
     disorder_slope, spread_of_factors = slope(doublings, means.factor)
     values = (
-        _mean(means.factor),
-        ratio(_sum(means.hysteresis), 2 * energy),
-        _mean(means.factor_from_force),
+        finite_mean(means.factor),
+        ratio(finite_sum(means.hysteresis), 2 * energy),
+        finite_mean(means.factor_from_force),
         exponent,
-        ratio(_sum(means.depression), energy),
+        ratio(finite_sum(means.depression), energy),
         disorder_slope,
     )
     weights = (one, energy, one, spread, energy, spread_of_factors)
     return np.array(values), np.where(np.isfinite(values), weights, 0.0)
-
-
-def _pooled(parts: list[Estimate], shares: Array, freedom: NDArray[np.int64]) -> LawEstimates:
-    """Weighted means of the spectra's estimates."""
-    return LawEstimates(
-        *(
-            combination(estimate, freedom, ratio(share, np.sum(share)))
-            for estimate, share in zip(parts, shares, strict=True)
-        )
-    )
 
 
 def _largest_deviation(cells: CellEstimates, in_range: NDArray[np.bool_]) -> tuple[Array, Array]:
@@ -305,14 +296,4 @@ def _force_difference(table: SweepTable, in_range: NDArray[np.bool_]) -> ForceDi
     )
     # The larger of a number and NaN is the number.
     largest = [np.fmax.reduce(np.abs(one), axis=-1) for one in (approach, retraction)]
-    return ForceDifference(_mean(approach), largest[0], _mean(retraction), largest[1])
-
-
-def _sum(values: Array) -> Array:
-    """Sum over the last axis, NaN left out."""
-    return np.asarray(np.sum(values, axis=-1, where=np.isfinite(values)))
-
-
-def _mean(values: Array) -> Array:
-    """Mean over the last axis, NaN left out."""
-    return ratio(_sum(values), np.count_nonzero(np.isfinite(values), axis=-1))
+    return ForceDifference(finite_mean(approach), largest[0], finite_mean(retraction), largest[1])

@@ -13,12 +13,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from importlib.resources import files
+from typing import get_type_hints
 
 TOLERANCES = (0.10, 0.25)
-"""Relative differences of the hysteresis whose ranges are told."""
+"""Relative differences of the hysteresis whose ranges a sentence gives."""
 
 _ALIKE = 0.9
-"""Energies on tiles differ by some percent where the same is asked for."""
+"""Energies measured on tiles differ by some percent from the requested one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,9 +56,6 @@ class ValidityRow:
     interaction_range: float
 
 
-_TYPES = {"float": float, "int": int}
-
-
 @functools.cache
 def shipped_validity() -> tuple[ValidityRow, ...]:
     """Rows of the file that the package ships."""
@@ -66,10 +64,9 @@ def shipped_validity() -> tuple[ValidityRow, ...]:
 
 def validity_of(text: str) -> tuple[ValidityRow, ...]:
     """Rows of a table as of :func:`validity_text`."""
-    return tuple(
-        ValidityRow(*(_TYPES[str(item.type)](row[item.name]) for item in fields(ValidityRow)))
-        for row in csv.DictReader(io.StringIO(text))
-    )
+    kinds = get_type_hints(ValidityRow)
+    rows = csv.DictReader(io.StringIO(text))
+    return tuple(ValidityRow(**{name: kinds[name](row[name]) for name in kinds}) for row in rows)
 
 
 def validity_text(rows: Sequence[ValidityRow]) -> str:
@@ -93,10 +90,8 @@ def largest_energy(rows: Sequence[ValidityRow], tolerance: float) -> float:
     [0.0, 0.03, 0.06]
     """
     outside = [row.elastic_energy for row in rows if not _departure(row) <= tolerance]
-    least = min(outside, default=math.inf)
-    return max(
-        (row.elastic_energy for row in rows if row.elastic_energy < _ALIKE * least), default=0.0
-    )
+    least = _ALIKE * min(outside, default=math.inf)
+    return max((row.elastic_energy for row in rows if row.elastic_energy < least), default=0.0)
 
 
 def _departure(row: ValidityRow) -> float:
@@ -108,20 +103,19 @@ def validity_sentence(rows: Sequence[ValidityRow] | None = None) -> str:
     """What the hysteresis of a front is worth by amplitude, by the shipped table or another."""
     rows = shipped_validity() if rows is None else rows
     energies = [row.elastic_energy for row in rows]
-    told = []
+    ranges: dict[float, str] = {}
     for tolerance in TOLERANCES:
         energy = largest_energy(rows, tolerance)
         if energy:
             strongest = ", the strongest that was compared" if energy == max(energies) else ""
-            told.append(f"to {tolerance:.0%} up to e_el/w_int = {energy:.2g}{strongest}")
+            words = f"to {tolerance:.0%} up to e_el/w_int = {energy:.2g}{strongest}"
         else:
-            told.append(f"to {tolerance:.0%} nowhere from e_el/w_int = {min(energies):.2g} on")
-    if largest_energy(rows, TOLERANCES[0]) == largest_energy(rows, TOLERANCES[-1]):
-        del told[1:]
+            words = f"to {tolerance:.0%} nowhere from e_el/w_int = {min(energies):.2g} on"
+        ranges.setdefault(energy, words)
     worst = max(rows, key=_departure)
     error = f" ± {worst.error:.1f}" if math.isfinite(worst.error) else ""
     return (
         f"Against boundary elements on the same surfaces the front's hysteresis is right, within "
-        f"the error of the comparison, {', and '.join(told)}; at worst it is "
+        f"the error of the comparison, {', and '.join(ranges.values())}; at worst it is "
         f"{worst.ratio:.1f}{error} times theirs, at e_el/w_int = {worst.elastic_energy:.2g}."
     )
