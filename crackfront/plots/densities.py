@@ -21,10 +21,10 @@ Array = NDArray[np.float64]
 WAVEVECTOR_LABEL = r"wavevector $q$ (m$^{-1}$)"
 PROFILE_LABEL = r"$C^\mathrm{1D}$ (m$^3$)"
 ISOTROPIC_LABEL = r"$C^\mathrm{iso}$ (m$^4$)"
-
+_REDUCED_LABEL = r"$C^\mathrm{iso}$ / $(3\pi w_\mathrm{int}R/4E')^2$"
 
 _NAME = 0.4
-"""Part of the axis that the name of a bar takes."""
+"""Part of the axis that the name of a bar covers."""
 
 
 def draw_spectrum(
@@ -50,25 +50,19 @@ def draw_spectrum(
     ideal : (n_wave,) array, optional
         Density of the spectrum that the surface was made from, zero where it has none.
     """
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     wave, power = wavevector / units.lateral, (units.vertical * units.lateral) ** 2
     axes.plot(wave, power * density, color=BLUE, label="surface")
     axes.set_xlim(0.7 * wave[0], 1.4 * wave[-1])
-    waves = (2 * np.pi / (units.lateral * ends) for ends in (longest, shortest))
-    if not units.is_si:
-        names = [
-            rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$"
-            for order, value in zip(("0", "1/2", "1"), rms, strict=True)
-        ]
-        _add_bars(axes, names, *waves)
-        axes.set_xlabel(rf"wavevector $q$ $\times$ {LATERAL_UNIT}")
-        axes.set_ylabel(r"$C^\mathrm{iso}$ / $(3\pi w_\mathrm{int}R/4E')^2$")
-    else:
+    if units.is_si:
         measured = units.vertical * rms / units.lateral ** np.array([0.0, 0.5, 1.0])
-        _add_bars(axes, _measured_names(measured**2), *waves)
-        axes.set_xlabel(WAVEVECTOR_LABEL)
-        axes.set_ylabel(ISOTROPIC_LABEL)
+        names, labels = _measured_names(measured**2), (WAVEVECTOR_LABEL, ISOTROPIC_LABEL)
+    else:
+        orders = zip(("0", "1/2", "1"), rms, strict=True)
+        names = [rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$" for order, value in orders]
+        labels = rf"wavevector $q$ $\times$ {LATERAL_UNIT}", _REDUCED_LABEL
+    _add_bars(axes, names, *(2 * np.pi / (units.lateral * ends) for ends in (longest, shortest)))
+    axes.set(xlabel=labels[0], ylabel=labels[1])
     if ideal is not None:
         kept = ideal > 0
         curve = wave[kept], power * ideal[kept]
@@ -91,16 +85,16 @@ def draw_dominant_scales(axes: Axes, mean_square: Array, shortest: Array, longes
     _add_bars(axes, _measured_names(mean_square), 2 * np.pi / longest, 2 * np.pi / shortest)
 
 
-def _measured_names(mean_square: Array) -> tuple[str, ...]:
+def _measured_names(mean_square: Array) -> list[str]:
     """Names of the bars over wavevectors in 1/m; arguments as of :func:`draw_dominant_scales`."""
     height, half, slope = mean_square**0.5
     power = math.floor(math.log10(half))
-    return (
+    return [
         rf"$h_\mathrm{{rms}}^{{(0)}} = {_two_digits(1e9 * height)}$ nm",
         rf"$h_\mathrm{{rms}}^{{(1/2)}} = {half / 10.0**power:.1f}"
         rf"\times10^{{{power}}}$ m$^{{1/2}}$",
         rf"$h_\mathrm{{rms}}^{{(1)}} = {_two_digits(slope)}$",
-    )
+    ]
 
 
 def _two_digits(value: float) -> str:
@@ -137,10 +131,8 @@ def set_density_scales(axes: Axes, wavevector: Array) -> None:
     """Logarithmic axes, over these wavevectors."""
     from matplotlib.ticker import NullFormatter
 
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log", xlim=(wavevector[0], wavevector[-1]))
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_xlim(wavevector[0], wavevector[-1])
 
 
 def add_wavelengths(axes: Axes) -> None:

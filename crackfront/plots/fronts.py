@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm
+from matplotlib.image import AxesImage
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
@@ -46,37 +49,26 @@ def draw_field(
     levels = MaxNLocator(_MOST_GREYS).tick_values(*ends)
     shades = ScalarMappable(BoundaryNorm(levels, field_colours().N), field_colours())
     # Coloured once, not once a frame.
-    axes.imshow(
-        shades.to_rgba(units.adhesion * adhesion.T, bytes=True),
-        origin="lower",
-        extent=_extent(x, y, units),
-        interpolation="nearest",
-    )
+    _draw_image(axes, x, y, shades.to_rgba(units.adhesion * adhesion.T, bytes=True), units)
     bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, format="{x:.1f}", extend="both")
     units.name(bar.ax.yaxis, "local work of adhesion", "adhesion")
-    label_plane(axes, units)
 
 
 def draw_heights(
     axes: Axes, x: Array, y: Array, heights: Array, units: AxisUnits = REDUCED
 ) -> None:
     """Heights in colours, peaks bright, with a colour bar; arrays as of :func:`draw_field`."""
-    image = axes.imshow(
-        units.vertical * heights.T,
-        origin="lower",
-        extent=_extent(x, y, units),
-        interpolation="nearest",
-        cmap="cividis",
-    )
+    image = _draw_image(axes, x, y, units.vertical * heights.T, units)
     bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
     units.name(bar.ax.yaxis, "height", "vertical")
-    label_plane(axes, units)
 
 
-def _extent(x: Array, y: Array, units: AxisUnits) -> tuple[float, float, float, float]:
-    """Edges of an image."""
+def _draw_image(axes: Axes, x: Array, y: Array, values: Array, units: AxisUnits) -> AxesImage:
+    """Draw values, or their colours, at their places in the plane, and name the axes."""
     left, right, bottom, top = (float(units.lateral * end) for end in (x[0], x[-1], y[0], y[-1]))
-    return left, right, bottom, top
+    look: dict[str, Any] = {"origin": "lower", "interpolation": "nearest", "cmap": "cividis"}
+    label_plane(axes, units)
+    return axes.imshow(values, extent=(left, right, bottom, top), **look)
 
 
 def draw_fronts(
@@ -137,9 +129,8 @@ def _few(fronts: Array, most: int) -> Array:
 
 def frame_plane(axes: Axes, reach: float, units: AxisUnits = REDUCED) -> None:
     """A square of the plane around the apex, with its names and units."""
-    axes.set_xlim(-units.lateral * reach, units.lateral * reach)
-    axes.set_ylim(-units.lateral * reach, units.lateral * reach)
-    axes.set_aspect("equal")
+    ends = -units.lateral * reach, units.lateral * reach
+    axes.set(xlim=ends, ylim=ends, aspect="equal")
     label_plane(axes, units)
 
 

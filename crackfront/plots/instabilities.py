@@ -101,13 +101,6 @@ def draw_patches(
             there, back = one[part, None] * compass[part], other[part, None] * compass[part]
             patches.append(np.concatenate([there, back[::-1]]) + np.array([apex, 0.0]))
             energies.append(lost)
-    axes.add_collection(
-        PolyCollection(
-            patches,
-            array=np.array(energies),
-            norm=shades.norm,
-            cmap=shades.cmap,
-            edgecolors="black",
-            linewidths=0.2,
-        )
-    )
+    collection = PolyCollection(patches, norm=shades.norm, cmap=shades.cmap)
+    collection.set(array=np.array(energies), edgecolors="black", linewidths=0.2)
+    axes.add_collection(collection)

@@ -132,25 +132,14 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
         return drawn
     loop, units = _reduced(loop)
     states = cycle_record(loop).states
-    works = _number(loop, "w_appr"), _number(loop, "w_retr")
-    window = _number(loop, "lowest_radius"), _number(loop, "highest_radius")
-    energy = _number(loop, "e_el")
+    names = "w_appr", "w_retr", "lowest_radius", "highest_radius", "e_el"
+    # A loop on rays has no such measures.
+    w_appr, w_retr, lowest, highest, energy = (float(loop.get(name, math.nan)) for name in names)
+    measures = (w_appr, w_retr), (lowest, highest)
+    kind = loop.attrs.get("kind", "roughness")
     with _drawing(axes) as drawn:
-        draw_loop(
-            drawn,
-            states,
-            works,
-            window,
-            elastic_energy=None if math.isnan(energy) else energy,
-            kind=loop.attrs.get("kind", "roughness"),
-            units=units,
-        )
+        draw_loop(drawn, states, *measures, elastic_energy=energy, kind=kind, units=units)
     return drawn
-
-
-def _number(loop: Dataset, name: str) -> float:
-    """A measure of a loop, NaN where it has none, as one on rays."""
-    return float(loop[name]) if name in loop else math.nan
 
 
 def plot_fronts(
@@ -207,14 +196,8 @@ def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     """
     refuse_other_type("jumps", jumps, Dataset, "what find_instabilities returns")
     jumps, units = _reduced(jumps)
+    fronts = jumps.before.values, jumps.after.values
+    energy, travel = jumps.dissipated_energy.values, float(jumps.attrs["travel"])
     with _drawing(axes) as drawn:
-        draw_instabilities(
-            drawn,
-            jumps.angle.values,
-            jumps.before.values,
-            jumps.after.values,
-            jumps.dissipated_energy.values,
-            float(jumps.attrs["travel"]),
-            units,
-        )
+        draw_instabilities(drawn, jumps.angle.values, *fronts, energy, travel, units)
     return drawn

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+import math
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +15,7 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.geometry.line import LineState
-from crackfront.plots.parts import draw_arrow
+from crackfront.plots.parts import Series, draw_arrow
 from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
 from crackfront.plots.units import REDUCED, AxisUnits
 
@@ -28,7 +29,6 @@ FEWEST_FOR_ARROW = 5
 
 MOST_MARKERS = 60
 """Markers on a branch, roughly; of more states only every second, third ... is marked."""
-
 
 _HALF_ARROW, _MARGIN, _LEGEND = 0.07, 0.02, 0.55
 """Half of the length of an arrow, least distance from the edges, and what a legend takes at the
@@ -52,6 +52,10 @@ class LoopStates(Protocol):
     @property
     def force(self) -> Array:
         """Normal forces."""
+
+
+_BRANCHES = {1: Series(BLUE, "o", "approach"), -1: Series(VERMILION, "s", "retraction")}
+"""How the branch of each direction is drawn."""
 
 
 def simulation_figure(result: SimulationResult) -> Figure:
@@ -104,12 +108,10 @@ def steady_loop_figure(
         draw_loop(
             right, states, works, window, elastic_energy=elastic_energy, kind=kind, arrows=False
         )
-        handles, labels = (
-            one + other
-            for one, other in zip(
-                right.get_legend_handles_labels(), left.get_legend_handles_labels(), strict=True
-            )
+        entries = zip(
+            right.get_legend_handles_labels(), left.get_legend_handles_labels(), strict=True
         )
+        handles, labels = (one + other for one, other in entries)
         right.get_legend().remove()
         figure.legend(handles, labels, loc="outside upper center", ncols=4)
         for axes, letter in ((left, "a"), (right, "b")):
@@ -125,39 +127,19 @@ def _draw_whole(
     """Loop of a smooth sphere with the work of adhesion of either branch, and the states on it."""
     turn = float(np.max(states.mean_radius))
     starts = jkr.equilibrium_radius(0.0, works[0]), jkr.pull_off_radius(works[1])
-    for (direction, colour, marker), adhesion, start in zip(
-        ((1, BLUE, "o"), (-1, VERMILION, "s")), works, starts, strict=True
-    ):
-        branch = states.direction == direction
+    for direction, adhesion, start in zip(_BRANCHES, works, starts, strict=True):
+        colour = _BRANCHES[direction].colour
+        look: dict[str, Any] = {"color": colour, "zorder": 2}
         radius = np.linspace(start, turn, 300)
         force = jkr.equilibrium_force(radius, adhesion)
-        axes.plot(radius, force, color=colour, linewidth=1.0, zorder=2)
-        axes.plot(
-            [0.0, start], [0.0, force[0]], color=colour, linewidth=0.7, dashes=(4, 2), zorder=2
-        )
-        axes.plot(
-            states.mean_radius[branch],
-            states.force[branch],
-            linestyle="none",
-            marker=marker,
-            markersize=2,
-            markerfacecolor="none",
-            markeredgewidth=0.5,
-            color=colour,
-            zorder=3,
-        )
-        middle = slice(150, 152)
-        draw_arrow(axes, radius[middle][::direction], force[middle][::direction], colour)
+        axes.plot(radius, force, linewidth=1.0, **look)
+        axes.plot([0.0, start], [0.0, force[0]], linewidth=0.7, dashes=(4, 2), **look)
+        _mark_states(axes, states, direction, markersize=2, markeredgewidth=0.5)
+        middle = np.array([150, 151])[::direction]
+        draw_arrow(axes, radius[middle], force[middle], colour)
     ends = jkr.equilibrium_force(turn, np.array(works))
-    axes.plot(
-        [turn, turn],
-        ends,
-        color="0.35",
-        linewidth=0.7,
-        dashes=(1, 1.5),
-        label="edge pinned at the turn",
-        zorder=1,
-    )
+    look = {"color": "0.35", "linewidth": 0.7, "dashes": (1, 1.5), "zorder": 1}
+    axes.plot([turn, turn], ends, label="edge pinned at the turn", **look)
     axes.axvspan(*window, color="0.93", linewidth=0, zorder=0)
     axes.annotate(
         "jumps into and out of contact",
@@ -178,7 +160,7 @@ def draw_loop(
     works: tuple[float, float],
     window: tuple[float, float],
     *,
-    elastic_energy: float | None = None,
+    elastic_energy: float = math.nan,
     kind: FieldKind = "roughness",
     arrows: bool = True,
     units: AxisUnits = REDUCED,
@@ -194,7 +176,7 @@ def draw_loop(
     window : tuple of float
         Mean radii over which they are averages. (Units: reduced lateral length)
     elastic_energy : float, optional
-        Measured e_el, for the curves that the paper predicts. (Units: w_int)
+        Measured e_el, for the curves that the paper predicts; NaN for none. (Units: w_int)
     kind : {"roughness", "chemical"}, optional
         Whether they lie around w_int - e_el or w_int.
     arrows : bool, optional
@@ -208,48 +190,49 @@ def draw_loop(
     if states.mean_radius.size == 0:
         raise ValueError("the record holds no state; there is no loop to draw")
     radius = np.linspace(0.0, 1.2 * np.max(states.mean_radius), 300)
-    length = units.lateral
-    branches = (
-        (1, "approach", "appr", BLUE, "o", works[0]),
-        (-1, "retraction", "retr", VERMILION, "s", works[1]),
-    )
-    for direction, name, short, colour, marker, adhesion in branches:
-        branch = states.direction == direction
-        axes.plot(
-            length * states.mean_radius[branch],
-            units.force * states.force[branch],
-            linestyle="none",
-            marker=marker,
-            markevery=max(1, np.count_nonzero(branch) // MOST_MARKERS),
-            markersize=2.8,
-            markerfacecolor="none",
-            markeredgewidth=0.6,
-            color=colour,
-            label=name,
-            zorder=3,
-        )
+
+    def draw_curve(adhesion: float, label: str | None, **look: Any) -> None:
+        force = units.force * jkr.equilibrium_force(radius, adhesion)
+        axes.plot(units.lateral * radius, force, label=label, **look)
+
+    for (direction, look), adhesion in zip(_BRANCHES.items(), works, strict=True):
+        every = max(1, np.count_nonzero(states.direction == direction) // MOST_MARKERS)
+        sizes = {"markersize": 2.8, "markeredgewidth": 0.6, "markevery": every}
+        _mark_states(axes, states, direction, units, label=look.label, **sizes)
         if np.isfinite(adhesion):
-            label = rf"JKR, $w_\mathrm{{{short}}} = {units.adhesion_text(adhesion)}$"
-            curve = units.force * jkr.equilibrium_force(radius, adhesion)
-            axes.plot(length * radius, curve, color=colour, linewidth=1.0, label=label, zorder=2)
-    if elastic_energy is not None:
+            label = rf"JKR, $w_\mathrm{{{look.label[:4]}}} = {units.adhesion_text(adhesion)}$"
+            draw_curve(adhesion, label, color=look.colour, linewidth=1.0, zorder=2)
+    if np.isfinite(elastic_energy):
         centre = 1 - elastic_energy if kind == "roughness" else 1.0
-        _draw_prediction(axes, radius, centre, PAPER_FACTOR * elastic_energy, units)
+        for factor, text in (
+            (-PAPER_FACTOR, f"JKR, $k = {PAPER_FACTOR:g}$ (paper)"),
+            (PAPER_FACTOR, None),
+        ):
+            adhesion = max(centre + factor * elastic_energy, 0.0)
+            draw_curve(adhesion, text, color="0.35", linewidth=0.6, dashes=(4, 2), zorder=1)
     if np.isfinite(window[0]):
-        axes.axvspan(
-            *(length * end for end in window),
-            color="0.93",
-            linewidth=0,
-            zorder=0,
-            label="window of the averages",
-        )
+        ends = (units.lateral * end for end in window)
+        axes.axvspan(*ends, color="0.93", linewidth=0, zorder=0, label="window of the averages")
     _set_limits(axes, states, units)
-    for direction, _, _, colour, _, _ in branches if arrows else ():
-        branch = states.direction == direction
-        places = length * states.mean_radius[branch], units.force * states.force[branch]
-        _draw_motion(axes, *places, colour)
+    for direction in _BRANCHES if arrows else ():
+        _draw_motion(axes, *_places(states, direction, units), _BRANCHES[direction].colour)
     _name_axes(axes, units)
     axes.legend(loc="upper left")
+
+
+def _places(states: LoopStates, direction: int, units: AxisUnits) -> tuple[Array, Array]:
+    """Mean radii and forces of a branch in the units of the axes."""
+    branch = states.direction == direction
+    return units.lateral * states.mean_radius[branch], units.force * states.force[branch]
+
+
+def _mark_states(
+    axes: Axes, states: LoopStates, direction: int, units: AxisUnits = REDUCED, **look: Any
+) -> None:
+    """Draw an open marker for each state of a branch."""
+    look |= {"color": _BRANCHES[direction].colour, "marker": _BRANCHES[direction].marker}
+    places = _places(states, direction, units)
+    axes.plot(*places, linestyle="none", markerfacecolor="none", zorder=3, **look)
 
 
 def _name_axes(axes: Axes, units: AxisUnits = REDUCED) -> None:
@@ -265,7 +248,7 @@ def draw_pinning(
     *,
     elastic_energy: float | None = None,
 ) -> None:
-    """Draw both branches, and their means over the last period of the tile if that is told.
+    """Draw both branches, and their means over the last period of the tile if it is given.
 
     Parameters
     ----------
@@ -295,16 +278,9 @@ def draw_pinning(
                 "the front was left before it had passed the tile"
             )
         mean = float(np.mean(pinning[-n_period:]))
-        factor = direction * mean / elastic_energy
-        axes.plot(
-            load[[-n_period, -1]],
-            [mean, mean],
-            color=colour,
-            linewidth=1.0,
-            dashes=(4, 2),
-            label=rf"mean of a period, $k={factor:.2f}$",
-            zorder=4,
-        )
+        label = rf"mean of a period, $k={direction * mean / elastic_energy:.2f}$"
+        look: dict[str, Any] = {"linewidth": 1.0, "dashes": (4, 2), "zorder": 4}
+        axes.plot(load[[-n_period, -1]], [mean, mean], color=colour, label=label, **look)
     axes.axhline(0.0, color="0.6", linewidth=0.4, zorder=1)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.45 * (high - low))
@@ -347,28 +323,5 @@ def _draw_motion(axes: Axes, radius: Array, force: Array, colour: str) -> None:
     if not found:
         return
     _, tail, head = max(found, key=lambda one: float(one[0]))
-    axes.annotate(
-        "",
-        xy=head,
-        xytext=tail,
-        xycoords="axes fraction",
-        arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.0, "mutation_scale": 8},
-        zorder=4,
-    )
-
-
-def _draw_prediction(
-    axes: Axes, radius: Array, centre: float, reach: float, units: AxisUnits
-) -> None:
-    """JKR curves of the works of adhesion centre - reach, not below zero, and centre + reach."""
-    lower, upper = max(centre - reach, 0.0), centre + reach
-    for adhesion, label in ((lower, f"JKR, $k = {PAPER_FACTOR:g}$ (paper)"), (upper, None)):
-        axes.plot(
-            units.lateral * radius,
-            units.force * jkr.equilibrium_force(radius, adhesion),
-            color="0.35",
-            linewidth=0.6,
-            dashes=(4, 2),
-            label=label,
-            zorder=1,
-        )
+    look = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.0, "mutation_scale": 8}
+    axes.annotate("", head, tail, "axes fraction", arrowprops=look, zorder=4)

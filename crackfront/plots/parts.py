@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from crackfront.analysis.estimate import Estimate, with_error
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
@@ -44,25 +44,20 @@ def field_colours() -> Colormap:
 
 
 def _arrow(style: str, colour: str, width: float, head: float) -> dict[str, Any]:
-    """Look of an arrow that reaches both of its ends."""
+    """Style of an arrow that reaches both of its ends."""
     look = {"arrowstyle": style, "color": colour, "linewidth": width, "mutation_scale": head}
     return {**look, "shrinkA": 0, "shrinkB": 0}
 
 
 def draw_arrow(axes: Axes, abscissa: Array, ordinate: Array, colour: str) -> None:
     """Arrow head on a curve, from the first to the last of a few of its points."""
-    axes.annotate(
-        "",
-        xy=(abscissa[-1], ordinate[-1]),
-        xytext=(abscissa[0], ordinate[0]),
-        arrowprops=_arrow("-|>", colour, 1.0, 8),
-        zorder=4,
-    )
+    head, tail = ((abscissa[place], ordinate[place]) for place in (-1, 0))
+    axes.annotate("", head, tail, arrowprops=_arrow("-|>", colour, 1.0, 8), zorder=4)
 
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """How the points of one spectrum are drawn, and their entry in a legend; empty for none."""
+    """How points of one kind are drawn, and their entry in a legend; empty for none."""
 
     colour: str
     marker: str
@@ -81,7 +76,7 @@ def sweep_series(table: SweepTable) -> tuple[Series, ...]:
         if table.straight:
             colour, marker = family, families[:index].count(family)
             label = "" if marker else label
-        found.append(Series(spectrum_colour(colour), MARKERS[marker % len(MARKERS)], label))
+        found.append(Series(spectrum_colour(colour), spectrum_marker(marker), label))
     return tuple(found)
 
 
@@ -101,14 +96,10 @@ def spring_label(fit: SweepFit, index: int) -> str:
 
 
 def draw_estimates(
-    axes: Axes,
-    series: Series,
-    abscissa: Array,
-    estimate: Estimate,
-    filled: NDArray[np.bool_],
+    axes: Axes, series: Series, abscissa: Array, estimate: Estimate, filled: NDArray[np.bool_]
 ) -> None:
     """Points of one spectrum with their intervals, filled or open."""
-    colour, marker = series.colour, series.marker
+    colour = series.colour
     reach = np.nan_to_num(estimate.high - estimate.value)
     for chosen, face, edge, name in (
         (filled, colour, "white", series.label),
@@ -121,7 +112,7 @@ def draw_estimates(
             estimate.value[chosen],
             yerr=reach[chosen],
             linestyle="none",
-            marker=marker,
+            marker=series.marker,
             color=colour,
             markerfacecolor=face,
             markeredgecolor=edge,
@@ -135,27 +126,21 @@ def draw_estimates(
 
 
 def draw_below(axes: Axes, index: int, colour: str, abscissa: Array) -> None:
-    """Arrows at the lower edge, side by side for the spectra."""
+    """Draw an arrow at the lower edge for each mean below it, those of the spectra side by side."""
     for position in abscissa * 1.05 ** (index - 1):
-        axes.annotate(
-            "",
-            xy=(position, 0.005),
-            xytext=(position, 0.05),
-            xycoords=axes.get_xaxis_transform(),
-            arrowprops=_arrow("->", colour, 0.8, 5),
-        )
+        ends, look = ((position, 0.005), (position, 0.05)), _arrow("->", colour, 0.8, 5)
+        axes.annotate("", *ends, xycoords=axes.get_xaxis_transform(), arrowprops=look)
 
 
-def draw_fit(
-    axes: Axes, ends: Array, fit: SweepFit, curve: Callable[[float, Array], Array]
-) -> None:
+def draw_fit(axes: Axes, fit: SweepFit) -> None:
     """Line of the pooled k over the range of the fit."""
+    ends = fit.lowest_elastic_energy, fit.highest_elastic_energy
     value, reach = float(fit.pooled.factor.value), float(fit.pooled.factor.high)
     text = f"{value:.2f}"
     if np.isfinite(reach):
         text = with_error(value, reach - value).replace("±", r"\pm")
     label = ", ".join([f"pooled $k = {text}$", *pooled_limits(fit, fit.spectra.factor)])
-    axes.plot(ends, curve(value, ends), color=BLACK, linewidth=1.2, label=label)
+    axes.plot(ends, [value, value], color=BLACK, linewidth=1.2, label=label)
 
 
 def draw_law(
@@ -173,21 +158,15 @@ def draw_law(
         axes.plot([], [], color="0.5", linewidth=0.6, label="law of $k$ (coloured)")
 
 
-def draw_theory(axes: Axes, ends: Array, curve: Callable[[float, Array], Array]) -> None:
-    """Lines of the paper's k and that of perturbation theory."""
+def draw_theory(axes: Axes, ends: Array, unit: ArrayLike = 1.0) -> None:
+    """Lines of the paper's k and that of perturbation theory; `unit` is the ordinate of k = 1."""
+    look: dict[str, Any] = {"color": "0.35", "linewidth": 0.7, "zorder": 1}
     for factor, dashes, name in (
         (PAPER_FACTOR, (4, 2), "paper"),
         (PERTURBATION_FACTOR, (1, 1.5), "perturbation theory"),
     ):
-        axes.plot(
-            ends,
-            curve(factor, ends),
-            color="0.35",
-            linewidth=0.7,
-            dashes=dashes,
-            label=f"$k = {factor:g}$ ({name})",
-            zorder=1,
-        )
+        ordinate, label = factor * np.broadcast_to(unit, ends.shape), f"$k = {factor:g}$ ({name})"
+        axes.plot(ends, ordinate, dashes=dashes, label=label, **look)
 
 
 def legend_entries(axes: Axes) -> tuple[list[Artist], list[str]]:
@@ -222,6 +201,11 @@ def spectrum_label(table: SweepTable, index: int) -> str:
 def spectrum_colour(index: int) -> str:
     """Colour of a spectrum."""
     return COLOURS[index % len(COLOURS)]
+
+
+def spectrum_marker(index: int) -> str:
+    """Marker of a spectrum."""
+    return MARKERS[index % len(MARKERS)]
 
 
 def label_panel(axes: Axes, name: str, left: float = 4.0) -> None:

@@ -1,4 +1,4 @@
-"""The look of every figure: sizes, colours, fonts, and how a figure is written.
+"""Style of every figure: sizes, colours, fonts, and how a figure is written.
 
 matplotlib is imported by the functions that draw, so that who only computes does without it.
 """
@@ -22,15 +22,8 @@ if TYPE_CHECKING:
 COLUMN, PAGE = 85 / 25.4, 170 / 25.4
 """Widths in print of one column and of a page (Units: inch)."""
 
-BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = (
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#CC79A7",
-    "#E69F00",
-    "#56B4E9",
-    "#000000",
-)
+BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
+ORANGE, SKY, BLACK = "#E69F00", "#56B4E9", "#000000"
 """Colours of Okabe and Ito, which the colour-blind tell apart."""
 
 COLOURS = (GREEN, BLUE, PURPLE, VERMILION, ORANGE, SKY, BLACK)
@@ -121,12 +114,16 @@ def shown_axes() -> Iterator[Axes]:
 def save_figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
     """Write a figure as PDF and PNG (300 dpi), its folder too; equal figures give equal bytes."""
     pdf, png = (stem.with_name(stem.name + suffix) for suffix in (".pdf", ".png"))
-    with house_style(), _fonts_without_dates():
+    # It warns, once a font, that the fonts of matplotlib carry no date.
+    logger = logging.getLogger("fontTools.ttLib.tables._h_e_a_d")
+    disabled, logger.disabled = logger.disabled, True
+    try:
         for path, undated in ((pdf, "CreationDate"), (png, "Software")):
-            written = functools.partial(
-                figure.savefig, format=path.suffix[1:], metadata={undated: None}
-            )
-            replace_atomically(path, written, sealed=True)
+            look: dict[str, Any] = {"format": path.suffix[1:], "metadata": {undated: None}}
+            with house_style():
+                replace_atomically(path, functools.partial(figure.savefig, **look), sealed=True)
+    finally:
+        logger.disabled = disabled
     return pdf, png
 
 
@@ -134,14 +131,3 @@ def save_picture(figure: Figure, path: Path) -> None:
     """Write a figure as a PNG for a screen, a third as large as that for print."""
     with house_style():
         figure.savefig(path, dpi=_SCREEN, metadata={"Software": None})
-
-
-@contextmanager
-def _fonts_without_dates() -> Iterator[None]:
-    """Leave out the warning, once a font, that the fonts of matplotlib carry no date."""
-    logger = logging.getLogger("fontTools.ttLib.tables._h_e_a_d")
-    disabled, logger.disabled = logger.disabled, True
-    try:
-        yield
-    finally:
-        logger.disabled = disabled

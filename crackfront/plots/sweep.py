@@ -8,7 +8,7 @@ fronts of one spectrum share a colour, their springs differ by the marker.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 from matplotlib import colormaps
@@ -17,6 +17,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
+from numpy.typing import NDArray
 
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.law import WEAKEST, law_value, pinning_factor, shipped_law, slope_breadth
@@ -36,10 +37,13 @@ from crackfront.plots.parts import (
     spectrum_colour,
     spectrum_families,
     spectrum_label,
+    spectrum_marker,
     spring_label,
     sweep_series,
 )
-from crackfront.plots.style import BLACK, COLUMN, MARKERS, PAGE, blank_figure, explain, house_style
+from crackfront.plots.style import BLACK, COLUMN, PAGE, blank_figure, explain, house_style
+
+Array = NDArray[np.float64]
 
 POINTS_EXPLAINED = (
     "bars: 95% intervals over realisations; open symbols: amplitudes outside the range of the fit"
@@ -92,7 +96,7 @@ def _draw_line_factors(left: Axes, right: Axes, table: SweepTable, fit: SweepFit
     families, cells = spectrum_families(table), fit.cells
     for index, family in enumerate(families):
         label = "" if family in families[:index] else spectrum_label(table, index)
-        series = Series(spectrum_colour(family), MARKERS[family % len(MARKERS)], label)
+        series = Series(spectrum_colour(family), spectrum_marker(family), label)
         s = np.zeros_like(cells.w_rms[index]) if fit.uncorrelated else cells.w_rms[index]
         shown = np.nan_to_num(cells.size[index]) > LARGE
         row = cells.infinite_factor.at(index).only(shown)
@@ -105,41 +109,28 @@ def _draw_line_factors(left: Axes, right: Axes, table: SweepTable, fit: SweepFit
 def draw_factor_by_size(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     """Draw mean k of straight fronts against g, a colour an amplitude, a marker a spectrum."""
     families, size, law = spectrum_families(table), fit.cells.size, shipped_law()
-    spectra = [table.shape_of(index) for index in range(table.spectrum.size)]
+    spectra = (table.shape_of(index) for index in range(table.spectrum.size))
     breadth = float(np.mean([slope_breadth(fit.kind, spectrum) for spectrum in spectra]))
-    known = size[np.isfinite(size)]
-    ends = np.nanmin(known) / 1.5, np.nanmax(known) * 1.5
+    breadth = min(breadth, law.breadth[1])
+    ends = _ends(size, 1.5)
     abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
     shades = colormaps["viridis"](np.linspace(0, 0.88, table.e_el_requested.size))
     for amplitude, energy in enumerate(table.e_el_requested):
         s = 0.0 if fit.uncorrelated else 2 * np.sqrt(energy)
         colour = to_hex(shades[amplitude])
         for index, family in enumerate(families):
-            series = Series(colour, MARKERS[family % len(MARKERS)], "")
+            series = Series(colour, spectrum_marker(family), "")
             cell = fit.cells.factor.at(([index], amplitude))
             here = fit.in_range[[amplitude]]
             draw_estimates(axes, series, size[[index], amplitude], cell, here)
-        axes.plot(
-            abscissa,
-            law_value(law.coefficients, s, abscissa, min(breadth, law.breadth[1])),
-            color=colour,
-            linewidth=0.8,
-            label=rf"law, $s={2 * np.sqrt(energy):.3g}$",
-        )
+        curve, label = law_value(law.coefficients, s, abscissa, breadth), 2 * np.sqrt(energy)
+        axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=rf"law, $s={label:.3g}$")
     for family in dict.fromkeys(families):
-        axes.plot(
-            [],
-            [],
-            linestyle="none",
-            marker=MARKERS[family % len(MARKERS)],
-            color="0.4",
-            label=spectrum_label(table, families.index(family)),
-        )
-    axes.set_xscale("log")
-    axes.set_xlim(*ends)
+        label = spectrum_label(table, families.index(family))
+        axes.plot([], [], spectrum_marker(family), color="0.4", label=label)
+    axes.set(xscale="log", xlim=ends, ylabel=_FACTOR_LABEL)
     label_decimals(axes)
     axes.set_xlabel(r"size $g=L_\kappa/\ell$, springs over Larkin length")
-    axes.set_ylabel(r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$")
     axes.legend(loc="upper left", ncols=2)
 
 
@@ -153,11 +144,18 @@ def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
 _DECIMALS = 100.0
 """Ratio of the ends of an abscissa up to which its labels are decimal numbers."""
 
+_FACTOR_LABEL = r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$"
+
+
+def _ends(values: Array, margin: float) -> Array:
+    """Ends of a logarithmic axis around some values."""
+    return np.array([np.nanmin(values) / margin, np.nanmax(values) * margin])
+
 
 def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the law and the theory."""
     variance, hysteresis = fit.cells.w_rms**2, fit.cells.hysteresis
-    ends = np.array([np.nanmin(variance) / 1.8, np.nanmax(variance) * 1.8])
+    ends = _ends(variance, 1.8)
     # Below its onset hysteresis falls to nothing; such points must not stretch the axes.
     floor = 0.05 * PAPER_FACTOR / 2 * ends[0]
     above = np.nan_to_num(hysteresis.value) > floor
@@ -170,10 +168,8 @@ def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
         shown = row.only(~below)
         draw_estimates(axes, series, variance[index], shown, fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
-    draw_theory(axes, ends, lambda factor, abscissa: factor / 2 * abscissa)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlim(ends[0], ends[1])
+    draw_theory(axes, ends, ends / 2)
+    axes.set(xscale="log", yscale="log", xlim=ends)
     if ends[1] < _DECIMALS * ends[0]:
         label_decimals(axes)
     axes.set_ylim(lowest, PERTURBATION_FACTOR / 2 * ends[1] * 4)
@@ -192,8 +188,7 @@ def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
 def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -> None:
     """Draw the spectra (of heights or of w_loc), all scaled to one variance of w_loc."""
     lowest = np.pi / np.max(table.roll_off)
-    densities = []
-    families = spectrum_families(table)
+    families, densities = spectrum_families(table), []
     for index in (families.index(family) for family in dict.fromkeys(families)):
         spectrum = table.shape_of(index)
         scale = spectrum.elastic_energy if kind == "roughness" else spectrum.mean_square(0)
@@ -201,14 +196,9 @@ def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -
         wavevector = np.geomspace(lowest, cutoff, 200)
         density = spectrum.density(wavevector) / scale
         densities.append(density)
-        axes.plot(
-            np.append(wavevector, cutoff),
-            np.append(density, np.finfo(float).tiny),
-            color=spectrum_colour(families[index]),
-            linewidth=0.8,
-        )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+        points = np.append(wavevector, cutoff), np.append(density, np.finfo(float).tiny)
+        axes.plot(*points, color=spectrum_colour(families[index]), linewidth=0.8)
+    axes.set(xscale="log", yscale="log")
     axes.set_xlim(lowest, 2.5 * 2 * np.pi / np.min(table.short_cutoff))
     axes.set_ylim(np.min(densities) / 10, np.max(densities) * 5)
     axes.set_xlabel("$q$ (reduced)", labelpad=0, fontsize=6)
@@ -232,15 +222,12 @@ def draw_factor_by_disorder(axes: Axes, table: SweepTable, fit: SweepFit) -> Non
         abscissa = energy[index] * aside[index]
         draw_estimates(axes, series, abscissa, fit.cells.factor.at(index), fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (energy, factor))
-    ends = np.array([np.nanmin(energy) / 1.4, np.nanmax(energy) * 1.4])
-    fitted = np.array([fit.lowest_elastic_energy, fit.highest_elastic_energy])
-    draw_fit(axes, fitted, fit, lambda factor, abscissa: np.full(abscissa.shape, factor))
-    draw_theory(axes, ends, lambda factor, abscissa: np.full(abscissa.shape, factor))
-    axes.set_xscale("log")
-    axes.set_xlim(ends[0], ends[1])
+    ends = _ends(energy, 1.4)
+    draw_fit(axes, fit)
+    draw_theory(axes, ends)
+    axes.set(xscale="log", xlim=ends, ylabel=_FACTOR_LABEL)
     label_decimals(axes)
     axes.set_xlabel(r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$")
-    axes.set_ylabel(r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$")
 
 
 def draw_factor_by_length(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
@@ -256,10 +243,9 @@ def draw_factor_by_length(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     for index, series in enumerate(sweep_series(table)):
         here = factor.at([index])
         draw_estimates(axes, replace(series, label=""), length[[index]], here, np.array([True]))
-    ends = np.array([np.min(length) / 1.6, np.max(length) * 1.6])
-    draw_theory(axes, ends, lambda factor, abscissa: np.full(abscissa.shape, factor))
-    axes.set_xscale("log")
-    axes.set_xlim(ends[0], ends[1])
+    ends = _ends(length, 1.6)
+    draw_theory(axes, ends)
+    axes.set(xscale="log", xlim=ends)
     label_decimals(axes)
     axes.set_xlabel("correlation length of $w_\\mathrm{loc}$ (reduced length)")
     axes.set_title(
@@ -273,26 +259,11 @@ def draw_infinite_law(axes: Axes) -> None:
     """Draw k of the infinite contact against disorder with its 95% band, and the theories."""
     strongest = shipped_law().disorder[1]
     disorder = np.linspace(WEAKEST, strongest, 100)
-    known = [pinning_factor(float(s), math.inf).factor for s in disorder]
-    axes.fill_between(
-        disorder,
-        [one.low for one in known],
-        [one.high for one in known],
-        color="0.85",
-        linewidth=0,
-        label="95% interval",
-        zorder=0.5,
-    )
-    axes.plot(
-        disorder,
-        [one.value for one in known],
-        color=BLACK,
-        linewidth=1.0,
-        label=r"law, $g\to\infty$",
-        zorder=2,
-    )
+    known = [astuple(pinning_factor(float(s), math.inf).factor) for s in disorder]
+    value, _, low, high = np.transpose(known)
+    axes.fill_between(disorder, low, high, color="0.85", lw=0, label="95% interval", zorder=0.5)
+    axes.plot(disorder, value, color=BLACK, linewidth=1.0, label=r"law, $g\to\infty$", zorder=2)
     ends = strongest * np.array([-0.05, 1.06])
-    draw_theory(axes, ends, lambda factor, abscissa: np.full(abscissa.shape, factor))
-    axes.set_xlim(*ends)
+    draw_theory(axes, ends)
+    axes.set(xlim=ends, ylabel=r"$k$ of the infinite contact")
     axes.set_xlabel(r"disorder $s=w_\mathrm{rms}/w_\mathrm{int}$")
-    axes.set_ylabel(r"$k$ of the infinite contact")

@@ -24,7 +24,7 @@ _WRITTEN: dict[Quantity, tuple[str, str]] = {
 """Reduced unit and that of SI of each quantity."""
 
 _MOST_TICKS = 5
-"""Places at which a length stands with its unit, which takes room."""
+"""Ticks of a length in SI, few because each stands with its unit."""
 
 
 @dataclass(frozen=True, slots=True)
