@@ -52,10 +52,10 @@ def fingerprint(*names: str) -> str:
     False
     """
     places = [place for package in _PACKAGES for place in _modules(package)]
-    asked = repr((names, str(ROOT), places, sys.version_info[:2])).encode()
-    asked += Path(__file__).read_bytes()
+    key = repr((names, str(ROOT), places, sys.version_info[:2])).encode()
+    key += Path(__file__).read_bytes()
     # Without a folder of the user's own nothing is kept.
-    kept = (private_folder("fingerprints") or Path(os.devnull)) / _digest(asked)
+    kept = (private_folder("fingerprints") or Path(os.devnull)) / _digest(key)
     with contextlib.suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
         known = json.loads(kept.read_text("utf-8"))
         if known["files"] == _file_digests(known["files"]):
@@ -157,7 +157,7 @@ class _Reach:
 
     def __init__(self, names: Iterable[str]) -> None:
         self._modules: dict[str, _Module | None] = {}
-        self._taken: set[_Statement] = set()
+        self._counted: set[_Statement] = set()
         self._aliases: set[_Statement] = set()
         self._searched: dict[_Statement, set[_Module]] = {}
         self._waiting: list[tuple[_Statement, bool]] = []
@@ -167,12 +167,12 @@ class _Reach:
                 raise ValueError(f"there is no module or definition {name}; correct the name")
             for module, defined, _ in origins:
                 for one in [defined] if defined else module.defined:
-                    self._take(module.defined[one])
+                    self._count(module.defined[one])
         while self._waiting:
             self._follow(*self._waiting.pop())
             if not self._waiting:
-                self._take_subclasses()
-        self._data = {path for one in self._taken for path in one.data}
+                self._count_subclasses()
+        self._data = {path for one in self._counted for path in one.data}
 
     @property
     def files(self) -> list[str]:
@@ -183,11 +183,11 @@ class _Reach:
     def digest(self) -> str:
         """Hexadecimal digits of the meaning of all that is reached."""
         homes: dict[str, set[str]] = defaultdict(set)
-        for statement in self._taken:
+        for statement in self._counted:
             for name in statement.defined:
                 homes[name].add(statement.module.name)
         self._shared = {name for name in homes if len(homes[name]) > 1}
-        parts = {self._text(statement).encode() for statement in self._taken}
+        parts = {self._text(statement).encode() for statement in self._counted}
         digests = sorted(map(_digest, [*parts, *(path.read_bytes() for path in self._data)]))
         return _digest("".join(digests).encode())
 
@@ -217,18 +217,18 @@ class _Reach:
         for home in sorted(module.imported.get(first, ())):
             yield from self._origins(home + dot + rest)
 
-    def _take(self, statements: Iterable[_Statement], *, annotated: bool = False) -> None:
+    def _count(self, statements: Iterable[_Statement], *, annotated: bool = False) -> None:
         """Count statements; of what an annotation names classes count, not the aliases of types."""
         for statement in statements:
             is_alias = annotated and not statement.is_class
-            known = self._aliases if is_alias else self._taken
+            known = self._aliases if is_alias else self._counted
             if statement not in known:
                 known.add(statement)
                 self._waiting.append((statement, is_alias))
                 if "ABC" in statement.bases or self._searched.keys() & self._bases(statement):
                     self._searched[statement] = set(self._naming(statement))
                 if not is_alias:
-                    self._take(statement.module.acting)
+                    self._count(statement.module.acting)
 
     def _naming(self, abstract: _Statement) -> Iterator[_Module]:
         """Modules of the package of an abstract class that hold its name."""
@@ -248,20 +248,20 @@ class _Reach:
         for used, annotated in statement.uses:
             for home, name, _ in self._meant(statement.module, used):
                 if name:
-                    self._take(home.defined[name], annotated=annotated or is_alias)
+                    self._count(home.defined[name], annotated=annotated or is_alias)
 
-    def _take_subclasses(self) -> None:
+    def _count_subclasses(self) -> None:
         """Count the subclasses of what counts, of an abstract class wherever they are."""
-        searched = [(module, self._taken) for module in {one.module for one in self._taken}]
+        searched = [(module, self._counted) for module in {one.module for one in self._counted}]
         for abstract, modules in self._searched.items():
             searched += [(module, {abstract}) for module in modules]
         for module, known in searched:
             for statement in itertools.chain(*module.defined.values()):
                 if known & self._bases(statement):
-                    self._take([statement])
+                    self._count([statement])
 
     def _text(self, statement: _Statement) -> str:
-        """Meaning of a statement, with names that tell definitions of several modules apart."""
+        """Meaning of a statement, with modules before names that several of them define."""
         parts = list(statement.meaning)
         for k, used in enumerate(parts[1::2]):
             for home, name, rest in self._meant(statement.module, used):

@@ -1,4 +1,4 @@
-"""Optional libraries: what a person reads who asks for one that is not installed."""
+"""Optional libraries: the error of one that is needed and not installed."""
 
 from __future__ import annotations
 

@@ -165,7 +165,7 @@ for simulation in simulations:
     run_simulation(simulation)
     sys.setprofile(None)
 counted = {(one.module.name, name)
-           for one in module._Reach(["crackfront.simulate.run.run_simulation"])._taken
+           for one in module._Reach(["crackfront.simulate.run.run_simulation"])._counted
            for name in one.defined}
 missed = {one for one in called - counted if one[0] not in module._NO_PART}
 assert len(called) > 60, len(called)
