@@ -53,12 +53,10 @@ def si_value(text: str, unit: str, *, what: str) -> float:
         raise ValueError(f"{what} is {text!r}, without a unit; {example}")
     try:
         value = _converted(float(found[1]), _POWER.sub(r"\1^\2", found[2]), unit)
-    except DimensionError as error:
-        raise ValueError(f"{what} is {text!r}, which is no {dimension}; {example}") from error
     except ValueError as error:
-        raise ValueError(
-            f"{what} is {text!r}, whose unit {found[2]} is unknown; {example}"
-        ) from error
+        is_other = isinstance(error, DimensionError)
+        wrong = f"which is no {dimension}" if is_other else f"whose unit {found[2]} is unknown"
+        raise ValueError(f"{what} is {text!r}, {wrong}; {example}") from error
     if not (math.isfinite(value) and value > 0):
         raise ValueError(f"{what} is {text!r}; it must be positive and finite")
     refuse_outside(what, value, SI[unit], unit)
