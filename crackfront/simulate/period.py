@@ -7,7 +7,6 @@ forgotten: a mean over the next period is the exact mean over the tile.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -117,55 +116,31 @@ class LineSchedule(Schedule):
     def run(
         self,
         field: TileField,
-        solver: Solver,
+        solver: Solver | None,
         recorder: Recorder,
         *,
-        correlation_length: float,
+        correlation_length: float = math.nan,
         elastic_energy: float,
     ) -> CycleRecord:
-        """States of both branches over the lead-in and a period."""
-        return run_period(
-            field, self, elastic_energy=elastic_energy, solver=solver, recorder=recorder
-        )
+        """Both branches over the lead-in and a period.
 
+        Parameters
+        ----------
+        field, solver, recorder, correlation_length, elastic_energy
+            As of :meth:`crackfront.core.cycle.schedule.Schedule.run`; e_el decides how far behind
+            the load a branch begins, and the correlation length has no effect.
 
-def run_period(
-    field: TileField,
-    schedule: LineSchedule,
-    *,
-    elastic_energy: float,
-    solver: Solver | None = None,
-    recorder: Recorder | None = None,
-) -> CycleRecord:
-    """Both branches of a straight front.
-
-    Parameters
-    ----------
-    field : TileField
-        Field of the line on a tile.
-    schedule : LineSchedule
-        Loads.
-    elastic_energy : float
-        That of the tile, which tells how far behind the load a branch begins. (Units: w_int)
-    solver, recorder
-        As of :func:`crackfront.core.cycle.run.run_cycle`.
-
-    Returns
-    -------
-    CycleRecord
-        The states; its status is `STEADY` where both branches are whole.
-    """
-    recorder = recorder or Recorder()
-    behind = _BEHIND * 4 * elastic_energy * schedule.spring + schedule.step
-    loads = schedule.loads
-
-    def branches() -> Iterator[Load]:
+        Returns
+        -------
+        CycleRecord
+            The states; its status is `STEADY` where both branches are whole.
+        """
+        behind = _BEHIND * 4 * elastic_energy * self.spring + self.step
         directions: tuple[Direction, Direction] = (1, -1)
+        loads: list[Load] = []
         for direction in directions:
-            places = loads[::direction]
-            start = np.full(field.geometry.n_site, places[0] - direction * behind)
-            yield Load(float(places[0]), direction, start)
-            yield from (Load(float(place), direction) for place in places[1:])
-
-    recorder.run(field, np.full(field.geometry.n_site, loads[0] - behind), branches(), solver)
-    return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
+            first, *others = self.loads[::direction].tolist()
+            start = np.full(field.geometry.n_site, first - direction * behind)
+            loads += [Load(first, direction, start), *(Load(one, direction) for one in others)]
+        recorder.run(field, np.full(field.geometry.n_site, -behind), loads, solver)
+        return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.steady import standard_error
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load
-from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.cycle.record import CycleRecord, Recorder, columns
 from crackfront.core.cycle.schedule import SphereSchedule
 from crackfront.core.cycle.touch import first_touch, refuse_outgrown
 from crackfront.core.field.fields import Field, first_place, last_place
@@ -88,97 +88,74 @@ class SteadySchedule(SphereSchedule):
             )
 
     def run(
-        self, field: Field, solver: Solver, recorder: Recorder, **surface: float
+        self,
+        field: Field,
+        solver: Solver | None,
+        recorder: Recorder,
+        *,
+        correlation_length: float,
+        elastic_energy: float,
     ) -> CycleRecord:
-        """States of both branches while they are steady."""
-        return run_steady(field, self, solver=solver, recorder=recorder, **surface)
+        """Approach and retraction over the radii that an estimate of the hysteresis needs.
 
+        Each branch begins at the circle of `forward_circle`. The approach goes on until k has the
+        requested standard error or the largest penetration is reached; the retraction from about
+        its largest radius until it has left the radii over which the approach was steady.
 
-def run_steady(
-    field: Field,
-    schedule: SteadySchedule,
-    *,
-    correlation_length: float,
-    elastic_energy: float,
-    solver: Solver | None = None,
-    recorder: Recorder | None = None,
-) -> CycleRecord:
-    """Approach and retraction over the radii that an estimate of the hysteresis needs.
+        Parameters
+        ----------
+        field, solver, recorder, correlation_length, elastic_energy
+            As of :meth:`crackfront.core.cycle.schedule.Schedule.run`. Every site must travel a
+            correlation length before a branch counts as steady.
 
-    Each branch begins at the circle of `forward_circle`. The approach goes on until k has the
-    requested standard error or the largest penetration is reached; the retraction from about its
-    largest radius until it has left the radii over which the approach was steady.
+        Returns
+        -------
+        CycleRecord
+            The states; its status is `STEADY` where both branches were measured. The energy that
+            the first step of a branch dissipates has no meaning and is NaN.
 
-    Parameters
-    ----------
-    field : Field
-        Work of adhesion along the rays of a sphere.
-    schedule : SteadySchedule
-        Where to begin and when to stop.
-    correlation_length : float
-        Distance that every site must travel before a branch counts as steady.
-        (Units: reduced lateral length)
-    elastic_energy : float
-        Hysteresis per 2 k. (Units: w_int)
-    solver, recorder
-        As of :func:`crackfront.core.cycle.run.run_cycle`.
+        Raises
+        ------
+        ValueError
+            If a smooth sphere would outgrow the field.
+        """
+        refuse_outgrown(field, self.max_penetration)
+        loads = self._loads(field, recorder, correlation_length, elastic_energy)
+        recorder.run(field, first_touch(field), loads, solver)
+        return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
 
-    Returns
-    -------
-    CycleRecord
-        The states; its status is `STEADY` where both branches were measured. The energy that the
-        first step of a branch dissipates has no meaning and is NaN.
-
-    Raises
-    ------
-    ValueError
-        If a smooth sphere would outgrow the field.
-    """
-    refuse_outgrown(field, schedule.max_penetration)
-    recorder = recorder or Recorder()
-    loads = _loads(field, schedule, recorder, correlation_length, elastic_energy)
-    recorder.run(field, first_touch(field), loads, solver)
-    return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
-
-
-def _loads(
-    field: Field,
-    schedule: SteadySchedule,
-    recorder: Recorder,
-    correlation_length: float,
-    elastic_energy: float,
-) -> Iterator[Load]:
-    """Loads of both branches, each by what has been recorded before it."""
-    step = schedule.travel * correlation_length * jkr.penetration_slope(schedule.start)
-    n_step = math.floor((schedule.max_penetration - schedule.start) / step)
-    near = jkr.equilibrium_radius(schedule.start) - correlation_length
-    circle = forward_circle(field, schedule.start, 1, near, correlation_length)
-    steady, shared = [], []
-    for k in range(n_step + 1):
-        yield Load(schedule.start + k * step, 1, circle if k == 0 else None)
-        if recorder.status is not Status.CONVERGED:
-            return
-        if recorder.states[-1].least_travel < correlation_length:
-            continue
-        steady.append(recorder.states[-1])
-        shared.append(_circle_adhesion(field, recorder.states[-1].mean_radius))
-        radius, values, roughness = (
-            np.array([getattr(item, name) for item in steady])
-            for name in ("mean_radius", "apparent_work_of_adhesion", "rms_radius")
-        )
-        own = own_part(values, np.array(shared))
-        error = standard_error(own, radius, roughness, correlation_length) / math.sqrt(2)
-        if len(steady) >= _FEWEST_TO_TURN and error <= schedule.standard_error * elastic_energy:
-            break
-    lowest = min((item.mean_radius for item in steady), default=math.inf)
-    last = recorder.states[-1]
-    penetration = _retraction_start(field, last)
-    near = last.mean_radius + correlation_length
-    circle = forward_circle(field, penetration, -1, near, correlation_length)
-    yield Load(penetration, -1, circle)
-    while recorder.status is Status.CONVERGED and recorder.states[-1].mean_radius >= lowest:
-        penetration -= step
-        yield Load(penetration, -1)
+    def _loads(
+        self, field: Field, recorder: Recorder, correlation_length: float, elastic_energy: float
+    ) -> Iterator[Load]:
+        """Loads of both branches, each by what has been recorded before it."""
+        step = self.travel * correlation_length * jkr.penetration_slope(self.start)
+        n_step = math.floor((self.max_penetration - self.start) / step)
+        near = jkr.equilibrium_radius(self.start) - correlation_length
+        circle = forward_circle(field, self.start, 1, near, correlation_length)
+        steady, shared = [], []
+        for k in range(n_step + 1):
+            yield Load(self.start + k * step, 1, circle if k == 0 else None)
+            if recorder.status is not Status.CONVERGED:
+                return
+            if recorder.states[-1].least_travel < correlation_length:
+                continue
+            steady.append(recorder.states[-1])
+            shared.append(_circle_adhesion(field, recorder.states[-1].mean_radius))
+            known = columns(steady, ContactState)
+            own = own_part(known.apparent_work_of_adhesion, np.array(shared))
+            spread = standard_error(own, known.mean_radius, known.rms_radius, correlation_length)
+            wanted = self.standard_error * elastic_energy
+            if len(steady) >= _FEWEST_TO_TURN and spread / math.sqrt(2) <= wanted:
+                break
+        lowest = min((item.mean_radius for item in steady), default=math.inf)
+        last = recorder.states[-1]
+        penetration = _retraction_start(field, last)
+        near = last.mean_radius + correlation_length
+        circle = forward_circle(field, penetration, -1, near, correlation_length)
+        yield Load(penetration, -1, circle)
+        while recorder.status is Status.CONVERGED and recorder.states[-1].mean_radius >= lowest:
+            penetration -= step
+            yield Load(penetration, -1)
 
 
 def _retraction_start(field: Field, last: ContactState[float]) -> float:

@@ -18,7 +18,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.files import read_simulation
-from crackfront.simulate.period import LineSchedule, run_period
+from crackfront.simulate.period import LineSchedule
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.table import read_table
 
@@ -44,12 +44,11 @@ def longer(simulation, periods):
 def run(simulation, adhesion=None):
     """Record with its fronts, of a tile that may be another than the simulation's own."""
     adhesion = simulation_adhesion(simulation) if adhesion is None else adhesion
-    return run_period(
+    return simulation.schedule.run(
         simulation_field(simulation, adhesion),
-        simulation.schedule,
+        SOLVERS["newton"](1e-10),
+        Recorder(fronts=True),
         elastic_energy=simulation.elastic_energy,
-        solver=SOLVERS["newton"](1e-10),
-        recorder=Recorder(fronts=True),
     )
 
 
@@ -71,12 +70,11 @@ def test_after_the_lead_in_a_period_later_the_front_is_the_same_further_on(energ
 
 def test_a_start_twice_as_far_behind_is_forgotten():
     near, schedule = run(ONE), ONE.schedule
-    far = run_period(
+    far = schedule.run(
         simulation_field(ONE),
-        schedule,
+        SOLVERS["newton"](1e-9),
+        Recorder(fronts=True),
         elastic_energy=2 * ONE.elastic_energy,
-        solver=SOLVERS["newton"](1e-9),
-        recorder=Recorder(fronts=True),
     )
     for record in (near, far):
         assert record.status is Status.STEADY
@@ -109,7 +107,7 @@ def test_without_disorder_no_force_is_needed():
     schedule = LineSchedule(spring=4.0, length=16.0, period=12.0, lead_in=3.0, step=0.5)
     tile = AdhesionMap(WORK_OF_ADHESION * np.ones((24, 32)), 0.5, 0.0, 0.0)
     field = line_field(tile, 4.0, (0.0, float(schedule.loads[-1])))
-    record = run_period(field, schedule, elastic_energy=0.0, solver=SOLVERS["newton"](1e-12))
+    record = schedule.run(field, SOLVERS["newton"](1e-12), Recorder(), elastic_energy=0.0)
     found = period_adhesion(record, schedule.n_period, 1.0, 1.0)
     assert (found.w_appr, found.w_retr) == pytest.approx((1.0, 1.0), abs=1e-11)
     assert found.front_rms < 1e-11

@@ -23,13 +23,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.contact import simulation_adhesion
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation
-from crackfront.simulate.steady import (
-    SteadySchedule,
-    forward_circle,
-    own_part,
-    run_steady,
-    standard_error,
-)
+from crackfront.simulate.steady import SteadySchedule, forward_circle, own_part, standard_error
 
 SPECTRUM = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
 LENGTH = correlation_length("roughness", SPECTRUM)
@@ -197,7 +191,7 @@ def test_contact_that_is_lost_on_the_way_back_is_told():
     strength = 1 + np.sin(2 * np.pi * radii[:, None] / 0.02 + phase)
     field = polar_field(radii, WORK_OF_ADHESION * strength)
     schedule = SteadySchedule(0.0, 1.0, 2.0, 1e-9)
-    record = run_steady(field, schedule, correlation_length=0.05, elastic_energy=0.25)
+    record = schedule.run(field, None, Recorder(), correlation_length=0.05, elastic_energy=0.25)
     assert record.status is Status.LOST_CONTACT
     assert record.states.mean_radius[0] < record.states.mean_radius[-1]
     assert -1.8 < record.end_load < record.states.penetration[-1] < -1
