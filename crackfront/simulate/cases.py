@@ -101,38 +101,38 @@ class SphereCase:
         from crackfront.simulate.tiles import tile_measures
 
         step = DEFAULT_STEP if self.step is None else self.step
-        way, radius = (
-            LoadSchedule(self.max_penetration, step).loads(),
-            jkr.equilibrium_radius(self.max_penetration),
-        )
+        way = LoadSchedule(self.max_penetration, step).loads()
         # A smooth sphere comes off there; a rough one goes somewhat further.
         n_state = 3 + (2 * self.max_penetration - jkr.pull_off_penetration()) / step
         given, angles, density = read(), asked.angles, asked.samples_per_pixel
         if isinstance(given, AdhesionMap):
-            pieces = asked.interpolation or "cubic"
+            radius = jkr.equilibrium_radius(self.max_penetration)
             seconds = affordable_seconds(
                 n_angle=angles or 2 * math.pi * radius / given.pixel,
                 n_point=given.work_of_adhesion.size,
                 n_state=n_state,
                 n_sample=2 * radius / given.pixel * (density or 4.0),
             )
-            spacing = given.pixel / density if density else None
-            field = contact_field(given, self.max_penetration, angles, spacing, pieces)
-            front, measures = checked_touch(field, self.max_penetration), tile_measures(given)
-            return Problem(field, front, way, int(n_state), seconds, measures=measures)
-        if angles is not None or density is not None:
+            spacing, pieces = given.pixel / density if density else None, asked.interpolation
+            field: Field = contact_field(
+                given, self.max_penetration, angles, spacing, pieces or "cubic"
+            )
+            sites, measures = None, tile_measures(given)
+        elif angles is not None or density is not None:
             raise ValueError(
                 "--angles and --samples-per-pixel are for tiles; a polar field brings its own "
                 "samples"
             )
-        seconds = affordable_seconds(
-            n_angle=given.angles.size,
-            n_point=given.field.products.size,
-            n_state=n_state,
-            n_sample=2 * given.field.places.size,
-        )
-        front = checked_touch(given.field, self.max_penetration)
-        return Problem(given.field, front, way, int(n_state), seconds, given.angles)
+        else:
+            field, sites, measures = given.field, given.angles, None
+            seconds = affordable_seconds(
+                n_angle=sites.size,
+                n_point=given.field.products.size,
+                n_state=n_state,
+                n_sample=2 * given.field.places.size,
+            )
+        front = checked_touch(field, self.max_penetration)
+        return Problem(field, front, way, int(n_state), seconds, sites, measures)
 
 
 @dataclass(frozen=True)

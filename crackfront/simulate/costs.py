@@ -163,23 +163,16 @@ def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_samp
         n_angle, math.sqrt(n_point), _USUAL, DEFAULT_TOLERANCE, 1.0, 1.0, True, n_state
     )
     cost = featured_cost(usual, fronts=False)
-    cost = replace(cost, seconds=cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample)
+    seconds = cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample
     told = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
-    refuse_unaffordable(cost, f"{told} {n_sample:.3g} samples a ray", "take fewer, or larger steps")
-    return cost.seconds
+    what, remedy = f"{told} {n_sample:.3g} samples a ray", "take fewer, or larger steps"
+    refuse_beyond_memory(what, cost.memory, remedy)
+    refuse_beyond_time(what, seconds, remedy)
+    return seconds
 
 
 _USUAL, _SAMPLE_SECONDS = 0.05, 1e-7
 """e_el where it is not known (Units: w_int); time of one sample. (Units: s)"""
-
-
-def refuse_unaffordable(cost: Cost, what: str, remedy: str, processes: int = 1) -> None:
-    """Raise if processes of a cost each, at once on this machine, need more than it has.
-
-    The refusal says what is run, and the remedy.
-    """
-    refuse_beyond_memory(what, processes * cost.memory, remedy)
-    refuse_beyond_time(what, cost.seconds, remedy)
 
 
 def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepest: float) -> None:

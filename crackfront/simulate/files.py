@@ -16,7 +16,6 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.variables import LATERAL, STEP, Variable, variables
-from crackfront.data.arguments import refuse_other_type
 from crackfront.data.files import (
     UnreadableFileError,
     labelled,
@@ -26,7 +25,7 @@ from crackfront.data.files import (
 )
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.run import PartialRun, SimulationResult
-from crackfront.simulate.si_units import SURFACES
+from crackfront.simulate.si_units import SURFACES, as_dataset
 from crackfront.simulate.simulation import Simulation
 
 Array = NDArray[np.float64]
@@ -134,10 +133,7 @@ def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
     OSError
         If the file cannot be written.
     """
-    refuse_other_type("result", result, (xr.DataArray, xr.Dataset), "a surface or a loop")
-    if isinstance(result, xr.DataArray) and result.name is None:
-        raise ValueError("the array has no name; give it one, as in surface.rename('height')")
-    dataset = result.to_dataset() if isinstance(result, xr.DataArray) else result
+    dataset = as_dataset(result, "result", "a surface or a loop")
     write_dataset(Path(path), dataset, provenance())
 
 

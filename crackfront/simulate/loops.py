@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, get_args
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -170,10 +170,23 @@ def loop_dataset(
     if measures is None:
         return curves.assign_attrs({"result": result_sentence(record)} | curves.attrs)
     steady = steady_adhesion(record, measures.correlation_length)
+    numerical = (math.nan, math.nan)
+    if simulation is not None and not steady.sentence:
+        numerical = stated_error(simulation, steady, measures.correlation_length)
+    values = {
+        "e_el": measures.e_el,
+        "w_rms": measures.w_rms,
+        "correlation_length": measures.correlation_length,
+        "w_appr_numerical_error": numerical[0],
+        "w_retr_numerical_error": numerical[1],
+        **{name: getattr(steady, name) for name in _MEASURES},
+    }
     told = {"result": result_sentence(record, steady), "steady_sentence": steady.sentence}
-    labels = curves.attrs | {"kind": measures.kind}
-    whole = curves.assign(_measures(measures, steady, simulation))
-    return whole.drop_attrs(deep=False).assign_attrs(told | labels)
+    labels = told | curves.attrs | {"kind": measures.kind}
+    whole = curves.assign(
+        {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
+    )
+    return whole.drop_attrs(deep=False).assign_attrs(labels)
 
 
 def result_sentence(record: CycleRecord, steady: SteadyAdhesion | None = None) -> str:
@@ -192,34 +205,11 @@ def result_sentence(record: CycleRecord, steady: SteadyAdhesion | None = None) -
         return forces
     if steady.sentence:
         return f"no steady part: w_appr and w_retr are unknown; {forces}"
-    works = (
-        ("w_appr", steady.w_appr, steady.w_appr_error),
-        ("w_retr", steady.w_retr, steady.w_retr_error),
-        ("hysteresis", steady.hysteresis, steady.hysteresis_error),
-    )
-    told = ", ".join(
-        f"{name} {with_error(value, error) if error > 0 else format(value, '.4g')}"
-        for name, value, error in works
-    )
-    return f"{told} (w_int); {forces}"
-
-
-def _measures(
-    measures: TileMeasures, steady: SteadyAdhesion, simulation: Simulation | None
-) -> dict[str, Any]:
-    """Labelled measures of a loop."""
-    numerical = (math.nan, math.nan)
-    if simulation is not None and not steady.sentence:
-        numerical = stated_error(simulation, steady, measures.correlation_length)
-    values = {
-        "e_el": measures.e_el,
-        "w_rms": measures.w_rms,
-        "correlation_length": measures.correlation_length,
-        "w_appr_numerical_error": numerical[0],
-        "w_retr_numerical_error": numerical[1],
-        **{name: getattr(steady, name) for name in _MEASURES},
-    }
-    return {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
+    told = []
+    for name in ("w_appr", "w_retr", "hysteresis"):
+        value, error = getattr(steady, name), getattr(steady, f"{name}_error")
+        told.append(f"{name} {with_error(value, error) if error > 0 else format(value, '.4g')}")
+    return f"{', '.join(told)} (w_int); {forces}"
 
 
 def find_instabilities(
@@ -311,9 +301,8 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
     Arguments and errors are as of :func:`run_loop`.
     """
     refuse_no_fraction("error", error)
-    adhesion = surface_adhesion(surface)
-    kind = surface_kind(surface)
-    measures = replace(tile_measures(adhesion), kind=kind)
+    kind, adhesion = surface_kind(surface), surface_adhesion(surface)
+    measures = tile_measures(adhesion, kind)
     spectrum, deepest = stated_spectrum(surface), schedule.max_penetration
     if spectrum is None or adhesion.e_el == 0:
         return SurfaceContact(contact_field(adhesion, deepest), DEFAULT_TOLERANCE, measures, None)

@@ -91,17 +91,11 @@ def refuse_no_scales(sphere: object) -> None:
     )
 
 
-_Change = Callable[[str, xr.DataArray], tuple[float, str]]
-"""From a variable and its name to the factor of its values, and the units that they then have."""
-
 SURFACES: dict[FieldKind, Variable] = {
     "roughness": Variable("height", ("x", "y"), VERTICAL, "height, positive at peaks"),
     "chemical": Variable("work_of_adhesion", ("x", "y"), ADHESION, "local work of adhesion"),
 }
 """What a surface is called, by what its values are."""
-
-_AREA = f"({LATERAL})^2"
-_SI = {LATERAL: "m", VERTICAL: "m", FORCE: "N", ADHESION: "J / m^2", ENERGY: "J", _AREA: "m^2"}
 
 _KINDS = (ContactState, CycleRecord, Instabilities, SweepAxes, SweepRow)
 _REDUCED = {
@@ -121,7 +115,6 @@ _ATTRIBUTES = dict.fromkeys(Spectrum.length_names(), LATERAL) | {
 }
 """Reduced units of attributes; they have those of the array that they belong to."""
 
-
 _SPHERE = "sphere_"
 """How the names of attributes begin that say which sphere an array was converted for."""
 
@@ -133,11 +126,8 @@ def in_si_units(data: Labelled, scales: units.Scales) -> Labelled:
     """
     refuse_no_scales(scales)
     refuse_other_units(data)
-
-    def physical(name: str, part: xr.DataArray) -> tuple[float, str]:
-        return _scale(scales, _units(name)), _SI.get(_units(name), _units(name))
-
-    found = _converted(data, physical, lambda units: _scale(scales, units))
+    known = _si(scales)
+    found = _converted(data, lambda unit, _: known.get(unit, (1.0, unit)))
     return found.assign_attrs({_SPHERE + name: part for name, part in asdict(scales).items()})
 
 
@@ -187,68 +177,79 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     True
     """
     refuse_no_scales(scales)
+    known = _si(scales)
 
-    def reduced(name: str, part: xr.DataArray) -> tuple[float, str]:
-        return _si_value(name, part) / _scale(scales, _units(name)), _units(name)
+    def reduced(unit: str, part: xr.DataArray | None) -> tuple[float, str]:
+        scale, needed = known.get(unit, (1.0, unit))
+        return (1.0 if part is None else _unit_value(part, needed)) / scale, unit
 
-    found = _converted(data, reduced, lambda units: 1 / _scale(scales, units))
+    found = _converted(data, reduced)
     kept = {name: part for name, part in found.attrs.items() if not name.startswith(_SPHERE)}
     return found.drop_attrs(deep=False).assign_attrs(kept)
 
 
 def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
     """Raise ValueError if a variable is unknown or not in reduced units."""
-    for name, part in _parts(_dataset(data)).items():
-        if (given := part.attrs.get("units")) != _units(name):
+    for name, part in as_dataset(data).variables.items():
+        given, needed = part.attrs.get("units"), _reduced_unit(str(name))
+        if given != needed:
             raise ValueError(
-                f"{name} has the units {given!r}; the attribute units must be {_units(name)!r}: "
-                "set it, or convert other units by in_reduced_units"
+                f"{name} has the units {given!r}; the attribute units must be {needed!r}: set it, "
+                "or convert other units by in_reduced_units"
             )
 
 
-def _converted(data: Labelled, change: _Change, scale: Callable[[str], float]) -> Labelled:
-    """Copy of which every variable is multiplied by its factor."""
-    dataset = _dataset(data)
+def as_dataset(
+    data: xr.DataArray | xr.Dataset,
+    name: str = "data",
+    wanted: str = "an xarray.DataArray or xarray.Dataset",
+) -> xr.Dataset:
+    """A dataset, or that of an array; the refusal says the name of the argument and what to give.
+
+    Raises
+    ------
+    TypeError
+        If the data are of another type.
+    ValueError
+        If an array has no name.
+    """
+    if isinstance(data, xr.Dataset):
+        return data
+    refuse_other_type(name, data, xr.DataArray, wanted)
+    if data.name is None:
+        raise ValueError(
+            "the array has no name; give it one that says what its values are, as in "
+            "surface.rename('height')"
+        )
+    return data.to_dataset()
+
+
+def _converted(
+    data: Labelled, change: Callable[[str, xr.DataArray | None], tuple[float, str]]
+) -> Labelled:
+    """Copy with factors and units that depend on reduced unit and variable, None of attributes."""
+    dataset: xr.Dataset = as_dataset(data)
+
+    def attributes(part: xr.DataArray | xr.Dataset) -> dict[str, Any]:
+        return {
+            name: value * change(_ATTRIBUTES[name], None)[0] if name in _ATTRIBUTES else value
+            for name, value in part.attrs.items()
+        }
+
     parts = {}
-    for name, part in _parts(dataset).items():
-        factor, units = change(name, part)
+    for name in dataset.variables:
+        part = dataset[name]
+        factor, unit = change(_reduced_unit(str(name)), part)
         # Counts and texts have no scale, and keep their types.
         values = part.values if factor == 1.0 else part.values * factor
-        parts[name] = (part.dims, values, _attributes(part, scale) | {"units": units})
-    coordinates = {name: parts[str(name)] for name in dataset.coords}
-    variables = {name: parts[str(name)] for name in dataset.data_vars}
-    found = xr.Dataset(variables, coordinates, _attributes(dataset, scale))
+        parts[name] = (part.dims, values, attributes(part) | {"units": unit})
+    found = xr.Dataset(parts, attrs=attributes(dataset)).set_coords([*dataset.coords])
     if isinstance(data, xr.DataArray):
         return found[data.name]
     return found
 
 
-def _attributes(part: xr.DataArray | xr.Dataset, scale: Callable[[str], float]) -> dict[str, Any]:
-    """Attributes, those that are lengths or energies converted."""
-    return {
-        str(name): value * scale(_ATTRIBUTES[str(name)]) if name in _ATTRIBUTES else value
-        for name, value in part.attrs.items()
-    }
-
-
-def _dataset(data: xr.DataArray | xr.Dataset) -> xr.Dataset:
-    """Data as a dataset."""
-    if isinstance(data, xr.Dataset):
-        return data
-    refuse_other_type("data", data, xr.DataArray, "an xarray.DataArray or xarray.Dataset")
-    if data.name is None:
-        raise ValueError(
-            "the array has no name; name it by what its values are, as in surface.rename('height')"
-        )
-    return data.to_dataset()
-
-
-def _parts(dataset: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Variables and coordinates by their names."""
-    return {str(name): dataset[name] for name in dataset.variables}
-
-
-def _units(name: str) -> str:
+def _reduced_unit(name: str) -> str:
     """Reduced units of a variable."""
     if name not in _REDUCED:
         raise ValueError(
@@ -258,28 +259,26 @@ def _units(name: str) -> str:
     return _REDUCED[name]
 
 
-def _scale(scales: units.Scales, unit: str) -> float:
-    """What a reduced unit is in SI; 1 for what has no scale."""
-    known = {
-        LATERAL: scales.lateral,
-        VERTICAL: scales.vertical,
-        FORCE: scales.force,
-        ADHESION: scales.work_of_adhesion,
-        ENERGY: scales.force * scales.vertical,
-        _AREA: scales.lateral**2,
+def _si(scales: units.Scales) -> dict[str, tuple[float, str]]:
+    """Reduced units that have a scale: their values in SI units, and those."""
+    return {
+        LATERAL: (scales.lateral, "m"),
+        VERTICAL: (scales.vertical, "m"),
+        FORCE: (scales.force, "N"),
+        ADHESION: (scales.work_of_adhesion, "J / m^2"),
+        ENERGY: (scales.force * scales.vertical, "J"),
+        f"({LATERAL})^2": (scales.lateral**2, "m^2"),
     }
-    return known.get(unit, 1.0)
 
 
-def _si_value(name: str, part: xr.DataArray) -> float:
-    """The units of a variable in SI."""
-    needed, given = _SI.get(_units(name), _units(name)), part.attrs.get("units")
-    if given == needed:
+def _unit_value(part: xr.DataArray, needed: str) -> float:
+    """Value of the units of a variable in those that are needed."""
+    if (given := part.attrs.get("units")) == needed:
         return 1.0
     try:
         return unit_value(str(given), needed)
     except ValueError as error:
         raise ValueError(
-            f"{name} has the units {given!r}, which cannot be converted to {needed}; set its "
+            f"{part.name} has the units {given!r}, which cannot be converted to {needed}; set its "
             "attribute units"
         ) from error

@@ -20,7 +20,7 @@ from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import SEED, refuse_beyond_memory
 from crackfront.data.files import labelled
 from crackfront.data.tiles import refuse_extreme, tile_samples
-from crackfront.simulate.contact import simulation_adhesion, simulation_heights
+from crackfront.simulate.contact import simulation_adhesion, simulation_values
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.si_units import SURFACES, refuse_other_units
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
@@ -93,10 +93,14 @@ def random_surface(
         seed=seed,
         realisation=realisation,
     )
+    if kind == "roughness":
+        values = simulation_values(simulation)
+    else:
+        values = simulation_adhesion(simulation).work_of_adhesion / WORK_OF_ADHESION
     tile = simulation.resolution
     return surface_array(
         kind,
-        _values(simulation),
+        values,
         tile.tile_side / tile.n_point,
         **spectrum.parameters,
         elastic_energy_requested=elastic_energy,
@@ -107,15 +111,14 @@ def random_surface(
 
 def _shape(short_cutoff: float | Spectrum, roll_off: float | None, hurst: float | None) -> Spectrum:
     """Spectrum that the arguments of :func:`random_surface` name."""
+    optional = {"roll_off": roll_off, "hurst": hurst}
+    named = {name: one for name, one in optional.items() if one is not None}
     if not isinstance(short_cutoff, Spectrum):
-        optional = {"roll_off": roll_off, "hurst": hurst}
-        named = {name: one for name, one in optional.items() if one is not None}
         refuse_no_numbers(short_cutoff=short_cutoff, **named)
         long = short_cutoff if roll_off is None else roll_off
         return SelfAffineSpectrum(short_cutoff, long, 1.0 if hurst is None else hurst)
-    for name, value in (("roll_off", roll_off), ("hurst", hurst)):
-        if value is not None:
-            raise ValueError(f"{name} is {value}, but a whole spectrum is given; leave it out")
+    for name, value in named.items():
+        raise ValueError(f"{name} is {value}, but a whole spectrum is given; leave it out")
     return short_cutoff
 
 
@@ -138,29 +141,24 @@ def chosen_simulation(
         raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
     refuse_no_fraction("error", error)
     refuse_no_fraction("elastic_energy", elastic_energy)
-    if side is not None:
-        refuse_no_numbers(side=side)
     for name, number in (("seed", seed), ("realisation", realisation)):
         refuse_other_type(name, number, Integral, "a whole number")
         if not SEED.least <= number <= SEED.most:
             raise ValueError(f"{name} is {number}; it must lie between 0 and {SEED.most}")
-    if side is not None and not spectrum.short_cutoff <= side < math.inf:
-        raise ValueError(
-            f"side is {side}; the tile must hold the short cutoff, {spectrum.short_cutoff:g}"
-        )
-    numerics = Numerics(error)
+    numerics, cutoff = Numerics(error), spectrum.short_cutoff
     if side is not None:
-        numerics = Numerics(error, tile_roll_offs=0.0, tile_cutoffs=side / spectrum.short_cutoff)
+        refuse_no_numbers(side=side)
+        if not cutoff <= side < math.inf:
+            raise ValueError(f"side is {side}; the tile must hold the short cutoff, {cutoff:g}")
+        numerics = Numerics(error, tile_roll_offs=0.0, tile_cutoffs=side / cutoff)
     knobs = numerics.knobs_of(kind, spectrum, elastic_energy)
     refuse_oversized(spectrum, numerics, knobs, schedule.max_penetration)
     found = simulation_of(
         kind, spectrum, elastic_energy, schedule, numerics, seed=seed, realisation=realisation
     )
-    refuse_beyond_memory(
-        f"tiles of {found.resolution.n_point} x {found.resolution.n_point} points",
-        expected_cost(found).memory,
-        "take a smaller side or a longer short_cutoff",
-    )
+    tiles = f"tiles of {found.resolution.n_point} x {found.resolution.n_point} points"
+    remedy = "take a smaller side or a longer short_cutoff"
+    refuse_beyond_memory(tiles, expected_cost(found).memory, remedy)
     return found
 
 
@@ -169,13 +167,6 @@ def refuse_no_fraction(name: str, value: float) -> None:
     refuse_no_numbers(**{name: value})
     if not 0 < value < 1:
         raise ValueError(f"{name} is {value}; it must lie between 0 and 1")
-
-
-def _values(simulation: Simulation) -> Array:
-    """Values of the tile of a simulation."""
-    if simulation.kind == "chemical":
-        return simulation_adhesion(simulation).work_of_adhesion / WORK_OF_ADHESION
-    return simulation_heights(simulation)
 
 
 _AXES = tuple(
@@ -221,14 +212,13 @@ def surface_kind(surface: xr.DataArray) -> FieldKind:
         xr.DataArray,
         "an xarray.DataArray height(x, y), as random_surface and read_scan make it",
     )
-    for kind, item in SURFACES.items():
-        if surface.name == item.name:
-            return kind
-    names = " or ".join(item.name for item in SURFACES.values())
-    raise ValueError(
-        f"the surface is named {surface.name!r}; say what its values are by the name {names}, as "
-        "in surface.rename('height')"
-    )
+    kinds = {item.name: kind for kind, item in SURFACES.items()}
+    if surface.name not in kinds:
+        raise ValueError(
+            f"the surface is named {surface.name!r}; say what its values are by the name "
+            f"{' or '.join(kinds)}, as in surface.rename('height')"
+        )
+    return kinds[str(surface.name)]
 
 
 def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
@@ -247,7 +237,7 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
         w_int.
     """
     kind = surface_kind(surface)
-    if set(surface.dims) != {"x", "y"}:
+    if {*surface.dims} != {"x", "y"}:
         raise ValueError(
             f"{surface.name} has the dimensions ({', '.join(map(str, surface.dims))}); a tile must "
             "have x and y"

@@ -145,13 +145,11 @@ class TileMeasures:
     correlation_length: float
 
 
-def tile_measures(adhesion: AdhesionMap) -> TileMeasures:
-    """Measures of a tile."""
+def tile_measures(adhesion: AdhesionMap, kind: FieldKind | None = None) -> TileMeasures:
+    """Measures of a tile; without its kind the mean work of adhesion decides."""
     values, energy = adhesion.work_of_adhesion, adhesion.e_el
-    lacking = 1 - float(np.mean(values)) / WORK_OF_ADHESION
-    return TileMeasures(
-        "chemical" if abs(lacking) < abs(lacking - energy) else "roughness",
-        energy,
-        adhesion.w_rms,
-        measured_correlation_length(values, adhesion.pixel),
-    )
+    if kind is None:
+        lacking = 1 - float(np.mean(values)) / WORK_OF_ADHESION
+        kind = "chemical" if abs(lacking) < abs(lacking - energy) else "roughness"
+    length = measured_correlation_length(values, adhesion.pixel)
+    return TileMeasures(kind, energy, adhesion.w_rms, length)
