@@ -37,7 +37,7 @@ from crackfront.data.bounds import (
     refuse_outside,
 )
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.period import LineSchedule
+from crackfront.simulate.lines import LineSchedule
 from crackfront.simulate.simulation import Numerics, Simulation
 from crackfront.simulate.steady import SteadySchedule
 
@@ -130,7 +130,7 @@ def featured_cost(item: Features, *, fronts: bool) -> Cost:
     """What a run of some features is expected to cost, with its fronts recorded or not."""
     recorded = 8 * item.n_state * item.n_angle if fronts else 0.0
     return Cost(
-        seconds=float(_seconds(_coefficients(), *_terms([item]))[0]),
+        seconds=float(_seconds(_coefficients(), _columns([item]))[0]),
         memory=_PROCESS_BYTES
         + 8 * _TILES * item.n_point**2
         + _SITE_BYTES * item.n_angle
@@ -222,12 +222,22 @@ def features(simulation: Simulation) -> Features:
 def measured_runs() -> list[Measured]:
     """The runs of `costs.csv`."""
     text = files("crackfront.simulate").joinpath("costs.csv").read_text(encoding="utf-8")
-    return [_run(row) for row in csv.DictReader(text.splitlines())]
+    names = ("n_angle", "n_point", "elastic_energy", "tolerance", "breadth", "travel")
+    runs = []
+    for row in csv.DictReader(text.splitlines()):
+        known = Features(
+            **{name: float(row[name]) for name in names},
+            full_cycle=row["full_cycle"] == "1",
+            n_state=float(row["expected_n_state"]),
+        )
+        counts = int(row["n_state"]), float(row["cpu_seconds"])
+        runs.append(Measured(row["name"], row["held_out"] == "1", known, *counts))
+    return runs
 
 
 def predicted_seconds(runs: Sequence[Measured]) -> Array:
     """Processor times that the law gives for measured runs, in seconds."""
-    return _seconds(_coefficients(), *_terms([run.features for run in runs]))
+    return _seconds(_coefficients(), _columns([run.features for run in runs]))
 
 
 @functools.singledispatch
@@ -285,11 +295,11 @@ def integral_breadth(simulation: Simulation) -> float:
 def _coefficients() -> tuple[float, ...]:
     """Coefficients of the law, fitted to the runs that are not held out."""
     runs = [run for run in measured_runs() if not run.held_out]
-    known = _terms([replace(run.features, n_state=run.n_state) for run in runs])
+    known = _columns([replace(run.features, n_state=run.n_state) for run in runs])
     found = np.log([run.cpu_seconds for run in runs])
 
     def residuals(coefficients: Array) -> Array:
-        return np.log(_seconds(coefficients, *known)) - found
+        return np.log(_seconds(coefficients, known)) - found
 
     return tuple(least_squares(residuals, _START).x.tolist())
 
@@ -298,12 +308,16 @@ _START = (-18.0, -12.0, 0.5, *(0.0,) * 9)
 """Logarithm of the time of a point of the tile, c_0, and exponents to begin with."""
 
 
-def _terms(items: Sequence[Features]) -> tuple[Array, Array, Array]:
-    """Of runs, by rows: points of the tile, their logarithm; states, sites; terms of the law."""
-    columns = np.array([astuple(item) for item in items], dtype=float).T
+def _columns(items: Sequence[Features]) -> Array:
+    """Features of runs, a column each."""
+    return np.array([astuple(item) for item in items], dtype=float).T
+
+
+def _seconds(coefficients: Sequence[float] | Array, columns: Array) -> Array:
+    """Processor times of runs by the law, in seconds."""
     n_angle, n_point, energy, tolerance, breadth, travel, full_cycle, n_state = columns
     sites, disorder, steady = np.log(n_angle / 1e3), np.log(energy / 0.02), 1 - full_cycle
-    logarithms = np.array(
+    terms = np.array(
         [
             sites,
             sites**2,
@@ -317,26 +331,7 @@ def _terms(items: Sequence[Features]) -> tuple[Array, Array, Array]:
             full_cycle,
         ]
     )
-    return np.array([n_point**2, np.log2(n_point)]), np.array([n_state, n_angle]), logarithms
-
-
-def _seconds(
-    coefficients: Sequence[float] | Array, tile: Array, sites: Array, logarithms: Array
-) -> Array:
-    """Processor times of the terms by the law, in seconds."""
     point, constant, *exponents = coefficients
-    state = sites[1] * np.exp(constant + np.array(exponents) @ logarithms)
-    states = sites[0] * np.maximum(state, _STATE_SECONDS)
-    return np.asarray(np.exp(point) * tile[0] * tile[1] + states)
-
-
-def _run(row: dict[str, str]) -> Measured:
-    """A run from its row."""
-    names = ("n_angle", "n_point", "elastic_energy", "tolerance", "breadth", "travel")
-    known = Features(
-        **{name: float(row[name]) for name in names},
-        full_cycle=row["full_cycle"] == "1",
-        n_state=float(row["expected_n_state"]),
-    )
-    counts = int(row["n_state"]), float(row["cpu_seconds"])
-    return Measured(row["name"], row["held_out"] == "1", known, *counts)
+    state = n_angle * np.exp(constant + np.array(exponents) @ terms)
+    tile = np.exp(point) * n_point**2 * np.log2(n_point)
+    return np.asarray(tile + n_state * np.maximum(state, _STATE_SECONDS))

@@ -30,9 +30,11 @@ from crackfront.simulate.simulation import Simulation
 
 Array = NDArray[np.float64]
 
-LAST_FRONT = Variable("last_front", ("angle",), LATERAL, "front of the last state")
-TURNING_FRONT = Variable("turning_front", ("angle",), LATERAL, "front at which its branch began")
-"""Fronts of a checkpoint."""
+_FRONTS = {
+    "front": Variable("last_front", ("angle",), LATERAL, "front of the last state"),
+    "turn": Variable("turning_front", ("angle",), LATERAL, "front at which its branch began"),
+}
+"""Fronts of a checkpoint, by their fields."""
 
 
 def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> str:
@@ -95,8 +97,7 @@ def checkpoint_dataset(
 ) -> xr.Dataset:
     """What a run of a key needs to go on later; the geometry as of :func:`cycle_dataset`."""
     fronts = {
-        LAST_FRONT.name: labelled(LAST_FRONT, checkpoint.front),
-        TURNING_FRONT.name: labelled(TURNING_FRONT, checkpoint.turn),
+        item.name: labelled(item, getattr(checkpoint, name)) for name, item in _FRONTS.items()
     }
     return cycle_dataset(checkpoint.record, geometry).assign(fronts).assign_attrs(key=key)
 
@@ -158,11 +159,11 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
 
 def known_checkpoint(dataset: xr.Dataset, key: str, place: Path) -> Checkpoint | None:
     """What a dataset of :func:`checkpoint_dataset` holds; None where it is that of another key."""
-    names = (LAST_FRONT.name, TURNING_FRONT.name)
-    if dataset.attrs.get("key") != key or not dataset.variables.keys() >= {*names}:
+    names = {field: item.name for field, item in _FRONTS.items()}
+    if dataset.attrs.get("key") != key or not dataset.variables.keys() >= {*names.values()}:
         return None
-    fronts = (np.asarray(dataset[name]) for name in names)
-    return Checkpoint(cycle_record(dataset, place), *fronts)
+    fronts = {field: np.asarray(dataset[name]) for field, name in names.items()}
+    return Checkpoint(cycle_record(dataset, place), **fronts)
 
 
 def cycle_dataset(

@@ -1,4 +1,8 @@
-"""Straight fronts of a sweep: their springs and tiles, in lengths of the spectrum."""
+"""Straight fronts of a sweep, pulled over a whole period of their tile, forward and back.
+
+By no passing, the state after one period is the same state shifted as soon as the start is
+forgotten: a mean over the next period is the exact mean over the tile.
+"""
 
 from __future__ import annotations
 
@@ -6,18 +10,31 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 
 from crackfront.core.adhesion import (
+    AdhesionMap,
     FieldKind,
     correlation_length,
     force_correlation_length,
     larkin_length,
 )
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.cycle.schedule import Schedule
+from crackfront.core.field.fields import Interpolation, TileField
+from crackfront.core.geometry.base import Geometry
+from crackfront.core.geometry.line import Line, line_field
+from crackfront.core.outcome import Direction, Status
+from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
+from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.bounds import refuse_beyond_memory
-from crackfront.simulate.period import LineSchedule
 from crackfront.simulate.simulation import Numerics
+
+Array = NDArray[np.float64]
 
 SpringUnit = Literal["correlation_length", "larkin_length"]
 
@@ -25,8 +42,128 @@ _DEPTH, _ROUGHNESS = 1.43, 0.4
 """Rms of a front over the force's correlation length, 1.43 (L_kappa / Larkin length)^0.4: measured
 over all spectra, amplitudes and springs of `config/line.yaml`, within a fifth."""
 
+_BEHIND = 1.3
+"""Pinning force of the first front over that of second-order theory; none is larger."""
+
 _LEAD_IN = 3.0
 """Correlation lengths after which a front has forgotten its start, beside multiples of its rms."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineSchedule(Schedule):
+    """Loads of a straight front on a tile, first forward, then back over the same places.
+
+    Parameters
+    ----------
+    spring : float
+        Length of the springs, L_kappa. (Units: length)
+    length : float
+        Period of the front. (Units: length)
+    period : float
+        Period of the tile along the motion, over which each branch is averaged. (Units: length)
+    lead_in : float
+        Travel before that, after which the start is forgotten. (Units: length)
+    step : float
+        Largest load step. (Units: length)
+    uncorrelated : bool, optional
+        Whether sites know nothing of each other: the limit of weak disorder.
+
+    Raises
+    ------
+    ValueError
+        If a length is not positive and finite.
+    """
+
+    spring: float
+    length: float
+    period: float
+    lead_in: float
+    step: float
+    uncorrelated: bool = False
+
+    straight = True
+    max_penetration = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("spring", "length", "period", "lead_in", "step"):
+            if not 0 < getattr(self, name) < math.inf:
+                what = name.replace("_", "-")
+                raise ValueError(f"{what} is {getattr(self, name)}; it must be positive and finite")
+
+    @property
+    def n_period(self) -> int:
+        """Steps of one period, at the end of which each branch is averaged."""
+        return math.ceil(self.period / self.step)
+
+    @property
+    def loads(self) -> Array:
+        """Places of the springs' other end, in the order of the advance (Units: length)."""
+        step = self.period / self.n_period
+        n_step = math.ceil(self.lead_in / step) + self.n_period
+        return step * np.arange(n_step + 1, dtype=float)
+
+    @property
+    def front_length(self) -> float:
+        """Period of the front (Units: length)."""
+        return self.length
+
+    def fitted(self, side: float, spacing: float) -> tuple[float, float]:
+        """Period of the front, and whole samples, so that a period further on all is the same."""
+        return self.length, self.period / math.ceil(self.period / spacing)
+
+    def tile(self, n_point: int, side: float) -> tuple[tuple[int, int], tuple[float, float]]:
+        """One period along the motion and one of the front."""
+        return (round(self.period * n_point / side), n_point), (self.period, side)
+
+    def geometry(self, n_site: int) -> Geometry:
+        """Line on springs that do not pull at w_int."""
+        return Line(n_site, self.length, WORK_OF_ADHESION / self.spring, WORK_OF_ADHESION)
+
+    def field(
+        self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
+    ) -> TileField:
+        """Field of a tile over all loads."""
+        return line_field(
+            adhesion,
+            self.spring,
+            (0.0, float(self.loads[-1])),
+            n_site=n_site,
+            spacing=spacing,
+            interpolation=interpolation,
+            band_limited=not self.uncorrelated,
+        )
+
+    def run(
+        self,
+        field: TileField,
+        solver: Solver | None,
+        recorder: Recorder,
+        *,
+        correlation_length: float = math.nan,
+        elastic_energy: float,
+    ) -> CycleRecord:
+        """Both branches over the lead-in and a period.
+
+        Parameters
+        ----------
+        field, solver, recorder, correlation_length, elastic_energy
+            As of :meth:`crackfront.core.cycle.schedule.Schedule.run`; e_el decides how far behind
+            the load a branch begins, and the correlation length has no effect.
+
+        Returns
+        -------
+        CycleRecord
+            The states; its status is `STEADY` where both branches are whole.
+        """
+        behind = _BEHIND * 4 * elastic_energy * self.spring + self.step
+        directions: tuple[Direction, Direction] = (1, -1)
+        loads: list[Load] = []
+        for direction in directions:
+            first, *others = self.loads[::direction].tolist()
+            start = np.full(field.geometry.n_site, first - direction * behind)
+            loads += [Load(first, direction, start), *(Load(one, direction) for one in others)]
+        recorder.run(field, np.full(field.geometry.n_site, -behind), loads, solver)
+        return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +215,8 @@ class LineLoad:
         knobs = numerics.knobs_of(kind, spectrum, elastic_energy, straight=True)
         pixel = spectrum.short_cutoff / knobs.pixels_per_cutoff
         least = numerics.tile_side(spectrum)
-        rms = expected_rms(kind, spectrum, spring / larkin)
+        size = max(spring / larkin, 0.1)
+        rms = _DEPTH * force_correlation_length(kind, spectrum) * size**_ROUGHNESS
         return LineSchedule(
             spring=spring,
             length=pixel * _points(max(self.length * spring, least) / pixel),
@@ -87,11 +225,6 @@ class LineLoad:
             step=self.step * length,
             uncorrelated=self.uncorrelated,
         )
-
-
-def expected_rms(kind: FieldKind, spectrum: Spectrum, size: float) -> float:
-    """Expected rms of a front for L_kappa over the Larkin length (Units: length)."""
-    return _DEPTH * force_correlation_length(kind, spectrum) * max(size, 0.1) ** _ROUGHNESS
 
 
 def _points(least: float) -> int:

@@ -13,12 +13,12 @@ import numpy as np
 
 from crackfront.analysis.table import RunMeasures
 from crackfront.core.adhesion import chemical_adhesion
-from crackfront.core.cycle.record import Checkpoint, CycleRecord, Observer, Recorder
+from crackfront.core.cycle.record import Checkpoint, CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.solver.window import HALF_BAND
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
-from crackfront.simulate.period import LineSchedule
+from crackfront.simulate.lines import LineSchedule
 from crackfront.simulate.simulation import Simulation
 
 
@@ -79,11 +79,10 @@ def run_simulation(
     measured = adhesion.e_el, adhesion.w_rms, float(np.mean(adhesion.work_of_adhesion < 0))
     # The run holds the splines alone, not the tile as well.
     del adhesion
-    observers: list[Observer] = [observe]
     recorder = Recorder(
         fronts=simulation.record_fronts,
         energy=simulation.record_energy,
-        observers=observers,
+        observers=[observe],
         resume=None if resume is None else resume.checkpoint,
     )
     record = simulation.schedule.run(
@@ -93,7 +92,10 @@ def run_simulation(
         correlation_length=simulation.correlation_length,
         elastic_energy=simulation.elastic_energy,
     )
-    measures = RunMeasures(*measured, *costs(), _peak_memory())
+    # Linux counts in KiB, macOS in bytes.
+    unit = 1 if sys.platform == "darwin" else 1024
+    peak = float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)
+    measures = RunMeasures(*measured, *costs(), peak)
     return SimulationResult(simulation, record, measures)
 
 
@@ -114,9 +116,3 @@ def compile_solver(name: str, straight: bool = False) -> None:
     field = schedule.field(smooth, 4 * HALF_BAND, 0.1, "cubic")
     solver, recorder = SOLVERS[name](1e-3), Recorder(energy=True)
     schedule.run(field, solver, recorder, correlation_length=1.0, elastic_energy=0.0)
-
-
-def _peak_memory() -> float:
-    """High-water mark of this process in bytes; Linux counts in KiB, macOS in bytes."""
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return float(peak * (1 if sys.platform == "darwin" else 1024))

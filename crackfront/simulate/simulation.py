@@ -320,4 +320,5 @@ def _digest(content: Any) -> str:
 @functools.cache
 def simulation_fingerprint(kind: type[Schedule] = LoadSchedule) -> str:
     """Twelve hexadecimal digits that change with what determines a simulation of a kind of load."""
-    return fingerprint("crackfront.simulate.run.run_simulation", kind.__module__)
+    schedule = f"{kind.__module__}.{kind.__qualname__}"
+    return fingerprint("crackfront.simulate.run.run_simulation", schedule)

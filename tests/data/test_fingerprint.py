@@ -129,7 +129,7 @@ def test_a_local_module_that_is_renamed_changes_no_key(sources):
         ("crackfront/core/spectrum.py", (r"\(-2 - 2 \* self", "(-2.1 - 2 * self")),
         ("crackfront/core/spectrum.py", (r"np.where\(q <= 1 \+ 1e-12", "np.where(q <= 1 + 1e-11")),
         ("crackfront/core/geometry/line.py", ("_spring_force.*\n.*\n    return", r"\g<0> 2 *")),
-        ("crackfront/simulate/period.py", ("^_BEHIND = 1.3", "_BEHIND = 1.4")),
+        ("crackfront/simulate/lines.py", ("^_BEHIND = 1.3", "_BEHIND = 1.4")),
         ("crackfront/core/cycle/follow.py", ("is Status.CONVERGED", "is Status.STEP_LIMIT")),
         ("crackfront/simulate/contact.py", (r"2 \* math.sqrt", "3 * math.sqrt")),
     ],

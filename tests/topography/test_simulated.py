@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from crackfront.analysis.law import pinning_factor
-from crackfront.simulate.period import LineSchedule
+from crackfront.simulate.lines import LineSchedule
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.topography.measures import measured_surface
