@@ -24,7 +24,7 @@ from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.files import cycle_record
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.surfaces import chosen_simulation, surface_adhesion
-from crackfront.simulate.tiles import measured_correlation_length
+from crackfront.simulate.tiles import tile_modes
 from crackfront.sweep import parallel, tasks
 from crackfront.topography.bands import scan
 from crackfront.topography.measures import measured_surface
@@ -247,7 +247,7 @@ def test_without_the_spectrum_the_pixels_decide(surface, loop):
 
 def test_the_correlation_length_is_that_of_the_spectrum():
     fine = cf.random_surface(0.05, 0.05, seed=2)
-    found = measured_correlation_length(fine.values, float(fine.x[1] - fine.x[0]))
+    found = tile_modes(fine.values, float(fine.x[1] - fine.x[0])).mean_wavelength
     # Heights of a flat spectrum: the mean of q over 0 to q_s is 2/3 of it.
     assert found == pytest.approx(1.5 * 0.05, rel=0.02)
 

@@ -1,7 +1,7 @@
-"""What one cycle on a given field needs, geometry by geometry: its loads and its field.
+"""Loads and field of one cycle on a given field, geometry by geometry.
 
-A case is a dataclass whose fields are the options of `crackfront cycle` that belong to it. What
-computes is imported where it is used, so that the command's help does not wait for it.
+The fields of a case are options of `crackfront cycle`. What computes is imported where it is used:
+the command's help does not wait for it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 _PLACE, _DEPTH = (Range(-bounds.most, bounds.most) for bounds in (NUMBER, PENETRATION))
-"""What is refused by the parser; why a negative step or penetration is none, its user says."""
+"""What the parser accepts; loads refuse negative steps and penetrations themselves."""
 
 
 def option(text: str, bounds: Range, *, flag: str | None = None, default: Any = MISSING) -> Any:
@@ -53,7 +53,7 @@ class Problem(NamedTuple):
     sites : (n_site,) array or None
         Coordinates that are not those of the geometry.
     measures : TileMeasures or None
-        What the tile tells of the loop of a sphere.
+        Those of the tile of a sphere.
     """
 
     field: Field
@@ -147,7 +147,7 @@ class LineCase:
     step: float | None = option("Difference of loads.", _PLACE)
 
     def problem(self, read: Callable[[], AdhesionMap | PolarSamples], asked: Resolution) -> Problem:
-        """Field on the points of a tile, one site for every y unless asked for otherwise."""
+        """Field on the points of a tile, one site for every y unless the resolution says more."""
         import numpy as np
 
         from crackfront.core.adhesion import AdhesionMap

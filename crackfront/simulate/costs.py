@@ -1,15 +1,13 @@
-r"""What simulations cost before they are run: time, memory and disk, from laws of measured runs.
+r"""Expected time, memory and disk of simulations, from a law of measured runs.
 
-`python -m studies speed costs` measures the runs of `costs.csv`. The processor time is that of
-making the tile and that of the load steps,
+`python -m studies speed costs` measures the runs of `costs.csv`; the law is fitted to those that
+are not held out. The processor time is that of making the tile and that of the load steps,
 
 .. math:: t = c_t n_p^2 \log_2 n_p + n_b N\, e^{c_0 + c \cdot x},
 
-with the :math:`n_p^2` points of the tile, the states :math:`n_b`, the sites :math:`N` and, as
-:math:`x`, logarithms of what the sweeps of a load step depend on and whether the load is a full
-cycle: its steps into and out of contact take longer than those of the steady branches, whose
-starts are the closer the more correlation lengths the front has. The
-coefficients are fitted where they are asked for, to the rows that are not held out.
+with :math:`n_p^2` points of the tile, :math:`n_b` states and :math:`N` sites. :math:`x` are
+logarithms of what the sweeps of a load step depend on, and whether the load is a full cycle: steps
+into and out of contact take longer than those of the steady branches.
 """
 
 from __future__ import annotations
@@ -141,7 +139,7 @@ def featured_cost(item: Features, *, fronts: bool) -> Cost:
 
 
 def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_sample: float) -> float:
-    """Processor time that a cycle on a given field is expected to take, roughly.
+    """Rough processor time of a cycle on a given field, in seconds.
 
     Parameters
     ----------
@@ -187,20 +185,13 @@ def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepe
     refuse_outside("max_penetration", deepest, PENETRATION, "reduced vertical lengths")
     cutoff = spectrum.short_cutoff
     points = numerics.tile_side(spectrum) / cutoff * knobs.pixels_per_cutoff
-    refuse_beyond_memory(
-        f"tiles of {points:.2g} x {points:.2g} points",
-        8 * _TILES * points**2,
-        "lower roll_offs, cutoffs or pixels_per_cutoff, or raise short_cutoff",
-        anywhere=True,
-    )
+    tiles = f"tiles of {points:.2g} x {points:.2g} points"
+    remedy = "lower roll_offs, cutoffs or pixels_per_cutoff, or raise short_cutoff"
+    refuse_beyond_memory(tiles, 8 * _TILES * points**2, remedy, anywhere=True)
     circle = 2 * math.pi * jkr.equilibrium_radius(deepest)
     sites = knobs.angles or circle / cutoff * knobs.angles_per_cutoff
-    refuse_beyond_memory(
-        f"fronts of {sites:.2g} sites",
-        _SITE_BYTES * sites,
-        "lower angles or angles_per_cutoff, or raise short_cutoff",
-        anywhere=True,
-    )
+    remedy = "lower angles or angles_per_cutoff, or raise short_cutoff"
+    refuse_beyond_memory(f"fronts of {sites:.2g} sites", _SITE_BYTES * sites, remedy, anywhere=True)
 
 
 def features(simulation: Simulation) -> Features:

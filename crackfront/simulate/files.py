@@ -84,12 +84,8 @@ def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> Non
     """Write what a simulation needs to go on later."""
     simulation = partial.simulation
     dataset = checkpoint_dataset(partial.checkpoint, simulation.key, simulation.geometry)
-    dataset.attrs |= {
-        "simulation": simulation.label,
-        "seconds": partial.seconds,
-        "cpu_seconds": partial.cpu_seconds,
-    }
-    write_dataset(path, dataset, origin)
+    costs = {"seconds": partial.seconds, "cpu_seconds": partial.cpu_seconds}
+    write_dataset(path, dataset.assign_attrs({"simulation": simulation.label} | costs), origin)
 
 
 def checkpoint_dataset(

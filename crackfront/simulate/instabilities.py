@@ -1,4 +1,4 @@
-"""The single elastic instabilities of a branch, told apart from the smooth motion between them.
+"""The single elastic instabilities of a branch, and the smooth motion between them.
 
 A load step is halved until the front moves little, which is smooth motion, or until the step is
 too small to matter, which is an instability. No passing makes this exact: the front at a load does
@@ -81,8 +81,7 @@ def resolved_motion(
     precision : float
         Step in which a larger motion is an instability. (Units: reduced vertical length)
     solver : Solver, optional
-        How each front is found; one rests until its drive exceeds the tolerance, so that a
-        tolerance above the precision delays the instabilities.
+        How each front is found; a tolerance above the precision delays the instabilities.
 
     Yields
     ------
@@ -145,10 +144,8 @@ def measured_instabilities(jumps: Sequence[Motion], field: Field, travel: float)
     ----------
     jumps : sequence of Motion
         Unstable motions of one branch.
-    field : Field
-        Work of adhesion along the rays.
-    travel : float
-        Smallest motion of a site that counts. (Units: reduced lateral length)
+    field, travel
+        As of :func:`resolved_motion`.
     """
     geometry = field.geometry
     clusters = [swept_clusters(jump.before, jump.after, travel, geometry) for jump in jumps]
@@ -183,19 +180,17 @@ class Cluster:
 
 
 def swept_areas(before: Array, after: Array, geometry: Geometry) -> Array:
-    """Area that each site of a front sweeps on its way to another.
+    """Area that each site of a front sweeps on its way to another, never negative.
 
     Parameters
     ----------
-    before, after : (n_site,) array
-        The fronts. (Units: reduced lateral length)
-    geometry : Geometry
-        That of the front.
+    before, after, geometry
+        As of :func:`swept_clusters`.
 
     Returns
     -------
     (n_site,) array
-        Areas, none of them negative. (Units: reduced lateral length**2)
+        Areas. (Units: reduced lateral length**2)
     """
     # The weight, of a sphere the radius, is linear: that of the middle makes a sector exact.
     width = weight(geometry, 0.0) + weight_slope(geometry) * (before + after) / 2
@@ -207,8 +202,7 @@ def swept_clusters(
 ) -> list[Cluster]:
     """Contiguous parts of the perimeter that moved by more than a threshold, the largest first.
 
-    The front is elastic over long distances, so that an instability may move parts that do not
-    touch each other.
+    The front is elastic over long distances: an instability may move several of them.
 
     Parameters
     ----------
@@ -255,15 +249,14 @@ def shortest_instability(correlation_length: float, rms: float) -> float:
     .. math:: \ell^{-1} = w_{int}^{-2} \int \frac{dq}{2\pi}\, q^2 C_w(q, 0)
               = \frac{4\pi}{\xi} \left(\frac{w_{rms}}{w_{int}}\right)^2
 
-    for an isotropic spectrum C_w whose mean wavevector, weighted by variance, is 2 pi / xi. The
-    paper calls it Larkin length. That of the law of k,
-    :func:`crackfront.core.adhesion.larkin_length`, on which the front has wandered by as much as
-    its force is correlated over, is 13 times as long for a flat spectrum.
+    for an isotropic spectrum C_w of correlation length xi. The paper calls it Larkin length; that
+    of the law of k, :func:`crackfront.core.adhesion.larkin_length`, is 13 times as long for a flat
+    spectrum.
 
     Parameters
     ----------
     correlation_length : float
-        That of w_loc, as `correlation_length` has it. (Units: length)
+        That of w_loc. (Units: length)
     rms : float
         w_rms / w_int.
 
@@ -274,8 +267,6 @@ def shortest_instability(correlation_length: float, rms: float) -> float:
 
     Examples
     --------
-    A flat spectrum of heights up to the wavelength 1 has a correlation length of 4/3:
-
     >>> round(shortest_instability(4 / 3, 1.0), 3)
     0.106
     """

@@ -229,10 +229,6 @@ class LineLoad:
 
 def _points(least: float) -> int:
     """Points of a side, an even product of small primes; refused where no machine holds them."""
-    refuse_beyond_memory(
-        f"sides of {least:.2g} points",
-        32.0 * least,
-        "lower length, period, springs or pixels_per_cutoff",
-        anywhere=True,
-    )
+    remedy = "lower length, period, springs or pixels_per_cutoff"
+    refuse_beyond_memory(f"sides of {least:.2g} points", 32.0 * least, remedy, anywhere=True)
     return 2 * int(next_fast_len(math.ceil(least / 2 * (1 - 1e-12)), real=True))

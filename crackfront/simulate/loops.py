@@ -102,8 +102,8 @@ def run_loop(
     xarray.Dataset
         The curves over `step`, the fronts `radius(step, angle)`, and measures of the whole:
         `e_el`, `w_rms`, `correlation_length`, `w_appr`, `w_retr`, their errors and `hysteresis`.
-        The last four are NaN where the loop has no steady part; the attribute `result` says so and
-        tells the forces of jump-in and pull-off, `steady_sentence` says why.
+        The last four are NaN where the loop has no steady part. The attribute `result` states
+        them and the forces of jump-in and pull-off, `steady_sentence` why they are NaN.
 
     Raises
     ------
@@ -153,14 +153,14 @@ def loop_dataset(
     sites: Array | None = None,
     simulation: Simulation | None = None,
 ) -> Dataset:
-    """Labelled curves of a cycle, and what they tell as a whole.
+    """Labelled curves of a cycle, and measures of the whole.
 
     Parameters
     ----------
     record : CycleRecord
         The states of a cycle.
     measures : TileMeasures, optional
-        What the tile tells; without it the curves stand alone.
+        Those of the tile; without them the curves stand alone.
     geometry, sites
         As of :func:`crackfront.simulate.files.cycle_dataset`.
     simulation : Simulation, optional
@@ -267,14 +267,7 @@ def find_instabilities(
     touched = front_at(field, first_touch(field), Load(start, 1), solver)
     loads = schedule.approach() if direction > 0 else schedule.retraction()
     steps = resolved_motion(
-        field,
-        touched,
-        start,
-        loads,
-        direction,
-        travel=reach,
-        precision=precision,
-        solver=solver,
+        field, touched, start, loads, direction, travel=reach, precision=precision, solver=solver
     )
     jumps = [motion for motion in steps if motion.unstable]
     found = labelled_fields(measured_instabilities(jumps, field, reach))
@@ -284,10 +277,7 @@ def find_instabilities(
 
 @dataclass(frozen=True, slots=True)
 class SurfaceContact:
-    """A sphere on a surface: the field, the tolerance of its solver, and what its tile measures.
-
-    The simulation, with its expected errors, is there where the spectrum is known.
-    """
+    """A sphere on a surface; where the spectrum is known, the simulation has expected errors."""
 
     field: TileField
     tolerance: float

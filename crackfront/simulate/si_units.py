@@ -61,10 +61,7 @@ class Scales(units.Scales):
     __slots__ = ()
 
     def __init__(
-        self,
-        radius: float | str,
-        work_of_adhesion: float | str,
-        contact_modulus: float | str,
+        self, radius: float | str, work_of_adhesion: float | str, contact_modulus: float | str
     ) -> None:
         super().__init__(
             _in_si("radius", radius, "m"),
@@ -83,12 +80,8 @@ def _in_si(name: str, given: float | str, unit: str) -> float:
 
 def refuse_no_scales(sphere: object) -> None:
     """Raise TypeError if an argument is no sphere."""
-    refuse_other_type(
-        "sphere",
-        sphere,
-        units.Scales,
-        "crackfront.Scales(radius, work_of_adhesion, contact_modulus)",
-    )
+    wanted = "crackfront.Scales(radius, work_of_adhesion, contact_modulus)"
+    refuse_other_type("sphere", sphere, units.Scales, wanted)
 
 
 SURFACES: dict[FieldKind, Variable] = {
@@ -108,12 +101,9 @@ _REDUCED = {
 } | {"x": LATERAL, "y": LATERAL}
 """Reduced units of everything that may be converted."""
 
-_ATTRIBUTES = dict.fromkeys(Spectrum.length_names(), LATERAL) | {
-    "end_penetration": VERTICAL,
-    "pull_off_energy": ENERGY,
-    "travel": LATERAL,
-}
-"""Reduced units of attributes; they have those of the array that they belong to."""
+_ATTRIBUTES = dict.fromkeys((*Spectrum.length_names(), "travel"), LATERAL)
+_ATTRIBUTES |= {"end_penetration": VERTICAL, "pull_off_energy": ENERGY}
+"""Reduced units of attributes; those of an array in SI units are in SI units, too."""
 
 _SPHERE = "sphere_"
 """How the names of attributes begin that say which sphere an array was converted for."""
@@ -204,15 +194,7 @@ def as_dataset(
     name: str = "data",
     wanted: str = "an xarray.DataArray or xarray.Dataset",
 ) -> xr.Dataset:
-    """A dataset, or that of an array; the refusal says the name of the argument and what to give.
-
-    Raises
-    ------
-    TypeError
-        If the data are of another type.
-    ValueError
-        If an array has no name.
-    """
+    """A dataset, or that of an array; refused are arrays without a name, and other types."""
     if isinstance(data, xr.Dataset):
         return data
     refuse_other_type(name, data, xr.DataArray, wanted)
@@ -227,7 +209,7 @@ def as_dataset(
 def _converted(
     data: Labelled, change: Callable[[str, xr.DataArray | None], tuple[float, str]]
 ) -> Labelled:
-    """Copy with factors and units that depend on reduced unit and variable, None of attributes."""
+    """Copy with the factor and the new unit of each variable; None stands for attributes."""
     dataset: xr.Dataset = as_dataset(data)
 
     def attributes(part: xr.DataArray | xr.Dataset) -> dict[str, Any]:

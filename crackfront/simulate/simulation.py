@@ -155,7 +155,7 @@ class Simulation:
 
     @property
     def parts(self) -> dict[str, str]:
-        """Eight hexadecimal digits for each part of the key, to tell which of them has changed."""
+        """Eight hexadecimal digits for each part of the key, which show what has changed."""
         return {name: _digest(part)[:8] for name, part in self._content().items()}
 
     def _content(self) -> dict[str, Any]:

@@ -217,7 +217,7 @@ def forward_circle(
     direction : {1, -1}
         +1 in approach, where behind is inside, -1 in retraction.
     near : float
-        Radius from which to look. (Units: reduced lateral length)
+        Radius of the first circle that is tried. (Units: reduced lateral length)
     correlation_length : float
         That of w_loc. (Units: reduced lateral length)
 

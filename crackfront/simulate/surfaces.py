@@ -17,7 +17,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, Variable
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
-from crackfront.data.bounds import SEED, refuse_beyond_memory
+from crackfront.data.bounds import SEED, refuse_beyond_memory, refuse_outside
 from crackfront.data.files import labelled
 from crackfront.data.tiles import refuse_extreme, tile_samples
 from crackfront.simulate.contact import simulation_adhesion, simulation_values
@@ -98,15 +98,9 @@ def random_surface(
     else:
         values = simulation_adhesion(simulation).work_of_adhesion / WORK_OF_ADHESION
     tile = simulation.resolution
-    return surface_array(
-        kind,
-        values,
-        tile.tile_side / tile.n_point,
-        **spectrum.parameters,
-        elastic_energy_requested=elastic_energy,
-        seed=seed,
-        realisation=realisation,
-    )
+    asked = {"elastic_energy_requested": elastic_energy, "seed": seed, "realisation": realisation}
+    about = spectrum.parameters | asked
+    return surface_array(kind, values, tile.tile_side / tile.n_point, **about)
 
 
 def _shape(short_cutoff: float | Spectrum, roll_off: float | None, hurst: float | None) -> Spectrum:
@@ -133,18 +127,14 @@ def chosen_simulation(
     seed: int = 0,
     realisation: int = 0,
 ) -> Simulation:
-    """Simulation of a surface that a user asks for, refused where there is none.
-
-    Parameters are those of :func:`random_surface`; the schedule says which penetrations to visit.
-    """
+    """Simulation of a surface under some loads; arguments as of :func:`random_surface`."""
     if kind not in get_args(FieldKind):
         raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
     refuse_no_fraction("error", error)
     refuse_no_fraction("elastic_energy", elastic_energy)
     for name, number in (("seed", seed), ("realisation", realisation)):
         refuse_other_type(name, number, Integral, "a whole number")
-        if not SEED.least <= number <= SEED.most:
-            raise ValueError(f"{name} is {number}; it must lie between 0 and {SEED.most}")
+        refuse_outside(name, number, SEED)
     numerics, cutoff = Numerics(error), spectrum.short_cutoff
     if side is not None:
         refuse_no_numbers(side=side)
@@ -206,12 +196,8 @@ def surface_kind(surface: xr.DataArray) -> FieldKind:
     TypeError
         If it is no array with labels at all.
     """
-    refuse_other_type(
-        "surface",
-        surface,
-        xr.DataArray,
-        "an xarray.DataArray height(x, y), as random_surface and read_scan make it",
-    )
+    wanted = "an xarray.DataArray height(x, y), as random_surface and read_scan make it"
+    refuse_other_type("surface", surface, xr.DataArray, wanted)
     kinds = {item.name: kind for kind, item in SURFACES.items()}
     if surface.name not in kinds:
         raise ValueError(

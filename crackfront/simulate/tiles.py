@@ -1,8 +1,7 @@
-"""What can be told of any tile: its modes, its correlation length, the spectrum that it states."""
+"""Measures of any tile: its modes, its correlation length, the spectrum that it states."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,6 +65,18 @@ class Modes:
     power: Array
     count: Array
 
+    @property
+    def mean_wavelength(self) -> float:
+        """Wavelength of the mean wavevector, weighted by variance (Units: length).
+
+        Examples
+        --------
+        >>> wave = np.cos(2 * np.pi * np.arange(12) / 6)[:, None] * np.ones(12)
+        >>> round(tile_modes(wave, pixel=0.5).mean_wavelength, 12)
+        3.0
+        """
+        return 2 * np.pi * float(np.sum(self.power) / np.sum(self.power * self.wavevector))
+
     def isotropic_density(self, bins_a_decade: int, area: float) -> tuple[Array, Array]:
         """Means of the spectral density over bins that hold modes, and their wavevectors.
 
@@ -97,37 +108,9 @@ def tile_modes(values: Array, pixel: float) -> Modes:
     return Modes(*(part[used][rising] for part in (wavevector, count * power, count)))
 
 
-def measured_correlation_length(work_of_adhesion: Array, pixel: float) -> float:
-    """Wavelength of the mean wavevector of a tile, weighted by its variance.
-
-    Parameters
-    ----------
-    work_of_adhesion : (n_x, n_y) array
-        Values of a periodic tile.
-    pixel : float
-        Grid spacing. (Units: length)
-
-    Returns
-    -------
-    float
-        Correlation length; the pixel, the shortest that can be told, where all values are equal.
-        (Units: length)
-
-    Examples
-    --------
-    >>> wave = np.cos(2 * np.pi * np.arange(12) / 6)[:, None] * np.ones(12)
-    >>> round(measured_correlation_length(wave, pixel=0.5), 12)
-    3.0
-    """
-    modes = tile_modes(work_of_adhesion, pixel)
-    if modes.power.size == 0:
-        return pixel
-    return 2 * math.pi * float(np.sum(modes.power) / np.sum(modes.power * modes.wavevector))
-
-
 @dataclass(frozen=True, slots=True)
 class TileMeasures:
-    """What a tile tells of a loop on it.
+    """What the loop on a tile is compared with.
 
     Attributes
     ----------
@@ -136,7 +119,8 @@ class TileMeasures:
     e_el, w_rms : float
         Energy of full conformity and rms work of adhesion. (Units: w_int)
     correlation_length : float
-        That of the work of adhesion. (Units: reduced lateral length)
+        Mean wavelength of the work of adhesion, the pixel where it is uniform.
+        (Units: reduced lateral length)
     """
 
     kind: FieldKind
@@ -151,5 +135,6 @@ def tile_measures(adhesion: AdhesionMap, kind: FieldKind | None = None) -> TileM
     if kind is None:
         lacking = 1 - float(np.mean(values)) / WORK_OF_ADHESION
         kind = "chemical" if abs(lacking) < abs(lacking - energy) else "roughness"
-    length = measured_correlation_length(values, adhesion.pixel)
+    modes = tile_modes(values, adhesion.pixel)
+    length = modes.mean_wavelength if modes.power.size else adhesion.pixel
     return TileMeasures(kind, energy, adhesion.w_rms, length)
