@@ -15,17 +15,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 from crackfront.data.bounds import NUMBER, PENETRATION, Range
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from crackfront.core.adhesion import AdhesionMap
     from crackfront.core.cycle.follow import Load
-    from crackfront.core.field.fields import Field, Interpolation
+    from crackfront.core.field.fields import Array, Field, Interpolation
     from crackfront.simulate.fields import PolarSamples
     from crackfront.simulate.tiles import TileMeasures
-
-    Array = NDArray[np.float64]
-
 
 _PLACE, _DEPTH = (Range(-bounds.most, bounds.most) for bounds in (NUMBER, PENETRATION))
 """What the parser accepts; loads refuse negative steps and penetrations themselves."""

@@ -6,14 +6,11 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
-from crackfront.core.field.fields import TileField
+from crackfront.core.field.fields import Array, TileField
 from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
 from crackfront.simulate.simulation import Simulation
-
-Array = NDArray[np.float64]
 
 
 def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
@@ -42,10 +39,7 @@ def simulation_values(simulation: Simulation) -> Array:
 
 
 def _uncorrelated_adhesion(simulation: Simulation, pixel: float) -> AdhesionMap:
-    """Rows of the spectrum that w_loc has when integrated along the front, with its f_2.
-
-    Its e_el is that of which f_2 is four times as large.
-    """
+    """Rows of the spectrum of w_loc integrated along the front; e_el is a quarter of its f_2."""
     spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
     rng = np.random.default_rng(simulation.seed)
     rows = uncorrelated_rows(spectrum, order, simulation.tile[0], pixel, rng)

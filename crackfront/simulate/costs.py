@@ -20,11 +20,11 @@ from dataclasses import astuple, dataclass, replace
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from crackfront.core import jkr
 from crackfront.core.cycle.schedule import LoadSchedule, Schedule
+from crackfront.core.field.fields import Array
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.data.bounds import (
@@ -38,8 +38,6 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineSchedule
 from crackfront.simulate.simulation import Numerics, Simulation
 from crackfront.simulate.steady import SteadySchedule
-
-Array = NDArray[np.float64]
 
 _PROCESS_BYTES = 300e6
 """Memory of a rank with all imported and compiled."""
@@ -77,8 +75,8 @@ class Features:
         Roll-off over short cutoff.
     travel : float
         Way of a smooth front from state to state, in correlation lengths.
-    full_cycle : bool
-        Whether the load goes from first contact to pull-off.
+    full_cycle : float
+        1 where the load goes from first contact to pull-off, else 0.
     n_state : float
         States that it is expected to find.
     """
@@ -89,7 +87,7 @@ class Features:
     tolerance: float
     breadth: float
     travel: float
-    full_cycle: bool
+    full_cycle: float
     n_state: float
 
 
@@ -157,9 +155,7 @@ def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_samp
     TooLargeError
         If time or memory are more than there is.
     """
-    usual = Features(
-        n_angle, math.sqrt(n_point), _USUAL, DEFAULT_TOLERANCE, 1.0, 1.0, True, n_state
-    )
+    usual = Features(n_angle, math.sqrt(n_point), _USUAL, DEFAULT_TOLERANCE, 1.0, 1.0, 1.0, n_state)
     cost = featured_cost(usual, fronts=False)
     seconds = cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample
     told = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
@@ -211,19 +207,13 @@ def features(simulation: Simulation) -> Features:
 
 
 def measured_runs() -> list[Measured]:
-    """The runs of `costs.csv`."""
+    """The runs of `costs.csv`, whose columns are the fields of `Measured` and `Features`."""
     text = files("crackfront.simulate").joinpath("costs.csv").read_text(encoding="utf-8")
-    names = ("n_angle", "n_point", "elastic_energy", "tolerance", "breadth", "travel")
-    runs = []
-    for row in csv.DictReader(text.splitlines()):
-        known = Features(
-            **{name: float(row[name]) for name in names},
-            full_cycle=row["full_cycle"] == "1",
-            n_state=float(row["expected_n_state"]),
-        )
-        counts = int(row["n_state"]), float(row["cpu_seconds"])
-        runs.append(Measured(row["name"], row["held_out"] == "1", known, *counts))
-    return runs
+    _, *rows = csv.reader(text.splitlines())
+    return [
+        Measured(name, held_out == "1", Features(*map(float, known)), int(n_state), float(seconds))
+        for name, held_out, *known, n_state, seconds in rows
+    ]
 
 
 def predicted_seconds(runs: Sequence[Measured]) -> Array:

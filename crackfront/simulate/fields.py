@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.field.fields import Interpolation, RayField, polar_field
+from crackfront.core.field.fields import Array, Interpolation, RayField, polar_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL
 from crackfront.data.bounds import LENGTH, refuse_outside
@@ -19,8 +18,6 @@ from crackfront.data.provenance import Provenance
 from crackfront.data.tiles import TOLERANCE, refuse_extreme, tile_samples
 from crackfront.simulate.si_units import SURFACES
 from crackfront.simulate.surfaces import surface_adhesion
-
-Array = NDArray[np.float64]
 
 NAME = SURFACES["chemical"].name
 _HEIGHT = SURFACES["roughness"].name

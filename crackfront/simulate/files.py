@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from crackfront.analysis.table import RunMeasures
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
+from crackfront.core.field.fields import Array
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere
@@ -27,8 +27,6 @@ from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.run import PartialRun, SimulationResult
 from crackfront.simulate.si_units import SURFACES, as_dataset
 from crackfront.simulate.simulation import Simulation
-
-Array = NDArray[np.float64]
 
 _FRONTS = {
     "front": Variable("last_front", ("angle",), LATERAL, "front of the last state"),

@@ -12,17 +12,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.follow import Load, follow
-from crackfront.core.field.fields import Field
+from crackfront.core.field.fields import Array, Field
 from crackfront.core.geometry.base import Geometry, weight, weight_slope
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Solver
 from crackfront.core.variables import ENERGY, LATERAL, VERTICAL, variable
-
-Array = NDArray[np.float64]
 
 _JUMP = "instability"
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 
 from crackfront.core.adhesion import (
@@ -24,7 +23,7 @@ from crackfront.core.adhesion import (
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import Schedule
-from crackfront.core.field.fields import Interpolation, TileField
+from crackfront.core.field.fields import Array, Interpolation, TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import Line, line_field
 from crackfront.core.outcome import Direction, Status
@@ -33,8 +32,6 @@ from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.bounds import refuse_beyond_memory
 from crackfront.simulate.simulation import Numerics
-
-Array = NDArray[np.float64]
 
 SpringUnit = Literal["correlation_length", "larkin_length"]
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import get_args
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
 from crackfront.analysis.estimate import with_error
@@ -20,7 +19,7 @@ from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import first_touch
-from crackfront.core.field.fields import TileField
+from crackfront.core.field.fields import Array, TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
@@ -44,8 +43,6 @@ from crackfront.simulate.surfaces import (
     surface_kind,
 )
 from crackfront.simulate.tiles import TileMeasures, stated_spectrum, tile_measures
-
-Array = NDArray[np.float64]
 
 _KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
 

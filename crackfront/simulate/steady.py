@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.analysis.steady import standard_error
 from crackfront.core import jkr
@@ -20,14 +19,12 @@ from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder, columns
 from crackfront.core.cycle.schedule import SphereSchedule
 from crackfront.core.cycle.touch import first_touch, refuse_outgrown
-from crackfront.core.field.fields import Field, first_place, last_place
+from crackfront.core.field.fields import Array, Field, first_place, last_place
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Solver
 from crackfront.core.units import WORK_OF_ADHESION
-
-Array = NDArray[np.float64]
 
 _FEWEST_TO_TURN = 8
 """Steady states before the approach may turn."""
@@ -36,17 +33,14 @@ _N_CIRCLE = 64
 """Number of circles that are tried as a start."""
 
 _LEAST_DRIVE = 1.5
-"""Drive of a circle that may be a start, in units of the rms of w_loc on it.
+"""Drive of a circle that may be a start, in units of the rms of w_loc on it; see docs/model.md.
 
-docs/model.md says how often fronts then differ from those that come from far behind. Single sites
-may move back: where some repel, no circle with an open edge drives all of them forward.
+Single sites may move back: where some repel, no circle with an open edge drives all forward.
 """
 
 _LARGEST_FACTOR, _FAR_BEHIND = 2.6, 20.0
-"""A circle may also be a start this many correlation lengths behind where the largest k holds one.
-
-On fine spectra the drive above needs hundreds of correlation lengths; fronts deviate by 7 at most.
-"""
+"""A circle may also be a start this many correlation lengths behind where the largest k holds one:
+on fine spectra the drive above needs hundreds; fronts deviate by 7 at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,11 +153,8 @@ class SteadySchedule(SphereSchedule):
 
 
 def _retraction_start(field: Field, last: ContactState[float]) -> float:
-    """Penetration at which a retraction comes to the radius of the last state of the approach.
-
-    The mean of w_loc is taken to lie in the middle between the branches, so that the retraction
-    begins outside rather than inside where it is in the upper half.
-    """
+    """Penetration at which a retraction comes to the radius of the last state of the approach."""
+    # The mean of w_loc lies about in the middle between the branches: rather begin outside.
     mean = _circle_adhesion(field, last.mean_radius)
     expected = max(mean + 0.8 * (mean - last.apparent_work_of_adhesion), 0.0)
     return min(float(jkr.equilibrium_penetration(last.mean_radius, expected)), last.penetration)

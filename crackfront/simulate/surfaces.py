@@ -8,11 +8,11 @@ from typing import get_args
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from xarray import DataArray
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind, chemical_adhesion, rough_adhesion
 from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.fields import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, Variable
@@ -24,8 +24,6 @@ from crackfront.simulate.contact import simulation_adhesion, simulation_values
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.si_units import SURFACES, refuse_other_units
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
-
-Array = NDArray[np.float64]
 
 
 def random_surface(

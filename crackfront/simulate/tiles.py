@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import fftfreq, rfft2, rfftfreq
 from xarray import DataArray
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind
+from crackfront.core.field.fields import Array
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
-
-Array = NDArray[np.float64]
 
 _ROUND_OFF = 1e-28
 """Power of a mode that is none, relative to that of all; round-off leaves (2e-16)^2."""
