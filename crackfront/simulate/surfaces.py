@@ -17,7 +17,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, Variable
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
-from crackfront.data.bounds import SEED, refuse_beyond_memory, refuse_outside
+from crackfront.data.bounds import SEED, refuse_beyond_memory
 from crackfront.data.files import labelled
 from crackfront.data.tiles import refuse_extreme, tile_samples
 from crackfront.simulate.contact import simulation_adhesion, simulation_values
@@ -132,7 +132,8 @@ def chosen_simulation(
     refuse_no_fraction("elastic_energy", elastic_energy)
     for name, number in (("seed", seed), ("realisation", realisation)):
         refuse_other_type(name, number, Integral, "a whole number")
-        refuse_outside(name, number, SEED)
+        if not SEED.least <= number <= SEED.most:
+            raise ValueError(f"{name} is {number}; it must lie between 0 and {SEED.most}")
     numerics, cutoff = Numerics(error), spectrum.short_cutoff
     if side is not None:
         refuse_no_numbers(side=side)
