@@ -1,1 +1,1 @@
-"""One contact: its parameters, numerics for an asked error, what it costs, its loop."""
+"""One contact: its parameters, numerics for a given error, its cost, its loop."""

@@ -34,7 +34,7 @@ def option(text: str, bounds: Range, *, flag: str | None = None, default: Any = 
 
 
 class Problem(NamedTuple):
-    """What a cycle is run on.
+    """Field, first front and loads of a cycle.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class SphereCase:
         default=None,
     )
 
-    def problem(self, read: Callable[[], AdhesionMap | PolarSamples], asked: Resolution) -> Problem:
+    def problem(self, read: Callable[[], AdhesionMap | PolarSamples], sizes: Resolution) -> Problem:
         """Field of a tile, which is kept as its splines alone, or of samples on rays.
 
         The load goes from first contact to the largest penetration, and back to pull-off.
@@ -98,7 +98,7 @@ class SphereCase:
         way = LoadSchedule(self.max_penetration, step).loads()
         # A smooth sphere comes off there; a rough one goes somewhat further.
         n_state = 3 + (2 * self.max_penetration - jkr.pull_off_penetration()) / step
-        given, angles, density = read(), asked.angles, asked.samples_per_pixel
+        given, angles, density = read(), sizes.angles, sizes.samples_per_pixel
         if isinstance(given, AdhesionMap):
             radius = jkr.equilibrium_radius(self.max_penetration)
             seconds = affordable_seconds(
@@ -107,7 +107,7 @@ class SphereCase:
                 n_state=n_state,
                 n_sample=2 * radius / given.pixel * (density or 4.0),
             )
-            spacing, pieces = given.pixel / density if density else None, asked.interpolation
+            spacing, pieces = given.pixel / density if density else None, sizes.interpolation
             field: Field = contact_field(
                 given, self.max_penetration, angles, spacing, pieces or "cubic"
             )
@@ -140,7 +140,7 @@ class LineCase:
     last: float = option("Load at which the motion turns.", _PLACE, flag="--to")
     step: float | None = option("Difference of loads.", _PLACE)
 
-    def problem(self, read: Callable[[], AdhesionMap | PolarSamples], asked: Resolution) -> Problem:
+    def problem(self, read: Callable[[], AdhesionMap | PolarSamples], sizes: Resolution) -> Problem:
         """Field on the points of a tile, one site for every y unless the resolution says more."""
         import numpy as np
 
@@ -151,14 +151,14 @@ class LineCase:
         from crackfront.simulate.costs import affordable_seconds
 
         step, travel = self.step or 0.0, self.last - self.first
-        given, density = read(), asked.samples_per_pixel or 1.0
+        given, density = read(), sizes.samples_per_pixel or 1.0
         if not isinstance(given, AdhesionMap):
             raise ValueError("a line needs a tile work_of_adhesion(x, y), not samples on rays")
         # The first front lies as far behind its load as pinning may pull the springs.
         values = given.work_of_adhesion / WORK_OF_ADHESION
         behind = 1.25 * self.spring * float(np.ptp(values))
         seconds = affordable_seconds(
-            n_angle=asked.angles or values.shape[1],
+            n_angle=sizes.angles or values.shape[1],
             n_point=values.size,
             n_state=3 + max(2 * travel / step, 0.0) if step > 0 else 0.0,
             n_sample=2 * (abs(travel) + behind) / given.pixel * density,
@@ -168,9 +168,9 @@ class LineCase:
             given,
             self.spring,
             (self.first, self.last),
-            n_site=asked.angles,
+            n_site=sizes.angles,
             spacing=given.pixel / density,
-            interpolation=asked.interpolation or "cubic",
+            interpolation=sizes.interpolation or "cubic",
         )
         front = straight_front(field, given, self.first)
         return Problem(field, front, [way[0]._replace(start=front), *way[1:]], len(way), seconds)

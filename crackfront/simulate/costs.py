@@ -65,7 +65,7 @@ fewer sites is pinned as a whole."""
 
 @dataclass(frozen=True, slots=True)
 class Features:
-    """What the time of a simulation depends on.
+    """Sizes and settings that the time of a simulation depends on.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class Features:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A run that was measured, with its states; the fit does without what is held out."""
+    """A measured run with its states; one that is held out does not enter the fit."""
 
     name: str
     held_out: bool
@@ -112,18 +112,18 @@ class Cost:
 
 
 def expected_cost(simulation: Simulation) -> Cost:
-    """What a simulation is expected to cost, with the processor of the measured runs."""
+    """Expected cost of a simulation on the processor of the measured runs."""
     return _cost(replace(simulation, realisation=0))
 
 
 @functools.lru_cache(maxsize=4096)
 def _cost(simulation: Simulation) -> Cost:
-    """What all realisations of a simulation are expected to cost."""
+    """Expected cost of every realisation of a simulation."""
     return featured_cost(features(simulation), fronts=simulation.record_fronts)
 
 
 def featured_cost(item: Features, *, fronts: bool) -> Cost:
-    """What a run of some features is expected to cost, with its fronts recorded or not."""
+    """Expected cost of a run of some features, with its fronts recorded or not."""
     recorded = 8 * item.n_state * item.n_angle if fronts else 0.0
     return Cost(
         seconds=float(_seconds(_coefficients(), _columns([item]))[0]),
@@ -158,8 +158,8 @@ def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_samp
     usual = Features(n_angle, math.sqrt(n_point), _USUAL, DEFAULT_TOLERANCE, 1.0, 1.0, 1.0, n_state)
     cost = featured_cost(usual, fronts=False)
     seconds = cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample
-    told = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
-    what, remedy = f"{told} {n_sample:.3g} samples a ray", "take fewer, or larger steps"
+    cycle = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
+    what, remedy = f"{cycle} {n_sample:.3g} samples a ray", "take fewer, or larger steps"
     refuse_beyond_memory(what, cost.memory, remedy)
     refuse_beyond_time(what, seconds, remedy)
     return seconds
@@ -191,7 +191,7 @@ def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepe
 
 
 def features(simulation: Simulation) -> Features:
-    """What the time of a simulation depends on."""
+    """Features of a simulation."""
     sizes, spectrum, schedule = simulation.resolution, simulation.spectrum, simulation.schedule
     travel, n_state = _expected_way(schedule, simulation)
     return Features(

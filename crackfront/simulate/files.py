@@ -1,4 +1,4 @@
-"""Files of single cycles: the curves, what they cost, and whose they are."""
+"""Files of single cycles: their curves and costs, and the checkpoints of runs."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _FRONTS = {
 
 
 def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> str:
-    """Write what one simulation of a sweep found and what it cost; the digest of the file."""
+    """Write curves and costs of one simulation of a sweep; return the digest of the file."""
     simulation = result.simulation
     dataset = cycle_dataset(result.record, simulation.geometry)
     dataset = dataset.assign(labelled_fields(result.measures))
@@ -79,7 +79,7 @@ def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
 
 
 def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> None:
-    """Write what a simulation needs to go on later."""
+    """Write the checkpoint of a simulation, from which it goes on later."""
     simulation = partial.simulation
     dataset = checkpoint_dataset(partial.checkpoint, simulation.key, simulation.geometry)
     costs = {"seconds": partial.seconds, "cpu_seconds": partial.cpu_seconds}
@@ -89,7 +89,7 @@ def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> Non
 def checkpoint_dataset(
     checkpoint: Checkpoint, key: str, geometry: Geometry | None = None
 ) -> xr.Dataset:
-    """What a run of a key needs to go on later; the geometry as of :func:`cycle_dataset`."""
+    """Dataset of the checkpoint of a key; the geometry as of :func:`cycle_dataset`."""
     fronts = {
         item.name: labelled(item, getattr(checkpoint, name)) for name, item in _FRONTS.items()
     }
@@ -97,7 +97,7 @@ def checkpoint_dataset(
 
 
 def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
-    """What a simulation needs to go on; refusals as of :func:`read_simulation`."""
+    """Stored checkpoint of a simulation; refusals as of :func:`read_simulation`."""
     dataset = read_dataset(path)
     checkpoint = known_checkpoint(dataset, simulation.key, path)
     if checkpoint is None:
@@ -152,7 +152,7 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
 
 
 def known_checkpoint(dataset: xr.Dataset, key: str, place: Path) -> Checkpoint | None:
-    """What a dataset of :func:`checkpoint_dataset` holds; None where it is that of another key."""
+    """Checkpoint that :func:`checkpoint_dataset` made a dataset of; None where its key differs."""
     names = {field: item.name for field, item in _FRONTS.items()}
     if dataset.attrs.get("key") != key or not dataset.variables.keys() >= {*names.values()}:
         return None

@@ -106,7 +106,7 @@ def run_loop(
     ------
     ValueError
         If the surface, a length or the solver cannot be used, or the pixels are too coarse for
-        the asked error.
+        the error.
     TypeError
         If an argument is of another type.
 
@@ -127,12 +127,12 @@ def run_loop(
     schedule = LoadSchedule(max_penetration, step)
     contact = surface_contact(surface, schedule, error)
     compile_solver(solver)
-    told = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
+    observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     record = run_cycle(
         contact.field,
         schedule,
         replace(solution, tolerance=contact.tolerance),
-        Recorder(fronts=fronts, energy=energy, observers=told),
+        Recorder(fronts=fronts, energy=energy, observers=observers),
     )
     loop = loop_dataset(record, contact.measures, simulation=contact.simulation)
     return loop.assign_attrs(
@@ -178,8 +178,8 @@ def loop_dataset(
         "w_retr_numerical_error": numerical[1],
         **{name: getattr(steady, name) for name in _MEASURES},
     }
-    told = {"result": result_sentence(record, steady), "steady_sentence": steady.sentence}
-    labels = told | curves.attrs | {"kind": measures.kind}
+    sentences = {"result": result_sentence(record, steady), "steady_sentence": steady.sentence}
+    labels = sentences | curves.attrs | {"kind": measures.kind}
     whole = curves.assign(
         {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
     )
@@ -187,7 +187,7 @@ def loop_dataset(
 
 
 def result_sentence(record: CycleRecord, steady: SteadyAdhesion | None = None) -> str:
-    """What a cycle found, in one line; without steady parts the forces alone."""
+    """Result of a cycle in one line; without steady parts the forces alone."""
     states = record.states
     if states.direction.size == 0:
         return "no state was found"
@@ -202,11 +202,11 @@ def result_sentence(record: CycleRecord, steady: SteadyAdhesion | None = None) -
         return forces
     if steady.sentence:
         return f"no steady part: w_appr and w_retr are unknown; {forces}"
-    told = []
+    works = []
     for name in ("w_appr", "w_retr", "hysteresis"):
         value, error = getattr(steady, name), getattr(steady, f"{name}_error")
-        told.append(f"{name} {with_error(value, error) if error > 0 else format(value, '.4g')}")
-    return f"{', '.join(told)} (w_int); {forces}"
+        works.append(f"{name} {with_error(value, error) if error > 0 else format(value, '.4g')}")
+    return f"{', '.join(works)} (w_int); {forces}"
 
 
 def find_instabilities(

@@ -24,7 +24,7 @@ from crackfront.simulate.simulation import Simulation
 
 @dataclass(frozen=True, slots=True)
 class SimulationResult:
-    """What one simulation found, and what was measured on its tile and of its costs."""
+    """Record of one simulation, and measures of its tile and its costs."""
 
     simulation: Simulation
     record: CycleRecord

@@ -88,7 +88,7 @@ SURFACES: dict[FieldKind, Variable] = {
     "roughness": Variable("height", ("x", "y"), VERTICAL, "height, positive at peaks"),
     "chemical": Variable("work_of_adhesion", ("x", "y"), ADHESION, "local work of adhesion"),
 }
-"""What a surface is called, by what its values are."""
+"""Variables of surfaces, by the kind of their values."""
 
 _KINDS = (ContactState, CycleRecord, Instabilities, SweepAxes, SweepRow)
 _REDUCED = {
@@ -106,7 +106,7 @@ _ATTRIBUTES |= {"end_penetration": VERTICAL, "pull_off_energy": ENERGY}
 """Reduced units of attributes; those of an array in SI units are in SI units, too."""
 
 _SPHERE = "sphere_"
-"""How the names of attributes begin that say which sphere an array was converted for."""
+"""Prefix of the attributes that state the sphere of a conversion."""
 
 
 def in_si_units(data: Labelled, scales: units.Scales) -> Labelled:

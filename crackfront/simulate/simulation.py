@@ -191,7 +191,7 @@ class Simulation:
 
     @property
     def label(self) -> str:
-        """What a person calls this simulation."""
+        """Name of this simulation in messages."""
         return f"{self.spectrum_name} e_el={self.elastic_energy:g} r={self.realisation}"
 
     @property
@@ -250,11 +250,11 @@ def simulation_of(
     )
 
 
-def missed_error(simulation: Simulation, asked: float) -> float:
-    """Error of k that the numerics are expected to leave, 0 where it is the asked one."""
+def missed_error(simulation: Simulation, wanted: float) -> float:
+    """Error of k that the numerics are expected to leave, 0 where it is the wanted one."""
     left = max(numerical_error(simulation)) / simulation.elastic_energy
     # Knobs have two digits.
-    return left if left > 1.2 * asked else 0.0
+    return left if left > 1.2 * wanted else 0.0
 
 
 def numerical_error(
@@ -312,7 +312,7 @@ def stated_error(
 
 
 def _digest(content: Any) -> str:
-    """Hexadecimal digits that change with what is given."""
+    """Hexadecimal digits that change with the content."""
     text = json.dumps(content, sort_keys=True, allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 

@@ -73,8 +73,8 @@ class SteadySchedule(SphereSchedule):
     def __post_init__(self) -> None:
         for name in ("travel", "standard_error"):
             if not 0 < getattr(self, name) < math.inf:
-                told = f"steady {name.replace('_', ' ')} is {getattr(self, name)}"
-                raise ValueError(f"{told}; it must be positive")
+                what = f"steady {name.replace('_', ' ')}"
+                raise ValueError(f"{what} is {getattr(self, name)}; it must be positive")
         if not 0 <= self.start < self.max_penetration < math.inf:
             raise ValueError(
                 f"steady start {self.start} must be 0 or more and below the largest penetration "
@@ -121,7 +121,7 @@ class SteadySchedule(SphereSchedule):
     def _loads(
         self, field: Field, recorder: Recorder, correlation_length: float, elastic_energy: float
     ) -> Iterator[Load]:
-        """Loads of both branches, each by what has been recorded before it."""
+        """Loads of both branches, each chosen by the states recorded before it."""
         step = self.travel * correlation_length * jkr.penetration_slope(self.start)
         n_step = math.floor((self.max_penetration - self.start) / step)
         near = jkr.equilibrium_radius(self.start) - correlation_length

@@ -96,8 +96,8 @@ def random_surface(
     else:
         values = simulation_adhesion(simulation).work_of_adhesion / WORK_OF_ADHESION
     tile = simulation.resolution
-    asked = {"elastic_energy_requested": elastic_energy, "seed": seed, "realisation": realisation}
-    about = spectrum.parameters | asked
+    which = {"elastic_energy_requested": elastic_energy, "seed": seed, "realisation": realisation}
+    about = spectrum.parameters | which
     return surface_array(kind, values, tile.tile_side / tile.n_point, **about)
 
 
@@ -188,7 +188,7 @@ def surface_array(
 
 
 def surface_kind(surface: xr.DataArray) -> FieldKind:
-    """What the values of a surface are, by its name; ValueError if it is none of a surface.
+    """Kind of the values of a surface, by its name; ValueError if no surface has that name.
 
     Raises
     ------

@@ -93,7 +93,7 @@ class Modes:
 
 
 def tile_modes(values: Array, pixel: float) -> Modes:
-    """Modes of a periodic tile (n_x, n_y), but for its mean and what is round-off."""
+    """Modes of a periodic tile (n_x, n_y), without its mean and round-off."""
     n_x, n_y = values.shape
     power = np.abs(rfft2(values, norm="forward")) ** 2
     round_off = _ROUND_OFF * float(np.sum(power))
@@ -108,7 +108,7 @@ def tile_modes(values: Array, pixel: float) -> Modes:
 
 @dataclass(frozen=True, slots=True)
 class TileMeasures:
-    """What the loop on a tile is compared with.
+    """Measures of the tile of a loop.
 
     Attributes
     ----------
