@@ -128,12 +128,9 @@ def run_loop(
     contact = surface_contact(surface, schedule, error)
     compile_solver(solver)
     observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
-    record = run_cycle(
-        contact.field,
-        schedule,
-        replace(solution, tolerance=contact.tolerance),
-        Recorder(fronts=fronts, energy=energy, observers=observers),
-    )
+    recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
+    solution = replace(solution, tolerance=contact.tolerance)
+    record = run_cycle(contact.field, schedule, solution, recorder)
     loop = loop_dataset(record, contact.measures, simulation=contact.simulation)
     return loop.assign_attrs(
         solver=solver,

@@ -99,20 +99,16 @@ def run_simulation(
     return SimulationResult(simulation, record, measures)
 
 
-_SMALLEST: tuple[Schedule, ...] = (
-    LoadSchedule(0.0, 0.5),
-    LineSchedule(spring=1.0, length=4.0, period=1.0, lead_in=1.0, step=1.0),
-)
-"""Shortest loads of both geometries."""
-
-
 @functools.cache
 def compile_solver(name: str, straight: bool = False) -> None:
     """Compile what a simulation calls, or load it, once a process, on a tiny smooth tile.
 
     The front is longer than those that are left to the reference.
     """
-    smooth, schedule = chemical_adhesion(np.zeros((4, 4)), pixel=1.0), _SMALLEST[straight]
+    schedule: Schedule = LoadSchedule(0.0, 0.5)
+    if straight:
+        schedule = LineSchedule(spring=1.0, length=4.0, period=1.0, lead_in=1.0, step=1.0)
+    smooth = chemical_adhesion(np.zeros((4, 4)), pixel=1.0)
     field = schedule.field(smooth, 4 * HALF_BAND, 0.1, "cubic")
     solver, recorder = SOLVERS[name](1e-3), Recorder(energy=True)
     schedule.run(field, solver, recorder, correlation_length=1.0, elastic_energy=0.0)
