@@ -19,8 +19,10 @@ from crackfront.data.written_units import prefixed
 from crackfront.topography.files import readable, refuse_special, refuse_too_many_points
 from crackfront.topography.options import ReadingOptions
 
-_RARELY_USED = ("pandas", "openpyxl", "requests", "h5py", "yaml")
-"""What the library imports for single formats of files: half of the time of its own import."""
+_LIBRARY, _READERS = "SurfaceTopography", "SurfaceTopography.IO"
+
+_BEGIN = 512
+"""Bytes of a file that hold its signature."""
 
 _SIDES = (1e-9, 1.0)
 """Sides of a scan within which instruments measure (Units: m): beyond, the unit is wrong."""
@@ -38,49 +40,64 @@ class RawScan:
     """Name of the channel, and which of how many of heights it is."""
 
 
-def surface_library() -> ModuleType:
-    """The library SurfaceTopography; seconds to import, hence imported where it is needed.
+class _OnUse(ModuleType):
+    """A package that is not executed before something is read that its submodules do not hold."""
+
+    def __getattr__(self, name: str) -> Any:
+        self.__class__ = ModuleType  # type: ignore[assignment]
+        try:
+            self.__spec__.loader.exec_module(self)  # type: ignore[union-attr]
+        except BaseException:
+            self.__class__ = _OnUse
+            raise
+        return getattr(self, name)
+
+
+def library_part(name: str) -> Any:
+    """A module of the library SurfaceTopography, and of the others only those that it imports.
+
+    All of them take seconds, most of which is for formats and analyses that are not used.
 
     Raises
     ------
     ValueError
-        If it is not installed, with the command that installs it.
+        If the library is not installed, with the command that installs it.
     """
-    for name in _RARELY_USED:
-        _load_on_use(name)
+    with _importing():
+        for package in (_LIBRARY, _READERS):
+            spec = importlib.util.find_spec(package)
+            if spec is not None and package not in sys.modules:
+                sys.modules[package] = module = importlib.util.module_from_spec(spec)
+                module.__class__ = _OnUse
+                if package == _READERS:
+                    sys.modules[_LIBRARY].IO = module  # type: ignore[attr-defined]
+            importlib.import_module(package)
+        return importlib.import_module(f"{_LIBRARY}.{name}")
+
+
+def surface_library() -> Any:
+    """The library SurfaceTopography as a whole, with all methods of its objects."""
+    with _importing():
+        import SurfaceTopography
+
+        SurfaceTopography.Topography  # noqa: B018
+    return SurfaceTopography
+
+
+@contextmanager
+def _importing() -> Iterator[None]:
+    """Import the library without MPI, or say how it is installed."""
     # Scans are read by one process; nodes without jobs may refuse to start MPI.
     modules: dict[str, Any] = sys.modules
     without_mpi = modules.setdefault("mpi4py", None) is None
     try:
         with _silenced():
-            import SurfaceTopography
+            yield
     except ModuleNotFoundError as error:
         raise MissingExtraError("measured surfaces", error, "surfaces") from error
     finally:
         if without_mpi:
             del modules["mpi4py"]
-    return SurfaceTopography
-
-
-def _load_on_use(name: str) -> None:
-    """Make a module importable at no cost; reading its first attribute executes it."""
-    spec = importlib.util.find_spec(name)
-    if name in sys.modules or spec is None or spec.loader is None:
-        return
-    spec.loader = importlib.util.LazyLoader(spec.loader)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    waiting: Any = type(module)
-
-    class Importable(waiting):  # type: ignore[misc]
-        def __getattribute__(self, attribute: str) -> Any:
-            # Every import of a module that is there already reads this.
-            if attribute == "__spec__":
-                return object.__getattribute__(self, attribute)
-            return super().__getattribute__(attribute)
-
-    module.__class__ = Importable
 
 
 @contextmanager
@@ -143,18 +160,18 @@ def library_scan(
     info: dict[str, Any] | None = None,
 ) -> Any:
     """Heights in metres as an object of the library."""
-    library = surface_library()
-    kind = library.Topography if heights.ndim > 1 else library.UniformLineScan
+    kinds = library_part("UniformLineScanAndTopography")
+    kind = kinds.Topography if heights.ndim > 1 else kinds.UniformLineScan
     return kind(heights, size, periodic=periodic, unit="m", info=info or {})
 
 
 @contextmanager
 def _parsing(path: Path, name: str = "what its head says") -> Iterator[None]:
     """Turn what the library raises at a file into a sentence."""
-    library = surface_library()
+    exceptions = library_part("Exceptions")
     try:
         yield
-    except library.Exceptions.CannotDetectFileFormat as error:
+    except exceptions.CannotDetectFileFormat as error:
         raise ValueError(
             f"{path} is in no format that SurfaceTopography reads, or damaged; export it from the "
             "instrument again, as X3P if there is a choice"
@@ -170,27 +187,38 @@ def _parsing(path: Path, name: str = "what its head says") -> Iterator[None]:
 def _reader(path: Path) -> Any:
     """The library's reader of a file, which is regular and not too large."""
     refuse_special(path)
-    source, library = readable(path), surface_library()
+    source: Any = readable(path)
     with _parsing(path):
-        if not isinstance(source, Path):
-            return library.open_topography(source)
-        # A file that is not what it begins as is left to the readers in their order.
-        with suppress(Exception):
-            if known := _signed(library, path):
-                return library.open_topography(str(path), format=known)
-        return library.open_topography(str(path))
+        if isinstance(source, Path):
+            # A file that is not what it begins as is left to the readers in their order.
+            with suppress(Exception):
+                if (reader := _signed(path)) is not None:
+                    return reader(str(path))
+            source = str(source)
+        return library_part("IO").open_topography(source)
 
 
-def _signed(library: ModuleType, path: Path) -> str | None:
-    """Format whose signature a file begins with; None where that is none or several.
+def _signed(path: Path) -> Any:
+    """Reader whose signature a file begins with; None where that is none or several.
 
     The readers in their order would each import what it needs before it finds that it cannot read.
     """
+    base = library_part("IO.Reader")
     with path.open("rb") as file:
-        begin = file.read(library.IO.MAGIC_BUFFER_SIZE)
-    signed = library.IO.MagicMatch.YES
-    found = [one.format() for one in library.IO.readers if one.can_read(begin) == signed]
-    return str(found[0]) if len(found) == 1 else None
+        begin = file.read(_BEGIN)
+
+    def is_signed(reader: Any) -> bool:
+        return bool(reader.can_read(begin) == base.MagicMatch.YES)
+
+    found: list[Any] = []
+    if (name := path.suffix[1:].upper()).isalnum():
+        # Most readers stand in a module of the name of their files' suffix.
+        with suppress(Exception):
+            kinds = vars(library_part(f"IO.{name}")).values()
+            readers = (one for one in kinds if isinstance(one, type(base.ReaderBase)))
+            found = [one for one in readers if hasattr(one, "can_read") and is_signed(one)]
+    found = found or list(filter(is_signed, library_part("IO").readers))
+    return found[0] if len(found) == 1 else None
 
 
 def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
@@ -249,7 +277,7 @@ def _completed(
             raise ValueError(
                 f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
             )
-        if not surface_library().Support.UnitConversion.is_length_unit(options.unit):
+        if not library_part("Support.UnitConversion").is_length_unit(options.unit):
             raise ValueError(f"--unit {options.unit} is no unit of length; name one, as in um")
         given["unit"] = unit = options.unit
     elif options.unit not in (None, unit):
@@ -272,7 +300,7 @@ def _completed(
 
 def _in_metres(sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
     """Sides of a scan in metres."""
-    factor = surface_library().Support.UnitConversion.get_unit_conversion_factor(unit, "m")
+    factor = library_part("Support.UnitConversion").get_unit_conversion_factor(unit, "m")
     return tuple(float(factor * side) for side in sides)
 
 

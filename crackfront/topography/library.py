@@ -18,6 +18,7 @@ from crackfront.data.written_units import prefixed
 from crackfront.simulate.si_units import refuse_no_scales
 from crackfront.simulate.surfaces import surface_array
 from crackfront.topography.bands import scan
+from crackfront.topography.instruments import surface_library
 from crackfront.topography.measures import read_surface
 from crackfront.topography.options import (
     PredictionOptions,
@@ -108,6 +109,7 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     refuse_no_scales(sphere)
     refuse_other_type("scan", path, (str, PathLike), "the path of a file")
     reading = parsed_options(ReadingOptions, options)
+    surface_library()  # Whole: the program may use it too.
     [measured] = read_measurements([Path(path)], reading)
     measurement = scan(measured, reading.shortest, reading.longest).trusted_measurement
     heights, pixel = tile_heights(measurement)
@@ -177,6 +179,7 @@ def predict(scans: File | Iterable[File], sphere: Scales, **options: Any) -> Pre
         refuse_other_type("scan", path, (str, PathLike), "the path of a file")
         files.append(Path(path))
     given = parsed_options(PredictionOptions, options)
+    surface_library()  # Whole: the program may use it too.
     surface = read_surface(files, options_for_each(ReadingOptions, options, len(files)))
     found = predicted(surface, sphere, given.range)
     return PrintedPrediction(*(getattr(found, item.name) for item in fields(found)))

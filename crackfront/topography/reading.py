@@ -12,7 +12,14 @@ from numpy.typing import NDArray
 
 from crackfront.data.written_units import prefixed
 from crackfront.topography.files import checksum
-from crackfront.topography.instruments import array_of, library_scan, raw_scan, shown_sides
+from crackfront.topography.instruments import (
+    array_of,
+    library_part,
+    library_scan,
+    raw_scan,
+    shown_sides,
+    surface_library,
+)
 from crackfront.topography.levelling import levelled, order_of, taken_off
 from crackfront.topography.options import ReadingOptions, Region
 
@@ -147,9 +154,13 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
         info=raw.info,
     )
     if missing > 0:
+        library_part("Uniform.Imputation")
         level = level.interpolate_undefined_data()
     pixel = max(side / count for side, count in zip(size, heights.shape, strict=True))
-    shortest = max(_PIXELS_PER_WAVE * pixel, level.short_reliability_cutoff() or 0.0)
+    shortest = _PIXELS_PER_WAVE * pixel
+    if raw.info.get("instrument", {}).get("parameters"):
+        surface_library()
+        shortest = max(shortest, level.short_reliability_cutoff() or 0.0)
     longest = min(size) / _WAVES_PER_SIDE
     if longest < 2**_FEWEST_OCTAVES * shortest:
         raise ValueError(

@@ -74,6 +74,7 @@ def tile_heights(measurement: Measurement) -> tuple[Array, float]:
             f"{measurement.path} is a line scan, which is no field; use its spectrum, as "
             "crackfront predict --simulate does"
         )
+    library = surface_library()
     square, periodic = _with_square_pixels(measurement), measurement.periodic
     scan = library_scan(square.heights, square.size, periodic=periodic)
     whole = scan if periodic else scan.mirror_stitch()
@@ -81,7 +82,7 @@ def tile_heights(measurement: Measurement) -> tuple[Array, float]:
     with warnings.catch_warnings():
         # The library calls an inverse transform in a way that numpy will change.
         warnings.simplefilter("ignore", DeprecationWarning)
-        cut = surface_library().Uniform.Filtering.ShortCutTopography
+        cut = library.Uniform.Filtering.ShortCutTopography
         heights = cut(tile, cutoff_wavelength=measurement.shortest).heights()
     # Mirror images stand behind the scan: half a scan further its centre is that of the tile.
     behind = [0 if periodic else count // 4 for count in heights.shape]

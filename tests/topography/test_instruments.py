@@ -1,6 +1,7 @@
 """Files of instruments: formats, channels, units and sides, and what cannot be read."""
 
 import hashlib
+import subprocess
 import sys
 import warnings
 import zipfile
@@ -117,6 +118,23 @@ def test_files_that_cannot_be_read_are_refused(rng, tmp_path, scan):
     assert "cut.al3d" in refusal(cut)
     with pytest.raises(FileNotFoundError):
         read_measurements([tmp_path / "absent.al3d"])
+
+
+_LEAN = """
+import sys
+from pathlib import Path
+from crackfront.topography.reading import read_measurements
+[scan] = read_measurements([Path(sys.argv[1])])
+assert scan.format == "al3d"
+assert "SurfaceTopography.IO.X3P" not in sys.modules and "matplotlib" not in sys.modules
+import SurfaceTopography
+whole = SurfaceTopography.read_topography(sys.argv[1])
+assert whole.detrend().rms_height_from_area() > 0
+"""
+
+
+def test_a_scan_is_read_without_the_readers_of_other_formats_which_come_when_used(scan):
+    subprocess.run([sys.executable, "-c", _LEAN, scan], check=True)
 
 
 def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatch, scan):
