@@ -116,10 +116,10 @@ class Fit:
         """Median of C_1D of lines (Units: m^3)."""
         return np.asarray(np.exp(np.median(_projection(self.surface, wavevector), axis=0)))
 
-    def state(self, number: int) -> Fit:
-        """The fit of one state alone."""
-        chosen = slice(number, number + 1)
-        return replace(self, surface=self.surface[chosen], instruments=self.instruments[chosen])
+    def of_state(self, number: int) -> Callable[[Array], Array]:
+        """C of one state (Units: m^4)."""
+        surface = self.surface[number : number + 1]
+        return lambda wavevector: np.asarray(np.exp(_logarithm(surface, wavevector)[0]))
 
     def isotropic(self, density: Density, index: int) -> Array:
         """Logarithm of C of every state where a density was measured, (n, n_wavevector).
@@ -229,7 +229,7 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
     limits = np.array([*_limits(low, high), *around])
 
     def instruments(trials: Array) -> Array:
-        rows = np.tile(seen, (len(trials), 1, 1))
+        rows = np.repeat(seen[None], len(trials), axis=0)
         rows[:, varied] = trials[:, _SHAPE:]
         return rows
 
@@ -241,11 +241,11 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
         ]
 
     def deviance(trials: Array) -> Array:
-        inside = np.all((trials >= limits[:, 0]) & (trials <= limits[:, 1]), axis=1)
+        inside = ((trials >= limits[:, 0]) & (trials <= limits[:, 1])).all(axis=1)
         inside &= trials[:, 4] <= trials[:, 3]
         total = ((trials[:, 2] - trials[:, 1]) / _BEND) ** 2
         for (item, _), model in zip(densities, models(trials), strict=True):
-            total += np.sum(_deviances(item, model), axis=1)
+            total += _deviances(item, model).sum(axis=1)
         return np.where(inside, total, np.inf)
 
     only = [item for item, _ in densities]
@@ -330,9 +330,9 @@ def _likeliest(
 
 def _logarithm(surface: Array, wavevector: Array) -> Array:
     """Logarithm of the model P, (n, n_wavevector)."""
-    plateau, long, short, bend, roll_off = surface.T[:, :, None]
-    q = np.log(wavevector)
-    beyond, steeper = (np.log1p(np.exp(_KNEE * (q - knee))) / _KNEE for knee in (roll_off, bend))
+    plateau, long, short = surface.T[:3, :, None]
+    beyond_knees = np.log1p(np.exp(_KNEE * (np.log(wavevector) - surface[:, 3:, None]))) / _KNEE
+    steeper, beyond = beyond_knees[:, 0], beyond_knees[:, 1]
     return np.asarray(plateau - (2 + 2 * long) * beyond - 2 * (short - long) * steeper)
 
 
@@ -372,9 +372,10 @@ def _model(surface: Array, instrument: Array, density: Density) -> Array:
     """Logarithm of what a density should be, (n, n_wavevector)."""
     form = _projection if density.is_profile else _logarithm
     found = form(surface, density.wavevector)
-    if np.any(np.isfinite(instrument[:, 0])):
+    # What one trial sees of its instrument, all do.
+    if math.isfinite(instrument[0, 0]):
         found -= _loss(instrument, density.wavevector)
-    if np.any(np.isfinite(instrument[:, 2])):
+    if math.isfinite(instrument[0, 2]):
         found = np.logaddexp(found, instrument[:, 2:])
     return found
 
@@ -382,7 +383,7 @@ def _model(surface: Array, instrument: Array, density: Density) -> Array:
 def _deviances(density: Density, model: Array) -> Array:
     """Deviance of the bins from a model, as of means of exponentially distributed powers."""
     modes = 1 / (1 / density.modes + _INADEQUACY**2)
-    apart = np.clip(np.log(density.value) - model, -30.0, 30.0)
+    apart = np.minimum(np.maximum(np.log(density.value) - model, -30.0), 30.0)
     return np.asarray(2 * modes * (np.expm1(apart) - apart))
 
 

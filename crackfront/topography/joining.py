@@ -204,10 +204,10 @@ def _continued(
 
     It is flat above the longest measured wave where the lowest wavevector of a model is None.
     """
-    last = max(2 * math.pi / end, wavevector[-1] * (1 + 1e-6))
+    last = max(2 * math.pi / end, float(wavevector[-1]) * (1 + 1e-6))
     first = [] if lowest is None else [lowest / _FLAT]
     between = []
-    for one, other in pairwise([*first, *wavevector, last]):
+    for one, other in pairwise([*first, *wavevector.tolist(), last]):
         number = math.ceil(math.log10(other / one) * _CONTINUED_BINS)
         if number > 1:
             between.append(one * (other / one) ** (np.arange(1, number) / number))
@@ -270,8 +270,7 @@ def _draws(
         wavevector, value, _ = _joined(parts, levels, scatter)
         shortest = min(math.log(2 * np.pi / wavevector[-1]), coarsest)
         last = math.exp(rng.uniform(min(finest, shortest), shortest))
-        model = fit.state(int(state)).median
-        drawn.append(_continued(wavevector, value, model, fit.lowest, last))
+        drawn.append(_continued(wavevector, value, fit.of_state(state), fit.lowest, last))
     return tuple(drawn)
 
 
