@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.data.written_units import prefixed
 from crackfront.topography.densities import (
+    Array,
     Density,
     Periodogram,
     anisotropy,
@@ -21,8 +21,6 @@ from crackfront.topography.densities import (
 from crackfront.topography.fitting import Instrument, seen_instrument
 from crackfront.topography.reading import Measurement
 from crackfront.topography.tips import tip_wavelength
-
-Array = NDArray[np.float64]
 
 End = Literal["shortest", "longest"]
 
@@ -156,39 +154,21 @@ def scan(
     cliff, behind = _cliff(seen)
     seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
     instrument = seen_instrument(seen)
-    resolution = max(cliff, instrument.wavelength(_ATTENUATED))
-    tip = tip_wavelength(measurement)
-    if tip > instrument.wavelength(_ATTENUATED):
-        instrument = instrument.losing(_ATTENUATED, tip)
-    # It is corrected, so that an octave is left whatever it takes away.
-    tip = min(tip, measurement.longest / 2**_FEWEST_OCTAVES)
-    noise = instrument.noisy(seen, _NOISY)
-    found = [
-        BandLimit("shortest", "pixels", measurement.shortest),
-        BandLimit("longest", "levelling", measurement.longest),
-    ]
-    if max(resolution, tip) > _NYQUIST * pixel:
-        # What a tip takes away may look like an attenuation as well.
-        cause: Cause = "tip" if tip > cliff else "resolution"
-        found.append(BandLimit("shortest", cause, max(resolution, tip)))
-    if noise > _NYQUIST * pixel:
-        found.append(BandLimit("shortest", "noise", noise))
+    instrument, lower = _lower_limits(measurement, seen, seen_instrument(seen), cliff)
+    upper = [BandLimit("longest", "levelling", measurement.longest)]
     alternatives: tuple[Density, ...] = ()
     if not measurement.periodic:
         other_window = periodogram(measurement, window="blackman")
         other_levelling = periodogram(measurement, _levelled(measurement.heights))
         alternatives = other_window.density(without), other_levelling.density(without)
-    form = _form(density, alternatives, measurement.longest)
-    if form:
-        found.append(BandLimit("longest", "form", form))
-    given: tuple[tuple[End, float | None], ...] = (("shortest", shortest), ("longest", longest))
-    for end, named in given:
-        if named is not None:
-            found = [limit for limit in found if limit.end != end]
-            found.append(BandLimit(end, "named", named))
-    ends = [[limit for limit in found if limit.end == end] for end in ("shortest", "longest")]
-    low = max(ends[0], key=lambda limit: limit.wavelength)
-    high = min(ends[1], key=lambda limit: limit.wavelength)
+    if form := _form(density, alternatives, measurement.longest):
+        upper.append(BandLimit("longest", "form", form))
+    if shortest is not None:
+        lower = [BandLimit("shortest", "named", shortest)]
+    if longest is not None:
+        upper = [BandLimit("longest", "named", longest)]
+    low = max(lower, key=lambda limit: limit.wavelength)
+    high = min(upper, key=lambda limit: limit.wavelength)
     if high.wavelength < 2**_FEWEST_OCTAVES * low.wavelength:
         short, long = (prefixed("m", limit.wavelength) for limit in (low, high))
         raise ValueError(
@@ -204,7 +184,6 @@ def scan(
         if low.cause == "tip":
             # It leaves the waves below its mark there, though weaker: they end with the pixels.
             informative, coarsest = max(least, instrument.wavelength(_BLURRED)), least
-            last = max(last, behind)
         else:
             informative = max(least, instrument.wavelength(_LOST))
             last = max(last, behind or informative)
@@ -213,7 +192,7 @@ def scan(
     band = Band(
         shortest=low,
         longest=high,
-        limits=tuple(found),
+        limits=(lower[0], upper[0], *lower[1:], *upper[1:]),
         stripes=striped,
         anisotropy=1.0 if measurement.is_line else anisotropy(waves, low.wavelength),
         instrument=instrument,
@@ -223,6 +202,25 @@ def scan(
         coarsest=coarsest,
     )
     return Scan(measurement, waves, density, alternatives, band)
+
+
+def _lower_limits(
+    measurement: Measurement, seen: Density, instrument: Instrument, cliff: float
+) -> tuple[Instrument, list[BandLimit]]:
+    """Instrument with the mark of its tip, and shortest wavelengths to trust by all causes."""
+    nyquist = _NYQUIST * max(measurement.pixels)
+    resolution, tip = instrument.wavelength(_ATTENUATED), tip_wavelength(measurement)
+    if tip > resolution:
+        instrument = instrument.losing(_ATTENUATED, tip)
+    # It is corrected, so that an octave is left whatever it takes away.
+    tip = min(tip, measurement.longest / 2**_FEWEST_OCTAVES)
+    found = [BandLimit("shortest", "pixels", measurement.shortest)]
+    if (lost := max(cliff, resolution, tip)) > nyquist:
+        # What a tip takes away may look like an attenuation as well.
+        found.append(BandLimit("shortest", "tip" if tip > cliff else "resolution", lost))
+    if (noise := instrument.noisy(seen, _NOISY)) > nyquist:
+        found.append(BandLimit("shortest", "noise", noise))
+    return instrument, found
 
 
 def _cliff(density: Density) -> tuple[float, float]:

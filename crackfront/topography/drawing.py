@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
-from numpy.typing import NDArray
 
 from crackfront.core import jkr
 from crackfront.core.units import Scales
@@ -32,12 +31,10 @@ from crackfront.plots.style import (
     blank_figure,
     house_style,
 )
-from crackfront.topography.densities import Density
+from crackfront.topography.densities import Array, Density
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import Prediction
 from crackfront.topography.reading import Measurement
-
-Array = NDArray[np.float64]
 
 _MOST_MAPS, _FEWEST_PLACES = 4, 2
 """Scans that are shown as maps, and places for them."""

@@ -13,12 +13,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from crackfront.topography.densities import Density
-
-Array = NDArray[np.float64]
+from crackfront.topography.densities import Array, Density
 
 _SHAPE = 5
 """Parameters of P: logarithm of the plateau, Hurst exponents at longer and at shorter waves,
@@ -180,22 +177,14 @@ def seen_instrument(density: Density) -> Instrument:
             continue
         free = (*range(_SHAPE), *extra)
 
-        def model(trials: Array, free: tuple[int, ...] = free) -> Array:
+        def model(trials: Array, free: tuple[int, ...] = free) -> list[Array]:
             every = np.tile(np.concatenate([np.zeros(_SHAPE), nothing]), (len(trials), 1))
             every[:, free] = trials
-            return _model(every[:, :_SHAPE], every[:, _SHAPE:], density)
+            return [_model(every[:, :_SHAPE], every[:, _SHAPE:], density)]
 
-        fits = [
-            _likeliest(
-                [density],
-                lambda trials: [model(trials)],
-                np.concatenate([shape, begin])[list(free)],
-                limits[list(free)],
-            )
-            for begin in begins
-            for shape in shapes
-        ]
-        cost, parameters = min(fits, key=lambda pair: pair[0])
+        chosen = list(free)
+        starts = [np.concatenate([shape, begin])[chosen] for begin in begins for shape in shapes]
+        cost, parameters = _likeliest([density], model, starts, limits[chosen])
         if not extra:
             shapes = [parameters]
         if cost < best - gain:
@@ -249,13 +238,9 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
         return np.where(inside, total, np.inf)
 
     only = [item for item, _ in densities]
-    _, start = min(
-        (
-            _likeliest(only, models, np.array([*shape, *begin]), limits)
-            for shape in _first_shapes(list(zip(only, seen, strict=True)), low, high)
-        ),
-        key=lambda pair: pair[0],
-    )
+    shapes = _first_shapes(list(zip(only, seen, strict=True)), low, high)
+    starts = [np.array([*shape, *begin]) for shape in shapes]
+    _, start = _likeliest(only, models, starts, limits)
     rng = np.random.default_rng(_SEED)
     scale = np.array([0.05, 0.05, 0.05, 0.2, 0.1, *[0.05] * begin.size])
     walkers = start + rng.standard_normal((_WALKERS, start.size)) * scale
@@ -282,27 +267,23 @@ def _first_shapes(
     """Parameters of P from which fits begin, for three roll-offs."""
     found = []
     for part in (-0.1, 0.15, 0.45):
-        roll_off = low + part * (high - low)
-        shape = np.array([[0.0, 0.7, 0.7, (low + 2 * high) / 3, roll_off]])
-        shape[0, 0] = np.mean(
-            [
-                np.average(
-                    np.log(item.value) - _model(shape, row[None], item)[0], weights=item.modes
-                )
-                for item, row in densities
-            ]
-        )
-        found.append(shape[0])
+        shape = np.array([[0.0, 0.7, 0.7, (low + 2 * high) / 3, low + part * (high - low)]])
+        models = [_model(shape, row[None], item)[0] for item, row in densities]
+        levels = [
+            np.average(np.log(item.value) - model, weights=item.modes)
+            for (item, _), model in zip(densities, models, strict=True)
+        ]
+        found.append(np.array([np.mean(levels), *shape[0, 1:]]))
     return found
 
 
 def _likeliest(
     densities: Sequence[Density],
     models: Callable[[Array], Sequence[Array]],
-    start: Array,
+    starts: Sequence[Array],
     limits: Array,
 ) -> tuple[float, Array]:
-    """Half of the least deviance from a start, and the parameters that have it."""
+    """Half of the least deviance from some starts, and the parameters that have it."""
 
     def residuals(trials: Array) -> Array:
         roots = [
@@ -316,15 +297,18 @@ def _likeliest(
         every = residuals(np.concatenate([parameters[None], parameters + np.diag(step)]))
         return np.asarray(((every[1:] - every[0]) / step[:, None]).T)
 
-    inside = np.clip(start, limits[:, 0] + 1e-6, limits[:, 1] - 1e-6)
-    found = least_squares(
-        lambda parameters: residuals(parameters[None])[0],
-        inside,
-        slopes,
-        bounds=(limits[:, 0], limits[:, 1]),
-        x_scale="jac",
-        max_nfev=40,
+    fits = (
+        least_squares(
+            lambda parameters: residuals(parameters[None])[0],
+            np.clip(start, limits[:, 0] + 1e-6, limits[:, 1] - 1e-6),
+            slopes,
+            bounds=limits.T,
+            x_scale="jac",
+            max_nfev=40,
+        )
+        for start in starts
     )
+    found = min(fits, key=lambda fit: float(fit.cost))
     return float(found.cost), np.asarray(found.x)
 
 

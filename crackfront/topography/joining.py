@@ -8,15 +8,12 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.bands import Scan
-from crackfront.topography.densities import Density, bin_numbers
+from crackfront.topography.densities import Array, Density, bin_numbers
 from crackfront.topography.fitting import Fit, fitted_model
-
-Array = NDArray[np.float64]
 
 _DRAWS = 400
 _SEED = np.random.SeedSequence(20240229, spawn_key=(0xD4A3,))
@@ -188,8 +185,7 @@ def _joined(
     weight = 1 / (1 / modes + scatter**2)
     _, index = np.unique(places, return_inverse=True)
     total = np.bincount(index, weight)
-    means = (np.bincount(index, weight * part) / total for part in (wavevector, values))
-    logarithm, value = map(np.asarray, means)
+    logarithm, value = (np.bincount(index, weight * part) / total for part in (wavevector, values))
     return np.exp(logarithm), value, np.asarray(total**-0.5)
 
 
@@ -276,10 +272,7 @@ def _draws(
 
 def _choices(one: Scan, density: Density) -> list[Array]:
     """Logarithms of what other windows and levellings make of a density, relative to it."""
-    places = {
-        place: index for index, place in enumerate(bin_numbers(one.density.wavevector).tolist())
-    }
-    mine = [places[place] for place in bin_numbers(density.wavevector).tolist()]
+    mine = np.searchsorted(bin_numbers(one.density.wavevector), bin_numbers(density.wavevector))
     others = [np.log(item.value / one.density.value)[mine] for item in one.alternatives]
     # What was chosen counts as much as all else together.
     return [np.zeros(len(mine))] * max(1, len(others)) + others

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import fields
 from os import PathLike
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
@@ -30,21 +29,11 @@ from crackfront.topography.options import (
 )
 from crackfront.topography.prediction import Prediction, predicted
 from crackfront.topography.reading import Measurement, read_measurements
-from crackfront.topography.report import report_text
 from crackfront.topography.tile import tile_heights, zero_load_radius
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 File = str | PathLike[str]
-
-
-class PrintedPrediction(Prediction):
-    """A prediction that prints as the page of the command `crackfront predict`."""
-
-    __slots__ = ()
-
-    def __repr__(self) -> str:
-        return report_text(self.surface, ruling=self.verdict, prediction=self)
 
 
 def _taking(
@@ -181,5 +170,4 @@ def predict(scans: File | Iterable[File], sphere: Scales, **options: Any) -> Pre
     given = parsed_options(PredictionOptions, options)
     surface_library()  # Whole: the program may use it too.
     surface = read_surface(files, options_for_each(ReadingOptions, options, len(files)))
-    found = predicted(surface, sphere, given.range)
-    return PrintedPrediction(*(getattr(found, item.name) for item in fields(found)))
+    return predicted(surface, sphere, given.range)

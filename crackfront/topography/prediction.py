@@ -54,6 +54,12 @@ class Prediction:
     paper_w_appr: float = variable("work of adhesion of the approach by that factor", "J m-2")
     paper_w_retr: float = variable("work of adhesion of the retraction by that factor", "J m-2")
 
+    def __repr__(self) -> str:
+        """The page that the command `crackfront predict` prints."""
+        from crackfront.topography.report import report_text
+
+        return report_text(self.surface, ruling=self.verdict, prediction=self)
+
 
 def prediction_notes(prediction: Prediction) -> Iterator[str]:
     """Treatments of the measurements, where k comes from, and where the numbers are weak."""

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.data.written_units import prefixed
 from crackfront.topography.files import checksum
@@ -20,11 +19,8 @@ from crackfront.topography.instruments import (
     shown_sides,
     surface_library,
 )
-from crackfront.topography.levelling import levelled, order_of, taken_off
+from crackfront.topography.levelling import Array, Points, levelled, order_of, taken_off
 from crackfront.topography.options import ReadingOptions, Region
-
-Array = NDArray[np.float64]
-Points = NDArray[np.bool_]
 
 _PIXELS_PER_WAVE = 4
 """Points in the shortest wavelength that is trusted where a file knows no resolution of its own:

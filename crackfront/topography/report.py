@@ -55,12 +55,17 @@ def report_text(
     elif scales is not None:
         energy = surface.conformity_energy(scales.contact_modulus)
         parts.append(_conformity_lines(energy, scales.work_of_adhesion))
-    notes = [*(surface_notes(surface) if prediction is None else prediction_notes(prediction))]
+    notes = _notes(surface, prediction)
     if ruling is None:
         notes += surface_doubts(surface)
     if notes:
         parts.append(iter(["Notes", *(f"  {note}" for note in notes)]))
     return "\n\n".join("\n".join(lines) for lines in parts)
+
+
+def _notes(surface: MeasuredSurface, prediction: Prediction | None) -> list[str]:
+    """Notes of a surface, and of its prediction where there is one."""
+    return list(surface_notes(surface) if prediction is None else prediction_notes(prediction))
 
 
 def simulation_text(found: Simulated) -> str:
@@ -83,7 +88,7 @@ def machine_readable(
 ) -> dict[str, Any]:
     """What the texts and notes say, for JSON; SI units, null where there is nothing."""
     energy = None if scales is None else surface.conformity_energy(scales.contact_modulus)
-    notes = surface_notes(surface) if prediction is None else prediction_notes(prediction)
+    adhesions = (*_ADHESIONS, "k")
     return {
         "measurements": [
             _scan_entry(one)
@@ -105,11 +110,10 @@ def machine_readable(
         "prediction": None if prediction is None else dict(_prediction_entries(prediction)),
         "factors": None if prediction is None else _factors_entry(prediction.factors),
         "verdict": None if ruling is None else _verdict_entry(ruling),
-        "notes": list(notes),
+        "notes": _notes(surface, prediction),
         "simulation": None
         if found is None
-        else asdict(found)
-        | {name: _interval_entry(getattr(found, name)) for name in (*_ADHESIONS, "k")},
+        else asdict(found) | {name: _interval_entry(getattr(found, name)) for name in adhesions},
     }
 
 
@@ -164,11 +168,8 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
         )
         name, unit = _MEASURES[measure.order]
         rms = _in_unit(unit, measure.rms.value, measure.rms.low, measure.rms.high)
-        scales, compared = (
-            _span(measure.shortest, measure.longest),
-            ", ".join(map("{:.2f}".format, ratios)),
-        )
-        yield f"  rms of {name:16}{rms:40}{scales:22}{compared}"
+        compared = ", ".join(map("{:.2f}".format, ratios))
+        yield f"  rms of {name:16}{rms:40}{_span(measure.shortest, measure.longest):22}{compared}"
 
 
 def _in_unit(unit: str, value: float, low: float, high: float) -> str:
@@ -208,22 +209,19 @@ def _prediction_lines(item: Prediction) -> Iterator[str]:
 def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
     """Lines of e_el and w_rms."""
     rms = 2 * math.sqrt(energy.value * work_of_adhesion)
-    for name, text, part in (
-        ("e_el", _shown(_ENERGY, energy), energy.value),
-        ("w_rms", prefixed(_ENERGY, rms), rms),
-    ):
-        yield f"  {name:25}{text} = {part / work_of_adhesion:.3g} w_int"
+    shown, part = _shown(_ENERGY, energy), energy.value / work_of_adhesion
+    yield f"  {'e_el':25}{shown} = {part:.3g} w_int"
+    yield f"  {'w_rms':25}{prefixed(_ENERGY, rms)} = {rms / work_of_adhesion:.3g} w_int"
 
 
 def _verdict_lines(found: Verdict) -> Iterator[str]:
     """Lines on whether the theory applies, with conditions, remedies and reservations."""
-    count = len(found.reservations)
-    yield {
-        "applies": "The theory applies",
-        "applies with reservations": "The theory applies with "
-        + ("1 reservation" if count == 1 else f"{count} reservations"),
-        "does not apply": "THE THEORY DOES NOT APPLY",
-    }[found.outcome]
+    if found.outcome == "does not apply":
+        yield "THE THEORY DOES NOT APPLY"
+    else:
+        count = len(found.reservations)
+        several = f" with {count} reservation{'s' if count > 1 else ''}"
+        yield f"The theory applies{several if count else ''}"
     for item in found.conditions:
         yield f"  {item.name}: {item.found}, {_standing(item)}"
     if found.remedies:
@@ -239,11 +237,8 @@ def _verdict_lines(found: Verdict) -> Iterator[str]:
 def _standing(item: Condition) -> str:
     """By what factor a condition holds, or where it comes into doubt or fails."""
     if item.standing == "holds":
-        return (
-            f"inside by a factor of {float(f'{item.margin:.2g}'):g}"
-            if item.margin < _FAR
-            else "far inside"
-        )
+        factor = f"inside by a factor of {float(f'{item.margin:.2g}'):g}"
+        return factor if item.margin < _FAR else "far inside"
     word, end = ("FAILS", item.limit) if item.standing == "fails" else ("IN DOUBT", item.doubtful)
     # As what was found is written.
     number = f"{end:.2%}" if "%" in item.found else f"{end:.3g}"
@@ -253,19 +248,12 @@ def _standing(item: Condition) -> str:
 
 def _verdict_entry(found: Verdict) -> dict[str, Any]:
     """A verdict with the standing of every condition."""
-    margins = [item.margin if math.isfinite(item.margin) else None for item in found.conditions]
     conditions = [
-        asdict(item) | {"standing": item.standing, "margin": margin}
-        for item, margin in zip(found.conditions, margins, strict=True)
+        asdict(item) | {"standing": item.standing, "margin": _or_null(item.margin)}
+        for item in found.conditions
     ]
-    return (
-        {"outcome": found.outcome}
-        | asdict(found)
-        | {
-            "conditions": conditions,
-            "remedies": found.remedies,
-        }
-    )
+    more = {"conditions": conditions, "remedies": found.remedies}
+    return {"outcome": found.outcome} | asdict(found) | more
 
 
 def _shown(unit: str, found: Number) -> str:
@@ -357,10 +345,10 @@ def _prediction_entries(prediction: Prediction) -> Iterator[tuple[str, dict[str,
     """Numbers of a prediction by name, with what they have of standard errors and intervals."""
     for item in variables(Prediction):
         found = getattr(prediction, item.name)
-        if not isinstance(found, Estimate):
-            yield item.name, {"value": found, **item.attributes}
+        is_number = not isinstance(found, Estimate)
+        yield item.name, {"value": found if is_number else found.value, **item.attributes}
+        if is_number:
             continue
-        yield item.name, {"value": found.value, **item.attributes}
         low, high = ("smaller", "larger") if item.units == "N" else ("lower", "upper")
         for ending, value, text in (
             ("error", found.standard_error, "its standard error"),
@@ -389,8 +377,12 @@ def _factors_entry(factors: SphereFactors) -> dict[str, Any]:
 
 def _interval_entry(found: Number) -> dict[str, float | None]:
     """A number with its interval, null where there is none, as JSON needs it."""
-    entries = {"value": found.value, "low": found.low, "high": found.high}
-    return {name: None if math.isnan(entry) else entry for name, entry in entries.items()}
+    return {name: _or_null(getattr(found, name)) for name in ("value", "low", "high")}
+
+
+def _or_null(number: float) -> float | None:
+    """A number, None where it is not finite, as JSON needs it."""
+    return number if math.isfinite(number) else None
 
 
 def _uncertain_entry(found: Number) -> dict[str, Any]:

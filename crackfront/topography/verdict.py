@@ -14,7 +14,7 @@ from crackfront.analysis.validity import TOLERANCES, largest_energy, shipped_val
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
 from crackfront.topography.cautions import surface_doubts
-from crackfront.topography.measures import MeasuredSurface
+from crackfront.topography.measures import MeasuredSurface, RmsMeasure
 from crackfront.topography.tile import zero_load_radius
 
 Standing = Literal["holds", "in doubt", "fails"]
@@ -126,7 +126,12 @@ def verdict(
         Factors k by the law, which may not have been measured there.
     """
     reach = ASSUMED_RANGE if attraction_range is None else attraction_range
-    conditions = tuple(_conditions(surface, scales, reach))
+    conditions = (
+        *_energy_conditions(surface, scales),
+        *_contact_conditions(surface, scales),
+        *_range_conditions(surface, scales, reach),
+        _slope_condition(surface),
+    )
     doubts = [
         f"{item.name}: {item.found}; {item.reason}."
         for item in conditions
@@ -144,10 +149,10 @@ def verdict(
     return Verdict(conditions, tuple(doubts), assumption)
 
 
-def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Iterator[Condition]:
-    """Conditions of the theory, for a range of attraction (Units: m)."""
-    w_int, modulus, radius = scales.work_of_adhesion, scales.contact_modulus, scales.radius
-    e_el = surface.conformity_energy(modulus).value
+def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Condition]:
+    """Conditions on e_el against w_int."""
+    w_int = scales.work_of_adhesion
+    e_el = surface.conformity_energy(scales.contact_modulus).value
     yield Condition(
         "full conformity",
         f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', w_int)}",
@@ -158,7 +163,9 @@ def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Itera
         "J/m2",
         remedies=_softer(scales, e_el / w_int),
     )
-    share = _negative_share(e_el / w_int)
+    share, deviate = _negative_share(e_el / w_int), ndtri(_MOST_NEGATIVE)
+    # The e_el over w_int at which w_loc is negative on the largest part.
+    largest = float((deviate + math.sqrt(deviate**2 + 1)) ** 2)
     yield Condition(
         "attraction nearly everywhere",
         f"w_loc negative on {share:.2%} of the surface",
@@ -168,9 +175,13 @@ def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Itera
         _negative_share(largest_energy(shipped_validity(), TOLERANCES[-1])),
         _MOST_NEGATIVE,
         "1",
-        remedies=_softer(scales, e_el / w_int / _energy_of_share(_MOST_NEGATIVE)),
+        remedies=_softer(scales, e_el / w_int / largest),
     )
-    contact = zero_load_radius(scales)
+
+
+def _contact_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Condition]:
+    """Conditions on the contact at zero load, against the sphere and against the roughness."""
+    modulus, radius, contact = scales.contact_modulus, scales.radius, zero_load_radius(scales)
     part = contact / radius / _CONTACT[1]
     yield Condition(
         "contact small against the sphere",
@@ -183,8 +194,7 @@ def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Itera
         # a / R goes as the cube root of w_int / (E' R).
         remedies=(_modulus("above", modulus, part**3), _larger(radius * part**3)),
     )
-    half = surface.measures[1]
-    waves = f"{prefixed('m', half.shortest)} to {prefixed('m', half.longest)}"
+    half, waves = _waves(surface)
     part = half.shortest / contact
     yield Condition(
         "roughness fine against the contact",
@@ -200,6 +210,14 @@ def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Itera
             "a finer roughness",
         ),
     )
+
+
+def _range_conditions(
+    surface: MeasuredSurface, scales: Scales, reach: float
+) -> Iterator[Condition]:
+    """Conditions on the range of attraction (Units: m)."""
+    w_int, modulus, radius = scales.work_of_adhesion, scales.contact_modulus, scales.radius
+    half, waves = _waves(surface)
     tabor = (radius * w_int**2 / (modulus**2 * reach**3)) ** (1 / 3)
     part = _TABOR[1] / tabor
     yield Condition(
@@ -224,8 +242,18 @@ def _conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Itera
         "m",
         remedies=(_modulus("below", modulus, half.longest / zone), "a coarser roughness"),
     )
+
+
+def _waves(surface: MeasuredSurface) -> tuple[RmsMeasure, str]:
+    """Measure of the half-derivative, and the waves that dominate it as a text."""
+    half = surface.measures[1]
+    return half, f"{prefixed('m', half.shortest)} to {prefixed('m', half.longest)}"
+
+
+def _slope_condition(surface: MeasuredSurface) -> Condition:
+    """Condition on the rms slope."""
     slope = surface.measures[2].rms.value
-    yield Condition(
+    return Condition(
         "small slopes",
         f"rms slope of {slope:.3g}",
         "linear elasticity leaves the square of slopes out",
@@ -261,12 +289,6 @@ def _larger(radius: float) -> str:
 def _negative_share(energy: float) -> float:
     """Part of the surface where a Gaussian w_loc is negative, by e_el over w_int."""
     return float(ndtr((energy - 1) / (2 * math.sqrt(energy))))
-
-
-def _energy_of_share(share: float) -> float:
-    """e_el over w_int at which a Gaussian w_loc is negative on a share of the surface."""
-    root = ndtri(share) + math.sqrt(ndtri(share) ** 2 + 1)
-    return float(root**2)
 
 
 def _energy_doubts(surface: MeasuredSurface, scales: Scales) -> Iterator[str]:

@@ -9,7 +9,7 @@ from scipy.signal import get_window
 
 from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.densities import cosine_window, periodogram, profile_density
-from crackfront.topography.instruments import library_scan
+from crackfront.topography.instruments import surface_library
 from crackfront.topography.reading import Measurement
 from studies.paper.si_6 import profile_periodogram
 from tests.topography.made import SIDE, SPECTRUM, map_heights
@@ -32,7 +32,7 @@ def periodic_measurement(heights, side=SIDE, shortest=None):
 
 def test_our_density_of_profiles_is_the_librarys(rng):
     heights = gaussian_field(SPECTRUM, 128, SIDE, rng)
-    library = library_scan(heights, (SIDE, SIDE), periodic=True)
+    library = surface_library().Topography(heights, (SIDE, SIDE), periodic=True)
     _, density = library.power_spectrum_from_profile(resampling_method=None, reliable=False)
     ours = profile_periodogram(heights, SIDE / 128)
     assert ours == pytest.approx(density[1:], rel=1e-9, abs=1e-9 * ours.max())

@@ -9,7 +9,7 @@ from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.bands import scan as scan_of
-from crackfront.topography.instruments import library_scan
+from crackfront.topography.instruments import surface_library
 from crackfront.topography.measures import measured_mean_square, measured_surface
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import Measurement, read_measurements
@@ -49,7 +49,7 @@ def test_the_measures_of_a_periodic_map_are_ours_and_the_librarys(rng):
     heights = gaussian_field(SPECTRUM, 128, SIDE, rng)
     measurement = periodic_measurement(heights)
     pixel = SIDE / 128
-    library = library_scan(heights, measurement.size, periodic=True)
+    library = surface_library().Topography(heights, measurement.size, periodic=True)
     found = [measured_mean_square(scan_of(measurement), order) for order in (0.0, 0.5, 1.0)]
     assert found[0] == pytest.approx(np.mean(heights**2), rel=1e-9)
     assert found[0] == pytest.approx(library.moment_power_spectrum(order=0), rel=1e-9)
