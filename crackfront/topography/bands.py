@@ -33,32 +33,28 @@ _PIXELS = 2.5
 """Points in the shortest wave of the densities in which instruments are looked for."""
 
 _ATTENUATED, _NOISY = 0.2, 0.2
-"""Part of the density that an instrument may take away, and that its noise may add, in the band;
-what is found of both is corrected."""
+"""Parts that an instrument may take away and its noise may add in the band; both are corrected."""
 
 _LOST, _BLURRED, _DROWNED = 0.85, 0.5, 1.0
-"""The same of the waves that tell the model, which has transfer and noise as parameters: lost by an
-optic or a filter, by a tip, whose transfer is known less well, and to noise."""
+"""The same for the waves that are fitted: lost by an optic or filter, by a tip, and to noise."""
 
 _NYQUIST = 2.0
 """Points in the shortest wave that pixels hold."""
 
 _CLIFF, _CLIFF_BINS, _CLIFF_MODES = 0.1, 2, 8
-"""Ratio of densities and the bins over which it is reached where a density ends; modes that each
-bin must have."""
+"""Ratio by which a density ends, over how many bins, and modes that each of these must have."""
 
 _FORM, _FORM_BINS = 2.0, 16
-"""Ratio of densities by another window, or with more form taken off, from which on these decide
-instead of the surface; bins of the longest waves in which this is looked for."""
+"""Ratio by which window and levelling may change a density, and longest bins that are compared."""
 
 _FINER = 2.0
-"""How far below the shortest wave that pixels hold a surface may go on, in the draws."""
+"""How far below the shortest wave that pixels hold a surface may go on in the draws."""
 
 _FEWEST_OCTAVES = 1
 """Octaves that must be left of a band."""
 
 _ORDER = 3
-"""Order of the polynomial whose removal tells what the levelling decides."""
+"""Order of the polynomials whose removal shows what the levelling changes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,14 +83,12 @@ class Band:
     """Of a map the rms slope along x over that along y; 1 for lines."""
     instrument: Instrument
     informative: float
-    """Shortest wavelength to which the model is fitted. (Units: m)"""
+    """Shortest wavelength that is fitted by the model. (Units: m)"""
     end: float
-    """Shortest wavelength that the surface is continued to: that which its points hold, unless
-    instrument or density end before. (Units: m)"""
+    """Wavelength to which it is continued: that of its points or of the instrument. (Units: m)"""
     finest: float
     coarsest: float
-    """Shortest wavelength that it may go on to, and longest at which it may end, in the draws.
-    (Units: m)"""
+    """Shortest and longest wavelength at which it may end in the draws. (Units: m)"""
 
     @property
     def ends(self) -> tuple[BandLimit, BandLimit]:
@@ -132,7 +126,7 @@ class Scan:
 
     @property
     def informative(self) -> Density:
-        """The density where it tells the model."""
+        """The density where it is fitted by the model."""
         return self.density.within(self.band.informative, self.band.longest.wavelength)
 
 

@@ -12,8 +12,7 @@ _MOST_CONTINUED = 0.5
 """Ratio of slopes and parts of e_el from which on they are doubts."""
 
 _EDGE, _MATTERS = 0.05, 0.1
-"""Distance of a Hurst exponent from 0 and from 1 below which it is at the edge of what is fitted,
-and part of e_el that is continued from which on that matters."""
+"""Distance of a Hurst exponent from 0 and 1, and continued part of e_el, that make it a doubt."""
 
 
 def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None) -> Iterator[str]:

@@ -17,8 +17,7 @@ _BINS_PER_DECADE = 20
 """Bins of wavevectors; their edges are the same for all scans."""
 
 _WINDOWS = {"hann": (0.5, 0.5), "blackman": (0.42, 0.50, 0.08)}
-"""Windows by the amplitudes of their cosines, those of scipy.signal, which takes half a second to
-import."""
+"""Cosines of windows; scipy.signal has them too, but takes half a second to import."""
 
 _AXIS = 1
 """Modes beside an axis that hold what does not change along one direction: rows, steps, seams."""
@@ -39,8 +38,7 @@ class Density:
     value: Array
     """Isotropic density C of a map, C_1D of lines. Shape (n,). (Units: m^4 or m^3)"""
     modes: Array
-    """Independent modes that the value is the mean of; the window makes neighbours dependent. Shape
-    (n,)."""
+    """Independent modes in the mean; the window makes neighbours dependent. Shape (n,)."""
     is_profile: bool
     """Whether it is C_1D."""
 

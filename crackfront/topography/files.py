@@ -136,11 +136,7 @@ def _refuse_damaged_rows(path: Path, lines: Sequence[str]) -> None:
 
 
 def _wrong_cell(cells: Sequence[str], width: int | None) -> int | None:
-    """Place of what is no number in a row of such; None in a line that is a text or comment.
-
-    Above the first row, where `width` is that of rows, words are a head, but for one or two among
-    many numbers.
-    """
+    """Place of what is no number in a row; None where the line is a text, a comment or a head."""
     wrong = [place for place, cell in enumerate(cells) if not _is_number(cell)]
     if cells[0].startswith("#") or 2 * len(wrong) > len(cells):
         return None

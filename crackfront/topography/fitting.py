@@ -57,12 +57,11 @@ class Instrument:
     """What an instrument does to a density."""
 
     attenuation: float = math.inf
-    """Wavevector q_c at which the density is down to 1/e; infinite where this is not seen. (Units:
-    1 / m)"""
+    """Wavevector q_c where the density is down to 1/e; infinite if not seen. (Units: 1 / m)"""
     sharpness: float = 2.0
     """Exponent m of its fall."""
     noise: float = 0.0
-    """Density of white noise, 0 where it is not seen. (Units: that of the density)"""
+    """Density of white noise; 0 if not seen. (Units: that of the density)"""
 
     def wavelength(self, part: float) -> float:
         """Wavelength at which a part of the density is lost; 0 where nothing is (Units: m)."""

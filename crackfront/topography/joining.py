@@ -45,8 +45,7 @@ class JointDensity:
     value: Array
     """Wavevectors of the bins and density there. Shape (n,). (Units: 1 / m and m^4)"""
     error: Array
-    """Standard error of the logarithm of the value, which holds the scatter between scans. Shape
-    (n,)."""
+    """Standard error of the logarithm of the value, with the scatter of scans. Shape (n,)."""
     scatter: float
     """Standard deviation of the levels of the scans beyond what their modes explain, relative."""
     levels: tuple[Estimate[float], ...]

@@ -35,8 +35,7 @@ class RmsMeasure:
     longest: float
     """Wavelengths that dominate it: a tenth lies below, a tenth above. (Units: m)"""
     measured: tuple[float, ...]
-    """Of every measurement, over its own trusted wavelengths; lines as those of an isotropic
-    surface. (Units: m^(1 - order))"""
+    """Of every scan over its trusted waves; a line as of an isotropic surface. (Units: as rms)"""
     expected: tuple[float, ...]
     """What the joint spectrum has over the same wavelengths."""
 

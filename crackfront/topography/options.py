@@ -24,8 +24,7 @@ Record = TypeVar("Record")
 DetrendName = Literal["center", "height", "slope", "curvature"]
 
 Detrend = DetrendName | int
-"""What is taken off: the mean, the plane of least height, that of least slope, the paraboloid; or
-the polynomial of an order."""
+"""Trend that is taken off: one by name, as in curvature, or a polynomial by its order."""
 
 HIGHEST_ORDER = 9
 """Highest order of a polynomial; more would be a filter of waves, which its fit is not."""

@@ -23,12 +23,10 @@ from crackfront.topography.levelling import Array, Points, levelled, order_of, t
 from crackfront.topography.options import ReadingOptions, Region
 
 _PIXELS_PER_WAVE = 4
-"""Points in the shortest wavelength that is trusted where a file knows no resolution of its own:
-shorter waves hold an aliased part of those below the pixels."""
+"""Points in the shortest wave to trust without a stated resolution: shorter ones are aliased."""
 
 _WAVES_PER_SIDE = 2
-"""Longest wavelength that is trusted, in a side of the scan: detrending and the window take part
-of longer waves away."""
+"""Longest waves to trust in a side: levelling and window take part of longer ones away."""
 
 _MOST_MISSING = 0.1
 """Part of the points that may be missing; more leave too much to the interpolation."""
@@ -40,8 +38,7 @@ _FEWEST_POINTS = 8
 """Points along a side that a crop must leave."""
 
 _LEAST_HEIGHT, _MOST_HEIGHT = 1e-12, 10.0
-"""Rms of heights (Units: m), and their span in sides of the scan, beyond which no instrument
-measures, so that a unit of the file must be wrong."""
+"""Least rms of heights (Units: m), and most span over the side, that instruments measure."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,8 +57,7 @@ class SimulationPlan:
 
     simulations: tuple[Simulation, ...]
     correction: float = 1.0
-    """k by the law over that for the simulated springs, where these are shorter than those of the
-    sphere; else 1."""
+    """k of the law over that for the simulated springs, which may be shorter; else 1."""
     remark: str = ""
     """What is run in place of spheres, and why; empty where spheres are."""
 

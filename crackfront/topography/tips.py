@@ -23,8 +23,7 @@ _ASYMMETRY, _SYMMETRY = 0.1, 0.05
 """Asymmetry of curvatures by which a tip is seen, and that which ends its mark."""
 
 _ERROR, _SIGMA = 1.7, 5.0
-"""Standard error of an asymmetry, times the root of the number of curvatures, and how many of it
-a mark must exceed."""
+"""Standard error of an asymmetry times the root of its number, and how many of it are a mark."""
 
 _SHARE = 8
 """Lags in a side of the scan."""

@@ -52,8 +52,7 @@ class Condition:
     value: float
     doubtful: float
     limit: float
-    """Values up to which the condition holds, and up to which it is in doubt; where `rising`, down
-    to which."""
+    """Values up to which it holds and up to which it is in doubt; down to which if `rising`."""
     units: str
     """Units of value, doubtful and limit."""
     rising: bool = False
