@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -17,9 +16,10 @@ import numpy as np
 from crackfront.data.optional_libraries import MissingExtraError
 from crackfront.data.written_units import prefixed
 from crackfront.topography.files import readable, refuse_special, refuse_too_many_points
+from crackfront.topography.on_use import import_without_executing
 from crackfront.topography.options import ReadingOptions
 
-_LIBRARY, _READERS = "SurfaceTopography", "SurfaceTopography.IO"
+_LIBRARY = "SurfaceTopography"
 
 _BEGIN = 512
 """Bytes of a file that hold its signature."""
@@ -40,19 +40,6 @@ class RawScan:
     """Name of the channel, and which of how many of heights it is."""
 
 
-class _OnUse(ModuleType):
-    """A package that is not executed before something is read that its submodules do not hold."""
-
-    def __getattr__(self, name: str) -> Any:
-        self.__class__ = ModuleType  # type: ignore[assignment]
-        try:
-            self.__spec__.loader.exec_module(self)  # type: ignore[union-attr]
-        except BaseException:
-            self.__class__ = _OnUse
-            raise
-        return getattr(self, name)
-
-
 def library_part(name: str) -> Any:
     """A module of the library SurfaceTopography, and of the others only those that it imports.
 
@@ -64,14 +51,8 @@ def library_part(name: str) -> Any:
         If the library is not installed, with the command that installs it.
     """
     with _importing():
-        for package in (_LIBRARY, _READERS):
-            spec = importlib.util.find_spec(package)
-            if spec is not None and package not in sys.modules:
-                sys.modules[package] = module = importlib.util.module_from_spec(spec)
-                module.__class__ = _OnUse
-                if package == _READERS:
-                    sys.modules[_LIBRARY].IO = module  # type: ignore[attr-defined]
-            importlib.import_module(package)
+        for package in (_LIBRARY, f"{_LIBRARY}.IO"):
+            import_without_executing(package)
         return importlib.import_module(f"{_LIBRARY}.{name}")
 
 

@@ -96,10 +96,10 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
         If the file cannot be opened.
     """
     refuse_no_scales(sphere)
-    refuse_other_type("scan", path, (str, PathLike), "the path of a file")
+    file = _path(path)
     reading = parsed_options(ReadingOptions, options)
     surface_library()  # Whole: the program may use it too.
-    [measured] = read_measurements([Path(path)], reading)
+    [measured] = read_measurements([file], reading)
     measurement = scan(measured, reading.shortest, reading.longest).trusted_measurement
     heights, pixel = tile_heights(measurement)
     return surface_array(
@@ -110,6 +110,12 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
         levelling=f"{measurement.levelling} was taken off: form and tilt are no roughness",
         **dict(_treatments(measurement, 2 * zero_load_radius(sphere))),
     )
+
+
+def _path(scan: File) -> Path:
+    """Path of a scan, refused where it is none."""
+    refuse_other_type("scan", scan, (str, PathLike), "the path of a file")
+    return Path(scan)
 
 
 def _treatments(measurement: Measurement, across: float) -> Iterator[tuple[str, str]]:
@@ -163,10 +169,7 @@ def predict(scans: File | Iterable[File], sphere: Scales, **options: Any) -> Pre
     refuse_no_scales(sphere)
     paths = [scans] if isinstance(scans, (str, PathLike)) else scans
     refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
-    files = []
-    for path in paths:
-        refuse_other_type("scan", path, (str, PathLike), "the path of a file")
-        files.append(Path(path))
+    files = [_path(path) for path in paths]
     given = parsed_options(PredictionOptions, options)
     surface_library()  # Whole: the program may use it too.
     surface = read_surface(files, options_for_each(ReadingOptions, options, len(files)))
