@@ -123,18 +123,24 @@ def test_files_that_cannot_be_read_are_refused(rng, tmp_path, scan):
 _LEAN = """
 import sys
 from pathlib import Path
+from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import read_measurements
 [scan] = read_measurements([Path(sys.argv[1])])
 assert scan.format == "al3d"
 assert "SurfaceTopography.IO.X3P" not in sys.modules and "matplotlib" not in sys.modules
+[points] = read_measurements([Path(sys.argv[2])], ReadingOptions(unit="m"))
+assert points.format == "xyz"
 import SurfaceTopography
 whole = SurfaceTopography.read_topography(sys.argv[1])
 assert whole.detrend().rms_height_from_area() > 0
 """
 
 
-def test_a_scan_is_read_without_the_readers_of_other_formats_which_come_when_used(scan):
-    subprocess.run([sys.executable, "-c", _LEAN, scan], check=True)
+def test_a_scan_is_read_without_the_readers_of_other_formats_which_come_when_used(
+    scan, tmp_path, rng
+):
+    write_xyz(tmp_path / "scan.xyz", 1e-8 * rng.standard_normal((N_SIDE, N_SIDE)))
+    subprocess.run([sys.executable, "-c", _LEAN, scan, tmp_path / "scan.xyz"], check=True)
 
 
 def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatch, scan):
