@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -130,7 +130,7 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
     columns = (np.array(column) for column in zip(*itertools.chain(*events), strict=True))
     avalanches: dict[str, Any] = dict(zip(_Avalanche._fields, columns, strict=True))
     return AvalancheRecord(
-        **values_of(whole, *(one.name for one in fields(whole))),
+        **values_of(whole),
         **values_of(parameters, "short_cutoff", "precision", "seed"),
         correlation_length=spectrum.correlation_length,
         elastic_energy=np.array(energies),

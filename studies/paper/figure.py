@@ -10,7 +10,7 @@ import functools
 import hashlib
 import importlib
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal
 
@@ -110,8 +110,8 @@ class Figure:
 
 
 def values_of(source: Any, *names: str) -> dict[str, Any]:
-    """Attributes of an object by their names."""
-    return {name: getattr(source, name) for name in names}
+    """Attributes of an object by their names; all fields of a dataclass where none is given."""
+    return {name: getattr(source, name) for name in names or [one.name for one in fields(source)]}
 
 
 _GROUPS = ("main", "si", "beyond")

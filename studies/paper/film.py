@@ -1,17 +1,19 @@
-"""The rough film of the paper: its ideal spectrum, and the energy of profiles."""
+"""The rough film of the paper: its ideal spectrum, and densities and energy of its profiles."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.variables import variable
 from crackfront.data.section import InputFile, Plateau, Positive, Section
 from studies.paper.figure import Array
-from studies.paper.measured import ProfileDensity, read_profile_density
+from studies.paper.measured import read_profile_density
 from studies.paper.rough import rough_spectrum
 
 CONVERTED_LABEL = r"$q\,C^\mathrm{iso}/\pi$ (paper's conversion)"
@@ -20,8 +22,8 @@ POINTS_PER_DECADE = 100
 """Wavevectors at which a density is shown."""
 
 
-class FilmParameters(Section):
-    """A rough film under a soft sphere, in SI units."""
+class FilmSection(Section):
+    """A soft sphere on a rough film, in SI units."""
 
     young_modulus: Positive  # of the sphere (Pa)
     poisson_ratio: Annotated[float, Field(ge=0, le=0.5)]
@@ -29,12 +31,7 @@ class FilmParameters(Section):
     roll_off: Positive
     hurst: Annotated[float, Field(gt=0, le=1)]
     plateau: Plateau
-    measured: InputFile | None = None  # CSV file that `read_profile_density` reads
-
-    @model_validator(mode="after")
-    def _usable(self) -> FilmParameters:
-        _ = self.spectrum, self.points()  # each refuses what it cannot use
-        return self
+    measured: InputFile | None = None  # CSV file of measured points
 
     @property
     def spectrum(self) -> SelfAffineSpectrum:
@@ -46,12 +43,47 @@ class FilmParameters(Section):
         """Contact modulus E' = E / (1 - nu^2) (Units: Pa)."""
         return self.young_modulus / (1 - self.poisson_ratio**2)
 
-    def points(self) -> ProfileDensity:
-        """What was measured."""
-        return read_profile_density(self.measured)
+
+class FilmParameters(FilmSection):
+    """A film whose spectral densities are shown, beside those that `read_profile_density` reads."""
+
+    longest: Positive  # wavelength that is shown (m)
+
+    @model_validator(mode="after")
+    def _usable(self) -> FilmParameters:
+        _ = self.spectrum, read_profile_density(self.measured)  # each refuses what it cannot use
+        return self
+
+    def densities(self, shortest: float) -> FilmDensities:
+        """Densities of profiles down to a wavelength (Units: m)."""
+        spectrum, points = self.spectrum, read_profile_density(self.measured)
+        wavevector = _shown_wavevectors(self.longest, shortest)
+        return FilmDensities(
+            contact_modulus=self.contact_modulus,
+            wavevector=wavevector,
+            profile=spectrum.profile_density(wavevector),
+            converted=wavevector / np.pi * spectrum.density(wavevector),
+            measured_wavevector=points.wavevector,
+            measured_profile=points.density,
+        )
 
 
-def shown_wavevectors(longest: float, shortest: float) -> Array:
+_WAVE, _POINT = "wavevector", "point"
+
+
+@dataclass(frozen=True, slots=True)
+class FilmDensities:
+    """Spectral densities of profiles of a film, from its spectrum and measured."""
+
+    contact_modulus: float = variable("contact modulus E'", "Pa")
+    wavevector: Array = variable("wavevector", "m-1", _WAVE)
+    profile: Array = variable("spectral density of profiles C_1D", "m3", _WAVE)
+    converted: Array = variable("paper's C_1D = q C / pi", "m3", _WAVE)
+    measured_wavevector: Array = variable("measured wavevector", "m-1", _POINT)
+    measured_profile: Array = variable("measured spectral density of profiles", "m3", _POINT)
+
+
+def _shown_wavevectors(longest: float, shortest: float) -> Array:
     """Wavevectors of two wavelengths and between them, for a logarithmic axis (Units: 1 / m)."""
     ends = 2 * np.pi / longest, 2 * np.pi / shortest
     count = math.ceil(math.log10(ends[1] / ends[0]) * POINTS_PER_DECADE) + 1
@@ -59,9 +91,23 @@ def shown_wavevectors(longest: float, shortest: float) -> Array:
 
 
 def conformity_energy(wavevector: Array, density: Array, contact_modulus: float) -> float:
-    """Energy of full conformity (J / m^2) from C_1D (m^3) of profiles, e_el = E'/8 Int q C_1D dq.
+    """Energy of full conformity from the density of profiles, e_el = E'/8 Int q C_1D dq.
 
-    The paper's C(q) = (pi / q) C_1D(q) leads to it too. Wavevectors (1 / m) increase.
+    The paper's C(q) = (pi / q) C_1D(q) leads to it too.
+
+    Parameters
+    ----------
+    wavevector : (n,) array
+        Increasing wavevectors. (Units: 1 / m)
+    density : (n,) array
+        C_1D. (Units: m^3)
+    contact_modulus : float
+        E'. (Units: Pa)
+
+    Returns
+    -------
+    float
+        e_el. (Units: J / m^2)
     """
     # Trapezoids over log q, in which the data are spaced.
     return float(contact_modulus / 8 * np.trapezoid(wavevector**2 * density, np.log(wavevector)))

@@ -11,11 +11,10 @@ from matplotlib.figure import Figure as Drawing
 from pydantic import model_validator
 
 from crackfront.core import jkr
-from crackfront.core.cycle.follow import Load, follow
+from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import RayField, polar_field
-from crackfront.core.outcome import Direction, Status
-from crackfront.core.solver.relax import Newton
+from crackfront.core.outcome import Direction
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Positive, Section, refusal
@@ -23,14 +22,9 @@ from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL, draw_arrow
 from crackfront.plots.style import COLUMN, VERMILION, blank_figure, house_style
 from studies.paper.drawing import BRANCHES, DOTTED, draw_jump, write_beside
 from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.rings import INNERMOST, circle_steps
 
 _STATE = "state"
-
-INNERMOST = 1e-3
-"""Radius at which contact is made."""
-
-TOLERANCE = 1e-13
-"""Force that may be left on a circle, relative to w_int: next to pull-off it is soft."""
 
 
 class SmoothLoopParameters(Section):
@@ -66,20 +60,17 @@ class SmoothLoop:
 def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothLoop:
     """Approach with one work of adhesion and retraction with another."""
     schedule = LoadSchedule(parameters.max_penetration, parameters.step)
-    front = np.array([INNERMOST])
-    states: list[tuple[int, float, float]] = []
+    radius, states = INNERMOST, []
     branches: tuple[tuple[Direction, float, Iterable[float]], ...] = (
         (1, parameters.approach, schedule.approach()),
         (-1, parameters.retraction, schedule.retraction()),
     )
     for direction, adhesion, penetrations in branches:
-        field = _constant(adhesion, parameters)
         coming = (Load(penetration, direction) for penetration in penetrations)
-        for step in follow(field, front, coming, Newton(TOLERANCE)):
-            if step.status is Status.CONVERGED:
-                front = step.front
-                states.append((direction, step.load.value, float(front[0])))
-        progress(f"work of adhesion {adhesion:g}: contact radius {front[0]:.4f} at the end")
+        for step in circle_steps(_constant(adhesion, parameters), coming, radius):
+            radius = float(step.front[0])
+            states.append((direction, step.load.value, radius))
+        progress(f"work of adhesion {adhesion:g}: contact radius {radius:.4f} at the end")
     directions, visited, radii = (np.array(column) for column in zip(*states, strict=True))
     return SmoothLoop(
         **values_of(parameters, "approach", "retraction"),

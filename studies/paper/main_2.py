@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from functools import partial
+from typing import Annotated
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
-from scipy.optimize import brentq
 
 from crackfront.core import jkr
-from crackfront.core.cycle.follow import Load, Step, follow
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import RayField, polar_field
-from crackfront.core.outcome import Status
-from crackfront.core.solver.relax import Newton
-from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive, Section, refusal
 from crackfront.plots import parts
@@ -37,39 +32,11 @@ from crackfront.plots.style import (
 )
 from studies.paper.drawing import BRANCHES, write_beside
 from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.rings import INNERMOST, Rings, first_stops, folds, steady_stiffness
 
 _STATE, _LOOP, _CASE = "state", "loop", "case"
 
-INNERMOST = 1e-3
-"""Radius at which contact is made."""
-
-_TOLERANCE = 1e-13
-"""Force that may be left on a circle, relative to w_int: next to pull-off it is soft."""
-
-_PATH = 257
-"""Points between two states at which a fold of the equilibria is looked for."""
-
 Amplitude = Annotated[float, Field(gt=0, lt=1)]
-
-
-class Rings(NamedTuple):
-    """Rings of w_loc(a) = 1 + delta sin(2 pi a / d), delta in w_int, d in reduced lengths."""
-
-    amplitude: float
-    wavelength: float
-
-    def adhesion(self, radius: ArrayLike) -> Array:
-        """Work of adhesion at a distance from the apex (Units: w_int)."""
-        phase = 2 * np.pi * np.asarray(radius) / self.wavelength
-        return np.asarray(1 + self.amplitude * np.sin(phase))
-
-    def penetration(self, radius: ArrayLike) -> Array:
-        """Penetration b_eq(a) at which a front is in equilibrium, stable or not."""
-        return jkr.equilibrium_penetration(radius, self.adhesion(radius))
-
-    def outermost(self, penetration: float) -> float:
-        """Radius that no front gets beyond at a penetration."""
-        return jkr.equilibrium_radius(penetration, 1 + self.amplitude) + self.wavelength
 
 
 class RingsParameters(Section):
@@ -134,18 +101,22 @@ class RingLoops:
 
 def ring_loops(parameters: RingsParameters, progress: Progress) -> RingLoops:
     """Approach and retraction on rings of both wavelengths, and the cases."""
-    loops = []
+    schedule, loops = LoadSchedule(parameters.max_penetration, parameters.step), []
     for index, wavelength in enumerate(parameters.wavelengths):
-        states = _loop(parameters, Rings(parameters.amplitude, wavelength))
+        states = Rings(parameters.amplitude, wavelength).loop(schedule, parameters.samples)
         loops.append(np.column_stack([np.full(len(states), index), states]))
         progress(f"rings of {wavelength:g}: {len(states)} states, {states[:, 3].sum():g} jumps")
     loop, direction, penetration, radius, jump = np.concatenate(loops).T
+    low, high = parameters.case_window
+    count = round((high - low) / parameters.case_step)
     cases = [
-        _mean_adhesion(parameters, Rings(parameters.case_amplitude, wavelength))
+        Rings(parameters.case_amplitude, wavelength).mean_adhesion(
+            low, high, count, parameters.samples
+        )
         for wavelength in parameters.case_wavelengths
     ]
     progress(f"{len(cases)} cases with an amplitude of {parameters.case_amplitude:g}")
-    case_approach, case_retraction = np.array(cases).T
+    case_approach, case_retraction = np.transpose(cases)
     return RingLoops(
         **values_of(parameters, "amplitude", "case_amplitude"),
         wavelength=np.array(parameters.wavelengths),
@@ -156,107 +127,18 @@ def ring_loops(parameters: RingsParameters, progress: Progress) -> RingLoops:
         force=jkr.force(radius, penetration),
         adhesion=jkr.apparent_work_of_adhesion(radius, penetration),
         jump=jump.astype(np.int64),
-        case_lowest=parameters.case_window[0],
-        case_highest=parameters.case_window[1],
+        case_lowest=low,
+        case_highest=high,
         case_wavelength=np.array(parameters.case_wavelengths),
         case_approach=case_approach,
         case_retraction=case_retraction,
     )
 
 
-def _loop(parameters: RingsParameters, rings: Rings) -> Array:
-    """Rows of direction, penetration, radius and jump of a whole loop."""
-    schedule = LoadSchedule(parameters.max_penetration, parameters.step)
-    field = _field(rings, parameters.max_penetration, parameters.samples)
-    rows = []
-    for step in _steps(field, schedule.loads()):
-        penetration, direction, _ = step.load
-        passed = rings.penetration(np.linspace(step.before[0], step.front[0], _PATH))
-        jump = np.any(direction * np.diff(passed) < 0)
-        rows.append((direction, penetration, step.front[0], jump))
-    return np.array(rows, dtype=float)
-
-
-def _mean_adhesion(parameters: RingsParameters, rings: Rings) -> tuple[float, float]:
-    """Means over the window of the works of adhesion in approach and retraction."""
-    low, high = parameters.case_window
-    count = round((high - low) / parameters.case_step)
-    window = low + (high - low) * (np.arange(count) + 0.5) / count
-    # From there on every front of the retraction rests on a ring that it had not reached before.
-    turn = float(jkr.equilibrium_penetration(rings.outermost(high), 1 - rings.amplitude))
-    visited = [Load(float(b), 1) for b in [*window, turn]]
-    visited += [Load(float(b), -1) for b in window[::-1]]
-    field = _field(rings, turn, parameters.samples)
-    adhesion = rings.adhesion([step.front[0] for step in _steps(field, visited)])
-    return float(adhesion[:count].mean()), float(adhesion[count + 1 :].mean())
-
-
-def _steps(field: RayField, visited: Iterable[Load]) -> Iterator[Step]:
-    """Steps from contact that is just made until it is lost."""
-    for step in follow(field, np.array([INNERMOST]), visited, Newton(_TOLERANCE)):
-        if step.status is Status.LOST_CONTACT:
-            return
-        if step.status is not Status.CONVERGED:
-            raise RuntimeError(f"no state at penetration {step.load.value}: {step.status.value}")
-        yield step
-
-
-def _field(rings: Rings, penetration: float, samples: int) -> RayField:
-    """Rings as far as a front may get at a penetration."""
-    largest = rings.outermost(penetration)
-    count = math.ceil((largest - INNERMOST) / rings.wavelength * samples)
-    radius = np.linspace(INNERMOST, largest, count)
-    return polar_field(radius, WORK_OF_ADHESION * rings.adhesion(radius), "cubic")
-
-
 _KNOWN = {(0.2, 0.3, 0.7, 0.005): (0.3886, 2e-4), (0.2, 0.3, 0.7, 0.1): (0.238, 1e-3)}
 """Hysteresis with its tolerance, by amplitude, window and wavelength, from a separate program."""
 
 _ROUND_OFF = 1e-9
-
-
-def first_stops(rings: Rings, penetration: Array, direction: int, start: float) -> Array:
-    """Radii at which a front on the rings first rests; NaN where no rest is left.
-
-    In approach (direction 1) that is where the running maximum of b_eq from the start reaches each
-    penetration, in retraction (-1) its running minimum: its folds are found first, then the root
-    between two of them. All lengths are reduced.
-    """
-    largest = max(float(np.max(penetration)), 0.0)
-    end = rings.outermost(largest) if direction > 0 else INNERMOST
-    nodes = folds(rings, min(start, end), max(start, end))[::direction]
-    reached = direction * rings.penetration(nodes)
-    stops = np.full(penetration.size, np.nan)
-    for index, load in enumerate(penetration):
-        beyond = np.flatnonzero(reached >= direction * load)
-        if beyond.size and (first := beyond[0]) > 0:
-            between = nodes[first - 1], nodes[first]
-            stops[index] = brentq(
-                lambda a, b=load: float(rings.penetration(a)) - b, *between, xtol=1e-15
-            )
-        elif beyond.size:
-            stops[index] = nodes[0]
-    return stops
-
-
-def folds(rings: Rings, low: float, high: float) -> Array:
-    """Ends of an interval and the extrema of b_eq within, increasing."""
-
-    def slope(radius: float) -> float:
-        adhesion = float(rings.adhesion(radius))
-        turn = 2 * math.pi / rings.wavelength
-        rise = rings.amplitude * turn * math.cos(turn * radius)
-        return 2 * radius - math.sqrt(2 / 3) * (adhesion + radius * rise) / math.sqrt(
-            radius * adhesion
-        )
-
-    grid = np.linspace(low, high, 64 * math.ceil((high - low) / rings.wavelength) + 2)
-    sign = np.sign([slope(radius) for radius in grid])
-    turns = [
-        brentq(slope, grid[i], grid[i + 1], xtol=1e-15)
-        for i in np.flatnonzero(sign[:-1] * sign[1:] < 0)
-    ]
-    return np.array([low, *turns, high])
 
 
 def rings_checks(loops: RingLoops) -> tuple[Check, ...]:
@@ -307,7 +189,7 @@ def _limit_checks(loops: RingLoops) -> Iterator[Check]:
         steady = slice(jumps[1], jumps[-1]) if direction > 0 else slice(jumps[0], jumps[-1])
         # In a ring the front goes on from the landing of its jump, S d away, to the extreme.
         extreme = 1 - direction * loops.amplitude
-        half = float(np.mean(_stiffness(loops.radius[steady], extreme))) * wavelength / 2
+        half = float(np.mean(steady_stiffness(loops.radius[steady], extreme))) * wavelength / 2
         yield close_to(
             f"rings of {wavelength:g}, {name}: mean work of adhesion, the extreme of the field "
             "and half of the fall S d in a jump",
@@ -320,7 +202,7 @@ def _limit_checks(loops: RingLoops) -> Iterator[Check]:
     states = loops.loop == index
     lowest = float(loops.force[states].min())
     limit = jkr.pull_off_force(1 + loops.amplitude)
-    sharpest = float(_stiffness(loops.radius[states].max(), 1 + loops.amplitude))
+    sharpest = float(steady_stiffness(loops.radius[states].max(), 1 + loops.amplitude))
     reach = jkr.pull_off_force(sharpest * wavelength)
     yield close_to(
         f"rings of {wavelength:g}: pull-off force, -3/2 w_retr or less by the fall S d in a jump",
@@ -335,36 +217,27 @@ def _case_checks(loops: RingLoops) -> Iterator[Check]:
     """Mean hysteresis of the cases, known beforehand or in a limit."""
     delta, low, high = loops.case_amplitude, loops.case_lowest, loops.case_highest
     radii = np.array([jkr.equilibrium_radius(b) for b in np.linspace(low, high, 21)])
-    stiffness, softest = float(np.mean(_stiffness(radii))), float(np.min(_stiffness(radii)))
-    for wavelength, approach, retraction in zip(
-        loops.case_wavelength, loops.case_approach, loops.case_retraction, strict=True
-    ):
+    stiffness, softest = (float(part(steady_stiffness(radii))) for part in (np.mean, np.min))
+    near, critical = partial(close_to, units="w_int"), 2 * math.pi * delta / softest
+    hysteresis = loops.case_retraction - loops.case_approach
+    for wavelength, found in zip(loops.case_wavelength, hysteresis, strict=True):
         name = f"amplitude {delta:g}, rings of {wavelength:g}: mean hysteresis"
-        found = retraction - approach
-        known = _KNOWN.get((delta, low, high, float(wavelength)))
-        if known is not None:
+        if known := _KNOWN.get((delta, low, high, float(wavelength))):
             remark = f"mean over b from {low:g} to {high:g}; from a program of its own"
-            yield close_to(name, found, *known, units="w_int", remark=remark)
+            yield near(name, found, *known, remark=remark)
         fall = stiffness * wavelength
         if wavelength == loops.case_wavelength.min():
-            yield close_to(
+            yield near(
                 f"{name}, peak to peak less the fall in the jumps, 2 delta - S d",
                 found,
                 2 * delta - fall,
                 fall * math.sqrt(fall / (2 * delta)),
-                units="w_int",
                 remark=f"the limit d -> 0 is 2 delta = {2 * delta:g}; the tolerance is of the next "
                 "order, S d sqrt(S d / 2 delta), as a rounded extreme holds the front",
             )
-        critical = 2 * math.pi * delta / softest
         if wavelength > critical:
             remark = f"no instability beyond 2 pi delta / S = {critical:.3f}"
-            yield close_to(name, found, 0.0, _ROUND_OFF, units="w_int", remark=remark)
-
-
-def _stiffness(radius: Array, adhesion: float = 1.0) -> Array:
-    """Rise of G at fixed b where it is w, S = sqrt(6 w a) - w / a (Units: w_int / length)."""
-    return np.asarray(np.sqrt(6 * adhesion * radius) - adhesion / radius)
+            yield near(name, found, 0.0, _ROUND_OFF, remark=remark)
 
 
 _COLOURS = ({1: BLUE, -1: VERMILION}, {1: SKY, -1: ORANGE})
@@ -420,24 +293,11 @@ def _draw_contact(axes: Axes, loops: RingLoops) -> None:
 
 def _draw_rings(axes: Axes, loops: RingLoops) -> None:
     """Work of adhesion from above, half of it, with the contact edges of A and B."""
-    along, across = np.linspace(-_REACH, _REACH, 801), np.linspace(-_REACH, 0, 401)
-    distance = np.hypot(*np.meshgrid(along, across))
-    image = axes.imshow(
-        loops.rings(0).adhesion(distance),
-        extent=(-_REACH, _REACH, -_REACH, 0),
-        cmap="Greys",
-        vmin=1 - 1.5 * loops.amplitude,
-        vmax=1 + 2 * loops.amplitude,
-        interpolation="bilinear",
-        origin="lower",
-    )
+    loops.rings(0).draw(axes, _REACH)
     angle = np.linspace(-np.pi, 0, 361)
     for direction, colour in _COLOURS[0].items():
         contact = loops.radius_at_zero(0, direction)
         axes.plot(contact * np.cos(angle), contact * np.sin(angle), color=colour)
-    bar = axes.inset_axes((1.03, 0.0, 0.03, 1.0))
-    axes.figure.colorbar(image, cax=bar, label=r"$w_\mathrm{loc}/w_\mathrm{int}$")
-    bar.set_ylim(1 - loops.amplitude, 1 + loops.amplitude)
     axes.set_xlabel(parts.LENGTH_LABEL.format("$x$"))
     axes.set_ylabel(parts.LENGTH_LABEL.format("$y$").replace(" / ", " /\n"))
 
@@ -515,11 +375,10 @@ def _draw_branch(
     branch, colour = loops.branch(index, direction), _COLOURS[index][direction]
     radius, penetration = loops.radius[branch], loops.penetration[branch]
     starts = np.flatnonzero(loops.jump[branch])
-    name: str | None = label
-    for held, load in zip(np.split(radius, starts), np.split(penetration, starts), strict=True):
-        if held.size:
-            axes.plot(held, value(held, load), color=colour, linewidth=1.4, label=name)
-            name = None
+    pieces = zip(np.split(radius, starts), np.split(penetration, starts), strict=True)
+    for number, (held, load) in enumerate(one for one in pieces if one[0].size):
+        name = label if number == 0 else None
+        axes.plot(held, value(held, load), color=colour, linewidth=1.4, label=name)
     jumps = list(zip(np.r_[0.0, radius][starts], radius[starts], penetration[starts], strict=True))
     if direction < 0:
         jumps.append((radius[-1], 0.0, penetration[-1]))

@@ -24,9 +24,9 @@ from crackfront.plots.style import (
 )
 from studies.paper.drawing import write_beside
 from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
-from studies.paper.film import CONVERTED_LABEL, FilmParameters, conformity_energy, shown_wavevectors
+from studies.paper.film import CONVERTED_LABEL, FilmDensities, FilmParameters, conformity_energy
 
-_WAVE, _ORDER, _POINT = "wavevector", "order", "point"
+_ORDER = "order"
 
 _ORDERS = (0.0, 0.5, 1.0)
 
@@ -40,7 +40,6 @@ class FilmScalesParameters(FilmParameters):
     """What Fig. 5a shows."""
 
     work_of_adhesion: Positive  # w_int (J / m^2)
-    longest: Positive  # wavelength that is shown (m)
 
     @model_validator(mode="after")
     def _long_enough(self) -> FilmScalesParameters:
@@ -53,43 +52,32 @@ class FilmScalesParameters(FilmParameters):
 
 
 @dataclass(frozen=True, slots=True)
-class FilmScales:
+class FilmScales(FilmDensities):
     """Densities of the film, and the wavelengths that dominate its rms measures."""
 
-    contact_modulus: float = variable("contact modulus E'", "Pa")
     work_of_adhesion: float = variable("intrinsic work of adhesion", "J m-2")
     roll_off: float = variable("roll-off wavelength", "m")
-    wavevector: Array = variable("wavevector", "m-1", _WAVE)
-    isotropic: Array = variable("isotropic spectral density C", "m4", _WAVE)
-    profile: Array = variable("spectral density of profiles C_1D", "m3", _WAVE)
-    converted: Array = variable("paper's C_1D = q C / pi", "m3", _WAVE)
+    isotropic: Array = variable("isotropic spectral density C", "m4", "wavevector")
     order: Array = variable("order of a derivative", "1", _ORDER)
     mean_square: Array = variable("mean square of the derivative", "m^(2 - 2 order)", _ORDER)
     shortest: Array = variable("wavelength below which a tenth of it lies", "m", _ORDER)
     longest: Array = variable("wavelength above which a tenth of it lies", "m", _ORDER)
-    measured_wavevector: Array = variable("measured wavevector", "m-1", _POINT)
-    measured_profile: Array = variable("measured spectral density of profiles", "m3", _POINT)
 
 
 def film_scales(parameters: FilmScalesParameters, progress: Progress) -> FilmScales:
     """Densities of the film from its spectrum."""
-    spectrum, points = parameters.spectrum, parameters.points()
-    wavevector = shown_wavevectors(parameters.longest, parameters.short_cutoff)
-    isotropic = spectrum.density(wavevector)
+    spectrum, densities = parameters.spectrum, parameters.densities(parameters.short_cutoff)
     ranges = np.array([spectrum.dominant_wavelengths(order, _SHARE) for order in _ORDERS])
-    progress(f"{wavevector.size} wavevectors, {points.wavevector.size} measured points")
+    n_point = densities.wavevector.size, densities.measured_wavevector.size
+    progress(f"{n_point[0]} wavevectors, {n_point[1]} measured points")
     return FilmScales(
-        **values_of(parameters, "contact_modulus", "work_of_adhesion", "roll_off"),
-        wavevector=wavevector,
-        isotropic=isotropic,
-        profile=spectrum.profile_density(wavevector),
-        converted=wavevector / np.pi * isotropic,
+        **values_of(densities),
+        **values_of(parameters, "work_of_adhesion", "roll_off"),
+        isotropic=spectrum.density(densities.wavevector),
         order=np.array(_ORDERS),
         mean_square=np.array([spectrum.mean_square(order) for order in _ORDERS]),
         shortest=ranges[:, 0],
         longest=ranges[:, 1],
-        measured_wavevector=points.wavevector,
-        measured_profile=points.density,
     )
 
 

@@ -4,293 +4,34 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure as Drawing
-from numpy.typing import NDArray
-from pydantic import Field, model_validator
-from scipy.ndimage import find_objects, label
 
 from crackfront.analysis.estimate import REACH
 from crackfront.analysis.finding import PAPER_FACTOR
-from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
-from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
-from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.core.units import Scales
-from crackfront.core.variables import variable
-from crackfront.data.section import InputFile, Plateau, Positive, refusal
 from crackfront.plots.style import BLACK, ORANGE, PAGE, blank_figure, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
-from crackfront.simulate.simulation import Simulation
 from studies.paper.drawing import BRANCHES, name_panels
-from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
-from studies.paper.measured import ForceRadius, fitted_adhesion, read_force_radius
-from studies.paper.rough import (
-    ONE_DIGIT,
-    RoughParameters,
-    expected_seconds,
-    recorded,
-    rough_spectrum,
-)
-
-_STATE, _POINT = "state", "point"
-_LINE, _ANGLE = "line", "angle"
-_STRIDE, _ARC = "stride", "arc"
-_SURFACE_ENERGY = "J m-2"
-_FIT = (_SURFACE_ENERGY, "bound")
-
-_STRIDES = (1, 2, 4)
-"""Load steps, in those of the approach, at which the widest instability is looked for."""
+from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
+from studies.paper.measured import ForceRadius, fitted_adhesion
+from studies.paper.nanodiamond import EVERY_WAVELENGTH, NanodiamondContact, NanodiamondParameters
+from studies.paper.perimeters import STRIDES, Perimeters
+from studies.paper.rough import ONE_DIGIT, expected_seconds, recorded
 
 _SYNTHETIC_POINTS, _SYNTHETIC_NOISE = 40, 0.02
 """Points of a synthetic measurement, and the noise of its forces relative to the largest."""
-
-_HURST = 1.0
-"""Hurst exponent of the paper's film, of which data are that do not say it."""
-
-_EVERY_WAVELENGTH = 1e-6
-"""Short cutoff over roll-off below which nothing adds to the half-derivative, for H > 1/2."""
-
-
-class NanodiamondParameters(RoughParameters):
-    """What Fig. 5b and 5c show, in SI units."""
-
-    young_modulus: Positive  # of the sphere (Pa)
-    poisson_ratio: Annotated[float, Field(ge=0, le=0.5)]
-    radius: Positive  # of the sphere (m)
-    work_of_adhesion: Positive  # w_int (J / m^2)
-    roll_off: Positive  # spectrum of the heights (m, m, 1, m^4)
-    short_cutoff: Positive
-    hurst: Annotated[float, Field(gt=0.5, le=1)]
-    plateau: Plateau
-    largest_force: Positive  # where the approach turns (N)
-    shown_force: Positive  # up to which perimeters are shown (N)
-    step: Positive  # penetration between states of the approach (m)
-    retraction_step: Positive  # and of the retraction
-    line_step: Positive  # and between the shown perimeters
-    factor: Positive = PAPER_FACTOR  # the k with which w_int is found from an approach
-    measured: InputFile | None = None  # CSV file that `read_force_radius` reads
-
-    @model_validator(mode="after")
-    def _possible(self) -> NanodiamondParameters:
-        if self.shown_force > self.largest_force:
-            raise refusal(
-                f"shown_force {self.shown_force:g} is above largest_force {self.largest_force:g}; "
-                "lower it"
-            )
-        if self.whole_elastic_energy >= self.work_of_adhesion:
-            raise refusal(
-                f"energy of full conformity is {self.whole_elastic_energy:.3g} J/m^2, not below "
-                f"work_of_adhesion {self.work_of_adhesion:g}; lower the plateau"
-            )
-        self.simulation()
-        self.points()
-        return self
-
-    @property
-    def scales(self) -> Scales:
-        """Reduced units of the scene."""
-        modulus = self.young_modulus / (1 - self.poisson_ratio**2)
-        return Scales(self.radius, self.work_of_adhesion, modulus)
-
-    @property
-    def spectrum(self) -> SelfAffineSpectrum:
-        """Spectrum of the heights (Units: m)."""
-        return rough_spectrum(self.short_cutoff, self.roll_off, self.hurst, self.plateau)
-
-    @property
-    def whole_elastic_energy(self) -> float:
-        """Energy of full conformity of all wavelengths (Units: J / m^2)."""
-        every = _EVERY_WAVELENGTH * self.roll_off
-        return self._energy_of(replace(self.spectrum, short_cutoff=every))
-
-    def _energy_of(self, spectrum: SelfAffineSpectrum) -> float:
-        """e_el = E'/4 [h_rms^(1/2)]^2 (Units: J / m^2)."""
-        return self.scales.contact_modulus / 4 * spectrum.mean_square(0.5)
-
-    def simulation(self) -> Simulation:
-        """The simulation, whose field is large enough for the largest force."""
-        scales, energy = self.scales, self._energy_of(self.spectrum) / self.work_of_adhesion
-        reduced = SelfAffineSpectrum(
-            self.short_cutoff / scales.lateral, self.roll_off / scales.lateral, self.hurst
-        )
-        # The approach is pinned: at this force it is smaller than a sphere with the mean adhesion.
-        largest = jkr.radius_at_force(self.largest_force / scales.force, 1 - energy)
-        deepest = float(jkr.equilibrium_penetration(largest, 1 - energy))
-        schedule = LoadSchedule(deepest, self.step / scales.vertical)
-        return self.simulation_of(reduced, energy, schedule)
-
-    def points(self) -> ForceRadius:
-        """What was measured."""
-        return read_force_radius(self.measured)
-
-
-@dataclass(frozen=True, slots=True)
-class NanodiamondContact:
-    """States of the cycle, perimeters of its approach and fits, in SI units."""
-
-    status: str = variable("what ended the cycle", "1")
-    sphere_radius: float = variable("radius of the sphere", "m")
-    work_of_adhesion: float = variable("intrinsic work of adhesion", _SURFACE_ENERGY)
-    contact_modulus: float = variable("contact modulus E'", "Pa")
-    factor: float = variable("factor k of the fits", "1")
-    whole_elastic_energy: float = variable("e_el of all wavelengths", _SURFACE_ENERGY)
-    elastic_energy: float = variable("e_el on the tile", _SURFACE_ENERGY)
-    short_cutoff: float = variable("shortest wavelength", "m")
-    roll_off: float = variable("roll-off wavelength", "m")
-    largest_force: float = variable("force at which the approach turns", "N")
-    shown_force: float = variable("force up to which perimeters are shown", "N")
-    jump_in: float = variable("penetration of the first state after jump-in", "m")
-    direction: Integers = variable("+1 in approach, -1 in retraction", "1", _STATE)
-    penetration: Array = variable("rigid body penetration", "m", _STATE)
-    radius: Array = variable("mean contact radius", "m", _STATE)
-    force: Array = variable("normal force", "N", _STATE)
-    approach: Array = variable("w_appr, with its standard error", _SURFACE_ENERGY, "estimate")
-    retraction: Array = variable("w_retr, with its standard error", _SURFACE_ENERGY, "estimate")
-    angle: Array = variable("angle of a site", "rad", _ANGLE)
-    line: NDArray[np.float32] = variable("perimeters of the approach", "m", _LINE, _ANGLE)
-    line_force: Array = variable("normal force at the perimeters", "N", _LINE)
-    threshold: float = variable("advance above which a site has jumped", "m")
-    load_step: Array = variable("penetration between compared states", "m", _STRIDE)
-    extent: Array = variable("widest instability up to the shown force", "m", _STRIDE)
-    extents: Array = variable("widths of all in the first load step", "m", "instability")
-    arc_angle: Array = variable("the widest instability of the first load step", "rad", _ARC)
-    arc_inner: Array = variable("radius before it", "m", _ARC)
-    arc_outer: Array = variable("radius after it", "m", _ARC)
-    synthetic_fit: Array = variable("w_int from synthetic points: value, low, high", *_FIT)
-    simulated_fit: Array = variable("w_int from the simulated approach: value, low, high", *_FIT)
-    measured_fit: Array = variable("w_int from the measured approach: value, low, high", *_FIT)
-    measured_force: Array = variable("measured force", "N", _POINT)
-    measured_radius: Array = variable("measured contact radius", "m", _POINT)
-    measured_direction: Integers = variable("+1 in approach, -1 back", "1", _POINT)
-    hurst: float | None = variable("Hurst exponent", "1", default=None)
-
-    @property
-    def scales(self) -> Scales:
-        """Reduced units of the scene."""
-        return Scales(self.sphere_radius, self.work_of_adhesion, self.contact_modulus)
-
-    @property
-    def spectrum(self) -> SelfAffineSpectrum:
-        """Shape of the spectrum (Units: reduced lateral length)."""
-        lateral, hurst = self.scales.lateral, _HURST if self.hurst is None else self.hurst
-        return SelfAffineSpectrum(self.short_cutoff / lateral, self.roll_off / lateral, hurst)
-
-    @property
-    def law(self) -> SphereFactors:
-        """What the law says of the mean contact of the approach."""
-        since = (self.direction > 0) & (self.penetration >= self.jump_in)
-        radius = float(np.mean(self.radius[since])) / self.scales.lateral
-        energy = self.elastic_energy / self.work_of_adhesion
-        return sphere_factors("roughness", self.spectrum, energy, radius)
-
-
-_MOST_SITES = 4096
-"""Sites of a perimeter that are kept for drawing."""
-
-
-@dataclass(frozen=True, slots=True)
-class Advance:
-    """A connected part of a front that has advanced: its sites, (n_site,) each.
-
-    The angles (rad) make no jump at 2 pi; the radii are those before and after.
-    """
-
-    angle: Array
-    inner: Array
-    outer: Array
-
-    @property
-    def extent(self) -> float:
-        """Width along the perimeter, at the mean of both fronts (Units: length)."""
-        if self.angle.size == 0:
-            return 0.0
-        width = (self.angle[-1] - self.angle[0]) * (1 + 1 / max(self.angle.size - 1, 1))
-        return float(width * np.mean(self.inner + self.outer) / 2)
-
-
-def advances(before: Array, after: Array, threshold: float) -> list[Advance]:
-    """Connected parts of a front, (n_angle,) radii, that have advanced by more than a threshold.
-
-    Examples
-    --------
-    >>> before = np.ones(8)
-    >>> after = before + np.array([0.5, 0.5, 0, 0, 0.5, 0, 0, 0.5])
-    >>> [(part.angle * 4 / np.pi).tolist() for part in advances(before, after, 0.1)]
-    [[4.0], [7.0, 8.0, 9.0]]
-    """
-    moved = after - before > threshold
-    # From a site at rest on, no part is cut in two.
-    start = int(np.argmin(moved))
-    labels, n_part = label(np.roll(moved, -start))
-    parts = []
-    for (sites,) in find_objects(labels, n_part):
-        index = np.arange(sites.start, sites.stop) + start
-        wrapped = index % before.size
-        parts.append(Advance(2 * np.pi * index / before.size, before[wrapped], after[wrapped]))
-    return parts
-
-
-class Perimeters:
-    """What is kept of the fronts of an approach after jump-in: an observer of its states.
-
-    All sites have then travelled by more than `passed`; a site that advances by more has jumped.
-    Fronts up to the force `highest` count; `every` so many load steps one is kept in `lines`, with
-    its state in `states`, at few enough angles for a drawing. For each of `strides`, multiples of
-    the load step, `widest` has the widest advance and `extents` the widths of all. A state does not
-    depend on the load step that led there (no passing), so that every second state is what twice
-    the step would find.
-    """
-
-    def __init__(self, passed: float, highest: float, every: int, strides: Sequence[int]) -> None:
-        self._passed, self._highest, self._every = passed, highest, every
-        self._before: dict[int, Array | None] = dict.fromkeys(strides)
-        self._count = 0
-        self.widest = {stride: Advance(*(np.empty(0),) * 3) for stride in strides}
-        self.extents: dict[int, list[float]] = {stride: [] for stride in strides}
-        self.states: list[ContactState[float]] = []
-        self.lines: list[Array] = []
-        self.angle = np.empty(0)
-
-    def __call__(self, recorder: Recorder) -> None:
-        """Compare a front with the ones before, and keep every few of them."""
-        state, front = recorder.states[-1], recorder.front
-        # Before it jumps into contact, the sphere rests on a few places about its apex.
-        if state.direction < 0 or state.least_travel <= self._passed:
-            return
-        if state.force > self._highest:
-            return
-        self.follow(front)
-        if self._count % self._every == 1 % self._every:
-            kept = slice(None, None, -(-front.size // _MOST_SITES))
-            self.angle = (2 * np.pi * np.arange(front.size) / front.size)[kept]
-            self.states.append(state)
-            self.lines.append(front[kept])
-
-    def follow(self, front: Array) -> None:
-        """Compare the front of the next state, (n_angle,) radii, with earlier ones."""
-        for stride, before in self._before.items():
-            if self._count % stride:
-                continue
-            if before is not None:
-                found = advances(before, front, self._passed)
-                self.extents[stride] += [part.extent for part in found]
-                candidates = [self.widest[stride], *found]
-                self.widest[stride] = max(candidates, key=lambda part: part.extent)
-            self._before[stride] = front
-        self._count += 1
 
 
 def nanodiamond_contact(
@@ -301,7 +42,7 @@ def nanodiamond_contact(
     adhesion = simulation_adhesion(simulation)
     passed = simulation.spectrum.correlation_length
     every = max(1, round(parameters.line_step / parameters.step))
-    perimeters = Perimeters(passed, parameters.shown_force / scales.force, every, _STRIDES)
+    perimeters = Perimeters(passed, parameters.shown_force / scales.force, every)
     recorder = Recorder(observers=[perimeters])
     field, loads = simulation_field(simulation, adhesion), _loads(parameters, recorder, progress)
     record = recorded(simulation, field, loads, recorder)
@@ -318,7 +59,7 @@ def nanodiamond_contact(
     radius, force = states.mean_radius * scales.lateral, states.force * scales.force
     simulated = ForceRadius(force, radius, states.direction)
     synthetic = _synthetic_points(parameters, radius)
-    widest, first = perimeters.widest, _STRIDES[0]
+    widest, first = perimeters.widest, STRIDES[0]
     arc = widest[first]
     return NanodiamondContact(
         status=record.status.value,
@@ -338,8 +79,8 @@ def nanodiamond_contact(
         line=(np.array(perimeters.lines) * scales.lateral).astype(np.float32),
         line_force=np.array([state.force for state in perimeters.states]) * scales.force,
         threshold=passed * scales.lateral,
-        load_step=parameters.step * np.array(_STRIDES),
-        extent=scales.lateral * np.array([widest[stride].extent for stride in _STRIDES]),
+        load_step=parameters.step * np.array(STRIDES),
+        extent=scales.lateral * np.array([widest[stride].extent for stride in STRIDES]),
         extents=scales.lateral * np.array(perimeters.extents[first]),
         arc_angle=arc.angle,
         arc_inner=arc.inner * scales.lateral,
@@ -401,7 +142,7 @@ def nanodiamond_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
 
 def _surface_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     """The surface, and that the cycle is whole."""
-    every = replace(contact.spectrum, short_cutoff=_EVERY_WAVELENGTH * contact.spectrum.roll_off)
+    every = replace(contact.spectrum, short_cutoff=EVERY_WAVELENGTH * contact.spectrum.roll_off)
     share = contact.spectrum.mean_square(0.5) / every.mean_square(0.5)
     reached, largest = 1e3 * float(contact.force.max()), 1e3 * contact.largest_force
     return (

@@ -20,10 +20,10 @@ from crackfront.plots import densities
 from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
 from studies.paper.drawing import DOTTED, write_beside
 from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
-from studies.paper.film import CONVERTED_LABEL, POINTS_PER_DECADE, FilmParameters, shown_wavevectors
+from studies.paper.film import CONVERTED_LABEL, POINTS_PER_DECADE, FilmDensities, FilmParameters
 from studies.paper.tiles import tile_mean_square
 
-_WAVE, _MODE, _POINT = "wavevector", "mode", "point"
+_MODE = "mode"
 
 _PIXELS = 4
 """Points of a tile in its shortest wavelength."""
@@ -37,7 +37,6 @@ class SyntheticFilmParameters(FilmParameters):
 
     shortest: Positive  # wavelength of the synthetic surfaces (m)
     tile_roll_offs: Annotated[float, Field(ge=2, allow_inf_nan=False)]  # side of their tile
-    longest: Positive  # wavelength that is shown (m)
     realisations: Count  # surfaces that are averaged
     seed: Seed  # of all of them
 
@@ -62,16 +61,12 @@ class SyntheticFilmParameters(FilmParameters):
 
 
 @dataclass(frozen=True, slots=True)
-class SyntheticFilm:
+class SyntheticFilm(FilmDensities):
     """Profile densities of the film's spectrum and of synthetic surfaces."""
 
-    contact_modulus: float = variable("contact modulus E'", "Pa")
     shortest: float = variable("shortest wavelength of the surfaces", "m")
     side: float = variable("side of the tiles, their longest wavelength", "m")
     realisations: int = variable("number of surfaces", "1")
-    wavevector: Array = variable("wavevector", "m-1", _WAVE)
-    profile: Array = variable("profile density of the film's spectrum", "m3", _WAVE)
-    converted: Array = variable("paper's q C / pi of the film's spectrum", "m3", _WAVE)
     mode: Array = variable("wavevector of a mode of the tiles", "m-1", _MODE)
     synthetic: Array = variable("profile density of the surfaces, mean over all lines", "m3", _MODE)
     included: Array = variable("profile density of the included scales", "m3", _MODE)
@@ -82,13 +77,11 @@ class SyntheticFilm:
     height_square: float = variable("mean square height of the lines about their means", "m2")
     dominant_shortest: float = variable("wavelength below which a tenth of e_el lies", "m")
     dominant_longest: float = variable("wavelength above which a tenth of e_el lies", "m")
-    measured_wavevector: Array = variable("measured wavevector", "m-1", _POINT)
-    measured_profile: Array = variable("measured spectral density of profiles", "m3", _POINT)
 
 
 def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> SyntheticFilm:
     """Synthesise surfaces of the film's spectrum and average the periodograms of their lines."""
-    film, side, points = parameters.spectrum, parameters.side, parameters.points()
+    film, side = parameters.spectrum, parameters.side
     included, stiffness = film.longer_than(parameters.shortest), parameters.contact_modulus / 4
     n_point = 2 * math.ceil(_PIXELS * side / parameters.shortest / 2)
     profiles, halves, squares = [], [], []
@@ -103,14 +96,11 @@ def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> S
     # A mode on the cutoff itself belongs to the surfaces, as in the spectrum.
     kept = mode <= 2 * np.pi / parameters.shortest * (1 + 1e-12)
     finest = max(parameters.short_cutoff, parameters.shortest / _ROOM)
-    wavevector = shown_wavevectors(parameters.longest, finest)
     expected, deviation = tile_mean_square(included, side, 0.5)
     dominant = film.dominant_wavelengths(0.5)
     return SyntheticFilm(
-        **values_of(parameters, "contact_modulus", "shortest", "side", "realisations"),
-        wavevector=wavevector,
-        profile=film.profile_density(wavevector),
-        converted=wavevector / np.pi * film.density(wavevector),
+        **values_of(parameters.densities(finest)),
+        **values_of(parameters, "shortest", "side", "realisations"),
         mode=mode[kept],
         synthetic=np.mean(profiles, axis=0)[kept],
         included=included.profile_density(mode[kept]),
@@ -121,8 +111,6 @@ def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> S
         height_square=float(np.mean(squares)),
         dominant_shortest=dominant[0],
         dominant_longest=dominant[1],
-        measured_wavevector=points.wavevector,
-        measured_profile=points.density,
     )
 
 

@@ -7,7 +7,8 @@ import pytest
 from pydantic import ValidationError
 
 from studies.paper.figure import figure
-from studies.paper.main_2 import INNERMOST, Rings, RingsParameters, first_stops
+from studies.paper.main_2 import RingsParameters
+from studies.paper.rings import INNERMOST, Rings, first_stops
 from tests.studies.paper.made import computed, failed
 
 GIVEN = {

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from studies.paper.figure import figure, settings_fingerprint
-from studies.paper.main_5bc import NanodiamondParameters, advances
+from studies.paper.nanodiamond import NanodiamondParameters
+from studies.paper.perimeters import advances
 from tests.studies.paper.made import CONFIGURATIONS, computed, drawn_from_file, failed
 
 CONFIGURATION = CONFIGURATIONS / "main-5bc.yaml"
