@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -202,14 +202,9 @@ def depth_slope(record: EventRecord) -> Slope:
 
 def _slope(abscissa: Array, ordinate: Array, error: Array | None = None) -> Slope:
     """Line of least squares; without errors they follow from the scatter."""
-    weight = np.ones(abscissa.size) if error is None else 1 / error
-    rows = np.stack([abscissa, np.ones(abscissa.size)], axis=1)
-    covariance = np.linalg.inv((rows * weight[:, None] ** 2).T @ rows)
-    slope, level = covariance @ (rows.T @ (weight**2 * ordinate))
-    left = ordinate - rows @ (slope, level)
-    scale = 1.0 if error is not None else float(np.sum(left**2)) / (abscissa.size - 2)
-    reach = _NORMAL * math.sqrt(scale * covariance[0, 0])
-    return Slope(float(slope), reach, float(level))
+    known = {"cov": True} if error is None else {"w": 1 / error, "cov": "unscaled"}
+    (slope, level), covariance = np.polyfit(abscissa, ordinate, 1, **known)
+    return Slope(float(slope), float(_NORMAL * math.sqrt(covariance[0, 0])), float(level))
 
 
 _N_BOOTSTRAP, _NORMAL = 200, 1.96
@@ -217,57 +212,22 @@ _N_BOOTSTRAP, _NORMAL = 200, 1.96
 
 def event_checks(record: EventRecord) -> Iterator[Check]:
     """Claims about whole events."""
-    whole, growth = "whole events of a straight front: ", 1 + _ROUGHNESS
-    area = event_law(record)
-    patch = _joint(record, record.patch_area, record.patch_spring, 3)
-    # If extents scale, their power 1 + zeta has the law of the areas.
-    extent = _joint(record, record.event_extent**growth, record.event_spring, 4)
+    yield from _law_checks(record)
     cutoff, depth = cutoff_slope(record), depth_slope(record)
-    later = event_law(replace(record, smallest_event=2 * record.smallest_event))
-    decades = np.log10(area.scales / area.smallest)
-    told = (
-        f"{area.n_value.sum()} of {record.event_area.size} events above {area.smallest:g}, on "
-        f"{record.spring.size} springs of {record.spring.min():g} to {record.spring.max():g} "
-        f"Larkin lengths; {decades.min():.1f} to {decades.max():.1f} decades up to the cut-off"
-    )
-    shape = f"C = {area.shoulder:.2f}, B = {area.tail:.2f}, delta = {area.steepness:.2f}"
+    scales = event_law(record).scales
     yield _exponent_check(
-        whole + "exponent tau of their areas",
-        area.exponent,
-        (area.high - area.low) / 2,
-        SIZE_EXPONENT,
-        f"{told}; one fit over all springs, {shape}; from twice that area on {later.exponent:.2f} "
-        f"({later.low:.2f} to {later.high:.2f})",
-    )
-    yield _exponent_check(
-        whole + "growth of the cut-off <S^2> / 2 <S> with the length of the springs",
+        "growth of the cut-off <S^2> / 2 <S> with the length of the springs",
         cutoff.exponent,
+        1 + _ROUGHNESS,
+        ", ".join(f"{scale:.3g}" for scale in scales) + " on the springs",
         cutoff.reach,
-        growth,
-        ", ".join(f"{scale:.3g}" for scale in area.scales) + " on the springs",
     )
     yield _exponent_check(
-        whole + "exponent of the density of their extents",
-        1 + growth * (extent.exponent - 1),
-        growth * (extent.high - extent.low) / 2,
-        growth,
-        f"{extent.n_value.sum()} events wider than {extent.smallest ** (1 / growth):.2g}; one fit, "
-        f"as that of the areas, to extents to the power {growth:g}",
-    )
-    yield _exponent_check(
-        whole + "growth of their depth with their extent",
+        "growth of their depth with their extent",
         depth.exponent,
-        depth.reach,
         _ROUGHNESS,
         "least squares of logarithms, up to the length of the spring",
-    )
-    yield _exponent_check(
-        whole + "exponent of the areas of their patches, 2 tau - 1",
-        patch.exponent,
-        (patch.high - patch.low) / 2,
-        2 * SIZE_EXPONENT - 1,
-        f"{patch.n_value.sum()} of {record.patch_area.size} patches above {patch.smallest:g}; "
-        f"{record.patch_area.size / record.event_area.size:.1f} patches an event",
+        depth.reach,
     )
     furthest = float(record.swept_area[np.argmax(np.abs(record.swept_area - 1))])
     yield close_to(
@@ -280,18 +240,65 @@ def event_checks(record: EventRecord) -> Iterator[Check]:
     )
 
 
-def _exponent_check(claim: str, found: float, reach: float, expected: float, remark: str) -> Check:
-    """An exponent against that of the theory, within what is asked or its own interval."""
-    tolerance, missing = _TOLERANCE, ""
-    if reach > tolerance:
-        more = math.ceil((reach / tolerance) ** 2)
-        missing = f"; ± {tolerance} would need about {more} times as many events"
+def _law_checks(record: EventRecord) -> Iterator[Check]:
+    """Exponents of what is distributed by a power law: areas, extents and areas of patches."""
+    area, growth = event_law(record), 1 + _ROUGHNESS
+    patch = _joint(record, record.patch_area, record.patch_spring, 3)
+    # If extents scale, their power 1 + zeta has the law of the areas.
+    extent = _joint(record, record.event_extent**growth, record.event_spring, 4)
+    decades = np.log10(area.scales / area.smallest)
+    yield _exponent_check(
+        "exponent tau of their areas",
+        area.exponent,
+        SIZE_EXPONENT,
+        f"{area.n_value.sum()} of {record.event_area.size} events above {area.smallest:g}, on "
+        f"{record.spring.size} springs of {record.spring.min():g} to {record.spring.max():g} "
+        f"Larkin lengths; {decades.min():.1f} to {decades.max():.1f} decades up to the cut-off; "
+        f"one fit over all springs, C = {area.shoulder:.2f}, B = {area.tail:.2f}, "
+        f"delta = {area.steepness:.2f}",
+        area.scatter,
+        area.shift,
+    )
+    yield _exponent_check(
+        "exponent of the density of their extents",
+        1 + growth * (extent.exponent - 1),
+        growth,
+        f"{extent.n_value.sum()} events wider than {extent.smallest ** (1 / growth):.2g}; one fit, "
+        f"as that of the areas, to extents to the power {growth:g}",
+        growth * extent.scatter,
+        growth * extent.shift,
+    )
+    yield _exponent_check(
+        "exponent of the areas of their patches, 2 tau - 1",
+        patch.exponent,
+        2 * SIZE_EXPONENT - 1,
+        f"{patch.n_value.sum()} of {record.patch_area.size} patches above {patch.smallest:g}; "
+        f"{record.patch_area.size / record.event_area.size:.1f} patches an event",
+        patch.scatter,
+        patch.shift,
+    )
+
+
+def _exponent_check(
+    claim: str, found: float, expected: float, remark: str, scatter: float, shift: float = 0.0
+) -> Check:
+    """An exponent against that of the theory, within what is asked or its own interval.
+
+    The interval is that of the scatter of the events and of the shift with the range of a fit.
+    """
+    reach = math.hypot(scatter, shift)
+    of_what = f"95% interval: ± {scatter:.2g} by the scatter of the events"
+    if shift:
+        of_what += f", ± {shift:.2g} by where the law begins (its change from twice that value on)"
+    if scatter > _TOLERANCE:
+        more = math.ceil((scatter / _TOLERANCE) ** 2)
+        remark += f"; a scatter of {_TOLERANCE} would need about {more} times as many events"
     return Check(
-        claim,
-        with_error(expected, max(reach, tolerance)),
+        f"whole events of a straight front: {claim}",
+        with_error(expected, max(reach, _TOLERANCE)),
         with_error(found, reach),
-        abs(found - expected) <= max(reach, tolerance),
-        f"95% interval; {remark}{missing}",
+        abs(found - expected) <= max(reach, _TOLERANCE),
+        f"{of_what}; {remark}",
     )
 
 

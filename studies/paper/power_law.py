@@ -45,8 +45,28 @@ class PowerLaw:
 def truncated_power_law(values: Array, smallest: float, rng: np.random.Generator) -> PowerLaw:
     """Power law with exponential cut-off that makes values from a smallest one on most likely.
 
-    The bootstrap takes the values as independent. A ValueError says if fewer than 20 are used.
-    After Clauset, Shalizi, Newman, SIAM Rev. 51, 661 (2009).
+    Parameters
+    ----------
+    values : (n,) array
+        Values; those below the smallest are left out.
+    smallest : float
+        Where the law begins, in the unit of the values.
+    rng : numpy.random.Generator
+        Draws the values of the bootstrap, which takes them as independent.
+
+    Returns
+    -------
+    PowerLaw
+        The law.
+
+    Raises
+    ------
+    ValueError
+        If fewer than 20 values lie above the smallest.
+
+    References
+    ----------
+    .. [1] Clauset, Shalizi, Newman, SIAM Rev. 51, 661 (2009).
     """
     used = values[values >= smallest] / smallest
     if used.size < _FEWEST:
@@ -109,6 +129,20 @@ class JointPowerLaw:
     scales: Array  # s_m of each sample, as of `cutoff_scale`
     smallest: float  # where the law begins
     n_value: Integers  # values of each sample above it
+    later: float  # tau of the law that begins at twice the smallest
+
+    @property
+    def scatter(self) -> float:
+        """Half of the interval of the bootstrap."""
+        return (self.high - self.low) / 2
+
+    @property
+    def shift(self) -> float:
+        """What tau owes to where the law begins: its change if that is at twice the smallest.
+
+        Scaling is reached little by little, and there is no telling where within a decade or two.
+        """
+        return abs(self.later - self.exponent)
 
     def density(self, values: ArrayLike, sample: int) -> Array:
         """Density of a sample at values above the smallest, normalised there."""
@@ -123,7 +157,19 @@ class JointPowerLaw:
 def cutoff_scale(values: Array, counts: Integers | int = 1) -> float:
     """Scale <s^2> / 2 <s> of the cut-off of a power law of exponent below 2.
 
-    Small values hardly matter; `counts` says how often each value occurs.
+    Small values hardly matter.
+
+    Parameters
+    ----------
+    values : (n,) array
+        Values.
+    counts : (n,) array or int, optional
+        How often each occurs.
+
+    Returns
+    -------
+    float
+        The scale, in the unit of the values.
     """
     return float(np.sum(counts * values**2) / np.sum(counts * values) / 2)
 
@@ -141,8 +187,24 @@ def joint_power_law(
 ) -> JointPowerLaw:
     """Power law with the same exponent and shape of the cut-off that makes all samples most likely.
 
-    Values below the smallest decide the scale alone. The bootstrap takes the values as independent.
-    A ValueError says if fewer than 20 values of a sample lie above the smallest.
+    Parameters
+    ----------
+    samples : sequence of (n,) arrays
+        Values; those below the smallest decide the scale alone.
+    smallest : float
+        Where the law begins, in the unit of the values.
+    rng : numpy.random.Generator
+        Draws the values of the bootstrap, which takes them as independent.
+
+    Returns
+    -------
+    JointPowerLaw
+        The law.
+
+    Raises
+    ------
+    ValueError
+        If fewer than 20 values of a sample lie above the smallest.
     """
     n_value = np.array([np.sum(sample >= smallest) for sample in samples])
     if n_value.min() < _FEWEST:
@@ -159,7 +221,9 @@ def joint_power_law(
     low, high = (float(end) for end in np.quantile(again, [0.025, 0.975]))
     exponent, shoulder, quarter = (float(value) for value in natural)
     shape = shoulder, 4 * quarter, steepness
-    return JointPowerLaw(exponent, low, high, *shape, scales, smallest, n_value)
+    upper = [_binned(sample, 2 * smallest) for sample in samples]
+    later = float(_most_likely_joint(upper, 2 * smallest)[1][0])
+    return JointPowerLaw(exponent, low, high, *shape, scales, smallest, n_value, later)
 
 
 def _binned(sample: Array, smallest: float) -> tuple[Array, Integers]:

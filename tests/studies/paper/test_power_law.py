@@ -92,10 +92,21 @@ def test_the_scales_of_a_joint_law_are_those_of_its_samples(rng):
 
 def test_the_density_of_a_joint_law_is_normalised_for_every_sample():
     scales = np.array(SCALES)
-    law = JointPowerLaw(1.28, 1.2, 1.4, 0.6, 1.6, 1.3, scales, 30.0, np.array([9, 9, 9]))
+    law = JointPowerLaw(1.28, 1.2, 1.4, 0.6, 1.6, 1.3, scales, 30.0, np.array([9, 9, 9]), 1.3)
     for sample, scale in enumerate(SCALES):
         grid = np.geomspace(30.0, 100 * scale, 40001)
         assert np.trapezoid(law.density(grid, sample), grid) == pytest.approx(1.0, abs=1e-5)
+
+
+def test_the_exponent_of_a_joint_law_shifts_with_its_beginning_where_there_is_no_power_law(rng):
+    samples = scaling(rng, 1.28, 5000)
+    true = joint_power_law(samples, 30.0, rng)
+    assert true.shift < true.scatter
+    # Twice the values below 60, which a power law would not have.
+    bent = [np.concatenate([sample, sample[sample < 60]]) for sample in samples]
+    law = joint_power_law(bent, 30.0, rng)
+    assert law.exponent - law.later == pytest.approx(law.shift)
+    assert law.shift > 2 * law.scatter
 
 
 def test_too_few_values_of_any_sample_are_refused(rng):
