@@ -177,8 +177,6 @@ def _draw_axes(axes: Axes, shown: AnimatedCycle) -> None:
 
 FIGURE = Figure(
     title="Animation: the fronts of a cycle over the field, beside its loop",
-    parameters=RoughCycleParameters,
-    record=AnimatedCycle,
     compute=motion,
     checks=motion_checks,
     draw=motion_figure,

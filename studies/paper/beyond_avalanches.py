@@ -357,8 +357,6 @@ def _legend_of(axes: Axes, word: str, **style: Any) -> None:
 
 FIGURE = Figure(
     title="Beyond the paper: avalanches",
-    parameters=AvalancheParameters,
-    record=AvalancheRecord,
     compute=avalanche_record,
     checks=avalanche_checks,
     draw=avalanche_figure,

@@ -465,8 +465,6 @@ def _draw_larkin_length(axes: Axes, index: int, place: float, label: str) -> Non
 
 FIGURE = Figure(
     title="Beyond the paper: roughness of the front",
-    parameters=RoughnessParameters,
-    record=RoughnessRecord,
     compute=roughness_record,
     checks=roughness_checks,
     draw=roughness_figure,

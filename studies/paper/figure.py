@@ -12,7 +12,7 @@ import importlib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, cast, get_type_hints
 
 import numpy as np
 from matplotlib.figure import Figure as Drawing
@@ -96,17 +96,25 @@ def checks_table(checks: Iterable[Check]) -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One figure: what it needs and nothing else."""
+    """One figure; the types of what it computes are those that `compute` is annotated with."""
 
     title: str
-    parameters: type[Section]  # what its configuration fills; refuses what cannot be computed
-    record: type[Any]  # dataclass of its data
-    compute: Callable[..., Any]  # of parameters, progress and, if they name a sweep, its fit
+    compute: Callable[..., Any]  # data from parameters, progress and, if they name a sweep, its fit
     checks: Callable[[Any], tuple[Check, ...]]
     draw: Callable[[Any], Drawing]
     animate: Callable[[Any], Animation] | None = None  # the drawing is its last frame
     # Expected processor time in seconds; 0 if it is never a minute.
     seconds: Callable[[Any], float] = lambda parameters: 0.0
+
+    @property
+    def parameters(self) -> type[Section]:
+        """What its configuration fills; refuses what cannot be computed."""
+        return cast(type[Section], get_type_hints(self.compute)["parameters"])
+
+    @property
+    def record(self) -> type[Any]:
+        """Dataclass of its data."""
+        return cast(type[Any], get_type_hints(self.compute)["return"])
 
 
 def values_of(source: Any, *names: str) -> dict[str, Any]:

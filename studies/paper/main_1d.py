@@ -181,8 +181,6 @@ def _draw_pull_off(axes: Axes, loop: SmoothLoop) -> None:
 
 FIGURE = Figure(
     title="Main Fig. 1d: a smooth sphere with two works of adhesion",
-    parameters=SmoothLoopParameters,
-    record=SmoothLoop,
     compute=smooth_loop,
     checks=smooth_loop_checks,
     draw=smooth_loop_figure,

@@ -393,8 +393,6 @@ def _draw_branch(
 
 FIGURE = Figure(
     title="Main Fig. 2: rings of high and low work of adhesion",
-    parameters=RingsParameters,
-    record=RingLoops,
     compute=ring_loops,
     checks=rings_checks,
     draw=rings_figure,

@@ -385,8 +385,6 @@ def _draw_cycle(axes: Axes, record: InstabilityRecord) -> None:
 
 FIGURE = Figure(
     title="Main Fig. 3a, b: a retraction in single elastic instabilities",
-    parameters=InstabilityParameters,
-    record=InstabilityRecord,
     compute=instability_record,
     checks=instability_checks,
     draw=instability_figure,

@@ -272,8 +272,6 @@ def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
 
 FIGURE = Figure(
     title="Main Fig. 3c, d: the smooth loop of a finely rough sphere, and its fronts at b = 0",
-    parameters=PinnedLoopParameters,
-    record=PinnedLoop,
     compute=pinned_loop,
     checks=pinned_loop_checks,
     draw=pinned_loop_figure,

@@ -298,8 +298,6 @@ def _reach(record: Mapping) -> float:
 
 FIGURE = Figure(
     title="Main Fig. 4: roughness, and the work of adhesion that it is equivalent to",
-    parameters=MappingParameters,
-    record=Mapping,
     compute=mapping,
     checks=mapping_checks,
     draw=mapping_figure,

@@ -175,8 +175,6 @@ def _draw_roll_off(axes: Axes, record: FilmScales) -> None:
 
 FIGURE = Figure(
     title="Main Fig. 5a: spectrum of nanodiamond, and the scales that dominate its measures",
-    parameters=FilmScalesParameters,
-    record=FilmScales,
     compute=film_scales,
     checks=film_scales_checks,
     draw=film_scales_figure,

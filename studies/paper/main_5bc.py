@@ -340,8 +340,6 @@ def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
 
 FIGURE = Figure(
     title="Main Fig. 5b, c: a rubber sphere on nanodiamond",
-    parameters=NanodiamondParameters,
-    record=NanodiamondContact,
     compute=nanodiamond_contact,
     checks=nanodiamond_checks,
     draw=nanodiamond_figure,

@@ -229,8 +229,6 @@ def parametric_study_figure(study: ParametricStudy) -> Drawing:
 
 FIGURE = Figure(
     title="SI Fig. S-5: hysteresis against disorder, and k against disorder and size",
-    parameters=ParametricStudyParameters,
-    record=ParametricStudy,
     compute=parametric_study,
     checks=parametric_study_checks,
     draw=parametric_study_figure,

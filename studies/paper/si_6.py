@@ -223,8 +223,6 @@ def _draw_end(axes: Axes, name: str, length: float, alignment: Literal["left", "
 
 FIGURE = Figure(
     title="SI Fig. S-6: profile densities of nanodiamond and of synthetic surfaces",
-    parameters=SyntheticFilmParameters,
-    record=SyntheticFilm,
     compute=synthetic_film,
     checks=synthetic_film_checks,
     draw=synthetic_film_figure,
