@@ -124,8 +124,8 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
             count = len(surfaces[-1][-1].avalanches)
             progress(f"{name} disorder, surface {realisation}: {count} avalanches")
     spectrum = flat_spectrum(parameters.short_cutoff)
-    larkin = surface_means(surfaces, "larkin_length")
-    unit = larkin * force_correlation_length("roughness", spectrum)
+    means = surface_means(surfaces, "rms", "larkin_length", "circle_length", "smooth_area")
+    unit = means["larkin_length"] * force_correlation_length("roughness", spectrum)
     events = [[event for one in kind for event in one.avalanches] for kind in surfaces]
     columns = (np.array(column) for column in zip(*itertools.chain(*events), strict=True))
     avalanches: dict[str, Any] = dict(zip(_Avalanche._fields, columns, strict=True))
@@ -134,11 +134,8 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
         **values_of(parameters, "short_cutoff", "precision", "seed"),
         correlation_length=spectrum.correlation_length,
         elastic_energy=np.array(energies),
-        larkin_length=larkin,
+        **means,
         smallest_area=parameters.smallest_area * unit,
-        rms=surface_means(surfaces, "rms"),
-        circle_length=surface_means(surfaces, "circle_length"),
-        smooth_area=surface_means(surfaces, "smooth_area"),
         disorder_index=np.repeat([STRONG, WEAK], [len(kind) for kind in events]),
         **avalanches,
     )

@@ -15,25 +15,21 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FixedLocator
 from pydantic import model_validator
 from scipy.fft import rfft
-from scipy.stats import t as student
 
 from crackfront.analysis.estimate import with_error
-from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.parts import legend_entries
 from crackfront.plots.style import BLUE, GREEN, PAGE, PURPLE, VERMILION, blank_figure, house_style
 from studies.paper.drawing import ON_WHITE, label_plain_numbers, name_panels
 from studies.paper.figure import Array, Check, Figure, Integers, Progress
-from studies.paper.rough import (
-    STRONG,
-    WEAK,
-    RetractionParameters,
-    circle_stiffness,
-    surface_means,
+from studies.paper.front_spectra import (
+    RoughnessFit,
+    RoughnessRecord,
+    binned_spectrum,
+    fitted_roughness,
 )
+from studies.paper.rough import STRONG, WEAK, RetractionParameters, circle_stiffness, surface_means
 from studies.paper.straight import StraightParameters
-
-_DISORDER, _SURFACE, _MODE, _LAG = "disorder", "surface", "mode", "lag"
 
 _N_LAG = 60
 
@@ -73,6 +69,11 @@ class RoughnessParameters(RetractionParameters):
     strong_line: LineParameters  # straight fronts, on as many tiles as the sphere has surfaces
     weak_line: LineParameters
 
+    @property
+    def lines(self) -> tuple[LineParameters, LineParameters]:
+        """Straight fronts in the order of their records."""
+        return self.strong_line, self.weak_line
+
     @model_validator(mode="after")
     def _usable(self) -> RoughnessParameters:
         for name in ("strong", "weak"):
@@ -82,36 +83,6 @@ class RoughnessParameters(RetractionParameters):
         if self.n_surface < 2:
             raise refusal("n_surface is 1; an interval needs 2 surfaces or more")
         return self
-
-
-@dataclass(frozen=True, slots=True)
-class RoughnessRecord:
-    """Power and height differences of fronts: of a sphere, then straight ones.
-
-    A straight front counts as the perimeter of a circle, and its springs as the stiffness of one;
-    its short cutoff is that of the sphere.
-    """
-
-    short_cutoff: float = variable("shortest wavelength of the roughness", LATERAL)
-    elastic_energy: Array = variable("requested e_el", ADHESION, _DISORDER)
-    rms: Array = variable("w_rms, of the sphere the mean of its tiles", ADHESION, _DISORDER)
-    larkin_length: Array = variable("Larkin length", LATERAL, _DISORDER)
-    radius: Array = variable("mean radius of the fronts", LATERAL, _DISORDER)
-    ring_stiffness: Array = variable(
-        "stiffness of the circle, a dG/da; that of mode n is larger by n", ADHESION, _DISORDER
-    )
-    longest: Array = variable("longest wavelength of the fit", LATERAL, _DISORDER)
-    shortest: Array = variable("shortest wavelength of the fit", LATERAL, _DISORDER)
-    mode: Integers = variable("waves around the perimeter", "1", _MODE)
-    power: Array = variable(
-        "power spectral density along the front, mean of the fronts of a surface",
-        f"({LATERAL})^3",
-        _DISORDER,
-        _SURFACE,
-        _MODE,
-    )
-    lag: Array = variable("distance along the front", LATERAL, _LAG)
-    difference: Array = variable("rms difference of the radius", LATERAL, _DISORDER, _LAG)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +99,7 @@ class _Surface:
 def roughness_record(parameters: RoughnessParameters, progress: Progress) -> RoughnessRecord:
     """Fronts of a retraction, and straight ones, on several surfaces or tiles."""
     cutoff, surfaces = parameters.short_cutoff, range(parameters.n_surface)
-    spheres, lines = (parameters.strong, parameters.weak), _lines(parameters)
+    spheres, lines = (parameters.strong, parameters.weak), parameters.lines
     measured = []
     for name, energy in zip(("strong", "weak"), spheres, strict=True):
         measured.append([_surface(parameters, energy, one) for one in surfaces])
@@ -138,19 +109,16 @@ def roughness_record(parameters: RoughnessParameters, progress: Progress) -> Rou
         progress(f"straight, spring of {line.spring:g} Larkin lengths: as many fronts")
     count = min(surface.power.size for kind in measured for surface in kind)
     power = np.array([[surface.power[:count] for surface in kind] for kind in measured])
-    mode, radius = np.arange(1, count + 1), surface_means(measured, "radius")
-    larkin = surface_means(measured, "larkin_length")
-    circle = 2 * np.pi * radius
+    means = surface_means(measured, "rms", "larkin_length", "radius", "ring_stiffness")
+    mode, circle = np.arange(1, count + 1), 2 * np.pi * means["radius"]
     lag = np.geomspace(cutoff / 2, np.min(circle) / 2, _N_LAG)
-    units = np.array([cutoff, cutoff, *larkin[STRONG_LINE:]])
+    units = np.array([cutoff, cutoff, *means["larkin_length"][STRONG_LINE:]])
     longest = [parameters.strong_to, parameters.weak_to, *(line.fit_to for line in lines)]
     shortest = [parameters.strong_from, parameters.weak_from, *(line.fit_from for line in lines)]
     return RoughnessRecord(
         short_cutoff=cutoff,
         elastic_energy=np.array([*spheres, *(line.elastic_energy for line in lines)]),
-        larkin_length=larkin,
-        radius=radius,
-        **{name: surface_means(measured, name) for name in ("rms", "ring_stiffness")},
+        **means,
         longest=units * longest,
         shortest=units * shortest,
         mode=mode,
@@ -165,11 +133,6 @@ def roughness_record(parameters: RoughnessParameters, progress: Progress) -> Rou
 def expected_seconds(parameters: RoughnessParameters) -> float:
     """Processor time as measured with 64 surfaces, for any number of them (Units: s)."""
     return 10.0 * parameters.n_surface
-
-
-def _lines(parameters: RoughnessParameters) -> tuple[LineParameters, LineParameters]:
-    """Straight fronts in the order of their records."""
-    return parameters.strong_line, parameters.weak_line
 
 
 def _tile(parameters: RoughnessParameters, line: LineParameters, realisation: int) -> _Surface:
@@ -227,50 +190,6 @@ _TOLERANCE = 0.05
 """Largest deviation of an exponent, about that of a crossover within the range of the fit."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Fit:
-    """Roughness exponent zeta, half of its 95% interval over surfaces, both ends of the line."""
-
-    exponent: float
-    reach: float
-    wavevector: Array
-    power: Array
-
-
-def stiffness_wavevector(record: RoughnessRecord, index: int) -> Array:
-    """Wavevector of a straight line of the stiffness of each mode, (n + a dG/da) / a.
-
-    The sphere pulls a front back to its circle, which a straight line does not know; so that
-    the spectrum of a front is a power of this stiffness rather than of n alone.
-    """
-    return (record.mode + record.ring_stiffness[index]) / record.radius[index]
-
-
-def fitted_roughness(record: RoughnessRecord, index: int) -> _Fit:
-    r"""Fit of :math:`C \propto \kappa^{-(1 + 2\zeta)}` with kappa of `stiffness_wavevector`.
-
-    Least squares of the logarithm, each surface by itself, all octaves of the same weight.
-    """
-    wavelength = 2 * np.pi * record.radius[index] / record.mode
-    used = (wavelength >= record.shortest[index]) & (wavelength <= record.longest[index])
-    wavevector = stiffness_wavevector(record, index)[used]
-    weight = record.mode[used] ** -0.5
-    power = record.power[index][:, used]
-    slopes = np.polyfit(np.log(wavevector), np.log(power).T, 1, w=weight)[0]
-    # The logarithm of a few fronts' mean lies below that of the mean over all surfaces.
-    freed = np.log(power.mean(axis=0)) - slopes.mean() * np.log(wavevector)
-    level = np.average(freed, weights=weight**2)
-    exponents = -(1 + slopes) / 2
-    error = np.std(exponents, ddof=1) / np.sqrt(exponents.size)
-    ends = wavevector[[0, -1]]
-    return _Fit(
-        exponent=float(exponents.mean()),
-        reach=float(student.ppf(0.975, exponents.size - 1) * error),
-        wavevector=ends,
-        power=np.exp(level + slopes.mean() * np.log(ends)),
-    )
-
-
 def roughness_checks(record: RoughnessRecord) -> tuple[Check, ...]:
     """Exponents above and below the Larkin length."""
     fits = [fitted_roughness(record, index) for index in range(len(_EXPONENTS))]
@@ -293,7 +212,7 @@ def roughness_checks(record: RoughnessRecord) -> tuple[Check, ...]:
     )
 
 
-def _exponent_check(record: RoughnessRecord, index: int, fit: _Fit, claim: str) -> Check:
+def _exponent_check(record: RoughnessRecord, index: int, fit: RoughnessFit, claim: str) -> Check:
     """One exponent against that of the theory."""
     expected = _EXPONENTS[index]
     low, high = record.shortest[index], record.longest[index]
@@ -320,9 +239,6 @@ def _exponent_check(record: RoughnessRecord, index: int, fit: _Fit, claim: str) 
 _COLOURS = (BLUE, VERMILION, GREEN, PURPLE)
 
 _KINDS = ((STRONG, "strong", _COLOURS[STRONG]), (WEAK, "weak", _COLOURS[WEAK]))
-
-_BINS_A_DECADE = 12
-"""Bins over which the drawn spectra are averaged."""
 
 
 def roughness_figure(record: RoughnessRecord) -> Drawing:
@@ -422,15 +338,10 @@ def _draw_points(
 ) -> None:
     """Power times a power of the wavevector over a level, in bins, with its error over surfaces."""
     unit = record.short_cutoff if unit is None else unit
-    wavevector, power = stiffness_wavevector(record, index), record.power[index]
-    place = np.floor(_BINS_A_DECADE * np.log10(wavevector)).astype(int)
-    bins = [place == value for value in np.unique(place)]
-    means = np.array([power[:, one].mean(axis=1) for one in bins])
-    middle = np.array([np.exp(np.log(wavevector[one]).mean()) for one in bins])
-    error = means.std(axis=1, ddof=1) / np.sqrt(power.shape[0])
+    middle, power, error = binned_spectrum(record, index)
     axes.errorbar(
         middle * unit / (2 * np.pi),
-        means.mean(axis=1) * middle**exponent / level,
+        power * middle**exponent / level,
         yerr=error * middle**exponent / level,
         color=_COLOURS[index],
         linestyle="none",

@@ -72,8 +72,8 @@ class _Events:
     areas: list[float]
     extents: list[float]
     patches: list[float]
-    swept: float
-    smooth: float
+    swept_area: float
+    smooth_event_area: float
     sites_per_larkin_length: float
 
 
@@ -137,8 +137,7 @@ def event_record(
         sites_per_larkin_length=fronts[0][0].sites_per_larkin_length,
         smallest_event=parameters.smallest_area,
         spring=np.array(springs),
-        swept_area=surface_means(fronts, "swept"),
-        smooth_event_area=surface_means(fronts, "smooth"),
+        **surface_means(fronts, "swept_area", "smooth_event_area"),
         event_spring=owners("areas"),
         event_area=each("areas"),
         event_extent=each("extents"),

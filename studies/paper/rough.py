@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -174,9 +174,12 @@ class RoughContact:
         return front_at(self.field, front, Load(penetration, direction), self.solver)
 
 
-def surface_means(kinds: Sequence[Sequence[object]], name: str) -> Array:
-    """Means over the surfaces of each kind of what was measured on each surface."""
-    return np.array([np.mean([getattr(one, name) for one in kind]) for kind in kinds])
+def surface_means(kinds: Sequence[Sequence[object]], *names: str) -> dict[str, Any]:
+    """Means over the surfaces of each kind of what was measured on each surface, by its name."""
+    return {
+        name: np.array([np.mean([getattr(one, name) for one in kind]) for kind in kinds])
+        for name in names
+    }
 
 
 def circle_stiffness(radius: ArrayLike, penetration: ArrayLike) -> Array:

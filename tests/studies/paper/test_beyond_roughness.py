@@ -6,12 +6,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from studies.paper.beyond_roughness import (
-    RoughnessRecord,
-    fitted_roughness,
-    stiffness_wavevector,
-)
 from studies.paper.figure import figure
+from studies.paper.front_spectra import RoughnessRecord, fitted_roughness, stiffness_wavevector
 from studies.paper.rough import STRONG, WEAK
 from tests.studies.paper.made import computed, failed, parameters
 
