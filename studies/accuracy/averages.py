@@ -81,11 +81,7 @@ class Coverage:
 
     @property
     def total_interval(self) -> Array:
-        """Half width of the interval of the total error; Student's t for the statistical part.
-
-        What the mean of the other surfaces is off by is part of the difference, and of the
-        interval.
-        """
+        """Half width of the interval of the total error, that of the truth included."""
         share = (1 + LEVEL) / 2
         statistical = stats.t.ppf(share, np.maximum(self.n_state - 1, 1)) * self.run_statistical
         known = np.hypot(self.run_numerical, self.truth_error)
@@ -196,15 +192,12 @@ def held_out_coverage(
 
 
 def _steady(simulation: Simulation) -> list[tuple[float, float]]:
-    """Adhesion, its stated errors and the number of states, of both branches of a steady run.
-
-    Adhesion is that about the mean of w_loc, relative to the e_el of the run's own tile, times the
-    requested e_el: what k is made of. Tiles differ in both.
-    """
+    """Adhesion, its stated errors and the number of states, of both branches of a steady run."""
     simulation = replace(simulation, schedule=_SCHEDULE)
     length = simulation.correlation_length
     result = run_simulation(simulation)
     steady = steady_adhesion(result.record, length)
+    # Tiles differ in the mean of w_loc and in e_el: k is made of what is relative to both.
     mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
     scale = simulation.elastic_energy / result.measures.e_el
     return [

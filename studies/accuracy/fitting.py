@@ -77,7 +77,7 @@ def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[Law]:
 def _avalanche(study: SceneErrors) -> float:
     """Typical size of an avalanche in k, from settings that leave little scatter."""
     deviations = np.concatenate([_knob_errors(study, knob)[1] for knob in KNOBS])
-    deviations = deviations - deviations.mean(axis=1, keepdims=True)
+    deviations -= deviations.mean(axis=1, keepdims=True)
     few = np.mean(deviations**2, axis=1, keepdims=True) < _FEW**2
     kept = np.where(few, deviations, 0.0)
     total = float(np.sum(kept**2))
@@ -111,17 +111,13 @@ def _laws(study: SceneErrors, knob: Knob, avalanche: float) -> Iterator[Law]:
         certain = bias[:, branch] > 2 * uncertainty[:, branch]
         seen = np.count_nonzero(certain) > 1
         bias_line = _falling_line(x[certain], bias[certain, branch], slowest) if seen else _NO_BIAS
-        scene = study.scene
-        yield Law(
-            scene.shape, scene.elastic_energy, knob, direction, bias_line, scatter_line, avalanche
-        )
+        shape, energy = study.scene.shape, study.scene.elastic_energy
+        yield Law(shape, energy, knob, direction, bias_line, scatter_line, avalanche)
 
 
 def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
-    """Likeliest line ln(value) = c_0 + c_1 x whose slope is at least a given one.
-
-    Squares of values, from the coarsest to the finest, have a gamma distribution about the line.
-    """
+    """Likeliest line ln(value) = c_0 + c_1 x of a least slope, from the coarsest value on."""
+    # The squares have a gamma distribution about the line.
     # Of the values at the end that are too small the first counts.
     counted = 2 + np.max(np.flatnonzero(values >= _LEAST), initial=0)
     x, square = x[:counted], np.maximum(values[:counted], _LEAST) ** 2

@@ -17,7 +17,7 @@ from crackfront.core.outcome import Direction
 from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.steady import forward_circle
 from studies.accuracy.scenes import SCENES, Scene
-from studies.accuracy.study import branch_record
+from studies.accuracy.study import BRANCHES, branch_record
 from studies.pages import markdown_table
 
 KNOBS = replace(
@@ -74,10 +74,9 @@ def differing(scene: Scene, direction: Direction, n_realisation: int) -> tuple[i
 
 def forgetting_table() -> str:
     """Numbers of states that depend on their start, for every surface and branch."""
-    branches: tuple[tuple[Direction, str], ...] = ((1, "approach"), (-1, "retraction"))
     rows = [
         (scene.name, name, *map(str, differing(scene, direction, N_REALISATION)))
         for scene in SURFACES
-        for direction, name in branches
+        for direction, name in BRANCHES
     ]
     return markdown_table("surface | branch | steady states that differ | steady states", rows)

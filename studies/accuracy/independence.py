@@ -21,7 +21,7 @@ from crackfront.core.outcome import Direction
 from crackfront.simulate.run import SimulationResult, run_simulation
 from crackfront.simulate.steady import SteadySchedule
 from studies.accuracy.scenes import SCENES, Scene
-from studies.accuracy.study import rms
+from studies.accuracy.study import BRANCHES, rms
 from studies.pages import markdown_table
 
 _SURFACES = range(2000, 2010)
@@ -82,14 +82,13 @@ def errors_of_k(runs: Iterator[SimulationResult]) -> tuple[float, float, float, 
 def independence_tables() -> str:
     """Errors of k, and distances of independent states, of all scenes."""
     errors, distances = [], []
-    branches: tuple[tuple[Direction, str], ...] = ((1, "approach"), (-1, "retraction"))
     for name in NAMES:
         scene = SCENES[name]
         n_state, *found = errors_of_k(steady_runs(scene, _ASKED))
         errors.append((name, f"{n_state:.1f}", *(f"{x:.3f}" for x in found)))
         length = correlation_length(scene.kind, scene.spectrum)
         records = [run.record for run in steady_runs(scene, _DENSE)]
-        for direction, branch in branches:
+        for direction, branch in BRANCHES:
             distance, roughness = independent_distance(records, direction, length)
             ratios = f"{distance / length:.2f}", f"{roughness / length:.2f}"
             distances.append((name, branch, *ratios, f"{distance / roughness:.1f}"))

@@ -69,12 +69,14 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     if studies:
         tables["Time to an error of the hysteresis"] = _target_table(studies.values())
     if asked:
-        tables["Errors that were asked for"] = _asked_table(asked.values())
+        rows = [_chosen(study, errors) for study in asked.values() for errors in study.errors]
+        header = f"{_CHOSEN} | k of w_appr | k of w_retr"
+        tables["Errors that were asked for"] = markdown_table(header, rows)
     if unseen:
         tables["Errors on unseen surfaces"] = _unseen_table(unseen.values())
     if coverages:
         tables["Stated and true errors"] = _coverage_table(coverages.values())
-    tables |= {f"Averages, {scene.name}": _sample_table(rows) for scene, rows in samples.values()}
+    tables |= {f"Averages, {scene.name}": _sample_table(kept) for scene, kept in samples.values()}
     tables |= {f"Settings, {name}": _setting_table(study) for name, study in studies.items()}
     parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
     write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]), sealed=True)
@@ -144,12 +146,6 @@ def _chosen(study: SceneErrors, errors: Errors) -> list[str]:
     """Entries of :data:`_CHOSEN`, and rms errors of k, of numerics that the laws chose."""
     seconds = f"{errors.seconds.mean():.3g}"
     return [study.scene.name, f"{errors.value:g}", _numbers(errors), seconds, *_of_k(study, errors)]
-
-
-def _asked_table(studies: Iterable[SceneErrors]) -> str:
-    """Measured errors of k where the laws chose the numerics."""
-    rows = [_chosen(study, errors) for study in studies for errors in study.errors]
-    return markdown_table(f"{_CHOSEN} | k of w_appr | k of w_retr", rows)
 
 
 def _unseen_table(studies: Iterable[SceneErrors]) -> str:
@@ -292,8 +288,7 @@ def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
             label=_NAMES[knob],
             zorder=3 if knob == "asked" else 2,
         )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")

@@ -22,6 +22,8 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.steady import forward_circle
 from studies.accuracy.scenes import Array, Progress, Scene, Setting
 
+BRANCHES: tuple[tuple[Direction, str], ...] = ((1, "approach"), (-1, "retraction"))
+
 _RUN, _BRANCH, _PER_CUTOFF = "realisation", "branch", "1 / short cutoff"
 
 
@@ -159,8 +161,7 @@ def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
     field = simulation_field(simulation)
     length = simulation.correlation_length
     adhesion, force, radius = [], [], []
-    directions: tuple[Direction, Direction] = (1, -1)
-    for direction in directions:
+    for direction, _ in BRANCHES:
         loads = scene.penetrations[::direction]
         first = float(loads[0])
         start = forward_circle(field, first, direction, jkr.equilibrium_radius(first), length)

@@ -48,11 +48,8 @@ class Setting:
         return self._estimate(lambda front, boundary: front / boundary, *models)
 
     def _estimate(self, function: Callable[..., float], *values: Value) -> Estimate:
-        """Function of means, with the standard error of the jackknife over the surfaces.
-
-        A mean over extrapolated rows is that of the longer range over all surfaces, and that of
-        what the extrapolation changes on its own.
-        """
+        """Function of means, with the standard error of the jackknife over the surfaces."""
+        # Extrapolated: the mean of the longer range over all surfaces, and that of what changes.
         fine, coarse = (
             {row.seed: np.array([value(row) for value in values]) for row in rows}
             for rows in (self.rows, self.coarse)

@@ -30,24 +30,13 @@ _TOLERANCE = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class FrontCycle:
-    """A cycle of the crack front on the heights of a case; its crack turned with the angle or not.
-
-    Attributes
-    ----------
-    radius : (n_step, N_ANGLE) array
-        Fronts at the angles of the boundary elements' perimeters, by their Fourier series.
-        (Units: reduced lateral length)
-    energy : (n_step,) array
-        Energies above that of no contact. (Units: pi w_int R times a reduced vertical length)
-    end : float
-        Penetration at which it lost contact. (Units: reduced vertical length)
-    """
+    """A cycle of the crack front on the heights of a case."""
 
     states: ContactState[Any]
-    radius: Array
-    energy: Array
-    end: float
-    rotated: bool
+    radius: Array  # fronts at the angles of the perimeters, (n_step, N_ANGLE) (reduced lateral)
+    energy: Array  # above that of no contact, (n_step,) (pi w_int R times reduced vertical)
+    end: float  # penetration at which it lost contact (reduced vertical length)
+    rotated: bool  # whether its crack turned with the angle
     seconds: float
 
 

@@ -109,15 +109,13 @@ def apparent_adhesion(force: Array, penetration: Array) -> Array:
 def _branches(
     name: str, states: States, energy: Array, kept: NDArray[np.int64]
 ) -> dict[str, float]:
-    """Works of adhesion and hysteresis of a model.
-
-    In a load step it loses the work of the force, by the trapezoidal rule, less the energy's rise.
-    """
+    """Works of adhesion and hysteresis of a model."""
     works, lost = [], 0.0
     for sign in (1, -1):
         branch = kept[states.direction[kept] == sign]
         force, area = states.force[branch], states.contact_area[branch]
         works.append(float(np.mean(apparent_adhesion(force, states.penetration[branch]))))
+        # A load step loses the work of the force, by the trapezoidal rule, less the energy's rise.
         work = np.diff(states.penetration[branch]) * (force[1:] + force[:-1]) / 2
         part = float(np.sum(work - np.diff(energy[branch])))
         lost += part / abs(float(area[-1] - area[0])) / WORK_OF_ADHESION

@@ -104,8 +104,10 @@ def validation_cases(parameters: ValidationParameters) -> tuple[Case, ...]:
     for given in parameters.cases:
         for energy in given.elastic_energies:
             for surface in range((given.surfaces if energy else None) or 1):
+                seeds = np.random.SeedSequence(parameters.seed, spawn_key=(surface,))
+                drawn = int(seeds.generate_state(1)[0])
                 case = Case(
-                    seed=_surface_seed(parameters.seed, surface, given.surfaces),
+                    seed=parameters.seed if given.surfaces is None else drawn,
                     short_cutoff=parameters.short_cutoff,
                     roll_off=given.roll_off or parameters.short_cutoff,
                     hurst=given.hurst,
@@ -119,10 +121,3 @@ def validation_cases(parameters: ValidationParameters) -> tuple[Case, ...]:
                 listed.append((surface, energy > 0, case))
     listed.sort(key=lambda one: one[:2])
     return tuple(dict.fromkeys(case for *_, case in listed))
-
-
-def _surface_seed(seed: int, surface: int, surfaces: int | None) -> int:
-    """Seed of the file, or where surfaces are counted one of those drawn from it."""
-    if surfaces is None:
-        return seed
-    return int(np.random.SeedSequence(seed, spawn_key=(surface,)).generate_state(1)[0])

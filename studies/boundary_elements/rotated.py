@@ -80,16 +80,13 @@ def adhesion_on_rays(
 
 
 def _modes(heights: Array, pixel: float) -> tuple[Array, Array, NDArray[np.complex128]]:
-    """Magnitudes and directions of wavevectors, and amplitudes of the half-derivative there.
-
-    Of two modes that are conjugate one is kept, with twice the amplitude; phases are those at the
-    tile's centre.
-    """
+    """Wavevectors, their directions, and amplitudes there of the half-derivative at the centre."""
     n_x, n_y = heights.shape
     amplitude = fft2(heights, norm="forward")
     along = (2 * np.pi * fftfreq(count, pixel) for count in (n_x, n_y))
     q_x, q_y = np.meshgrid(*along, indexing="ij")
     floor = np.finfo(float).eps * float(np.max(np.abs(amplitude), initial=0.0))
+    # Of two modes that are conjugate one is kept, with twice the amplitude.
     kept = ((q_x > 0) | ((q_x == 0) & (q_y > 0))) & (np.abs(amplitude) > floor)
     q_x, q_y, amplitude = q_x[kept], q_y[kept], amplitude[kept]
     wavevector = np.hypot(q_x, q_y)

@@ -281,10 +281,7 @@ def _law_checks(record: EventRecord) -> Iterator[Check]:
 def _exponent_check(
     claim: str, found: float, expected: float, remark: str, scatter: float, shift: float = 0.0
 ) -> Check:
-    """An exponent against that of the theory, within what is asked or its own interval.
-
-    The interval is that of the scatter of the events and of the shift with the range of a fit.
-    """
+    """An exponent against that of the theory, within what is asked or its own interval."""
     reach = math.hypot(scatter, shift)
     of_what = f"95% interval: ± {scatter:.2g} by the scatter of the events"
     if shift:

@@ -57,7 +57,9 @@ class FilmParameters(FilmSection):
     def densities(self, shortest: float) -> FilmDensities:
         """Densities of profiles down to a wavelength (Units: m)."""
         spectrum, points = self.spectrum, read_profile_density(self.measured)
-        wavevector = _shown_wavevectors(self.longest, shortest)
+        ends = 2 * np.pi / self.longest, 2 * np.pi / shortest
+        count = math.ceil(math.log10(ends[1] / ends[0]) * POINTS_PER_DECADE) + 1
+        wavevector = np.geomspace(*ends, count)
         return FilmDensities(
             contact_modulus=self.contact_modulus,
             wavevector=wavevector,
@@ -83,31 +85,10 @@ class FilmDensities:
     measured_profile: Array = variable("measured spectral density of profiles", "m3", _POINT)
 
 
-def _shown_wavevectors(longest: float, shortest: float) -> Array:
-    """Wavevectors of two wavelengths and between them, for a logarithmic axis (Units: 1 / m)."""
-    ends = 2 * np.pi / longest, 2 * np.pi / shortest
-    count = math.ceil(math.log10(ends[1] / ends[0]) * POINTS_PER_DECADE) + 1
-    return np.geomspace(*ends, count)
-
-
 def conformity_energy(wavevector: Array, density: Array, contact_modulus: float) -> float:
-    """Energy of full conformity from the density of profiles, e_el = E'/8 Int q C_1D dq.
+    """Energy of full conformity (J / m^2) from C_1D (m^3) of profiles, e_el = E'/8 Int q C_1D dq.
 
-    The paper's C(q) = (pi / q) C_1D(q) leads to it too.
-
-    Parameters
-    ----------
-    wavevector : (n,) array
-        Increasing wavevectors. (Units: 1 / m)
-    density : (n,) array
-        C_1D. (Units: m^3)
-    contact_modulus : float
-        E'. (Units: Pa)
-
-    Returns
-    -------
-    float
-        e_el. (Units: J / m^2)
+    The paper's C(q) = (pi / q) C_1D(q) leads to it too. Wavevectors (1 / m) increase.
     """
     # Trapezoids over log q, in which the data are spaced.
     return float(contact_modulus / 8 * np.trapezoid(wavevector**2 * density, np.log(wavevector)))

@@ -69,18 +69,6 @@ def fitted_roughness(record: RoughnessRecord, index: int) -> RoughnessFit:
     r"""Fit of :math:`C \propto \kappa^{-(1 + 2\zeta)}` with kappa of `stiffness_wavevector`.
 
     Least squares of the logarithm, each surface by itself, all octaves of the same weight.
-
-    Parameters
-    ----------
-    record : RoughnessRecord
-        Spectra of all kinds of fronts.
-    index : int
-        Which of them.
-
-    Returns
-    -------
-    RoughnessFit
-        Exponent and line.
     """
     wavelength = 2 * np.pi * record.radius[index] / record.mode
     used = (wavelength >= record.shortest[index]) & (wavelength <= record.longest[index])

@@ -13,7 +13,7 @@ from pydantic import model_validator
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import RayField, polar_field
+from crackfront.core.field.fields import polar_field
 from crackfront.core.outcome import Direction
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
@@ -60,14 +60,16 @@ class SmoothLoop:
 def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothLoop:
     """Approach with one work of adhesion and retraction with another."""
     schedule = LoadSchedule(parameters.max_penetration, parameters.step)
-    radius, states = INNERMOST, []
+    largest = jkr.equilibrium_radius(parameters.max_penetration, parameters.retraction)
+    radius, states, places = INNERMOST, [], np.array([INNERMOST, 1.1 * largest])
     branches: tuple[tuple[Direction, float, Iterable[float]], ...] = (
         (1, parameters.approach, schedule.approach()),
         (-1, parameters.retraction, schedule.retraction()),
     )
     for direction, adhesion, penetrations in branches:
+        field = polar_field(places, np.full(2, adhesion * WORK_OF_ADHESION))
         coming = (Load(penetration, direction) for penetration in penetrations)
-        for step in circle_steps(_constant(adhesion, parameters), coming, radius):
+        for step in circle_steps(field, coming, radius):
             radius = float(step.front[0])
             states.append((direction, step.load.value, radius))
         progress(f"work of adhesion {adhesion:g}: contact radius {radius:.4f} at the end")
@@ -84,21 +86,21 @@ def smooth_loop(parameters: SmoothLoopParameters, progress: Progress) -> SmoothL
 def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
     """The closed forms of JKR, which both branches must follow."""
     retracting = loop.direction < 0
-    largest = loop.radius[~retracting].max()
-    smooth = [jkr.equilibrium_radius(b, loop.approach) for b in loop.penetration[~retracting]]
-    receding = [jkr.equilibrium_radius(b, loop.retraction) for b in loop.penetration[retracting]]
-    advancing = np.abs(loop.radius[~retracting] - smooth)
-    leaving = np.abs(loop.radius[retracting] - np.minimum(receding, largest))
+    works = np.where(retracting, loop.retraction, loop.approach)
+    pairs = zip(loop.penetration, works, strict=True)
+    smooth = np.array([jkr.equilibrium_radius(b, work) for b, work in pairs])
+    smooth[retracting] = np.minimum(smooth[retracting], loop.radius[~retracting].max())
+    apart = np.abs(loop.radius - smooth)
     return (
         close_to(
             "radii in approach: the stable JKR radius, largest difference",
-            float(np.max(advancing)),
+            float(np.max(apart[~retracting])),
             0.0,
             1e-9,
         ),
         close_to(
             "radii in retraction: the JKR radius, or that at the turn while the edge is pinned",
-            float(np.max(leaving)),
+            float(np.max(apart[retracting])),
             0.0,
             1e-9,
         ),
@@ -117,13 +119,6 @@ def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
             float(np.max(np.abs(np.diff(loop.penetration[retracting])))),
         ),
     )
-
-
-def _constant(adhesion: float, parameters: SmoothLoopParameters) -> RayField:
-    """Field of a smooth sphere, large enough for the whole loop."""
-    largest = jkr.equilibrium_radius(parameters.max_penetration, parameters.retraction)
-    ring = np.full(2, adhesion * WORK_OF_ADHESION)
-    return polar_field(np.array([INNERMOST, 1.1 * largest]), ring)
 
 
 _LEFT = -0.1

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure as Drawing
 from pydantic import model_validator
+from scipy.signal import resample
 
 from crackfront.core import jkr
 from crackfront.core.cycle.energy import dissipated_energy
@@ -308,20 +309,16 @@ def _draw_quarter(
 ) -> None:
     """Patches of one disorder on its quarter of the contact, outlined by the pinned fronts."""
     chosen, apex = record.disorder_index == index, _GAP if index == WEAK else -_GAP
-    fronts = [_quarter(values[chosen], index) for values in (record.before, record.after)]
+    count = record.before.shape[1] * _FINER
+    begin = count // 4 if index == STRONG else 0
+    fronts = [
+        np.asarray(resample(values[chosen], count, axis=1)[:, begin : begin + count // 4 + 1])
+        for values in (record.before, record.after)
+    ]
     first = np.pi / 2 if index == STRONG else 0
     angle = np.pi / 2 * np.linspace(0, 1, fronts[0].shape[1]) + first
     angle = np.broadcast_to(angle, fronts[0].shape)
     draw_patches(axes, angle, fronts, record.energy[chosen], record.travel, shades, apex)
-
-
-def _quarter(fronts: Array, index: int) -> Array:
-    """Finely drawn part of fronts that lies in the quarter of a disorder."""
-    from scipy.signal import resample
-
-    count = fronts.shape[1] * _FINER
-    first = count // 4 if index == STRONG else 0
-    return np.asarray(resample(fronts, count, axis=1)[:, first : first + count // 4 + 1])
 
 
 def _draw_shortest(axes: Axes, record: InstabilityRecord, index: int) -> None:

@@ -194,9 +194,8 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
     balance = np.mean(loop.front * (loop.front_adhesion - loop.front_release), axis=1)
     imbalance = np.max(np.abs(balance[:2] / np.mean(loop.front[:2], axis=1)))
     checks = []
-    for name, word, sampled in zip(
-        FRONTS, ("below", "above", "at"), loop.front_adhesion, strict=True
-    ):
+    words = "below", "above", "at"
+    for name, word, sampled in zip(FRONTS, words, loop.front_adhesion, strict=True):
         arcs = np.array([arc.mean() for arc in np.array_split(sampled, _N_ARC)])
         found, reach = float(sampled.mean()), float(3 * arcs.std(ddof=1) / math.sqrt(_N_ARC))
         expected, passed = {
@@ -256,12 +255,9 @@ def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
     # From -pi to pi, so that the part about the first ray is one line.
     half = loop.angle.size // 2
     angle = np.roll(np.where(loop.angle < np.pi, loop.angle, loop.angle - 2 * np.pi), half)
-    for line, colour, style, label in (
-        (0, BLUE, "-", "approach"),
-        (1, VERMILION, "-", "retraction"),
-        (2, BLACK, (0, (4, 2)), "rigid circle"),
-    ):
-        radius = np.roll(loop.front[line], half)
+    colours, styles = (BLUE, VERMILION, BLACK), ("-", "-", (0, (4, 2)))
+    for front, colour, style, label in zip(loop.front, colours, styles, FRONTS, strict=True):
+        radius = np.roll(front, half)
         near = np.abs(angle) < 2 * loop.y[-1] / loop.x[0]
         x, y = (radius * np.cos(angle))[near], (radius * np.sin(angle))[near]
         axes.plot(x, y, color=colour, linestyle=style, linewidth=1.0, label=label)

@@ -321,16 +321,13 @@ def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
         axes.plot(place, smooth(max(theory, 0.0)), dashes=(4, 2), label=label, zorder=1, **style)
         measured = contact.measured_direction == direction
         if np.any(measured):
-            points = contact.measured_radius[measured], contact.measured_force[measured]
-            axes.plot(
-                points[0] * _MICRO,
-                points[1] * _MILLI,
-                "D",
-                color=colour,
-                markerfacecolor="white",
-                label=f"measured, {name}",
-                zorder=4,
-            )
+            points = contact.measured_radius * _MICRO, contact.measured_force * _MILLI
+            open_mark: dict[str, Any] = {
+                "markerfacecolor": "white",
+                "label": f"measured, {name}",
+                "zorder": 4,
+            }
+            axes.plot(*(one[measured] for one in points), "D", color=colour, **open_mark)
     axes.set_xlim(0.75 * contact.radius[contact.direction < 0].min() * _MICRO, place[-1])
     low, high = force.min(), force.max()
     axes.set_ylim(low - 0.15 * (high - low), high + 0.08 * (high - low))

@@ -157,19 +157,7 @@ class JointPowerLaw:
 def cutoff_scale(values: Array, counts: Integers | int = 1) -> float:
     """Scale <s^2> / 2 <s> of the cut-off of a power law of exponent below 2.
 
-    Small values hardly matter.
-
-    Parameters
-    ----------
-    values : (n,) array
-        Values.
-    counts : (n,) array or int, optional
-        How often each occurs.
-
-    Returns
-    -------
-    float
-        The scale, in the unit of the values.
+    Small values hardly matter; `counts` says how often each value occurs.
     """
     return float(np.sum(counts * values**2) / np.sum(counts * values) / 2)
 

@@ -150,17 +150,14 @@ class _ByLaw(NamedTuple):
 
 
 def _by_law(fit: SweepFit) -> _ByLaw:
-    """Pooled k, exponent of the hysteresis and spread among spectra of the law's k in the range.
-
-    Its errors are those of one amplitude of one spectrum, which count as independent where
-    amplitudes or spectra are compared. Nothing where the law does not know every k.
-    """
+    """Pooled k, exponent of the hysteresis and spread among spectra by the law, NaN if unknown."""
     law = fit.cells.law_factor
     k, error = law.value[:, fit.in_range], law.standard_error[:, fit.in_range]
     if not np.all(np.isfinite(k)):
         return _ByLaw(*[(math.nan, math.nan)] * 3)
     strength = np.log(fit.cells.w_rms[:, fit.in_range])
     along, weight = slope(strength, np.log(k))
+    # Errors of one amplitude of one spectrum count as independent of those of others.
     relative = float(np.mean(error / k))
     mean = np.mean(k, axis=1)
     return _ByLaw(

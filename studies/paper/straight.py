@@ -88,9 +88,7 @@ class StraightFront:
     solver: Solver
     front: Array  # (n_site,)
     load: float
-    period: (
-        float  # of the tile along the motion: the front at the load further on by it is the same
-    )
+    period: float  # of the tile: the front at the load further on by it is the same
     spring: float  # L_kappa
     larkin_length: float
     force_length: float  # correlation length of the force

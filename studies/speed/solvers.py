@@ -146,10 +146,8 @@ def scaling_figure(rows: Iterable[Row]) -> Figure:
                     linewidth=0.8,
                     label=rf"{solver}, $w_\mathrm{{rms}} = {rms:g}\,w_\mathrm{{int}}$",
                 )
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.set_xlabel("sites times short cutoffs crossed")
-        axes.set_ylabel("CPU time of a cycle / s")
+        axes.set(xscale="log", yscale="log")
+        axes.set(xlabel="sites times short cutoffs crossed", ylabel="CPU time of a cycle / s")
         axes.legend(loc="upper left")
         return figure
 
