@@ -138,9 +138,8 @@ def coverage_seconds(scene: Scene, asked: tuple[float, ...]) -> float:
     """Processor time that a surface is expected to take in `held_out_coverage` (Units: s)."""
     tried = [scene.reference, *(scene.chosen_knobs(error) for error in asked)]
     steady = [replace(scene.simulation(knobs, 0), schedule=_SCHEDULE) for knobs in tried]
-    return sum(branches_seconds(scene, knobs) for knobs in tried) + sum(
-        expected_cost(simulation).seconds for simulation in steady
-    )
+    branches = sum(branches_seconds(scene, knobs) for knobs in tried)
+    return branches + sum(expected_cost(simulation).seconds for simulation in steady)
 
 
 def held_out_coverage(
@@ -169,16 +168,12 @@ def held_out_coverage(
         knobs = scene.chosen_knobs(error)
         simulations = [scene.simulation(knobs, number) for number in numbers]
         branches = [measured_branches(scene, knobs, number) for number in numbers]
+        pairs = zip(branches, exact, strict=True)
         runs = np.array([_steady(simulation) for simulation in simulations])
         found.append(
             Coverage(
                 asked=error,
-                numerical=np.array(
-                    [
-                        one.adhesion - other.adhesion
-                        for one, other in zip(branches, exact, strict=True)
-                    ]
-                ),
+                numerical=np.array([one.adhesion - other.adhesion for one, other in pairs]),
                 numerical_stated=np.array(numerical_error(simulations[0], size)),
                 total=runs[:, 0] - of_others,
                 run_numerical=runs[:, 1],

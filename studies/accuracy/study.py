@@ -130,20 +130,17 @@ def _errors(scene: Scene, setting: Setting, found: list[Branches], exact: list[B
     """Differences of the found branches from the exact ones, surface by surface."""
     pairs = list(zip(found, exact, strict=True))
     adhesion = np.array(
-        [one.apparent_work_of_adhesion - other.apparent_work_of_adhesion for one, other in pairs]
+        [a.apparent_work_of_adhesion - b.apparent_work_of_adhesion for a, b in pairs]
     )
-    force = np.array([one.force - other.force for one, other in pairs])
-    fronts = [
-        front_difference(one.radius, other.radius) / scene.spectrum.short_cutoff
-        for one, other in pairs
-    ]
+    force, cutoff = np.array([a.force - b.force for a, b in pairs]), scene.spectrum.short_cutoff
+    fronts = [front_difference(a.radius, b.radius) / cutoff for a, b in pairs]
     numerics = asdict(setting.knobs)
     del numerics["angles"]  # None in all settings: they count sites per cutoff
     return Errors(
         knob=setting.knob,
         value=setting.value,
         seconds=np.array([one.seconds for one in found]),
-        adhesion=adhesion.mean(axis=2),
+        adhesion=np.mean(adhesion, axis=2),
         force=np.sqrt(np.mean(force**2, axis=(1, 2))),
         front_rms=np.array([rms(front) for front in fronts]),
         front_max=np.array([np.max(np.abs(front)) for front in fronts]),

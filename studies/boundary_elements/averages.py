@@ -119,7 +119,7 @@ def rough_settings(found: Iterable[Setting]) -> list[Setting]:
 
 
 def validity_row(setting: Setting, short_cutoff: float) -> ValidityRow:
-    """What is told of the front at one spectrum and amplitude."""
+    """How far the front is right at one spectrum and amplitude."""
     ratio, row = setting.hysteresis_ratio(), setting.rows[0]
     return ValidityRow(
         roll_off=row.roll_off / short_cutoff,

@@ -88,9 +88,8 @@ class HalfSpaceContact:
         pressure = self.elastic_pressure(displacement) if elastic is None else elastic
         gradient = pressure.copy()
         energy = 0.5 * float(np.vdot(displacement, gradient))
-        attraction, slope, _ = self.system.interaction.evaluate(
-            self.gap(displacement, penetration), potential=True, gradient=True
-        )
+        gap = self.gap(displacement, penetration)
+        attraction, slope, _ = self.system.interaction.evaluate(gap, potential=True, gradient=True)
         gradient[: self.n_point, : self.n_point] += slope
         return energy + float(np.sum(attraction)), gradient
 

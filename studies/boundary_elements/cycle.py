@@ -66,7 +66,7 @@ class BoundaryCycle:
 def boundary_cycle(
     case: Case,
     resume: BoundaryCycle | None = None,
-    keep: Callable[[BoundaryCycle], None] | None = None,
+    keep: Callable[[BoundaryCycle], None] = lambda cycle: None,
 ) -> BoundaryCycle:
     """Quasi-static approach and retraction: a whole loop, or the steady parts of its branches.
 
@@ -115,11 +115,9 @@ def boundary_cycle(
                 for name, value in state.items()
             },
         )
-        if keep is not None:
-            keep(so_far)
-    so_far = replace(so_far, status=ALL_LOADS)
-    if keep is not None:
         keep(so_far)
+    so_far = replace(so_far, status=ALL_LOADS)
+    keep(so_far)
     return so_far
 
 

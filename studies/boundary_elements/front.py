@@ -47,10 +47,8 @@ def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = Tru
     """
     began = time.process_time()
     angles = 2 * np.pi * np.arange(n_angle) / n_angle
-    n_sample = math.ceil(case.side / 2 / spacing)
-    values = adhesion_on_rays(
-        case.heights(), case.pixel, angles, spacing, n_sample, rotated=rotated
-    )
+    heights, n_sample = case.heights(), math.ceil(case.side / 2 / spacing)
+    values = adhesion_on_rays(heights, case.pixel, angles, spacing, n_sample, rotated=rotated)
     field = polar_field(spacing * np.arange(1.0, n_sample + 1), values, "cubic")
     recorder = Recorder(fronts=True)
     start = checked_touch(field, case.loads.max_penetration)

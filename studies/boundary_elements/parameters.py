@@ -10,15 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from crackfront.data.bounds import refuse_beyond_memory
-from crackfront.data.section import (
-    Count,
-    Positive,
-    Section,
-    Seed,
-    content_of,
-    refusal,
-    validated,
-)
+from crackfront.data.section import Count, Positive, Section, Seed, content_of, refusal, validated
 from studies.boundary_elements.cases import Case, Loads
 from studies.boundary_elements.contact import refuse_unresolved
 

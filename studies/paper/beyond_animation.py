@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
@@ -79,7 +78,11 @@ def motion_checks(shown: AnimatedCycle) -> tuple[Check, ...]:
     """What must be true of every frame."""
     approach = shown.direction > 0
     moved = shown.direction[1:, None] * np.diff(shown.front, axis=0)
-    smallest, work = float(shown.dissipated_energy.min()), _loop_work(shown)
+    smallest = float(shown.dissipated_energy.min())
+    # Loop integral of F db, in which each front is held while the penetration changes.
+    ends = np.append(shown.penetration[1:], shown.end_penetration)
+    held = np.mean(jkr.force(shown.front, ends[:, None]), axis=1)
+    work = float(np.sum((shown.force + held) / 2 * (ends - shown.penetration)))
     dissipated = float(shown.dissipated_energy.sum()) + shown.pull_off_energy
     mean = np.mean(jkr.force(shown.front, shown.penetration[:, None]), axis=1)
     return (
@@ -114,13 +117,6 @@ def motion_checks(shown: AnimatedCycle) -> tuple[Check, ...]:
     )
 
 
-def _loop_work(shown: AnimatedCycle) -> float:
-    """Loop integral of F db, in which each front is held while the penetration changes."""
-    ends = np.append(shown.penetration[1:], shown.end_penetration)
-    held = np.mean(jkr.force(shown.front, ends[:, None]), axis=1)
-    return float(np.sum((shown.force + held) / 2 * (ends - shown.penetration)))
-
-
 _LAST_FRAMES = 10
 """Frames without contact at the end."""
 
@@ -140,7 +136,11 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
         left, right = figure.subplots(1, 2)
         mean, reach = 1 - shown.elastic_energy, 4 * np.sqrt(shown.elastic_energy)
         draw_field(left, shown.x, shown.y, shown.patch, mean, reach)
-        _draw_axes(right, shown)
+        right.set(xlabel=f"mean {RADIUS_LABEL}", ylabel=FORCE_LABEL)
+        limits = (shown.mean_radius, right.set_xlim, 0.06), (shown.force, right.set_ylim, 0.2)
+        for values, setter, above in limits:
+            low, high = values.min(), values.max()
+            setter(low - 0.06 * (high - low), high + above * (high - low))
         (line,) = left.plot([], [], linewidth=1.2)
         title = left.set_title(f"{PENETRATION_LABEL} = $+0.00$")
         branches = {
@@ -164,15 +164,6 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
         point.set_data(shown.mean_radius[seen], shown.force[seen])
 
     return Animation(figure, (line, title, *branches.values(), point), last + _LAST_FRAMES, show)
-
-
-def _draw_axes(axes: Axes, shown: AnimatedCycle) -> None:
-    """Axes that hold the whole loop."""
-    limits = (shown.mean_radius, axes.set_xlim, 0.06), (shown.force, axes.set_ylim, 0.2)
-    for values, setter, above in limits:
-        low, high = values.min(), values.max()
-        setter(low - 0.06 * (high - low), high + above * (high - low))
-    axes.set(xlabel=f"mean {RADIUS_LABEL}", ylabel=FORCE_LABEL)
 
 
 FIGURE = Figure(

@@ -115,6 +115,7 @@ def roughness_record(parameters: RoughnessParameters, progress: Progress) -> Rou
     units = np.array([cutoff, cutoff, *means["larkin_length"][STRONG_LINE:]])
     longest = [parameters.strong_to, parameters.weak_to, *(line.fit_to for line in lines)]
     shortest = [parameters.strong_from, parameters.weak_from, *(line.fit_from for line in lines)]
+    spectra = zip(power.mean(axis=1), circle, strict=True)
     return RoughnessRecord(
         short_cutoff=cutoff,
         elastic_energy=np.array([*spheres, *(line.elastic_energy for line in lines)]),
@@ -124,9 +125,7 @@ def roughness_record(parameters: RoughnessParameters, progress: Progress) -> Rou
         mode=mode,
         power=power,
         lag=lag,
-        difference=np.array(
-            [_difference(*pair, mode, lag) for pair in zip(power.mean(axis=1), circle, strict=True)]
-        ),
+        difference=np.array([_difference(*pair, mode, lag) for pair in spectra]),
     )
 
 

@@ -38,11 +38,7 @@ ON_WHITE: dict[str, Any] = {
 
 
 def write_beside(
-    axes: Axes,
-    text: str,
-    place: tuple[float, float],
-    aside: tuple[float, float],
-    **style: Any,
+    axes: Axes, text: str, place: tuple[float, float], aside: tuple[float, float], **style: Any
 ) -> None:
     """Text that stands so many points to the right of a place, and above it."""
     axes.annotate(text, place, xytext=aside, textcoords="offset points", **style)

@@ -1,4 +1,4 @@
-"""Whole events of straight fronts: how they are told apart, their laws, checks and panels.
+"""Whole events of straight fronts: how they are separated, their laws, checks and panels.
 
 A whole event is all that moves when the load is raised by just enough to set off one instability;
 its patches need not touch each other.
@@ -30,7 +30,7 @@ _AREA, _EXTENT = "Larkin length times correlation length of the force", "Larkin 
 
 
 class EventParameters(StraightParameters):
-    """Straight fronts whose whole events are told apart, and the range of the fit.
+    """Straight fronts whose whole events are separated, and the range of the fit.
 
     The unit of their loads is what moves a front by the area of L_kappa times the correlation
     length of the force, so that about as many events lie between loads whatever the spring.
@@ -69,8 +69,7 @@ class EventRecord:
 class _Events:
     """Whole events of one front over one period."""
 
-    areas: list[float]
-    extents: list[float]
+    events: list[tuple[float, float]]  # areas and extents
     patches: list[float]
     swept_area: float
     smooth_event_area: float
@@ -97,18 +96,17 @@ def _events(parameters: EventParameters, spring: float, seed: int, tile: int) ->
     )
     whole = pulled.larkin_length * pulled.force_length
     sites = geometry.n_site * pulled.larkin_length / geometry.length
-    areas, extents, patches, swept = [], [], [], [0.0, 0.0]
+    events, patches, swept = [], [], [0.0, 0.0]
     for step in steps:
         each = swept_areas(step.before, step.after, geometry) / whole
         area = float(np.sum(each))
         swept[step.unstable] += area
         if step.unstable:
-            areas.append(area)
-            extents.append(area**2 / float(np.sum(each**2)) / sites)
+            events.append((area, area**2 / float(np.sum(each**2)) / sites))
             parts = swept_clusters(step.before, step.after, travel, geometry)
             patches += [part.area / whole for part in parts]
     total, loaded = sum(swept), geometry.length * pulled.period / whole
-    return _Events(areas, extents, patches, total / loaded, swept[0] / total, sites)
+    return _Events(events, patches, total / loaded, swept[0] / total, sites)
 
 
 def event_record(
@@ -122,27 +120,28 @@ def event_record(
     fronts: list[list[_Events]] = []
     for spring in springs:
         fronts.append([_events(parameters, spring, seed, tile) for tile in range(n_tile)])
-        count = sum(len(one.areas) for one in fronts[-1])
+        count = sum(len(one.events) for one in fronts[-1])
         progress(f"spring of {spring:g} Larkin lengths: {count} whole events")
 
-    def each(name: str) -> Array:
-        return np.array([value for one in fronts for tile in one for value in getattr(tile, name)])
+    def gathered(name: str) -> tuple[Integers, Array]:
+        """Index of the spring of each value, and all values."""
+        values = [[value for tile in one for value in getattr(tile, name)] for one in fronts]
+        owners = np.repeat(np.arange(len(fronts)), [len(one) for one in values])
+        return owners, np.array([value for one in values for value in one])
 
-    def owners(name: str) -> Integers:
-        counts = [sum(len(getattr(tile, name)) for tile in one) for one in fronts]
-        return np.repeat(np.arange(len(fronts)), counts)
-
+    event_spring, events = gathered("events")
+    patch_spring, patch_area = gathered("patches")
     return EventRecord(
         front_length=parameters.length,
         sites_per_larkin_length=fronts[0][0].sites_per_larkin_length,
         smallest_event=parameters.smallest_area,
         spring=np.array(springs),
         **surface_means(fronts, "swept_area", "smooth_event_area"),
-        event_spring=owners("areas"),
-        event_area=each("areas"),
-        event_extent=each("extents"),
-        patch_spring=owners("patches"),
-        patch_area=each("patches"),
+        event_spring=event_spring,
+        event_area=events[:, 0],
+        event_extent=events[:, 1],
+        patch_spring=patch_spring,
+        patch_area=patch_area,
     )
 
 
@@ -281,7 +280,7 @@ def _law_checks(record: EventRecord) -> Iterator[Check]:
 def _exponent_check(
     claim: str, found: float, expected: float, remark: str, scatter: float, shift: float = 0.0
 ) -> Check:
-    """An exponent against that of the theory, within what is asked or its own interval."""
+    """An exponent against that of the theory, within a tolerance or its own interval."""
     reach = math.hypot(scatter, shift)
     of_what = f"95% interval: ± {scatter:.2g} by the scatter of the events"
     if shift:

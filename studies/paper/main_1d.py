@@ -141,7 +141,12 @@ def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
             draw_arrow(axes, radius[near], force[near], colour)
             end = 0 if direction > 0 else -1
             _draw_jump(axes, direction, float(radius[end]), float(force[end]), colour)
-        _draw_pull_off(axes, loop)
+        # The lowest of all states is the pull-off force where the force is controlled.
+        lowest = int(np.argmin(loop.force))
+        axes.plot([_LEFT, loop.radius[lowest]], [loop.force[lowest]] * 2, color="0.3", **DOTTED)
+        axes.plot(loop.radius[lowest], loop.force[lowest], "o", color=VERMILION, ms=3.6, zorder=5)
+        label = r"pull-off force, $-\frac{3}{2}\,\pi w_\mathrm{retr}R$"
+        write_beside(axes, label, (0.0, loop.force[lowest]), (0, 2))
         axes.set(xlim=(_LEFT, None), ylim=(1.12 * float(np.min(loop.force)), None))
         axes.set(xlabel=RADIUS_LABEL, ylabel=FORCE_LABEL)
         axes.legend(loc="upper left")
@@ -160,17 +165,6 @@ def _draw_jump(axes: Axes, direction: int, radius: float, force: float, colour: 
         ha="left" if direction > 0 else "right",
         va="bottom" if direction > 0 else "top",
         color=colour,
-    )
-
-
-def _draw_pull_off(axes: Axes, loop: SmoothLoop) -> None:
-    """Lowest force of all states, the pull-off force where the force is controlled."""
-    lowest = int(np.argmin(loop.force))
-    radius, force = loop.radius[lowest], loop.force[lowest]
-    axes.plot([_LEFT, radius], [force, force], color="0.3", **DOTTED)
-    axes.plot(radius, force, "o", color=VERMILION, markersize=3.6, zorder=5)
-    write_beside(
-        axes, r"pull-off force, $-\frac{3}{2}\,\pi w_\mathrm{retr}R$", (0.0, force), (0, 2)
     )
 
 

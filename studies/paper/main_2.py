@@ -109,12 +109,8 @@ def ring_loops(parameters: RingsParameters, progress: Progress) -> RingLoops:
     loop, direction, penetration, radius, jump = np.concatenate(loops).T
     low, high = parameters.case_window
     count = round((high - low) / parameters.case_step)
-    cases = [
-        Rings(parameters.case_amplitude, wavelength).mean_adhesion(
-            low, high, count, parameters.samples
-        )
-        for wavelength in parameters.case_wavelengths
-    ]
+    known = [Rings(parameters.case_amplitude, one) for one in parameters.case_wavelengths]
+    cases = [rings.mean_adhesion(low, high, count, parameters.samples) for rings in known]
     progress(f"{len(cases)} cases with an amplitude of {parameters.case_amplitude:g}")
     case_approach, case_retraction = np.transpose(cases)
     return RingLoops(

@@ -29,13 +29,7 @@ from crackfront.simulate.instabilities import (
 )
 from studies.paper.drawing import BRANCHES, draw_jump, name_panels, write_beside
 from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to
-from studies.paper.rough import (
-    STRONG,
-    WEAK,
-    DisorderParameters,
-    RoughContact,
-    flat_spectrum,
-)
+from studies.paper.rough import STRONG, WEAK, DisorderParameters, RoughContact, flat_spectrum
 
 _DISORDER, _EVENT, _ANGLE, _STATE = "disorder", "instability", "angle", "state"
 
@@ -99,11 +93,9 @@ class _Branch:
     @property
     def smooth_energy(self) -> float:
         """Energy lost in the other steps, each taken at fixed penetration."""
-        smooth = [step for step in self.steps if not step.unstable]
-        field = self.contact.field
-        return float(
-            np.sum([dissipated_energy(step.before, step.after, step.end, field) for step in smooth])
-        )
+        smooth, field = [step for step in self.steps if not step.unstable], self.contact.field
+        lost = [dissipated_energy(step.before, step.after, step.end, field) for step in smooth]
+        return float(np.sum(lost))
 
     @property
     def states(self) -> Array:

@@ -322,12 +322,8 @@ def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
         measured = contact.measured_direction == direction
         if np.any(measured):
             points = contact.measured_radius * _MICRO, contact.measured_force * _MILLI
-            open_mark: dict[str, Any] = {
-                "markerfacecolor": "white",
-                "label": f"measured, {name}",
-                "zorder": 4,
-            }
-            axes.plot(*(one[measured] for one in points), "D", color=colour, **open_mark)
+            points = points[0][measured], points[1][measured]
+            axes.plot(*points, "D", color=colour, mfc="white", label=f"measured, {name}", zorder=4)
     axes.set_xlim(0.75 * contact.radius[contact.direction < 0].min() * _MICRO, place[-1])
     low, high = force.min(), force.max()
     axes.set_ylim(low - 0.15 * (high - low), high + 0.08 * (high - low))

@@ -34,7 +34,7 @@ class Quantity(NamedTuple):
 
 
 class MeasuredTable(NamedTuple):
-    """Rows of a file: their lines, (n_row,), and a row a column that was asked for, in SI units."""
+    """Rows of a file: their lines, (n_row,), and a row for each column, in SI units."""
 
     lines: Integers
     numbers: Array

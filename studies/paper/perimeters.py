@@ -85,9 +85,8 @@ class Perimeters:
         """Compare a front with the ones before, and keep every few of them."""
         state, front = recorder.states[-1], recorder.front
         # Before it jumps into contact, the sphere rests on a few places about its apex.
-        if state.direction < 0 or state.least_travel <= self._passed:
-            return
-        if state.force > self._highest:
+        landed = state.direction > 0 and state.least_travel > self._passed
+        if not landed or state.force > self._highest:
             return
         self.follow(front)
         if self._count % self._every == 1 % self._every:

@@ -12,7 +12,7 @@ from scipy.optimize import minimize, minimize_scalar
 from studies.paper.figure import Array, Integers
 
 _FEWEST = 20
-"""Values from which a law is told."""
+"""Fewest values to which a law is fitted."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(100)
 """Gauss rule of the integral that normalises the density."""
@@ -138,10 +138,8 @@ class JointPowerLaw:
 
     @property
     def shift(self) -> float:
-        """What tau owes to where the law begins: its change if that is at twice the smallest.
-
-        Scaling is reached little by little, and there is no telling where within a decade or two.
-        """
+        """What tau owes to where the law begins: its change if that is at twice the smallest."""
+        # Scaling is reached little by little; one or two decades do not show where.
         return abs(self.later - self.exponent)
 
     def density(self, values: ArrayLike, sample: int) -> Array:
@@ -235,10 +233,7 @@ def _most_likely_joint(samples: Samples, smallest: float) -> tuple[Array, Array,
 
 
 def _natural_parameters(
-    samples: Samples,
-    scales: Array,
-    smallest: float,
-    steepness: float,
+    samples: Samples, scales: Array, smallest: float, steepness: float
 ) -> tuple[float, Array]:
     """Least surprise, and (tau, C, B/4) there, for one delta: an exponential family."""
     measured, rules = [], []

@@ -124,10 +124,8 @@ class DisorderParameters(Section):
             realisation=realisation,
             name="flat",
         )
-        sizes = simulation.resolution
-        simulation = replace(
-            simulation, resolution=replace(sizes, n_angle=max(sizes.n_angle, least_angles))
-        )
+        sizes, n_angle = simulation.resolution, max(simulation.resolution.n_angle, least_angles)
+        simulation = replace(simulation, resolution=replace(sizes, n_angle=n_angle))
         compile_solver(simulation.solver.name)
         adhesion = simulation_adhesion(simulation)
         return RoughContact(

@@ -92,15 +92,8 @@ def _flat(cutoff: float) -> SelfAffineSpectrum:
 
 def _cubic(group: Group, rms: float, cutoff: float, n_angle: int) -> Problem:
     """Problem on its tile, with five samples a cutoff and cubic pieces between them."""
-    return Problem(
-        group,
-        rms,
-        _flat(cutoff),
-        n_angle,
-        samples_per_cutoff=5,
-        interpolation="cubic",
-        on_tile=True,
-    )
+    plain = Problem(group, rms, _flat(cutoff), n_angle, samples_per_cutoff=5, on_tile=True)
+    return replace(plain, interpolation="cubic")
 
 
 PROBLEMS = (

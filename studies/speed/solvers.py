@@ -132,9 +132,8 @@ def scaling_figure(rows: Iterable[Row]) -> Figure:
     with house_style():
         figure = blank_figure(COLUMN, 0.85 * COLUMN)
         axes = figure.add_subplot()
-        for (rms, chosen), colour in zip(
-            _by_disorder(rows).items(), (BLUE, VERMILION), strict=True
-        ):
+        disorders = _by_disorder(rows).items()
+        for (rms, chosen), colour in zip(disorders, (BLUE, VERMILION), strict=True):
             for solver, marker, dashes in (("reference", "s", (3, 2)), ("newton", "o", (1, 0))):
                 axes.plot(
                     [row.n_cutoff for row in chosen],

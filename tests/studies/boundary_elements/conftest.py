@@ -1,10 +1,11 @@
 """A small rough sphere, and configurations that run in seconds."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from studies.boundary_elements.cases import Case, Loads
+from studies.boundary_elements.cases import Loads
 from studies.boundary_elements.front import front_cycle
 from studies.boundary_elements.parameters import load_validation, validation_cases
 
@@ -74,17 +75,8 @@ def front(case):
 
 
 @pytest.fixture(scope="session")
-def small():
+def small(case):
     """A rough sphere whose loop takes a dozen load steps."""
-    return Case(
-        seed=5,
-        short_cutoff=0.4,
-        roll_off=0.4,
-        hurst=1.0,
-        side=5.12,
-        n_point=64,
-        interaction_range=0.61,
-        elastic_energy=0.03,
-        tolerance=1e-4,
-        loads=Loads(max_penetration=0.3, step=0.15, shown_penetration=0.15),
-    )
+    loads = Loads(max_penetration=0.3, step=0.15, shown_penetration=0.15)
+    shape = {"short_cutoff": 0.4, "roll_off": 0.4, "elastic_energy": 0.03}
+    return replace(case, n_point=64, interaction_range=0.61, loads=loads, **shape)

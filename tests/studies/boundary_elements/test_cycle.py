@@ -40,9 +40,7 @@ def test_a_cycle_begins_and_ends_without_contact(small, cycle_and_parts):
     np.testing.assert_allclose(forces, cycle.force[shown], rtol=1e-4)
 
 
-def test_the_energy_never_rises_at_a_penetration_and_no_load_step_ends_on_a_saddle(
-    cycle_and_parts,
-):
+def test_the_energy_never_rises_at_a_penetration_and_no_load_step_ends_on_a_saddle(cycle_and_parts):
     cycle, _ = cycle_and_parts
     assert np.all(cycle.released >= -1e-12)
     work = np.diff(cycle.penetration) * (cycle.force[1:] + cycle.force[:-1]) / 2

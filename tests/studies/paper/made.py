@@ -10,8 +10,18 @@ CONFIGURATIONS = Path(__file__).parents[3] / "config" / "figures"
 
 
 def parameters(name, **changes):
-    """Parameters of the file of a figure at the scale quick, with changes."""
-    return load_figure(CONFIGURATIONS / f"{name}.yaml", "quick").model_copy(update=changes)
+    """Parameters of the file of a figure at the scale quick, with changes; refused as a file is."""
+    given = load_figure(CONFIGURATIONS / f"{name}.yaml", "quick")
+    return type(given).model_validate(given.model_dump() | changes)
+
+
+def with_measured(folder, name, text):
+    """Configuration of a figure that names a file of measured points."""
+    (folder / "measured.csv").write_text(text, encoding="utf-8")
+    path, original = folder / f"{name}.yaml", (CONFIGURATIONS / f"{name}.yaml").read_text()
+    line = f"parameters:\n  measured: {folder / 'measured.csv'}\n"
+    path.write_text(original.replace("parameters:\n", line))
+    return path
 
 
 def computed(name, given):
@@ -27,6 +37,11 @@ def figure_of(record):
 def failed(record):
     """Claims of a figure's data that fail."""
     return [check.claim for check in figure_of(record).checks(record) if not check.passed]
+
+
+def is_labelled(panels):
+    """Whether both axes of all panels have a label."""
+    return all(axes.get_xlabel() and axes.get_ylabel() for axes in panels)
 
 
 def drawn_from_file(record, folder):

@@ -11,21 +11,13 @@ from crackfront.data.records import write_record
 from studies.__main__ import main
 from studies.paper.drawing import save_animation
 from studies.paper.figure import figure
-from studies.paper.rough import RoughCycleParameters
-from tests.studies.paper.made import computed, failed
+from tests.studies.paper.made import computed, failed, parameters
 
 
 @pytest.fixture(scope="module")
 def shown():
-    given = RoughCycleParameters(
-        seed=1,
-        error=0.5,
-        tile_roll_offs=10.0,
-        short_cutoff=0.3,
-        elastic_energy=0.1,
-        max_penetration=0.6,
-        step=0.2,
-    )
+    coarse = {"seed": 1, "error": 0.5, "tile_roll_offs": 10.0, "short_cutoff": 0.3}
+    given = parameters("beyond-animation", max_penetration=0.6, step=0.2, **coarse)
     return computed("beyond-animation", given)
 
 

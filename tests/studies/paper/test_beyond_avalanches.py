@@ -11,7 +11,7 @@ from studies.paper.beyond_avalanches import AvalancheRecord
 from studies.paper.events import cutoff_slope, depth_slope, event_law, event_record
 from studies.paper.figure import figure
 from studies.paper.power_law import joint_power_law
-from tests.studies.paper.made import computed, failed, parameters
+from tests.studies.paper.made import computed, failed, is_labelled, parameters
 
 SCENE = figure("beyond-avalanches")
 
@@ -186,13 +186,11 @@ def test_avalanches_and_smooth_steps_sweep_the_whole_area(record):
 
 def test_penetrations_in_the_wrong_order_are_refused():
     with pytest.raises(ValidationError, match="penetrations must fall from max_penetration"):
-        SCENE.parameters.model_validate(
-            parameters("beyond-avalanches").model_dump() | {"last_penetration": 0.0}
-        )
+        parameters("beyond-avalanches", last_penetration=0.0)
 
 
 def test_its_drawing_has_six_labelled_panels(rng):
     drawn = SCENE.draw(synthetic(rng))
     assert len(drawn.axes) == 6
     assert len(drawn.subfigs[0].legends[0].texts) == SPRINGS.size
-    assert all(axes.get_xlabel() and axes.get_ylabel() for axes in drawn.axes)
+    assert is_labelled(drawn.axes)

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from studies.paper.figure import figure
 from studies.paper.front_spectra import RoughnessRecord, fitted_roughness, stiffness_wavevector
 from studies.paper.rough import STRONG, WEAK
-from tests.studies.paper.made import computed, failed, parameters
+from tests.studies.paper.made import computed, failed, is_labelled, parameters
 
 SCENE = figure("beyond-roughness")
 
@@ -112,19 +112,17 @@ def test_weak_disorder_roughens_less(record):
 )
 def test_parameters_that_cannot_be_fitted_are_refused(changes, sentence):
     with pytest.raises(ValidationError, match=sentence):
-        SCENE.parameters.model_validate(parameters("beyond-roughness").model_dump() | changes)
+        parameters("beyond-roughness", **changes)
 
 
 def test_a_range_of_a_straight_front_that_holds_no_wavelength_is_refused():
     line = parameters("beyond-roughness").weak_line.model_dump() | {"fit_from": 1.0}
     with pytest.raises(ValidationError, match=r"fit_from is 1; it must be below fit_to, 0\.07"):
-        SCENE.parameters.model_validate(
-            parameters("beyond-roughness").model_dump() | {"weak_line": line}
-        )
+        parameters("beyond-roughness", weak_line=line)
 
 
 def test_its_drawing_has_four_labelled_panels(record):
     wide = replace(record, longest=np.full(4, 1.0), shortest=np.full(4, 0.2))
     drawn = SCENE.draw(wide)
     assert len(drawn.axes) == 4
-    assert all(axes.get_xlabel() and axes.get_ylabel() for axes in drawn.axes)
+    assert is_labelled(drawn.axes)

@@ -12,19 +12,10 @@ from crackfront.data.files import UnreadableFileError, read_attributes
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.data.section import ConfigurationError
-from studies.paper.figure import (
-    FIGURES,
-    SCALES,
-    Check,
-    checks_table,
-    close_to,
-    figure,
-    load_figure,
-)
+from studies.paper.figure import FIGURES, SCALES, Check, checks_table, close_to, figure, load_figure
+from tests.studies.paper.made import CONFIGURATIONS
 
-REPOSITORY = Path(__file__).parents[3]
-REFERENCES = REPOSITORY / "docs" / "reference"
-CONFIGURATIONS = REPOSITORY / "config" / "figures"
+REFERENCES = Path(__file__).parents[3] / "docs" / "reference"
 
 
 def test_every_figure_has_a_configuration():

@@ -9,40 +9,20 @@ from pydantic import ValidationError
 from crackfront.data.section import ConfigurationError
 from studies.paper.figure import figure, load_figure
 from studies.paper.film import conformity_energy
-from studies.paper.main_5a import FilmScalesParameters
-from studies.paper.si_6 import (
-    SyntheticFilmParameters,
-    profile_periodogram,
-)
-from tests.studies.paper.made import computed, failed
+from studies.paper.si_6 import profile_periodogram
+from tests.studies.paper.made import computed, failed, parameters, with_measured
 
-FILM = {
-    "young_modulus": 0.7e6,
-    "poisson_ratio": 0.5,
-    "hurst": 1.0,
-    "roll_off": 2.1e-6,
-    "plateau": 8.4e-27,
-    "short_cutoff": 4e-10,
-    "longest": 1e-4,
-}
-SCALES = FILM | {"work_of_adhesion": 63e-3}
-SYNTHETIC = FILM | {"shortest": 0.5e-6, "tile_roll_offs": 10.0, "realisations": 4, "seed": 3}
+SYNTHETIC = {"shortest": 0.5e-6, "tile_roll_offs": 10.0, "realisations": 4, "seed": 3}
 
 
 @pytest.fixture(scope="module")
 def scales():
-    return computed("main-5a", FilmScalesParameters(**SCALES))
+    return computed("main-5a", parameters("main-5a"))
 
 
 @pytest.fixture(scope="module")
 def synthetic():
-    return computed("si-6", SyntheticFilmParameters(**SYNTHETIC))
-
-
-def table(tmp_path, text):
-    path = tmp_path / "measured.csv"
-    path.write_text(text, encoding="utf-8")
-    return path
+    return computed("si-6", parameters("si-6", **SYNTHETIC))
 
 
 def test_the_film_has_the_numbers_of_the_paper(scales):
@@ -50,8 +30,7 @@ def test_the_film_has_the_numbers_of_the_paper(scales):
 
 
 def test_a_film_of_half_the_plateau_fails_the_numbers_of_the_paper(scales):
-    thinner = FilmScalesParameters(**SCALES | {"plateau": 4.2e-27})
-    assert len(failed(computed("main-5a", thinner))) == 4
+    assert len(failed(computed("main-5a", parameters("main-5a", plateau=4.2e-27)))) == 4
 
 
 def test_a_range_that_is_too_narrow_fails_its_check(scales):
@@ -89,17 +68,13 @@ def test_figures_of_densities_have_units_in_si(name, request):
     assert "m$^{-1}$" in drawn.axes[-1].get_xlabel()
 
 
-def measured_film(tmp_path):
-    """A file with the exact profile density of the film, in other units."""
-    q = np.geomspace(1e4, 1e9, 400)
-    density = FilmScalesParameters(**SCALES).spectrum.profile_density(q)
-    rows = (f"{a / 1e6:.12g},{b * 1e18:.12g}\n" for a, b in zip(q, density, strict=True))
-    return table(tmp_path, "q (1/um),C1D (um^3)\n" + "".join(rows))
-
-
 def test_measured_profiles_are_drawn_and_give_their_own_energy(tmp_path):
-    path = measured_film(tmp_path)
-    record = computed("main-5a", FilmScalesParameters(**SCALES, measured=str(path)))
+    # The exact density of the film, in other units.
+    q = np.geomspace(1e4, 1e9, 400)
+    density = parameters("main-5a").spectrum.profile_density(q)
+    rows = (f"{a / 1e6:.12g},{b * 1e18:.12g}\n" for a, b in zip(q, density, strict=True))
+    path = with_measured(tmp_path, "main-5a", "q (1/um),C1D (um^3)\n" + "".join(rows))
+    record = computed("main-5a", load_figure(path, "quick"))
     assert failed(record) == []
     assert len(figure("main-5a").checks(record)) == 11
     found = conformity_energy(
@@ -111,10 +86,7 @@ def test_measured_profiles_are_drawn_and_give_their_own_energy(tmp_path):
 
 
 def test_a_configuration_with_a_wrong_file_is_refused_before_any_work(tmp_path):
-    wrong = table(tmp_path, "q (1/m),C1D (m^3)\n1,1\n1,1\n")
-    given = "".join(f"  {key}: {value!r}\n" for key, value in SCALES.items())
-    path = tmp_path / "main-5a.yaml"
-    path.write_text(f"parameters:\n{given}  measured: {wrong}\nquick: {{}}\npaper: {{}}\n")
+    path = with_measured(tmp_path, "main-5a", "q (1/m),C1D (m^3)\n1,1\n1,1\n")
     with pytest.raises(ConfigurationError, match=r"measured\.csv, line 3: q is 1 1/m after 1 1/m"):
         load_figure(path, "quick")
     path.write_text(path.read_text().replace("measured.csv", "none.csv"))
@@ -123,14 +95,14 @@ def test_a_configuration_with_a_wrong_file_is_refused_before_any_work(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("kind", "given", "sentence"),
+    ("name", "changes", "sentence"),
     [
-        (FilmScalesParameters, SCALES | {"longest": 1e-6}, "longest is 1e-06; show ten roll-off"),
-        (FilmScalesParameters, SCALES | {"roll_off": 1e-10}, "roll_off 1e-10 is shorter than"),
-        (SyntheticFilmParameters, SYNTHETIC | {"shortest": 1e-5}, "it must lie between"),
-        (SyntheticFilmParameters, SYNTHETIC | {"longest": 1e-5}, "must not be below the side"),
+        ("main-5a", {"longest": 1e-6}, "longest is 1e-06; show ten roll-off"),
+        ("main-5a", {"roll_off": 1e-10}, "roll_off 1e-10 is shorter than"),
+        ("si-6", {"shortest": 1e-5}, "it must lie between"),
+        ("si-6", {"longest": 1e-5}, "must not be below the side"),
     ],
 )
-def test_films_that_cannot_be_shown_are_refused(kind, given, sentence):
+def test_films_that_cannot_be_shown_are_refused(name, changes, sentence):
     with pytest.raises(ValidationError, match=sentence):
-        kind(**given)
+        parameters(name, **changes)

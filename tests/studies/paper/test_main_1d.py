@@ -5,19 +5,18 @@ from dataclasses import replace
 import pytest
 
 from studies.paper.figure import figure
-from studies.paper.main_1d import SmoothLoopParameters
+from tests.studies.paper.made import computed, failed, parameters
 
 SCENE = figure("main-1d")
 
 
 @pytest.fixture(scope="module")
 def smooth():
-    given = SmoothLoopParameters(approach=0.6, retraction=1.4, max_penetration=1.0, step=0.005)
-    return SCENE.compute(given, lambda line: None)
+    return computed("main-1d", parameters("main-1d"))
 
 
 def test_a_smooth_loop_follows_the_closed_forms(smooth):
-    assert all(check.passed for check in SCENE.checks(smooth))
+    assert failed(smooth) == []
 
 
 def test_a_wrong_smooth_loop_fails_its_checks(smooth):

@@ -7,26 +7,15 @@ import pytest
 from pydantic import ValidationError
 
 from studies.paper.figure import figure
-from studies.paper.main_2 import RingsParameters
 from studies.paper.rings import INNERMOST, Rings, first_stops
-from tests.studies.paper.made import computed, failed
+from tests.studies.paper.made import computed, failed, parameters
 
-GIVEN = {
-    "amplitude": 0.4,
-    "wavelengths": (0.36, 0.05),
-    "max_penetration": 1.5,
-    "step": 0.025,
-    "samples": 600,
-    "case_amplitude": 0.2,
-    "case_wavelengths": (0.02, 0.1, 0.6),
-    "case_window": (0.3, 0.7),
-    "case_step": 0.002,
-}
+COARSE = {"step": 0.025, "samples": 600, "case_wavelengths": (0.02, 0.1, 0.6), "case_step": 0.002}
 
 
 @pytest.fixture(scope="module")
 def loops():
-    return computed("main-2", RingsParameters(**GIVEN))
+    return computed("main-2", parameters("main-2", **COARSE))
 
 
 def test_fronts_on_rings_rest_at_the_first_stopping_points(loops):
@@ -93,4 +82,4 @@ def test_a_figure_of_rings_shows_units_on_every_axis(loops):
 )
 def test_rings_that_cannot_be_computed_are_refused(change, sentence):
     with pytest.raises(ValidationError, match=sentence):
-        RingsParameters(**GIVEN | change)
+        parameters("main-2", **COARSE | change)

@@ -54,9 +54,7 @@ def test_wrong_signs_extents_and_branches_fail(record):
 
 def test_disorder_in_the_wrong_order_is_refused():
     with pytest.raises(ValidationError, match="the first must be the larger"):
-        SCENE.parameters.model_validate(
-            parameters("main-3ab", **COARSE).model_dump() | {"weak": 0.1}
-        )
+        parameters("main-3ab", **COARSE, weak=0.1)
 
 
 def test_both_contacts_take_the_sites_of_the_larger():

@@ -7,25 +7,20 @@ import pytest
 
 from crackfront.core.field.rays import front_adhesion
 from crackfront.simulate.contact import simulation_field
-from studies.paper.main_3cd import PinnedLoopParameters
 from studies.paper.rough import patch_of
-from tests.studies.paper.made import computed, drawn_from_file, failed
+from tests.studies.paper.made import computed, drawn_from_file, failed, is_labelled, parameters
 
 
 def coarse(**others):
-    parameters = {
+    given = {
         "seed": 1,
         "error": 0.5,
-        "tile_roll_offs": 20.0,
         "short_cutoff": 0.02,
-        "roll_off": 0.04,
-        "hurst": 0.8,
         "elastic_energy": 0.1,
-        "max_penetration": 1.0,
         "step": 0.1,
         "patch_side": 0.4,
     }
-    return PinnedLoopParameters(**parameters | others)
+    return parameters("main-3cd", **given | others)
 
 
 @pytest.fixture(scope="module")
@@ -64,10 +59,7 @@ def test_a_patch_is_the_field_that_the_front_feels():
 
 
 def test_the_drawing_of_its_file_has_labelled_axes(loop, tmp_path):
-    drawn = drawn_from_file(loop, tmp_path)
-    for axes in drawn.axes[:2]:
-        assert axes.get_xlabel()
-        assert axes.get_ylabel()
+    assert is_labelled(drawn_from_file(loop, tmp_path).axes[:2])
 
 
 @pytest.mark.parametrize(

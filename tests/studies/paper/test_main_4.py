@@ -8,24 +8,14 @@ import pytest
 from pydantic import ValidationError
 
 from studies.paper.figure import figure
-from studies.paper.main_4 import MappingParameters
-from tests.studies.paper.made import computed, failed
+from tests.studies.paper.made import computed, failed, parameters
 
-GIVEN = {
-    "seed": 1,
-    "short_cutoff": 0.0025,
-    "roll_off": 0.01,
-    "hurst": 0.8,
-    "elastic_energy": 0.05,
-    "side": 0.16,
-    "patch": 0.04,
-    "n_point": 256,
-}
+COARSE = {"seed": 1, "short_cutoff": 0.0025, "n_point": 256}
 
 
 @pytest.fixture(scope="module")
 def record():
-    return computed("main-4", MappingParameters(**GIVEN))
+    return computed("main-4", parameters("main-4", **COARSE))
 
 
 def test_a_mapped_surface_keeps_parseval_its_mean_and_its_peaks(record):
@@ -76,4 +66,4 @@ def test_a_figure_of_a_mapping_shows_two_maps_and_two_profiles(record):
 )
 def test_surfaces_that_cannot_be_mapped_are_refused(change, sentence):
     with pytest.raises(ValidationError, match=sentence):
-        MappingParameters(**GIVEN | change)
+        parameters("main-4", **COARSE | change)

@@ -6,33 +6,28 @@ import numpy as np
 import pytest
 
 from studies.paper.figure import figure, settings_fingerprint
-from studies.paper.nanodiamond import NanodiamondParameters
 from studies.paper.perimeters import advances
-from tests.studies.paper.made import CONFIGURATIONS, computed, drawn_from_file, failed
-
-CONFIGURATION = CONFIGURATIONS / "main-5bc.yaml"
+from tests.studies.paper.made import (
+    computed,
+    drawn_from_file,
+    failed,
+    is_labelled,
+    parameters,
+    with_measured,
+)
 
 
 def film_parameters(**others):
-    film = {
+    coarse = {
         "seed": 1,
         "error": 0.5,
         "tile_roll_offs": 10.0,
-        "young_modulus": 0.7e6,
-        "poisson_ratio": 0.5,
-        "radius": 1.25e-3,
-        "work_of_adhesion": 63e-3,
-        "hurst": 1.0,
-        "roll_off": 2.1e-6,
         "short_cutoff": 1.05e-6,
-        "plateau": 8.4e-27,
-        "largest_force": 1e-3,
-        "shown_force": 0.64e-3,
         "step": 240e-9,
         "retraction_step": 480e-9,
         "line_step": 480e-9,
     }
-    return NanodiamondParameters(**film | others)
+    return parameters("main-5bc", **coarse | others)
 
 
 @pytest.fixture(scope="module")
@@ -84,10 +79,7 @@ def test_an_advance_goes_on_across_the_first_ray():
 
 
 def test_the_drawing_of_its_file_has_labelled_axes(contact, tmp_path):
-    drawn = drawn_from_file(contact, tmp_path)
-    for axes in drawn.axes[:2]:
-        assert axes.get_xlabel()
-        assert axes.get_ylabel()
+    assert is_labelled(drawn_from_file(contact, tmp_path).axes[:2])
 
 
 MEASURED = """force (mN),radius (um),branch
@@ -111,21 +103,12 @@ def test_measured_points_are_fitted_checked_and_drawn(tmp_path):
     assert {"measured, approach", "measured, retraction"} <= set(labels)
 
 
-def with_measured(folder, text):
-    """The configuration of the figure with measured points."""
-    (folder / "measured.csv").write_text(text)
-    path = folder / CONFIGURATION.name
-    line = f"parameters:\n  measured: {folder / 'measured.csv'}\n"
-    path.write_text(CONFIGURATION.read_text().replace("parameters:\n", line))
-    return path
-
-
 def test_a_measured_file_decides_what_a_figure_is_made_of_and_a_comment_does_not(tmp_path):
-    configuration = with_measured(tmp_path, MEASURED)
+    configuration = with_measured(tmp_path, "main-5bc", MEASURED)
     before = settings_fingerprint(configuration, "paper")
     configuration.write_text(f"# a remark\n{configuration.read_text()}")
     assert settings_fingerprint(configuration, "paper") == before
-    with_measured(tmp_path, MEASURED.replace("0.5,110", "0.5,111"))
+    with_measured(tmp_path, "main-5bc", MEASURED.replace("0.5,110", "0.5,111"))
     assert settings_fingerprint(configuration, "paper") != before
 
 
