@@ -7,7 +7,7 @@ import pytest
 
 import crackfront as cf
 from crackfront.cli.surface import SphereOptions, predict, surface
-from crackfront.sweep.configuration import SurfaceSection
+from crackfront.sweep.sections import SurfaceSection
 from crackfront.topography.options import (
     PredictionOptions,
     ReadingOptions,

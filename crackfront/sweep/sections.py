@@ -1,0 +1,324 @@
+"""Sections of the configuration of a sweep: what each accepts, and what it stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import fields
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, create_model, model_validator
+
+from crackfront.analysis.sweep import FEWEST_BOOTSTRAP
+from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.field.fields import Interpolation
+from crackfront.core.solver.relax import SOLVERS
+from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
+from crackfront.data.bounds import SI, Range
+from crackfront.data.section import (
+    ConfigurationError,
+    Count,
+    Density,
+    Energy,
+    InputFile,
+    Positive,
+    Section,
+    refusal,
+    within,
+)
+from crackfront.simulate.laws import Knobs
+from crackfront.simulate.lines import LineLoad, SpringUnit
+from crackfront.simulate.simulation import Numerics
+from crackfront.simulate.steady import SteadySchedule
+from crackfront.sweep.sweep import NamedSpectrum
+from crackfront.topography.measures import read_surface
+from crackfront.topography.options import ReadingOptions, declared, options_for_each
+
+Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
+
+
+class ScalesSection(Section):
+    """Scene in SI units."""
+
+    radius: Annotated[float, within(SI["m"])]
+    work_of_adhesion: Annotated[float, within(SI["J/m^2"])]
+    contact_modulus: Annotated[float, within(SI["Pa"])]
+
+
+_READING_KEYS: Any = {item.name: (Any, item.default) for item in declared(ReadingOptions)}
+
+_ReadingSection = create_model("_ReadingSection", __base__=Section, **_READING_KEYS)
+
+
+def _listed(value: Any) -> Any:
+    """A list, of one entry where a single text or number stands for it."""
+    return (value,) if isinstance(value, (str, int)) else value
+
+
+class SurfaceSection(_ReadingSection):
+    """Measurements of a surface, and the options by which they are read."""
+
+    file: Annotated[tuple[InputFile, ...], BeforeValidator(_listed), Field(min_length=1)]
+
+    def shape(self) -> tuple[TabulatedSpectrum, str]:
+        """Spectrum in metres, and eight digits that change with any of the files.
+
+        Five digits of each number, so that simulations keep their names whatever the round-off.
+        """
+        given = self.model_dump(exclude={"file"})
+        try:
+            options = options_for_each(ReadingOptions, given, len(self.file))
+        except TypeError as error:
+            raise ValueError(str(error)) from error
+        surface = read_surface(self.file, options)
+        table = surface.joint.spectrum
+        lengths, densities = (
+            tuple(float(f"{value:.5g}") for value in values)
+            for values in (table.wavelengths, table.identity[1])
+        )
+        return TabulatedSpectrum(lengths, densities), surface.checksum
+
+
+class SpectrumSection(Section):
+    """Shape of one spectrum: self-affine by its parameters, or another by its own section.
+
+    The method `shape` of such a section returns the spectrum and what its name ends with.
+    """
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
+    short_cutoff: Positive | None = None
+    roll_off: Positive | None = None
+    hurst: Annotated[float, Field(gt=0, le=1)] | None = None
+    surface: SurfaceSection | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> SpectrumSection:
+        if sections := self._sections():
+            others = "short_cutoff", "roll_off", "hurst", *sections[1:]
+            _refuse_overruled(self, sections[0], others)
+        elif missing := _missing(self, ("short_cutoff", "hurst")):
+            raise refusal(f"key {', '.join(missing)} is missing; add it, or name a surface")
+        if self.roll_off and self.short_cutoff and self.roll_off < self.short_cutoff:
+            raise refusal(
+                f"roll_off {self.roll_off:g} is shorter than short_cutoff {self.short_cutoff:g}; "
+                "lower the cutoff or raise the roll-off (equal values give a flat spectrum)"
+            )
+        return self
+
+    def named(self, position: int, lateral: float) -> NamedSpectrum:
+        """Spectrum at a position of the list, with its lengths divided by a unit."""
+        for key in self._sections():
+            try:
+                spectrum, ending = getattr(self, key).shape()
+            except (OSError, ValueError) as error:
+                reason = str(error)
+                if isinstance(error, OSError):
+                    reason = f"{error.filename} cannot be read: {error.strerror}"
+                raise ConfigurationError(f"spectra[{position}].{key}: {reason}") from error
+            name = f"{self.name}-{ending}" if ending else self.name
+            return NamedSpectrum(name, spectrum.in_units(lateral))
+        given: Any = self
+        long = given.roll_off or given.short_cutoff
+        fractal = SelfAffineSpectrum(given.short_cutoff, long, given.hurst)
+        return NamedSpectrum(self.name, fractal.in_units(lateral))
+
+    def _sections(self) -> list[str]:
+        """Keys of the sections that are given: shapes other than self-affine ones."""
+        return [key for key, value in self if isinstance(value, Section)]
+
+
+class AmplitudesSection(Section):
+    """Amplitudes relative to w_int, in one of two measures."""
+
+    elastic_energy: Annotated[tuple[Energy, ...], Field(min_length=1)] | None = None
+    work_of_adhesion_rms: Annotated[tuple[Rms, ...], Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _one_measure(self) -> AmplitudesSection:
+        _refuse_unless_one(
+            "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms",
+            (self.elastic_energy, self.work_of_adhesion_rms),
+        )
+        refuse_repeated("amplitude", self.elastic_energy or self.work_of_adhesion_rms or ())
+        return self
+
+    @property
+    def elastic_energies(self) -> tuple[float, ...]:
+        """e_el / w_int, from w_rms^2 = 4 e_el w_int where the rms is given."""
+        if self.elastic_energy is not None:
+            return self.elastic_energy
+        return tuple(rms**2 / 4 for rms in self.work_of_adhesion_rms or ())
+
+
+class TileSection(Section):
+    """Side of the periodic tile."""
+
+    roll_offs: Positive
+    cutoffs: Annotated[Positive, Field(ge=1)]
+
+
+class NumericsSection(Section):
+    """An error or a resolution, and the solver, as in `Numerics`."""
+
+    error: Annotated[float, Field(gt=0, lt=1)] | None = None
+    angles: Annotated[Count, Field(ge=4)] | None = None
+    angles_per_cutoff: Density | None = None
+    samples_per_cutoff: Density | None = None
+    interpolation: Interpolation | None = None
+    pixels_per_cutoff: Density | None = None
+    tile: TileSection
+    tolerance: Annotated[float, Field(gt=0, lt=1)] | None = None
+    max_sweeps: Count
+    solver: str
+
+    @model_validator(mode="after")
+    def _usable(self) -> NumericsSection:
+        if self.error is not None:
+            _refuse_overruled(self, "error", [item.name for item in fields(Knobs)])
+        else:
+            needed = ("samples_per_cutoff", "interpolation", "pixels_per_cutoff", "tolerance")
+            if missing := _missing(self, needed):
+                raise refusal(
+                    f"{', '.join(missing)} missing; add what is missing or ask for an error"
+                )
+            _refuse_unless_one(
+                "numerics need exactly one of angles and angles_per_cutoff",
+                (self.angles, self.angles_per_cutoff),
+                otherwise="give one, or ask for an error",
+            )
+        if self.pixels_per_cutoff is not None and self.pixels_per_cutoff < 2:
+            raise refusal(
+                f"pixels_per_cutoff is {self.pixels_per_cutoff:g}, so that short_cutoff is below "
+                "two pixels; it must be 2 or more"
+            )
+        if self.solver not in SOLVERS:
+            raise refusal(
+                f"solver {self.solver!r} is unknown; choose one of {', '.join(sorted(SOLVERS))}"
+            )
+        return self
+
+    def numerics(self) -> Numerics:
+        """Numerics with an error, or with a resolution and a tolerance."""
+        given = {item.name: getattr(self, item.name) for item in fields(Knobs)}
+        if self.angles is not None:
+            given["angles_per_cutoff"] = 1.0  # without effect
+        return Numerics(
+            knobs=Knobs(**given) if self.error is None else self.error,
+            tile_roll_offs=self.tile.roll_offs,
+            tile_cutoffs=self.tile.cutoffs,
+            max_sweeps=self.max_sweeps,
+            solver=self.solver,
+        )
+
+
+class SteadySection(Section):
+    """Steady parts of the branches only, as in `SteadySchedule`.
+
+    States nearer than a hundredth of the correlation length are no further samples.
+    """
+
+    start: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    travel: Annotated[Positive, Field(ge=0.01)]
+    error: Positive
+
+
+class LineSection(Section):
+    """Straight fronts instead of spheres, as in `LineLoad`."""
+
+    springs: Annotated[tuple[Positive, ...], Field(min_length=1)]
+    spring_unit: SpringUnit = "correlation_length"
+    length: Annotated[Positive, Field(ge=8)]
+    period: Annotated[Positive, Field(ge=20)]
+    transient: Annotated[Positive, Field(ge=3)]
+    step: Positive
+    uncorrelated: bool = False
+
+    @model_validator(mode="after")
+    def _distinct(self) -> LineSection:
+        refuse_repeated("spring", self.springs)
+        return self
+
+
+class LoadSection(Section):
+    """Penetrations to visit, or straight fronts."""
+
+    max_penetration: Annotated[float, Field(allow_inf_nan=False)] | None = None
+    step: Positive | None = None
+    steady: SteadySection | None = None
+    line: LineSection | None = None
+
+    @model_validator(mode="after")
+    def _makes_contact(self) -> LoadSection:
+        if self.line is not None:
+            _refuse_overruled(self, "line", ("max_penetration", "step", "steady"))
+            return self
+        if self.max_penetration is None:
+            raise refusal("key max_penetration is missing; add it, or a section line")
+        if self.max_penetration < 0:
+            raise refusal(
+                f"max_penetration is {self.max_penetration:g}, which never makes contact; the "
+                "sphere touches at 0, so it must be 0 or more"
+            )
+        _refuse_unless_one(
+            "load needs exactly one of step (full cycles) and steady (parts of them)",
+            (self.step, self.steady),
+        )
+        if self.steady is not None and self.steady.start >= self.max_penetration:
+            raise refusal(
+                f"steady.start {self.steady.start:g} is not below max_penetration "
+                f"{self.max_penetration:g}; lower it or penetrate deeper"
+            )
+        return self
+
+    def schedule(self, vertical: float) -> LoadSchedule | SteadySchedule | LineLoad:
+        """Penetrations to visit, lengths divided by a unit, or straight fronts."""
+        if self.line is not None:
+            return LineLoad(**self.line.model_dump(exclude={"springs"}))
+        given: Any = self
+        deepest, steady = given.max_penetration / vertical, given.steady
+        if steady is None:
+            return LoadSchedule(deepest, given.step / vertical)
+        return SteadySchedule(steady.start / vertical, deepest, steady.travel, steady.error)
+
+
+class FitSection(Section):
+    """Range of the fit."""
+
+    lowest_elastic_energy: Positive
+    highest_elastic_energy: Energy
+    bootstrap: Annotated[int, within(Range(FEWEST_BOOTSTRAP, 10**7))]
+
+    @model_validator(mode="after")
+    def _ordered(self) -> FitSection:
+        if self.lowest_elastic_energy > self.highest_elastic_energy:
+            raise refusal(
+                f"lowest_elastic_energy {self.lowest_elastic_energy:g} is above "
+                f"highest_elastic_energy {self.highest_elastic_energy:g}; swap them"
+            )
+        return self
+
+
+def refuse_repeated(what: str, values: Any) -> None:
+    """Raise if a value occurs twice."""
+    known = set()
+    for value in values:
+        if value in known:
+            raise refusal(f"{what} {value!r} stands twice; remove or change one")
+        known.add(value)
+
+
+def _refuse_overruled(section: Section, decider: str, keys: Iterable[str]) -> None:
+    """Raise if a key is given that another one decides."""
+    if given := [key for key in keys if getattr(section, key) is not None]:
+        raise refusal(f"{decider} already decides {', '.join(given)}; remove one or the other")
+
+
+def _refuse_unless_one(what: str, values: tuple[Any, Any], otherwise: str = "give one") -> None:
+    """Raise if both of two values are given, or none."""
+    given = [value is not None for value in values]
+    if all(given) or not any(given):
+        raise refusal(f"{what}; {'remove one' if all(given) else otherwise}")
+
+
+def _missing(section: Section, keys: Iterable[str]) -> list[str]:
+    """Those of some keys that are not given."""
+    return [key for key in keys if getattr(section, key) is None]
