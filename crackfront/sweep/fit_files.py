@@ -23,7 +23,16 @@ def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Pa
     """Write `fit.nc`, `fit.json` and `fit.md`, and return their paths."""
     paths = folder / "fit.nc", folder / "fit.json", folder / "fit.md"
     columns = list(fit_columns(fit))
-    about = _about(fit)
+    about = {
+        "definition": FIT_DEFINITION,
+        "steady_definition": STEADY_DEFINITION,
+        "lowest_elastic_energy": fit.lowest_elastic_energy,
+        "highest_elastic_energy": fit.highest_elastic_energy,
+        "n_bootstrap": fit.n_bootstrap,
+        "seed": fit.seed,
+        "factor_of_the_paper": PAPER_FACTOR,
+        "factor_of_perturbation_theory": PERTURBATION_FACTOR,
+    }
     variables = {item.name: labelled(item, values) for item, values in columns}
     write_dataset(paths[0], xr.Dataset(variables, attrs=about), origin)
     entries = {
@@ -41,24 +50,8 @@ def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Pa
     return paths
 
 
-def _about(fit: SweepFit) -> dict[str, str | float]:
-    """What holds for all numbers of a fit."""
-    return {
-        "definition": FIT_DEFINITION,
-        "steady_definition": STEADY_DEFINITION,
-        "lowest_elastic_energy": fit.lowest_elastic_energy,
-        "highest_elastic_energy": fit.highest_elastic_energy,
-        "n_bootstrap": fit.n_bootstrap,
-        "seed": fit.seed,
-        "factor_of_the_paper": PAPER_FACTOR,
-        "factor_of_perturbation_theory": PERTURBATION_FACTOR,
-    }
-
-
 def _plain(values: Any) -> Any:
     """Nested lists for JSON, with null where there is no number."""
-    if isinstance(values, list):
-        return [_plain(item) for item in values]
-    if isinstance(values, float):
-        return values if np.isfinite(values) else None
-    return _plain(np.asarray(values).tolist()) if isinstance(values, np.ndarray) else values
+    array = np.asarray(values)
+    known = np.isfinite(array) if array.dtype.kind == "f" else True
+    return np.where(known, array, np.array(None)).tolist()

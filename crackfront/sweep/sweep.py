@@ -120,9 +120,12 @@ class Sweep:
         """Simulations, by default all: by spectrum, amplitude and realisation."""
         block = range(self.n_realisation) if realisations is None else realisations
         for one in self.spectra if item is None else (item,):
-            for energy in self.elastic_energies:
-                first = self.simulation(one, energy, 0)
+            for first in self.firsts(one):
                 yield from (replace(first, realisation=number) for number in block)
+
+    def firsts(self, item: NamedSpectrum) -> list[Simulation]:
+        """First realisation of a spectrum for each amplitude."""
+        return [self.simulation(item, energy, 0) for energy in self.elastic_energies]
 
     def shard(
         self, item: NamedSpectrum, realisations: range | None = None
@@ -133,12 +136,17 @@ class Sweep:
     @property
     def fingerprint(self) -> str:
         """Twelve hexadecimal digits that change with what a configuration means."""
-        return _fingerprint(self)
+        return self._fingerprint()
 
     @property
     def table_fingerprint(self) -> str:
         """The same without what is done with the table of the sweep."""
-        return _fingerprint(self, "failed_fraction", "fit")
+        return self._fingerprint("failed_fraction", "fit")
+
+    def _fingerprint(self, *without: str) -> str:
+        """Digits that change with any parameter but some."""
+        parts = [getattr(self, item.name) for item in fields(self) if item.name not in without]
+        return _digits(repr(parts))
 
     @property
     def n_simulation(self) -> int:
@@ -181,13 +189,11 @@ class Sweep:
         return Shard(item, realisations, item.name + ("" if realisations == everything else block))
 
 
-def _fingerprint(sweep: Sweep, *without: str) -> str:
-    """Digits that change with any parameter of a sweep but some."""
-    parts = [getattr(sweep, item.name) for item in fields(sweep) if item.name not in without]
-    return hashlib.sha256(repr(parts).encode()).hexdigest()[:12]
-
-
 def shard_fingerprint(shard: Sequence[Simulation]) -> str:
     """Twelve hexadecimal digits that change with any simulation of a shard."""
-    text = "\n".join(simulation.stem for simulation in shard)
+    return _digits("\n".join(simulation.stem for simulation in shard))
+
+
+def _digits(text: str) -> str:
+    """Twelve hexadecimal digits that change with a text."""
     return hashlib.sha256(text.encode()).hexdigest()[:12]

@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import asdict, fields
 from itertools import islice
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -55,7 +56,6 @@ _WINDOW = ("lowest_radius", "highest_radius")
 
 NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
-
 
 _OPTIONAL = ("parameters",)
 """Columns of sweeps that have spectra which are not self-affine."""
@@ -185,23 +185,23 @@ def _axes(sweep: Sweep) -> SweepAxes:
     """Coordinates of a sweep."""
     spectra = [item.spectrum for item in sweep.spectra]
     energies = np.array(sweep.elastic_energies)
-    firsts = [
-        [sweep.simulation(item, energy, 0) for energy in sweep.elastic_energies]
-        for item in sweep.spectra
-    ]
-    tiles = [[one.resolution for one in row] for row in firsts]
+    firsts = [sweep.firsts(item) for item in sweep.spectra]
+
+    def each(name: str) -> NDArray[Any]:
+        return np.array([[attrgetter(name)(one) for one in row] for row in firsts])
+
     return SweepAxes(
         spectrum=np.array([item.name for item in sweep.spectra]),
         short_cutoff=np.array([spectrum.short_cutoff for spectrum in spectra]),
         roll_off=np.array([spectrum.longest_feature for spectrum in spectra]),
         hurst=np.array([getattr(spectrum, "hurst", math.nan) for spectrum in spectra]),
-        correlation_length=np.array([row[0].correlation_length for row in firsts]),
-        spring=np.array([[one.schedule.spring for one in row] for row in firsts]),
-        n_angle=np.array([[tile.n_angle for tile in row] for row in tiles]),
-        sample_spacing=np.array([[tile.spacing for tile in row] for row in tiles]),
-        tile_side=np.array([row[0].tile_side for row in tiles]),
-        n_point=np.array([[tile.n_point for tile in row] for row in tiles]),
-        tolerance=np.array([[one.solver.tolerance for one in row] for row in firsts]),
+        correlation_length=each("correlation_length")[:, 0],
+        spring=each("schedule.spring"),
+        n_angle=each("resolution.n_angle"),
+        sample_spacing=each("resolution.spacing"),
+        tile_side=each("resolution.tile_side")[:, 0],
+        n_point=each("resolution.n_point"),
+        tolerance=each("solver.tolerance"),
         amplitude=energies,
         w_rms_requested=2 * np.sqrt(energies),
         realisation=np.arange(sweep.n_realisation),
@@ -213,11 +213,7 @@ def _parameters(spectra: Sequence[Spectrum]) -> NDArray[np.str_] | None:
     """Texts that state the shapes of spectra; None where their columns do."""
     if all(isinstance(one, SelfAffineSpectrum) for one in spectra):
         return None
-    known = (
-        {name: np.asarray(one).tolist() for name, one in item.parameters.items()}
-        for item in spectra
-    )
-    return np.array([json.dumps(one) for one in known])
+    return np.array([json.dumps(item.parameters, default=np.ndarray.tolist) for item in spectra])
 
 
 def _attributes(sweep: Sweep) -> dict[str, str | float]:
