@@ -31,17 +31,14 @@ class Entry:
 
     Attributes
     ----------
-    key, label : str
-        Key and label of the simulation.
-    parts : dict of str to str
-        What the key is made of, as :attr:`crackfront.simulate.simulation.Simulation.parts`.
+    key, label, parts
+        As of the :class:`crackfront.simulate.simulation.Simulation`.
     size : int
         Bytes of its file, 0 where it has none.
     definition : str
-        Fingerprint of what a row is, as :func:`crackfront.sweep.table.row_fingerprint`; empty where
-        the simulation was only begun.
+        :func:`crackfront.sweep.table.row_fingerprint` of its row; empty where it was only begun.
     row : SweepRow or None
-        Its row, where the simulation ended and a row is still that.
+        Its row, if it ended and rows have the same definition now.
     digest : str
         Digest of its file, empty where it has none.
     """
@@ -116,7 +113,7 @@ class Journal:
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """A simulation that a living process is at.
+    """A simulation that a living process runs.
 
     Attributes
     ----------
@@ -183,27 +180,20 @@ def renew_journals(folder: Path) -> list[str]:
     """Set damaged journals of ended processes aside but for whole lines; a sentence each."""
     found, living = [], set(_living(folder))
     for path in journal_paths(folder):
-        lines, n_damaged = _whole_lines(path)
+        lines, n_damaged = whole_lines(path)
         if n_damaged and path not in living:
             # Another process may just do the same.
             with contextlib.suppress(FileNotFoundError):
                 aside = set_aside(path).name
                 if lines:
-                    replace_atomically(
-                        path, functools.partial(Path.write_bytes, data=b"".join(lines))
-                    )
+                    content = b"".join(lines)
+                    replace_atomically(path, functools.partial(Path.write_bytes, data=content))
                 found.append(f"{path} is damaged; its whole lines stay, the rest is in {aside}")
     return found
 
 
-def line_counts(path: Path) -> tuple[int, int]:
-    """Numbers of whole and of damaged lines of a journal; without a line, 0 and 1."""
-    lines, n_damaged = _whole_lines(path)
-    return len(lines), n_damaged
-
-
-def _whole_lines(path: Path) -> tuple[list[bytes], int]:
-    """Whole lines of a journal, and the number of others; 1 for an empty journal."""
+def whole_lines(path: Path) -> tuple[list[bytes], int]:
+    """Whole lines of a journal, and the number of damaged ones; 1 for an empty journal."""
     with path.open("rb") as file:
         lines = list(file)
     whole = [line for line in lines if _text(line) is not None]
@@ -216,9 +206,7 @@ def journal_paths(folder: Path) -> list[Path]:
 
 
 def read_journal(path: Path, definition: str) -> Iterator[tuple[int, Entry]]:
-    """Entries of a journal, each with the byte at which its line begins.
-
-    A line that is torn or changed is left out.
+    """Entries of the whole lines of a journal, each with the byte at which its line begins.
 
     Parameters
     ----------
@@ -230,23 +218,21 @@ def read_journal(path: Path, definition: str) -> Iterator[tuple[int, Entry]]:
     place = 0
     with path.open("rb") as file:
         for line in file:
-            entry = _entry(line, definition)
-            if entry is not None:
+            if (entry := _entry(line, definition)) is not None:
                 yield place, entry
             place += len(line)
 
 
 def _text(line: bytes) -> bytes | None:
-    """Text of a line that is whole, behind its checksum."""
+    """Text of a line behind its checksum, None where that is not the one of the text."""
     checksum, _, text = line.rstrip(b"\n").partition(b" ")
     whole = line.endswith(b"\n") and checksum == b"%08x" % zlib.crc32(text)
     return text if whole else None
 
 
 def _entry(line: bytes, definition: str) -> Entry | None:
-    """Entry of a line that is whole."""
-    text = _text(line)
-    if text is None:
+    """Entry of a line, None where it is damaged."""
+    if (text := _text(line)) is None:
         return None
     content = json.loads(text)
     row = content.pop("row")
@@ -255,14 +241,14 @@ def _entry(line: bytes, definition: str) -> Entry | None:
 
 
 class RowIndex:
-    """Where in the journals of a store the rows of each label stand.
+    """Rows in the journals of a store, by the labels of their simulations.
 
     Parameters
     ----------
     folder : Path
         Folder of the store.
     checked : bool, optional
-        Whether the content of a file must be that which its row names, or its size alone.
+        Whether the file of a row must have the digest that was stored with it, or its size alone.
     """
 
     def __init__(self, folder: Path, *, checked: bool = True) -> None:
@@ -281,10 +267,10 @@ class RowIndex:
         entries = (entry for entry in self._entries(simulation.label) if entry.key == key)
         return next((entry.row for entry in entries if self._is_valid(entry)), None)
 
-    def parts(self, label: str) -> dict[str, str] | None:
+    def parts(self, label: str) -> dict[str, str]:
         """Parts of the key with which a simulation of a label was stored last, if it was."""
         entries = list(self._entries(label))
-        return entries[-1].parts if entries else None
+        return entries[-1].parts if entries else {}
 
     def _entries(self, label: str) -> Iterator[Entry]:
         """Entries of simulations of a label that have ended, in the order of the journals."""

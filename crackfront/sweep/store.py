@@ -25,7 +25,7 @@ from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.journal import RowIndex, journal_paths, line_counts, renew_journals, running
+from crackfront.sweep.journal import RowIndex, journal_paths, renew_journals, running, whole_lines
 from crackfront.sweep.sweep import Shard, Sweep, shard_fingerprint
 from crackfront.sweep.table import (
     COMPLETE,
@@ -48,7 +48,7 @@ class Holding:
 
     simulation: Simulation
     row: SweepRow | None
-    unreadable: str = ""
+    unreadable: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,21 +96,6 @@ class Progress:
     seconds: float
 
 
-class _Curves:
-    """Files of simulations by their names without the keys, which are slow to compute."""
-
-    def __init__(self, folder: Path) -> None:
-        self._names = {path.stem.rpartition("-")[0] for path in folder.glob("*.nc")}
-        self._beginnings: dict[tuple[str, float], str] = {}
-
-    def __contains__(self, simulation: Simulation) -> bool:
-        """Whether there may be a file of a simulation."""
-        alike = simulation.spectrum_name, simulation.elastic_energy
-        if alike not in self._beginnings:
-            self._beginnings[alike] = simulation.stem.rsplit("-", 2)[0]
-        return f"{self._beginnings[alike]}-r{simulation.realisation}" in self._names
-
-
 @dataclass(frozen=True, slots=True)
 class Store:
     """Results of a sweep in a folder."""
@@ -144,29 +129,31 @@ class Store:
         self, simulations: Iterable[Simulation], index: RowIndex | None = None
     ) -> Iterator[Holding]:
         """What is stored of simulations, by the index of the rows or one that is given."""
-        curves = _Curves(self.folder / "curves")
+        curves = {path.name for path in (self.folder / "curves").glob("*.nc")}
         index = index or RowIndex(self.folder)
         for simulation in simulations:
-            row = index.row(simulation)
-            if row is not None or simulation not in curves or not self.path(simulation).is_file():
-                yield Holding(simulation, row)
-                continue
-            try:
-                result = read_simulation(self.path(simulation), simulation)
-                yield Holding(simulation, sweep_row(result))
-            except UnreadableFileError as error:
-                yield Holding(simulation, None, str(error))
+            row, unreadable = index.row(simulation), ""
+            # The path has the key in its name, which is slow to compute.
+            if row is None and curves and (path := self.path(simulation)).name in curves:
+                try:
+                    row = sweep_row(read_simulation(path, simulation))
+                except UnreadableFileError as error:
+                    unreadable = str(error)
+            yield Holding(simulation, row, unreadable)
 
     def inventory(self, simulations: Iterable[Simulation]) -> Inventory:
-        """What is missing among simulations, and why."""
+        """Which of some simulations are missing, and why."""
         index = RowIndex(self.folder)
         absent = [one for one in self.holdings(simulations, index) if one.row is None]
-        missing = tuple(one.simulation for one in absent)
-        changed = (_changed_parts(one, index.parts(one.label)) for one in missing)
+        stale = []
+        for simulation in (one.simulation for one in absent):
+            known = index.parts(simulation.label)
+            now = simulation.parts if known else {}
+            stale.append(tuple(name for name, part in now.items() if part != known.get(name)))
         return Inventory(
-            missing,
+            missing=tuple(one.simulation for one in absent),
             unreadable=tuple(one.unreadable for one in absent if one.unreadable),
-            stale=tuple(parts for parts in changed if parts),
+            stale=tuple(filter(None, stale)),
         )
 
     def progress(self, sweep: Sweep) -> list[Progress]:
@@ -179,8 +166,7 @@ class Store:
         index = RowIndex(self.folder, checked=False)
         found, paces = [], []
         for item in sweep.spectra:
-            counts: Counter[str] = Counter()
-            seconds = 0.0
+            counts, seconds = dict.fromkeys(("done", "failed", "running", "waiting"), 0), 0.0
             for held in self.holdings(sweep.simulations(item), index):
                 expected = expected_cost(held.simulation).seconds
                 if held.row is None:
@@ -190,8 +176,7 @@ class Store:
                 counts["done" if held.row.status in COMPLETE else "failed"] += 1
                 if held.row.cpu_seconds > 0:
                     paces.append(held.row.cpu_seconds / expected)
-            numbers = {name: counts[name] for name in ("done", "failed", "running", "waiting")}
-            found.append(Progress(item.name, **numbers, seconds=seconds))
+            found.append(Progress(item.name, **counts, seconds=seconds))
         pace = statistics.median(paces) if paces else 1.0
         return [replace(one, seconds=pace * one.seconds) for one in found]
 
@@ -220,7 +205,7 @@ class Store:
         return read_table(self.hysteresis)
 
     def about(self, sweep: Sweep) -> dict[str, str]:
-        """What the file of the whole sweep says of itself; refused as by :meth:`table`."""
+        """Attributes of the file of the whole sweep; refused as by :meth:`table`."""
         about = read_attributes(self.hysteresis)
         if about.get(SWEEP_FINGERPRINT) != sweep.table_fingerprint:
             raise ValueError(
@@ -270,7 +255,7 @@ class Store:
         return self.hysteresis, dict(statuses)
 
     def _rows(self, sweep: Sweep) -> Iterator[SweepRow]:
-        """Rows of a whole sweep; where one is missing, all are looked for and none is left."""
+        """Rows of a whole sweep; raises a ValueError that counts those that are missing."""
         missing: list[Simulation] = []
         for held in self.holdings(sweep.simulations()):
             if held.row is None:
@@ -286,15 +271,15 @@ class Store:
             )
 
     def _forget(self, missing: Sequence[Simulation]) -> int:
-        """Remove the lists of shards that lack simulations, or are damaged; how many they are."""
+        """Remove lists of shards that are damaged or name missing simulations; their number."""
         keys, count = {one.key for one in missing}, 0
         for path in self._lists():
-            whole = integrity(path)[0] is Integrity.WHOLE
-            content = json.loads(path.read_text(encoding="utf-8")) if whole else {}
-            listed = {entry["key"] for entry in content.get("simulations", ())}
-            if not whole or not keys.isdisjoint(listed):
-                path.unlink()
-                count += 1
+            if integrity(path)[0] is Integrity.WHOLE:
+                content = json.loads(path.read_text(encoding="utf-8"))
+                if keys.isdisjoint(entry["key"] for entry in content["simulations"]):
+                    continue
+            path.unlink()
+            count += 1
         return count
 
     def _lists(self) -> Iterator[Path]:
@@ -327,46 +312,37 @@ class Store:
             )
         left_out = {"checkpoints"} if curves else {"checkpoints", "curves"}
         found = {
-            file: state is Integrity.DAMAGED
-            for file, state in integrities(self.folder)
+            file: counts[Integrity.DAMAGED]
+            for file, counts in checked_files(self.folder)
             if file.relative_to(self.folder).parts[0] not in left_out
             and file.resolve() != path.resolve()
         }
-        found |= {file: line_counts(file)[1] > 0 for file in journal_paths(self.journals)}
-        if damaged := [file for file, is_damaged in found.items() if is_damaged]:
+        if damaged := [file for file, n_damaged in found.items() if n_damaged]:
             raise ValueError(
                 f"{len(damaged)} files of {self.folder} are damaged, the first is {damaged[0]}; "
                 "run make, which makes them anew, before it is archived"
             )
-        files = sorted(found)
 
         def write(part: Path) -> None:
             root, sums = Path(self.folder.name), []
             with ZipFile(part, "w") as archive:
-                for file in files:
-                    name = file.relative_to(self.folder)
-                    sums.append(f"{_added(archive, file, str(root / name))}  {name}\n")
+                for file in sorted(found):
+                    name, content = file.relative_to(self.folder), file.read_bytes()
+                    # A clock may have been wrong: ZIP knows no year before 1980.
+                    entry = ZipInfo.from_file(file, root / name, strict_timestamps=False)
+                    entry.compress_type = ZIP_STORED if file.suffix in _COMPRESSED else ZIP_DEFLATED
+                    archive.writestr(entry, content)
+                    sums.append(f"{hashlib.sha256(content).hexdigest()}  {name}\n")
                 archive.writestr(str(root / SUMS), "".join(sums))
 
         replace_atomically(path, write)
-        return len(files)
+        return len(found)
 
 
-def _changed_parts(simulation: Simulation, known: dict[str, str] | None) -> tuple[str, ...]:
-    """Parts of a key that are not as they were when a simulation of the label was stored."""
-    if known is None:
-        return ()
-    return tuple(name for name, part in simulation.parts.items() if part != known.get(name))
-
-
-def _added(archive: ZipFile, file: Path, name: str) -> str:
-    """Checksum of a file that is added to an archive, of just what is added."""
-    # A clock may have been wrong: ZIP knows no year before 1980.
-    entry = ZipInfo.from_file(file, name, strict_timestamps=False)
-    entry.compress_type = ZIP_STORED if file.suffix in _COMPRESSED else ZIP_DEFLATED
-    digest = hashlib.sha256()
-    with file.open("rb") as source, archive.open(entry, "w") as target:
-        while content := source.read(2**20):
-            digest.update(content)
-            target.write(content)
-    return digest.hexdigest()
+def checked_files(folder: Path) -> Iterator[tuple[Path, Counter[Integrity]]]:
+    """Files of a folder of results, each counted by whether it, or each line of it, is whole."""
+    for path, state in integrities(folder):
+        yield path, Counter([state])
+    for path in journal_paths(folder / "journals"):
+        lines, n_damaged = whole_lines(path)
+        yield path, Counter({Integrity.WHOLE: len(lines), Integrity.DAMAGED: n_damaged})

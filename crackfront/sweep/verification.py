@@ -12,13 +12,13 @@ from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
 from crackfront.data.digests import Integrity
-from crackfront.data.files import NO_ROOM, UnreadableFileError, integrities
-from crackfront.sweep.journal import journal_paths, line_counts, read_journal
-from crackfront.sweep.store import SUMS
+from crackfront.data.files import NO_ROOM, UnreadableFileError
+from crackfront.sweep.journal import journal_paths, read_journal
+from crackfront.sweep.store import SUMS, checked_files
 from crackfront.sweep.table import row_fingerprint
 
 LINES = "lines of journals"
-"""What journals are counted as, which have a checksum a line."""
+"""Name under which the lines of journals are counted, each of which has a checksum."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +28,9 @@ class Verification:
     Attributes
     ----------
     counts : dict
-        Number of files by the folder that they stand in, and of lines of journals, each by whether
-        they are as they were written.
+        Numbers of whole and damaged files by their folder, and of such lines of journals.
     damaged, missing : tuple of str
-        Files that are not as they were written, and files that a list or a journal names and that
-        are not there.
+        Files that are not as they were written, and absent ones that a list or a journal names.
     """
 
     counts: dict[str, Counter[Integrity]]
@@ -51,23 +49,17 @@ def verification(place: Path) -> Verification:
     counts: dict[str, Counter[Integrity]] = defaultdict(Counter)
     damaged = []
     with _folder(place) as folder:
-        for path, state in integrities(folder):
+        for path, states in checked_files(folder):
             name = path.relative_to(folder)
-            counts[str(name.parent)][state] += 1
-            damaged += [str(name)] if state is Integrity.DAMAGED else []
-        for path in journal_paths(folder / "journals"):
-            n_whole, n_damaged = line_counts(path)
-            counts[LINES] += Counter({Integrity.WHOLE: n_whole, Integrity.DAMAGED: n_damaged})
-            damaged += [str(path.relative_to(folder))] if n_damaged else []
-        listed = dict(_listed(folder))
-        missing = [
-            name for name in [*_named_curves(folder), *listed] if not (folder / name).is_file()
-        ]
-        damaged += [
-            name
-            for name, checksum in listed.items()
-            if name not in missing and _checksum(folder / name) != checksum
-        ]
+            counts[LINES if path.suffix == ".jsonl" else str(name.parent)] += states
+            damaged += [str(name)] if states[Integrity.DAMAGED] else []
+        listed = _listed(folder)
+        named = [*_named_curves(folder), *listed]
+        missing = [name for name in named if not (folder / name).is_file()]
+        for file in listed.keys() - set(missing):
+            with (folder / file).open("rb") as opened:
+                if hashlib.file_digest(opened, "sha256").hexdigest() != listed[file]:
+                    damaged.append(file)
         if place.is_file() and not listed:
             damaged.append(place.name)  # the list is the last file of an archive
         elif not counts:
@@ -102,15 +94,9 @@ def _named_curves(folder: Path) -> Iterator[str]:
                 yield f"curves/{entry.row.curve}"
 
 
-def _listed(folder: Path) -> Iterator[tuple[str, str]]:
-    """Names and checksums that the list of an archive states."""
-    if (folder / SUMS).is_file():
-        for line in (folder / SUMS).read_text(encoding="utf-8", errors="replace").splitlines():
-            checksum, _, name = line.partition("  ")
-            yield name, checksum
-
-
-def _checksum(path: Path) -> str:
-    """SHA-256 of a whole file."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+def _listed(folder: Path) -> dict[str, str]:
+    """Checksums in the list of an archive by the names of the files; empty without a list."""
+    if not (folder / SUMS).is_file():
+        return {}
+    lines = (folder / SUMS).read_text(encoding="utf-8", errors="replace").splitlines()
+    return {name: checksum for checksum, _, name in (line.partition("  ") for line in lines)}
