@@ -20,6 +20,9 @@ _SECONDS = 0.1
 _SECONDS_IN_LOG = 10.0
 """Time between two lines of a log."""
 
+_LINE_START, _LINE_END = "\r", "\x1b[K"
+"""Codes of a terminal by which a line replaces the last one."""
+
 
 class Progress:
     """What is called at every new state and prints it, with the time that is left.
@@ -37,43 +40,29 @@ class Progress:
         self._log_wait = 0.0 if every_state else _SECONDS_IN_LOG
         self._begun: tuple[float, int] | None = None
         self._next = 0.0
-        self._last: Recorder | None = None
+        self._line = ""
 
     def __call__(self, recorder: Recorder) -> None:
         """Print the last state, unless another one was printed just now."""
-        now, terminal = time.monotonic(), sys.stderr.isatty()
+        now, count, terminal = time.monotonic(), len(recorder.states), sys.stderr.isatty()
         wait = _SECONDS if terminal else self._log_wait
         if self._begun is None:
-            self._begun = now, len(recorder.states)
-            self._next = now if terminal else now + wait
-        self._last = recorder
-        if now < self._next:
-            return
-        if terminal:
-            self._replace_line(recorder)
-        else:
-            click.echo(self._line(recorder), err=True)
-        self._next = time.monotonic() + wait
+            self._begun, self._next = (now, count), now if terminal else now + wait
+        self._line = state_line(recorder.states)
+        # At the pace of the states since the first one, which may be that of a checkpoint.
+        begun, known = self._begun
+        if known < count < self._expected:
+            seconds = (now - begun) * (self._expected - count) / (count - known)
+            self._line += f"; about {in_time(seconds)} left"
+        if now >= self._next:
+            shown = f"{_LINE_START}{self._line}{_LINE_END}" if terminal else self._line
+            click.echo(shown, nl=not terminal, err=True)
+            self._next = time.monotonic() + wait
 
     def finish(self) -> None:
         """Leave the last state of all on the terminal."""
-        if self._last is not None and sys.stderr.isatty():
-            self._replace_line(self._last)
-            click.echo(err=True)
-
-    def _replace_line(self, recorder: Recorder) -> None:
-        """Print a line over the last one."""
-        click.echo(f"\r{self._line(recorder)}\x1b[K", nl=False, err=True)
-
-    def _line(self, recorder: Recorder) -> str:
-        """Last state, and the time that the others need at the pace of those before."""
-        line, count = state_line(recorder.states), len(recorder.states)
-        begun, known = self._begun or (0.0, count)
-        left = self._expected - count
-        if count == known or left <= 0:
-            return line
-        seconds = (time.monotonic() - begun) * left / (count - known)
-        return f"{line}; about {in_time(seconds)} left"
+        if self._line and sys.stderr.isatty():
+            click.echo(f"{_LINE_START}{self._line}{_LINE_END}", err=True)
 
 
 def state_line(states: Sequence[Any]) -> str:
