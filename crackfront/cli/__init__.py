@@ -11,18 +11,17 @@ from typing import Any
 import click
 from click.shell_completion import get_completion_class
 
-from crackfront.cli.compilation import compile_solvers
 from crackfront.cli.cycle import cycle
 from crackfront.cli.integrity import compare, verify
 from crackfront.cli.law import law
-from crackfront.cli.report import StoppedError, examples
+from crackfront.cli.report import StoppedError, announce_compilation, examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.sweep.parallel import stopping_as_ctrl_c
 
 _OBJECTS = 100_000
-"""New objects after which the process of a command looks for garbage."""
+"""New objects after which the process of a command collects garbage."""
 
 
 class _RefusalError(click.ClickException):
@@ -37,7 +36,7 @@ class Commands(click.Group):
     def main(self, args: Sequence[str] | None = None, *others: Any, **options: Any) -> Any:
         """Run a command line; that of the process, its only purpose, where none is given."""
         if args is None:
-            # Imports leave no garbage; to look for it in them takes as long as a short command.
+            # Imports leave no garbage; a collection after them is as slow as a short command.
             gc.set_threshold(_OBJECTS)
             atexit.register(gc.freeze)
         return super().main(args, *others, **options)
@@ -49,7 +48,8 @@ class Commands(click.Group):
                 return super().invoke(ctx)
         except KeyboardInterrupt as error:
             raise StoppedError(
-                "Nothing is half-written; run the same command to continue from its last "
+                str(error)
+                or "Nothing is half-written; run the same command to continue from its last "
                 "checkpoint, or to begin anew where it has none"
             ) from error
         except BrokenPipeError:
@@ -57,10 +57,8 @@ class Commands(click.Group):
         except MemoryError as error:
             sentence = "the memory does not suffice; compute less, or on a machine with more"
             raise click.ClickException(sentence) from error
-        except OSError as error:
-            raise _RefusalError(_file_sentence(error)) from error
-        except ValueError as error:
-            raise _RefusalError(str(error)) from error
+        except (OSError, ValueError) as error:
+            raise _RefusalError(_sentence(error)) from error
 
 
 class _Sections(Commands):
@@ -75,9 +73,9 @@ class _Sections(Commands):
                 )
 
 
-def _file_sentence(error: OSError) -> str:
-    """What is wrong with a file or folder."""
-    if error.filename is None or error.strerror is None:
+def _sentence(error: OSError | ValueError) -> str:
+    """What is wrong with an input, a file or a folder."""
+    if isinstance(error, ValueError) or error.filename is None or error.strerror is None:
         return str(error)
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
         return f"{error.filename} cannot be written: {error.strerror}; make room and repeat"
@@ -99,6 +97,24 @@ def completion(context: click.Context, shell: str) -> None:
     assert kind is not None, "click knows these shells"
     root = context.find_root().command
     click.echo(kind(root, {}, "crackfront", "_CRACKFRONT_COMPLETE").source())
+
+
+@click.command("compile", epilog=examples("crackfront compile"))
+def compile_solvers() -> None:
+    """Compile the solver of sweeps, so that no run waits for it.
+
+    What runs call is compiled once for these sources and this kind of processor, for spheres and
+    for straight fronts in a process each; what the cache holds already is only loaded.
+    """
+    import multiprocessing
+
+    from crackfront.simulate.run import compile_solver
+
+    announce_compilation()
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        line = pool.apply_async(compile_solver, ("newton", True))
+        compile_solver("newton")
+        line.get()
 
 
 SECTIONS: dict[str, tuple[click.Command, ...]] = {
@@ -130,26 +146,12 @@ Examples:
 """
 
 
-def _tell_version(context: click.Context, parameter: click.Parameter, asked: bool) -> None:
-    """Print the version, which is imported here so that --help does not wait for it, and end."""
-    if asked and not context.resilient_parsing:
-        from crackfront import __version__
-
-        click.echo(f"{context.find_root().info_name}, version {__version__}")
-        context.exit()
-
-
 @click.group(
-    cls=_Sections, epilog=_EPILOG, context_settings={"help_option_names": ["-h", "--help"]}
+    cls=_Sections,
+    epilog=_EPILOG,
+    context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
 )
-@click.option(
-    "--version",
-    is_flag=True,
-    expose_value=False,
-    is_eager=True,
-    callback=_tell_version,
-    help="Show the version and exit.",
-)
+@click.version_option(package_name="crackfront")
 def main() -> None:
     """Adhesion hysteresis of rough spheres by crack-front pinning."""
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import MISSING, Field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,37 +18,30 @@ from crackfront.cli.report import (
     announce_compilation,
     announce_cost,
     as_json,
-    echo_json,
+    echo_answer,
     examples,
+    finite,
     refuse_unwritable,
     whole,
 )
 from crackfront.cli.watch import Progress
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE
 from crackfront.data.bounds import COUNT, DENSITY, TOLERANCE, Range
-from crackfront.simulate.cases import CASES, Problem, Resolution
+from crackfront.simulate.cases import CASES, Resolution
 from crackfront.sweep.parallel import deferring_stops, stop_is_requested
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from crackfront.core.cycle.record import Checkpoint, Recorder
-    from crackfront.core.field.fields import Interpolation
     from crackfront.core.geometry.base import Geometry
 
 _SECONDS_BETWEEN_CHECKPOINTS = 60.0
-_MEASURES = ("w_appr", "w_retr", "hysteresis")
-"""Measures of a loop that machines are told."""
 
 
 def _flag(item: Field[Any]) -> str:
     """Option of the command line that fills a field of a case."""
     return item.metadata["flag"] or f"--{item.name.replace('_', '-')}"
-
-
-def _parameter(flag: str) -> str:
-    """Name of the parameter of an option; some flags are words of Python."""
-    return f"case_{flag.strip('-').replace('-', '_')}"
 
 
 def _case_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -61,20 +53,21 @@ def _case_options(command: Callable[..., None]) -> Callable[..., None]:
     for flag, (item, names) in reversed(known.items()):
         owner = "" if len(names) == len(CASES) else f"({', '.join(names)}) "
         bounds, text = Number(item.metadata["bounds"]), owner + item.metadata["text"]
-        command = click.option(flag, _parameter(flag), type=bounds, help=text)(command)
+        command = click.option(flag, type=bounds, help=text)(command)
     return command
 
 
 def _case(geometry: str, given: dict[str, float | None]) -> Any:
     """The case that the options name."""
-    own = {_parameter(_flag(item)): item for item in fields(CASES[geometry])}
+    own, known = {_flag(item): item for item in fields(CASES[geometry])}, {}
     for name, value in given.items():
-        flag = f"--{name.removeprefix('case_').replace('_', '-')}"
-        if name not in own and value is not None:
-            raise ValueError(f"{flag} is no option of --geometry {geometry}; leave it out")
-        if name in own and value is None and own[name].default is MISSING:
+        flag = f"--{name.replace('_', '-')}"
+        if value is None and flag in own and own[flag].default is MISSING:
             raise ValueError(f"{flag} is missing; --geometry {geometry} needs it")
-    known = {own[name].name: value for name, value in given.items() if value is not None}
+        if value is not None:
+            if flag not in own:
+                raise ValueError(f"{flag} is no option of --geometry {geometry}; leave it out")
+            known[own[flag].name] = value
     return CASES[geometry](**known)
 
 
@@ -91,31 +84,24 @@ def _case(geometry: str, given: dict[str, float | None]) -> Any:
 )
 @click.option("--field", "field_file", type=FILE, required=True, help="netCDF file of the field.")
 @click.option(
-    "--geometry",
-    type=click.Choice(list(CASES)),
-    default="sphere",
-    show_default=True,
-    help="What touches the surface.",
+    "--geometry", type=click.Choice(list(CASES)), default="sphere", help="What touches the surface."
 )
 @_case_options
 @click.option(
     "--tolerance",
     type=Number(TOLERANCE),
     default=DEFAULT_TOLERANCE,
-    show_default=True,
     help="Force that may be left, relative to w_int per front length.",
 )
 @click.option(
     "--solver",
     default="newton",
-    show_default=True,
     help="newton, or reference (the paper's algorithm); both find the same states.",
 )
 @click.option(
     "--max-sweeps",
     type=whole(COUNT),
     default=DEFAULT_MAX_SWEEPS,
-    show_default=True,
     help="Limit on the sweeps of one load step.",
 )
 @click.option(
@@ -142,26 +128,18 @@ def _case(geometry: str, given: dict[str, float | None]) -> Any:
 @click.option("--output", type=FILE, required=True, help="netCDF file of the cycle.")
 @click.option("--figure", type=FILE, help="Figure of the loop, without suffix; PDF and PNG.")
 @click.option(
-    "--watch",
-    is_flag=True,
-    help="Print a line for every state; a terminal shows the last one.",
+    "--watch", is_flag=True, help="Print a line for every state; a terminal shows the last one."
 )
 @as_json
 def cycle(
     field_file: Path,
     geometry: str,
-    tolerance: float,
-    solver: str,
-    max_sweeps: int,
     record: tuple[str, ...],
-    angles: int | None,
-    samples_per_pixel: float | None,
-    interpolation: Interpolation | None,
     output: Path,
     figure: Path | None,
     watch: bool,
     as_json: bool,
-    **given: float | None,
+    **given: Any,
 ) -> None:
     """Run one approach and retraction on a field from a file.
 
@@ -180,23 +158,36 @@ def cycle(
     75 after Ctrl-C or SIGTERM: the states so far are then kept beside the output, and the same
     command goes on from there.
     """
+    from crackfront.core.cycle.record import Recorder
+    from crackfront.core.outcome import Status
     from crackfront.core.solver.relax import named_solver
     from crackfront.data.files import refuse_no_file, write_dataset
     from crackfront.data.provenance import provenance
     from crackfront.simulate.fields import read_field
     from crackfront.simulate.loops import loop_dataset
 
-    case = _case(geometry, given)
+    solver = [given.pop(name) for name in ("solver", "tolerance", "max_sweeps")]
+    sizes = (given.pop(name) for name in ("angles", "samples_per_pixel", "interpolation"))
+    resolution, case = Resolution(*sizes), _case(geometry, given)
     refuse_no_file(output)
     for path in (output, figure or output):
         refuse_unwritable(path.parent)
-    solution = named_solver(solver, tolerance, max_sweeps)
-    resolution = Resolution(angles, samples_per_pixel, interpolation)
-    problem = case.problem(lambda: read_field(field_file, interpolation or "linear"), resolution)
-    key = _key(field_file, geometry, given, tolerance, solver, max_sweeps, record, resolution)
+    solution, pieces = named_solver(*solver), resolution.interpolation or "linear"
+    problem = case.problem(lambda: read_field(field_file, pieces), resolution)
+    if "fronts" in record and problem.front.size == 1:
+        raise ValueError(
+            "--record fronts: on rings the front is a circle, whose radius every record holds as "
+            "mean_radius; leave it out"
+        )
+    key = _key(field_file, geometry, given, solver, record, resolution)
     keeper = _Keeper(output, key, problem.field.geometry)
     shown = Progress(problem.expected, every_state=watch)
-    recorder = _recorder(problem, record, shown, keeper)
+    recorder = Recorder(
+        fronts="fronts" in record,
+        energy="energy" in record,
+        observers=[shown, keeper],
+        resume=keeper.found(),
+    )
     announce_compilation(err=as_json)
     announce_cost(problem.seconds)
     with deferring_stops():
@@ -206,36 +197,18 @@ def cycle(
     write_dataset(output, found, provenance())
     keeper.path.unlink(missing_ok=True)
     drawn = () if figure is None else _draw(found, figure)
-    if as_json:
-        echo_json(_answer(recorder, found, output))
-    else:
-        click.echo("\n".join(_sentences(recorder, found, output, drawn)))
+    end = f"{recorder.load_name} {recorder.load:.6g}"
+    lines = [f"{len(recorder.states)} states: {output}", *(f"figure: {path}" for path in drawn)]
+    lines.append(found.attrs["result"])
+    if recorder.status is Status.LOST_CONTACT:
+        lines.append(f"contact was lost at {end}")
+    echo_answer(_content(recorder, found, output), lines, as_json=as_json)
     if recorder.status.name != case.ends_by:
-        end = f"{recorder.load_name} {recorder.load:.6g}"
         raise click.ClickException(f"at {end} {recorder.status.value}")
 
 
-def _recorder(
-    problem: Problem, record: tuple[str, ...], shown: Progress, keeper: _Keeper
-) -> Recorder:
-    """What records what is asked for, and goes on from what was kept."""
-    from crackfront.core.cycle.record import Recorder
-
-    if "fronts" in record and problem.front.size == 1:
-        raise ValueError(
-            "--record fronts: on rings the front is a circle, whose radius every record holds as "
-            "mean_radius; leave it out"
-        )
-    return Recorder(
-        fronts="fronts" in record,
-        energy="energy" in record,
-        observers=[shown, keeper],
-        resume=keeper.found(),
-    )
-
-
-def _answer(recorder: Recorder, found: Dataset, output: Path) -> dict[str, object]:
-    """What machines are told of a cycle."""
+def _content(recorder: Recorder, found: Dataset, output: Path) -> dict[str, object]:
+    """How a cycle ended and what it found, for JSON."""
     forces = [state.force for state in recorder.states if hasattr(state, "force")]
     return {
         "output": output,
@@ -244,25 +217,15 @@ def _answer(recorder: Recorder, found: Dataset, output: Path) -> dict[str, objec
         f"end_{recorder.load_name}": recorder.load,
         "lowest_force": min(forces, default=None),
         "jump_in_force": next(iter(forces), None),
-        **{name: _number(found, name) for name in _MEASURES},
+        **{
+            name: finite(float(found.get(name, "nan")))
+            for name in ("w_appr", "w_retr", "hysteresis")
+        },
     }
 
 
-def _sentences(
-    recorder: Recorder, found: Dataset, output: Path, drawn: tuple[Path, ...]
-) -> Iterator[str]:
-    """What people are told of a cycle."""
-    from crackfront.core.outcome import Status
-
-    yield f"{len(recorder.states)} states: {output}"
-    yield from (f"figure: {path}" for path in drawn)
-    yield found.attrs["result"]
-    if recorder.status is Status.LOST_CONTACT:
-        yield f"contact was lost at {recorder.load_name} {recorder.load:.6g}"
-
-
 class _Keeper:
-    """What keeps the states of a cycle beside its output, and ends it where notice was given."""
+    """Stores the states of a cycle beside its output, and ends it when a stop is requested."""
 
     def __init__(self, output: Path, key: str, geometry: Geometry) -> None:
         self.path = output.with_name(f"{output.stem}.checkpoint.nc")
@@ -270,7 +233,7 @@ class _Keeper:
         self._next = time.monotonic() + _SECONDS_BETWEEN_CHECKPOINTS
 
     def found(self) -> Checkpoint | None:
-        """What an earlier run of the same cycle has kept."""
+        """Checkpoint of an earlier run of the same cycle, if there is one."""
         from crackfront.data.files import UnreadableFileError, read_dataset, set_aside
         from crackfront.simulate.files import known_checkpoint
 
@@ -279,9 +242,8 @@ class _Keeper:
         try:
             found = known_checkpoint(read_dataset(self.path), self._key, self.path)
         except UnreadableFileError:
-            aside = set_aside(self.path).name
-            told = f"is damaged; it is set aside as {aside}, and the cycle begins anew"
-            click.echo(f"{self.path} {told}", err=True)
+            aside = f"it is set aside as {set_aside(self.path).name}, and the cycle begins anew"
+            click.echo(f"{self.path} is damaged; {aside}", err=True)
             return None
         if found is None:
             click.echo(f"{self.path} is of another cycle; this one begins anew", err=True)
@@ -291,7 +253,7 @@ class _Keeper:
         return found
 
     def __call__(self, recorder: Recorder) -> None:
-        """Keep the states where it is time to; end where notice was given."""
+        """Store the states when it is time for that; end the cycle when a stop is requested."""
         from crackfront.data.files import write_dataset
         from crackfront.data.provenance import provenance
         from crackfront.simulate.files import checkpoint_dataset
@@ -309,19 +271,13 @@ class _Keeper:
             )
 
 
-def _key(field_file: Path, *asked: object) -> str:
-    """What changes with the field, with what is asked for and with the solver."""
+def _key(field_file: Path, *options: object) -> str:
+    """Digits that change with the field, the options of a cycle and the sources of its solver."""
     from crackfront.data.fingerprint import solver_fingerprint
 
     with field_file.open("rb") as file:
         content = hashlib.file_digest(file, "sha256").hexdigest()
-    return hashlib.sha256(repr((content, *asked, solver_fingerprint())).encode()).hexdigest()
-
-
-def _number(found: Dataset, name: str) -> float | None:
-    """A measure of a loop, if it has one."""
-    value = float(found[name]) if name in found else math.nan
-    return value if math.isfinite(value) else None
+    return hashlib.sha256(repr((content, *options, solver_fingerprint())).encode()).hexdigest()
 
 
 def _draw(found: Dataset, stem: Path) -> tuple[Path, ...]:

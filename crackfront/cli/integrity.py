@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, as_json, echo_json, examples
+from crackfront.cli.report import FILE, as_json, echo_answer, examples, finite, table
 
 
 @click.command(
-    epilog=examples(
-        "crackfront verify results/default",
-        "crackfront verify default.zip --json",
-    )
+    epilog=examples("crackfront verify results/default", "crackfront verify default.zip --json")
 )
 @click.argument("place", metavar="FOLDER", type=FILE)
 @as_json
@@ -27,28 +23,27 @@ def verify(place: Path, as_json: bool) -> None:
     from crackfront.sweep.verification import verification
 
     found = verification(place)
-    if as_json:
-        counts = {
-            name: {state.value: count[state] for state in Integrity}
-            for name, count in found.counts.items()
-        }
-        echo_json({"counts": counts, "damaged": found.damaged, "missing": found.missing})
-    else:
-        heads = "".join(f"{state.value:>18}" for state in Integrity)
-        click.echo(f"{'files in':20}{heads}")
-        for name, count in found.counts.items():
-            numbers = "".join(f"{count[state]:18}" for state in Integrity)
-            click.echo(f"{name:20}{numbers}")
-        for what, names in (("damaged", found.damaged), ("missing", found.missing)):
-            for name in names:
-                click.echo(f"{what}: {name}")
-    if found.damaged or found.missing:
+    counts = {
+        name: {state.value: count[state] for state in Integrity}
+        for name, count in found.counts.items()
+    }
+    lines = [
+        *table(
+            ("files in", *(state.value for state in Integrity)),
+            [(name, *map(str, count.values())) for name, count in counts.items()],
+        ),
+        *(f"damaged: {name}" for name in found.damaged),
+        *(f"missing: {name}" for name in found.missing),
+    ]
+    if is_whole := not (found.damaged or found.missing):
+        lines.append(f"{place}: nothing is damaged or missing")
+    content = {"counts": counts, "damaged": found.damaged, "missing": found.missing}
+    echo_answer(content, lines, as_json=as_json)
+    if not is_whole:
         raise click.ClickException(
             f"{place}: {len(found.damaged)} files are damaged and {len(found.missing)} missing; "
             "make computes them anew, an archive is to be packed again"
         )
-    if not as_json:
-        click.echo(f"{place}: nothing is damaged or missing")
 
 
 @click.command(
@@ -63,7 +58,6 @@ def verify(place: Path, as_json: bool) -> None:
     "--tolerance",
     type=click.FloatRange(min=0),
     default=0.0,
-    show_default=True,
     help="Largest difference at which results agree.",
 )
 @as_json
@@ -76,43 +70,27 @@ def compare(one: Path, other: Path, tolerance: float, as_json: bool) -> None:
     from crackfront.data.comparison import comparison
 
     found = comparison(one, other)
-    agree = found.largest <= tolerance
-    if as_json:
-        # Shapes that disagree are infinitely different, for which JSON has no number.
-        echo_json(
-            {
-                "agree": agree,
-                "in_bits": found.in_bits,
-                "files": found.n_file,
-                "largest": _finite(found.largest),
-                "variables": {
-                    name: _finite(item.largest) for name, item in found.by_variable().items()
-                },
-                "alone": found.alone,
-            }
-        )
-    else:
-        for name, item in found.by_variable().items():
-            click.echo(
-                f"{name:36} {item.largest:.1e}  {item.file if item.largest else ''}".rstrip()
-            )
-        for path in found.alone:
-            click.echo(f"without a counterpart: {path}")
-        if agree:
-            within = "" if found.largest == 0 else f" within {found.largest:.1e}"
-            bits = "in bits" if found.in_bits else "in values, not in bits"
-            click.echo(f"{found.n_file} files agree {bits}{within}")
+    variables, agree = found.by_variable(), found.largest <= tolerance
+    content = {
+        "agree": agree,
+        "in_bits": found.in_bits,
+        "files": found.n_file,
+        "largest": finite(found.largest),
+        "variables": {name: finite(item.largest) for name, item in variables.items()},
+        "alone": found.alone,
+    }
+    lines = [
+        f"{name:36} {item.largest:.1e}  {item.file if item.largest else ''}".rstrip()
+        for name, item in variables.items()
+    ]
+    lines += [f"without a counterpart: {path}" for path in found.alone]
+    if agree:
+        within = "" if found.largest == 0 else f" within {found.largest:.1e}"
+        bits = "in bits" if found.in_bits else "in values, not in bits"
+        lines.append(f"{found.n_file} files agree {bits}{within}")
+    echo_answer(content, lines, as_json=as_json)
     if not agree:
-        raise click.ClickException(
-            f"{one} and {other} do not agree: "
-            + (
-                f"{len(found.alone)} files have no counterpart"
-                if found.alone
-                else f"the largest difference is {found.largest:.1e}"
-            )
-        )
-
-
-def _finite(value: float) -> float | None:
-    """A number that JSON has."""
-    return value if math.isfinite(value) else None
+        difference = f"the largest difference is {found.largest:.1e}"
+        if found.alone:
+            difference = f"{len(found.alone)} files have no counterpart"
+        raise click.ClickException(f"{one} and {other} do not agree: {difference}")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -56,18 +58,42 @@ def examples(*lines: str) -> str:
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
 
 
+def echo_answer(content: object, lines: Iterable[str], *, as_json: bool) -> None:
+    """Print the answer of a command: the content as JSON, or else the lines that state it."""
+    if as_json:
+        echo_json(content)
+    else:
+        click.echo("\n".join(lines))
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    """Lines of a table, its first column aligned to the left and all others to the right."""
+    cells = [heads, *rows]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    for row in cells:
+        others = (cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True))
+        yield "  ".join((row[0].ljust(widths[0]), *others))
+
+
 def echo_json(content: object) -> None:
     """Print one JSON value; a number that is none would be a defect."""
     click.echo(json.dumps(content, indent=2, allow_nan=False, default=_plain))
 
 
 def _plain(value: Any) -> object:
-    """What JSON has for a path, or for a scalar of numpy."""
+    """What JSON has for a record, a path, or a scalar of numpy."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return asdict(value)
     return str(value) if isinstance(value, Path) else value.item()
 
 
+def finite(value: float) -> float | None:
+    """A number that JSON has: None where it is infinite or no number."""
+    return value if math.isfinite(value) else None
+
+
 def announce_compilation(*, err: bool = False) -> None:
-    """Print a line when something is compiled, to standard error if so asked."""
+    """Print a line when something is compiled, on request to standard error."""
     from crackfront.core.compiled import when_compiling
 
     sentence = "compiling the solver (once, for half a minute to a minute)"

@@ -9,12 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from crackfront.cli.report import FILE, announce_cost, as_json, examples
-from crackfront.cli.sweep import (
-    configuration_argument,
-    fill_store,
-    opened,
-    output_option,
-)
+from crackfront.cli.sweep import configuration_argument, fill_store, output_option
 
 if TYPE_CHECKING:
     from crackfront.analysis.result import SweepFit
@@ -28,27 +23,24 @@ if TYPE_CHECKING:
 @output_option
 def aggregate(configuration: Path, output: Path | None) -> None:
     """Collect the stored simulations of a sweep in hysteresis.nc."""
-    from crackfront.sweep.library import without_value
-    from crackfront.sweep.table import COMPLETE
+    from crackfront.sweep.library import opened, without_value
 
     sweep, store, origin = opened(configuration, output)
     path, statuses = store.aggregate(sweep, origin)
-    failed = sum(count for status, count in statuses.items() if status not in COMPLETE)
-    sentence = without_value(statuses)
+    failed, sentence = without_value(statuses)
     if failed > sweep.failed_fraction * sweep.n_simulation:
         raise click.ClickException(
             f"{sentence}; failed_fraction of the configuration allows {sweep.failed_fraction:g}. "
             f"What they ended by stands in status_sentence of {path}"
         )
-    if sentence:
+    if failed:
         click.echo(f"Warning: {sentence}", err=True)
     click.echo(f"hysteresis: {path}")
 
 
 @click.command(
     epilog=examples(
-        "crackfront fit config/default.yaml",
-        "crackfront fit config/default.yaml --json",
+        "crackfront fit config/default.yaml", "crackfront fit config/default.yaml --json"
     )
 )
 @configuration_argument
@@ -58,6 +50,7 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the last."""
     from crackfront.analysis.report import fit_table
     from crackfront.sweep.fit_files import write_fit
+    from crackfront.sweep.library import opened
 
     sweep, store, origin = opened(configuration, output)
     fitted = _fitted(sweep, store)
@@ -79,6 +72,7 @@ def figures(configuration: Path, output: Path | None) -> None:
     from crackfront.plots.sweep import factor_figure, hysteresis_figure
     from crackfront.simulate.costs import expected_cost
     from crackfront.simulate.files import read_simulation
+    from crackfront.sweep.library import opened
 
     sweep, store, origin = opened(configuration, output)
     fitted = _fitted(sweep, store)
@@ -113,6 +107,7 @@ def summary(configuration: Path, output: Path | None) -> None:
     """Write summary.html: result, figures, fit, how simulations ended, configuration, origin."""
     from crackfront.analysis.report import fit_table
     from crackfront.data.files import write_text
+    from crackfront.sweep.library import opened
     from crackfront.sweep.summary import summary_page
     from crackfront.sweep.table import read_statuses
 
@@ -156,6 +151,8 @@ def fit_of_sweep(configuration: Path) -> SweepFit:
     ValueError
         If the sweep has not been run.
     """
+    from crackfront.sweep.library import opened
+
     sweep, store, _ = opened(configuration, None)
     if not store.hysteresis.exists():
         raise ValueError(

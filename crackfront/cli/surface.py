@@ -13,6 +13,7 @@ from crackfront.cli.report import (
     FILE,
     announce_compilation,
     as_json,
+    echo_answer,
     echo_json,
     examples,
     refuse_unwritable,
@@ -34,7 +35,6 @@ from crackfront.topography.options import (
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
     from crackfront.topography.measures import MeasuredSurface
-    from crackfront.topography.simulated import Simulated
     from crackfront.topography.tile import Placement
 
 Command = Callable[..., None]
@@ -44,7 +44,7 @@ _EXIT_CODES = {"applies": 0, "applies with reservations": 3, "does not apply": 4
 
 @dataclass(frozen=True, slots=True)
 class SphereOptions:
-    """What is pressed on a surface; the library and configurations take its scales."""
+    """What is pressed on a surface; the library and configurations have its scales instead."""
 
     modulus: float | None = option(
         "Young's modulus, as in 0.7MPa", quantity("Pa", "pressure", "0.7MPa")
@@ -56,7 +56,7 @@ class SphereOptions:
     )
 
 
-def _taking(record: type[Any], *, required: bool = False) -> Callable[[Command], Command]:
+def _options_of(record: type[Any], *, required: bool = False) -> Callable[[Command], Command]:
     """Give a command the options of a record, by the names of its fields."""
 
     def decorated(command: Command) -> Command:
@@ -66,7 +66,6 @@ def _taking(record: type[Any], *, required: bool = False) -> Callable[[Command],
                 required=required,
                 multiple=item.times != "once",
                 default=item.default or None,
-                show_default=bool(item.default),
                 metavar=item.kind.metavar,
                 help=item.sentence,
             )(command)
@@ -85,9 +84,9 @@ _scans = click.argument("scans", type=FILE, nargs=-1, required=True)
     )
 )
 @_scans
-@_taking(ReadingOptions)
-@_taking(SphereOptions, required=True)
-@_taking(PredictionOptions)
+@_options_of(ReadingOptions)
+@_options_of(SphereOptions, required=True)
+@_options_of(PredictionOptions)
 @as_json
 @click.option(
     "--simulate", is_flag=True, help="Run the simulations that the prediction stands for."
@@ -96,10 +95,9 @@ _scans = click.argument("scans", type=FILE, nargs=-1, required=True)
     "--realisations",
     type=whole(Range(1, 1e6)),
     default=3,
-    show_default=True,
     help="Synthesised surfaces that --simulate runs.",
 )
-@click.option("--seed", type=whole(SEED), default=0, show_default=True, help="Seed of their noise.")
+@click.option("--seed", type=whole(SEED), default=0, help="Seed of their noise.")
 @click.option(
     "--figure",
     type=FILE,
@@ -155,29 +153,20 @@ def predict(
             if not as_json:
                 click.echo(f"figure: {path}")
     if prediction is not None and simulate:
-        outcome = _simulated(surface, scales, realisations, seed, as_json)
+        from crackfront.topography.simulated import prediction_plan, simulated
+
+        plan = prediction_plan(surface, scales, realisations, seed)
+        if not as_json:
+            announce_compilation()
+            seconds = in_time(plan.expected_seconds)
+            about = f"simulating {realisations} surface(s), about {seconds} ..."
+            click.echo("\n".join(filter(None, (plan.remark, about))))
+        outcome = simulated(plan, scales)
         if not as_json:
             click.echo(simulation_text(outcome))
     if as_json:
         echo_json(machine_readable(surface, scales, ruling, prediction, outcome))
     context.exit(_EXIT_CODES[ruling.outcome])
-
-
-def _simulated(
-    surface: MeasuredSurface, scales: Scales, realisations: int, seed: int, quiet: bool
-) -> Simulated:
-    """Run the simulations behind a prediction."""
-    from crackfront.topography.simulated import prediction_plan, simulated
-
-    plan = prediction_plan(surface, scales, realisations, seed)
-    if not quiet:
-        announce_compilation()
-        if plan.remark:
-            click.echo(plan.remark)
-        click.echo(
-            f"simulating {realisations} surface(s), about {in_time(plan.expected_seconds)} ..."
-        )
-    return simulated(plan, scales)
 
 
 @click.command(
@@ -188,15 +177,14 @@ def _simulated(
     )
 )
 @_scans
-@_taking(ReadingOptions)
-@_taking(SphereOptions)
+@_options_of(ReadingOptions)
+@_options_of(SphereOptions)
 @as_json
 @click.option("--field", type=FILE, help="Write the very map as a field for crackfront cycle.")
 @click.option(
     "--place",
     type=click.Choice(["tiled", "within"]),
     default="tiled",
-    show_default=True,
     help="Field: let the contact go on to mirror images of the scan, or refuse that.",
 )
 def surface(
@@ -214,10 +202,8 @@ def surface(
     if field is not None and len(scans) > 1:
         raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
     found = _surface(scans, options)
-    if as_json:
-        echo_json(machine_readable(found, scales))
-    else:
-        click.echo(report_text(found, scales))
+    content = machine_readable(found, scales)
+    echo_answer(content, [report_text(found, scales)], as_json=as_json)
     if field is not None and scales is not None:
         _write_field(found, scales, place, field, quiet=as_json)
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 import time
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import closing
-from dataclasses import asdict
+from dataclasses import astuple
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,8 +20,9 @@ from crackfront.cli.report import (
     announce_compilation,
     announce_cost,
     as_json,
-    echo_json,
+    echo_answer,
     examples,
+    table,
     whole,
 )
 from crackfront.data.bounds import COUNT, Range, in_bytes, refuse_beyond_memory
@@ -30,9 +31,9 @@ from crackfront.data.bounds import COUNT, Range, in_bytes, refuse_beyond_memory
 if TYPE_CHECKING:
     from crackfront.data.provenance import Provenance
     from crackfront.simulate.simulation import Simulation
-    from crackfront.sweep.store import Store
-    from crackfront.sweep.sweep import NamedSpectrum, Sweep
-    from crackfront.sweep.tasks import Finished
+    from crackfront.sweep.journal import Running
+    from crackfront.sweep.store import Inventory, Progress, Store
+    from crackfront.sweep.sweep import Shard, Sweep
 
 _MOST_PROCESSES = 16
 """Processes that status names to a reader."""
@@ -43,21 +44,9 @@ output_option = click.option(
 )
 
 
-def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Provenance]:
-    """Sweep of a configuration file, its store, and the origin of what is computed for it."""
-    from crackfront.data.provenance import provenance
-    from crackfront.sweep.configuration import load_configuration, results_folder
-    from crackfront.sweep.store import Store
-
-    sweep = load_configuration(configuration)
-    store = Store(results_folder(configuration) if output is None else output)
-    return sweep, store, provenance(configuration.read_text(encoding="utf-8"))
-
-
 @click.command(
     epilog=examples(
-        "crackfront plan config/paper.yaml",
-        "crackfront plan config/default.yaml --json",
+        "crackfront plan config/paper.yaml", "crackfront plan config/default.yaml --json"
     )
 )
 @configuration_argument
@@ -66,43 +55,59 @@ def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Prov
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
+    from crackfront.sweep.library import opened
+
     sweep, store, _ = opened(configuration, output)
     shards = sweep.shards(block)
     inventory = store.inventory(sweep.simulations())
-    if as_json:
-        echo_json(
-            {
-                "results": store.folder,
-                "spectra": [item.name for item in sweep.spectra],
-                "elastic_energies": sweep.elastic_energies,
-                "realisations": sweep.n_realisation,
-                "simulations": sweep.n_simulation,
-                "missing": len(inventory.missing),
-                "shards": [shard.name for shard in shards],
-                **_costs(inventory.missing),
-            }
-        )
-        return
-    click.echo("spectrum          lambda_s  lambda_r     H         angles         points    stored")
-    rows = []
-    left = defaultdict(list)
-    for one in inventory.missing:
-        left[one.spectrum_name].append(one)
+    content = {
+        "results": store.folder,
+        "spectra": [item.name for item in sweep.spectra],
+        "elastic_energies": sweep.elastic_energies,
+        "realisations": sweep.n_realisation,
+        "simulations": sweep.n_simulation,
+        "missing": len(inventory.missing),
+        "shards": [shard.name for shard in shards],
+        **_costs(inventory.missing),
+    }
+    echo_answer(content, _plan_lines(sweep, store, shards, inventory), as_json=as_json)
+
+
+def _plan_lines(
+    sweep: Sweep, store: Store, shards: Sequence[Shard], inventory: Inventory
+) -> Iterator[str]:
+    """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
+    total = sweep.n_simulation // len(sweep.spectra)
+    spectra, left = [], []
     for item in sweep.spectra:
-        missing, total = left[item.name], sweep.n_simulation // len(sweep.spectra)
-        examples = [sweep.simulation(item, energy, 0) for energy in sweep.elastic_energies]
-        click.echo(f"{_sizes(item, examples)}  {total - len(missing):5}/{total}")
-        rows.append(_row(item.name, sum(shard.item is item for shard in shards), missing))
-    if sentence := inventory.stale_sentence():
-        click.echo(sentence)
-    click.echo(
-        "\nto run            shards  simulations  core hours  longest s  MB a rank   MB disk"
+        missing = [one for one in inventory.missing if one.spectrum_name == item.name]
+        shape, sizes = item.spectrum, [one.resolution for one in sweep.firsts(item)]
+        spectra.append(
+            (
+                item.name,
+                f"{shape.short_cutoff:.4g}",
+                f"{shape.longest_feature:.4g}",
+                f"{shape.hurst:.2f}" if hasattr(shape, "hurst") else "-",
+                _span([size.n_angle for size in sizes]),
+                _span([size.n_point for size in sizes]),
+                f"{total - len(missing)}/{total}",
+            )
+        )
+        left.append(_left(item.name, sum(shard.item is item for shard in shards), missing))
+    yield from table(
+        ("spectrum", "lambda_s", "lambda_r", "H", "angles", "points", "stored"), spectra
     )
-    click.echo("\n".join([*rows, _row("all", len(shards), inventory.missing)]))
+    if sentence := inventory.stale_sentence():
+        yield sentence
+    yield ""
+    yield from table(
+        ("to run", "shards", "simulations", "core hours", "longest s", "MB a rank", "MB disk"),
+        [*left, _left("all", len(shards), inventory.missing)],
+    )
     energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
-    click.echo(f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}")
-    click.echo(f"{sweep.n_realisation} realisations; {sweep.n_simulation} simulations")
-    click.echo(f"results in {store.folder}/")
+    yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"
+    yield f"{sweep.n_realisation} realisations; {sweep.n_simulation} simulations"
+    yield f"results in {store.folder}/"
 
 
 def _costs(missing: Sequence[Simulation]) -> dict[str, float]:
@@ -121,24 +126,12 @@ def _costs(missing: Sequence[Simulation]) -> dict[str, float]:
     }
 
 
-def _row(name: str, n_shard: int, missing: Sequence[Simulation]) -> str:
-    """What the missing simulations of a spectrum, or of all, are expected to cost."""
-    costs = _costs(missing)
+def _left(name: str, n_shard: int, missing: Sequence[Simulation]) -> tuple[str, ...]:
+    """Row of what the missing simulations of a spectrum, or of all, are expected to cost."""
+    core, longest, memory, disk = _costs(missing).values()
     return (
-        f"{name:16}  {n_shard:6}  {len(missing):11}  {costs['core_seconds'] / 3600:10.3g}"
-        f"  {costs['longest_seconds']:9.3g}  {costs['bytes_a_rank'] / 1e6:9.0f}"
-        f"  {costs['bytes_on_disk'] / 1e6:9.3g}"
-    )
-
-
-def _sizes(item: NamedSpectrum, simulations: Sequence[Simulation]) -> str:
-    """Shape and sizes of a spectrum."""
-    shape, sizes = item.spectrum, [one.resolution for one in simulations]
-    hurst = f"{shape.hurst:.2f}" if hasattr(shape, "hurst") else "-"
-    return (
-        f"{item.name:16}  {shape.short_cutoff:8.4g}  {shape.longest_feature:8.4g}  {hurst:>4}"
-        f"  {_span([size.n_angle for size in sizes]):>13}"
-        f"  {_span([size.n_point for size in sizes]):>13}"
+        *(name, str(n_shard), str(len(missing)), f"{core / 3600:.3g}", f"{longest:.3g}"),
+        *(f"{memory / 1e6:.0f}", f"{disk / 1e6:.3g}"),
     )
 
 
@@ -170,15 +163,12 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
 @output_option
 @click.option("--spectrum", help="Only this spectrum.  [default: all]")
 @click.option(
-    "--realisations",
-    callback=_block,
-    help="Only these realisations, as in 0-49.  [default: all]",
+    "--realisations", callback=_block, help="Only these realisations, as in 0-49.  [default: all]"
 )
 @click.option(
     "--ranks",
     type=whole(Range(1, 1e6)),
     default=1,
-    show_default=True,
     help="MPI ranks that simulate, beside one that hands out the work; 1 runs without MPI.",
 )
 @click.option(
@@ -191,7 +181,6 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
     "--checkpoint",
     type=Number(Range(0, 1e9)),
     default=60.0,
-    show_default=True,
     help="Seconds between checkpoints of a running simulation.",
 )
 def simulate(
@@ -209,6 +198,7 @@ def simulate(
     the same command to continue.
     """
     from crackfront.sweep import parallel
+    from crackfront.sweep.library import opened
 
     if not parallel.is_manager(ranks):
         with parallel.deferring_stops():
@@ -218,38 +208,36 @@ def simulate(
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
     chosen = range(sweep.n_realisation) if realisations is None else realisations
     shards = [sweep.named_shard(item, chosen) for item in items]
-    simulations = [one for item in items for one in sweep.shard(item, chosen)]
-    inventory = store.inventory(simulations)
-    busy = min(ranks, len(inventory.missing))
+    total = len(shards) * len(sweep.elastic_energies) * len(chosen)
+    inventory = store.inventory(one for item in items for one in sweep.simulations(item, chosen))
     if inventory.missing and not parallel.under_mpi():
-        costs = _costs(inventory.missing)
+        busy, costs = min(ranks, len(inventory.missing)), _costs(inventory.missing)
         refuse_beyond_memory(
             f"{busy} rank(s) of {in_bytes(costs['bytes_a_rank'])}",
             costs["bytes_a_rank"] * (busy if launcher is None else 1),
             "use fewer ranks, coarser numerics or a smaller tile",
         )
         announce_cost(costs["core_seconds"])
-    if busy > 1 and not parallel.under_mpi():
-        arguments = ["simulate", str(configuration), "--ranks", str(busy)]
-        arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
-        arguments += [] if spectrum is None else ["--spectrum", spectrum]
-        arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
-        _launch(arguments, busy, launcher, store.folder)
-        return
-    click.echo(
-        f"{configuration}: {len(simulations) - len(inventory.missing)} of {len(simulations)} "
-        "simulations are stored"
-    )
+        if busy > 1:
+            arguments = ["simulate", str(configuration), "--ranks", str(busy)]
+            arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
+            arguments += [] if spectrum is None else ["--spectrum", spectrum]
+            arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
+            _launch(arguments, busy, launcher, store.folder)
+            return
+    stored = total - len(inventory.missing)
+    click.echo(f"{configuration}: {stored} of {total} simulations are stored")
     for sentence in inventory.unreadable:
         click.echo(f"Warning: {sentence}; it is computed anew", err=True)
     if sentence := inventory.stale_sentence():
         click.echo(sentence)
     try:
         fill_store(store, inventory.missing, origin, checkpoint)
-    except StoppedError as stopped:
-        if not parallel.launcher_knows_of_stop():
+    except KeyboardInterrupt as stop:
+        # A second Ctrl-C, which ends the process at once, has no sentence.
+        if not (str(stop) and parallel.launcher_knows_of_stop()):
             raise
-        stopped.show()
+        StoppedError(str(stop)).show()
         return
     for shard in shards:
         manifest = store.write_manifest(shard, sweep.shard(shard.item, shard.realisations))
@@ -279,56 +267,38 @@ def fill_store(
     origin: Provenance,
     checkpoint_seconds: float = 60.0,
 ) -> None:
-    """Run what is missing and report every simulation as it ends."""
+    """Run what is missing with a bar on a terminal, elsewhere with a line for each simulation."""
+    from tqdm import tqdm
+
     from crackfront.sweep.parallel import deferring_stops
-    from crackfront.sweep.tasks import NOT_STORED, STOPPED, fill
+    from crackfront.sweep.table import COMPLETE
+    from crackfront.sweep.tasks import NotStoredError, fill
 
     if missing:
         announce_compilation()
-    started = time.monotonic()
-    outcomes = fill(store, missing, origin, checkpoint_seconds)
-    with deferring_stops(), closing(outcomes):
-        for count, (line, finished) in enumerate(_reported(outcomes, len(missing))):
-            if finished.status == NOT_STORED:
-                raise click.ClickException(
-                    f"{line}; {count} of {len(missing)} simulations were stored, and the same "
-                    "command continues with the others"
-                )
-            if finished.status == STOPPED:
-                raise StoppedError(
-                    f"{count} of {len(missing)} simulations are finished and stored, and running "
-                    "ones as far as they are; run the same command to continue"
-                )
+    started, total, terminal = time.monotonic(), len(missing), sys.stderr.isatty()
+    try:
+        with (
+            deferring_stops(),
+            closing(fill(store, missing, origin, checkpoint_seconds)) as outcomes,
+            tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
+        ):
+            for count, (simulation, finished) in enumerate(outcomes, start=1):
+                line = f"{simulation.label}: {finished.status}"
+                line += f", {finished.sentence or f'{finished.seconds:.2f} s'}"
+                if not terminal:
+                    click.echo(f"[{count}/{total}] {line}")
+                elif finished.status not in COMPLETE:
+                    bar.write(line)
+                bar.update()
+    except NotStoredError as error:
+        raise click.ClickException(str(error)) from error
     if missing:
-        click.echo(f"{len(missing)} simulations in {time.monotonic() - started:.1f} s")
-
-
-def _reported(
-    outcomes: Iterator[tuple[Simulation, Finished]], total: int
-) -> Iterator[tuple[str, Finished]]:
-    """Outcomes with their lines: a bar on a terminal, else a line each."""
-    from tqdm import tqdm
-
-    from crackfront.sweep.table import COMPLETE
-
-    terminal = sys.stderr.isatty()
-    with tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar:
-        for count, (simulation, finished) in enumerate(outcomes, start=1):
-            line = f"{simulation.label}: {finished.status}"
-            line += f", {finished.sentence or f'{finished.seconds:.2f} s'}"
-            if not terminal:
-                click.echo(f"[{count}/{total}] {line}")
-            elif finished.status not in COMPLETE:
-                bar.write(line)
-            bar.update()
-            yield line, finished
+        click.echo(f"{total} simulations in {time.monotonic() - started:.1f} s")
 
 
 @click.command(
-    epilog=examples(
-        "crackfront status results/default",
-        "crackfront status results/default --json",
-    )
+    epilog=examples("crackfront status results/default", "crackfront status results/default --json")
 )
 @click.argument("folder", type=FILE)
 @as_json
@@ -347,31 +317,29 @@ def status(folder: Path, as_json: bool) -> None:
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
     refuse_damaged(store.configuration)
-    found = store.progress(load_configuration(store.configuration))
+    spectra = store.progress(load_configuration(store.configuration))
     processes = running(store.journals)
-    if as_json:
-        spectra, at_work = ([asdict(item) for item in items] for items in (found, processes))
-        echo_json({"spectra": spectra, "processes": at_work})
-        return
-    click.echo("spectrum             done  failed  running  waiting  core hours left")
-    for item in found:
-        click.echo(
-            f"{item.name:16}  {item.done:7}  {item.failed:6}  {item.running:7}  {item.waiting:7}"
-            f"  {item.seconds / 3600:15.3g}"
-        )
+    content = {"spectra": spectra, "processes": processes}
+    echo_answer(content, _status_lines(spectra, processes), as_json=as_json)
+
+
+def _status_lines(spectra: Sequence[Progress], processes: Sequence[Running]) -> Iterator[str]:
+    """Table of the spectra of a sweep, the processes that run it, and how long they will."""
+    rows = [(*map(str, astuple(item)[:-1]), f"{item.seconds / 3600:.3g}") for item in spectra]
+    yield from table(("spectrum", "done", "failed", "running", "waiting", "core hours left"), rows)
     for one in processes[:_MOST_PROCESSES]:
-        click.echo(
+        yield (
             f"process {one.process} on {one.host}: {one.label}, last sign of life "
             f"{one.silent_seconds:.0f} s ago"
         )
     if len(processes) > _MOST_PROCESSES:
-        click.echo(f"and {len(processes) - _MOST_PROCESSES} more, listed by --json")
-    left, ranks = sum(item.seconds for item in found), len(processes)
-    total = sum(item.done + item.failed + item.running + item.waiting for item in found)
-    ended = sum(item.done + item.failed for item in found)
+        yield f"and {len(processes) - _MOST_PROCESSES} more, listed by --json"
+    ended = sum(item.done + item.failed for item in spectra)
+    total = ended + sum(item.running + item.waiting for item in spectra)
     sentence = f"{ended} of {total} simulations have ended"
-    if ranks:
-        sentence += f"; about {left / ranks / 60:.3g} minutes are left on {ranks} rank(s)"
+    if processes:
+        minutes = sum(item.seconds for item in spectra) / len(processes) / 60
+        sentence += f"; about {minutes:.3g} minutes are left on {len(processes)} rank(s)"
     elif ended < total:
         sentence += "; nothing runs"
-    click.echo(sentence)
+    yield sentence

@@ -14,12 +14,20 @@ from xarray import Dataset
 
 from crackfront.data.arguments import refuse_other_type
 from crackfront.data.files import read_dataset
-from crackfront.data.provenance import provenance
+from crackfront.data.provenance import Provenance, provenance
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.store import Store
+from crackfront.sweep.sweep import Sweep
 from crackfront.sweep.table import COMPLETE
-from crackfront.sweep.tasks import NOT_STORED, STOPPED, fill
+from crackfront.sweep.tasks import fill
+
+
+def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Provenance]:
+    """Sweep of a configuration file, its store, and the origin of what is computed for it."""
+    sweep = load_configuration(configuration)
+    store = Store(results_folder(configuration) if output is None else output)
+    return sweep, store, provenance(configuration.read_text(encoding="utf-8"))
 
 
 def sweep(
@@ -45,7 +53,7 @@ def sweep(
     -------
     xarray.Dataset
         w_appr, w_retr, their errors, status and costs over `spectrum`, `amplitude` and
-        `realisation`, as they stand in hysteresis.nc.
+        `realisation`, as in hysteresis.nc.
 
     Raises
     ------
@@ -58,37 +66,28 @@ def sweep(
     """
     for name, given in (("configuration", configuration), ("output", output or "")):
         refuse_other_type(name, given, (str, PathLike), "the path of a file or folder")
-    path = Path(configuration)
-    found, origin = load_configuration(path), provenance(path.read_text(encoding="utf-8"))
-    store = Store(results_folder(path) if output is None else Path(output))
+    found, store, origin = opened(Path(configuration), None if output is None else Path(output))
     missing = store.inventory(found.simulations()).missing
+    shown = bool(progress and missing)
     with (
         deferring_stops(),
-        tqdm(
-            total=len(missing),
-            unit="simulation",
-            disable=not (progress and missing),
-            file=sys.stderr,
-        ) as bar,
+        tqdm(total=len(missing), unit="simulation", disable=not shown, file=sys.stderr) as bar,
         contextlib.closing(fill(store, missing, origin)) as outcomes,
     ):
-        for simulation, finished in outcomes:
-            if finished.status == STOPPED:
-                raise KeyboardInterrupt("finished simulations are stored; the same call continues")
-            if finished.status == NOT_STORED:
-                raise OSError(f"{simulation.label}: {finished.sentence}")
+        for _ in outcomes:
             bar.update()
     for item in found.spectra:
         store.write_manifest(found.named_shard(item, range(found.n_realisation)), found.shard(item))
     table, statuses = store.aggregate(found, origin)
-    if sentence := without_value(statuses):
+    failed, sentence = without_value(statuses)
+    if failed:
         warnings.warn(sentence, stacklevel=2)
     return read_dataset(table)
 
 
-def without_value(statuses: Mapping[str, int]) -> str:
-    """How many simulations have no value and how they ended; empty where all have one."""
+def without_value(statuses: Mapping[str, int]) -> tuple[int, str]:
+    """How many simulations have no value, and a sentence that says how they ended."""
     others = {status: count for status, count in statuses.items() if status not in COMPLETE}
     listed = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
     failed, total = sum(others.values()), sum(statuses.values())
-    return f"{failed} of {total} simulations have no value: {listed}" if failed else ""
+    return failed, f"{failed} of {total} simulations have no value: {listed}"

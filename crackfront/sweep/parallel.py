@@ -18,7 +18,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, as_completed
 from pathlib import Path
 from types import FrameType
@@ -53,50 +53,36 @@ def launcher_knows_of_stop() -> bool:
 
     The rank then ends with 0, as MPI reports any other exit code as a failure.
     """
-    name = os.environ.get(_STOP_FILE)
-    if name is None:
-        return False
-    try:
-        Path(name).write_text(_ENDED, encoding="utf-8")
-    except OSError:
-        return False
-    return True
+    with contextlib.suppress(KeyError, OSError):
+        Path(os.environ[_STOP_FILE]).write_text(_ENDED, encoding="utf-8")
+        return True
+    return False
 
 
 @contextlib.contextmanager
 def deferring_stops() -> Iterator[None]:
     """Let signals only set :func:`stop_is_requested`; a second Ctrl-C ends the process at once."""
 
-    def receive(number: int) -> None:
+    def receive(number: int, frame: FrameType | None) -> None:
         if number == signal.SIGINT and _received.is_set():
             raise KeyboardInterrupt
         _received.set()
 
     try:
-        with _on_stop_signal(receive):
+        with _handling_stops(receive):
             yield
     finally:
         _received.clear()
 
 
-@contextlib.contextmanager
-def stopping_as_ctrl_c() -> Iterator[None]:
+def stopping_as_ctrl_c() -> contextlib.AbstractContextManager[None]:
     """Raise KeyboardInterrupt at every signal that requests a stop, as Ctrl-C does."""
-
-    def receive(number: int) -> None:
-        raise KeyboardInterrupt
-
-    with _on_stop_signal(receive):
-        yield
+    return _handling_stops(signal.default_int_handler)
 
 
 @contextlib.contextmanager
-def _on_stop_signal(act: Callable[[int], None]) -> Iterator[None]:
-    """Call a function with the number of each signal that requests a stop."""
-
-    def receive(number: int, frame: FrameType | None) -> None:
-        act(number)
-
+def _handling_stops(receive: Callable[[int, FrameType | None], None]) -> Iterator[None]:
+    """Handle each signal that requests a stop by a function of its number."""
     # Only the main thread receives signals and may set their handlers.
     in_main = threading.current_thread() is threading.main_thread()
     handled = [
@@ -121,14 +107,20 @@ def is_manager(n_worker: int) -> bool:
     Raises
     ------
     ValueError
-        On the manager, if the number of ranks is another one. A launcher that does not belong to
-        the MPI library starts ranks that each believe to be alone. Without MPI, if a launcher has
-        started several of these processes, each of which would do the whole work.
+        On the manager, if the number of ranks is another one, as by a launcher of another MPI
+        library, which starts processes of one rank each. Without MPI, if a launcher has started
+        several of these processes, each of which would do the whole work.
     SystemExit
         On the other ranks in that case.
     """
     if not under_mpi():
-        _refuse_launched()
+        count = max(int(os.environ.get(name, "1")) for name in _SIZES)
+        # A shell on the first of several tasks has what they have, and is alone.
+        if count > 1 and "SLURM_PTY_PORT" not in os.environ:
+            raise ValueError(
+                f"a launcher has started this command {count} times; leave that to --ranks and "
+                "--launcher, or start ranks as python -m mpi4py -m crackfront"
+            )
         return True
     from mpi4py import MPI
 
@@ -145,21 +137,10 @@ def is_manager(n_worker: int) -> bool:
     )
 
 
-def _refuse_launched() -> None:
-    """Raise where this is one of several processes of a launcher, and not as a rank."""
-    count = max(int(os.environ.get(name, "1")) for name in _SIZES)
-    # A shell on the first of several tasks has what they have, and is alone.
-    if count > 1 and "SLURM_PTY_PORT" not in os.environ:
-        raise ValueError(
-            f"a launcher has started this command {count} times; leave that to --ranks and "
-            "--launcher, or start ranks as python -m mpi4py -m crackfront"
-        )
-
-
 def serve_tasks(module: str) -> None:
     """Compute what the manager hands out until it has no more.
 
-    The module in which the tasks' function stands is imported while the manager still plans.
+    The module of the tasks' function is imported while the manager still plans.
     """
     importlib.import_module(module)
     from mpi4py import MPI
@@ -171,8 +152,8 @@ def serve_tasks(module: str) -> None:
 
 def run_tasks(
     function: Callable[[Task], Result], tasks: Sequence[Task]
-) -> Iterator[tuple[Task, Result]]:
-    """Tasks with their results, as they are found; a free rank takes the next task of the list.
+) -> Generator[tuple[Task, Result]]:
+    """Tasks with their results, as they end; a free rank starts the next task of the list.
 
     Without MPI the tasks run here, one after the other. With MPI this is called by the manager
     while the other ranks are in :func:`serve_tasks`, also where there is no task.
@@ -255,14 +236,14 @@ def launch_ranks(
             f"launcher {command[0]!r} cannot be started ({error.strerror}); name another one"
         ) from error
 
-    def leave_file(number: int) -> None:
+    def leave_file(number: int, frame: FrameType | None) -> None:
         try:
             file.touch(exist_ok=False)
         except OSError:  # the second time, or where nothing can be written
             process.terminate()
 
     try:
-        with _on_stop_signal(leave_file):
+        with _handling_stops(leave_file):
             code = process.wait()
         ended = file.exists() and file.read_text(encoding="utf-8") == _ENDED
         return None if code == 0 and ended else code

@@ -33,7 +33,7 @@ def summary_page(
     title : str
         Title of the page.
     fit : str
-        Tables of the fit, in Markdown; what stands before its second heading is the result.
+        Tables of the fit, in Markdown; the text before its second heading is the result.
     figures : mapping of str to Path
         Captions, and PNG files.
     statuses : mapping of str to int
@@ -65,7 +65,7 @@ def summary_page(
 
 def _picture(caption: str, path: Path) -> str:
     """A picture that the page itself holds, with its caption."""
-    # In short lines, as reStructuredText asks of the report that shows this part of the page.
+    # In short lines, which the report of the workflow needs, as it shows this part of the page.
     data = encodebytes(path.read_bytes()).decode()
     return (
         f'<figure><img src="data:image/png;base64,{data}" alt="{escape(path.stem)}">'

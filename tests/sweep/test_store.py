@@ -189,9 +189,9 @@ def test_what_the_machine_could_not_do_is_never_stored_as_what_physics_did(
 
     with monkeypatch.context() as patched:
         patched.setattr(tasks, place, fail)
-        [(_, finished)] = fill(store, FLAT[:2])
-    assert finished.status == tasks.NOT_STORED
-    assert str(error) in finished.sentence or "start fewer ranks" in finished.sentence
+        with pytest.raises(tasks.NotStoredError, match="; 0 of 2 simulations were st") as caught:
+            fill(store, FLAT[:2])
+    assert str(error) in str(caught.value) or "start fewer ranks" in str(caught.value)
     assert store.inventory(FLAT[:2]).missing == FLAT[:2]
     assert {finished.status for _, finished in fill(store, FLAT[:2])} == {"lost_contact"}
 
