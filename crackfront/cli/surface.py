@@ -204,31 +204,24 @@ def surface(
     found = _surface(scans, options)
     content = machine_readable(found, scales)
     echo_answer(content, [report_text(found, scales)], as_json=as_json)
-    if field is not None and scales is not None:
-        _write_field(found, scales, place, field, quiet=as_json)
-
-
-def _write_field(
-    surface: MeasuredSurface, scales: Scales, place: Placement, path: Path, quiet: bool
-) -> None:
-    """Write the map of a surface as a field."""
+    if field is None or scales is None:
+        return
     from crackfront.data.provenance import provenance
     from crackfront.simulate.fields import write_field
     from crackfront.topography.tile import measured_adhesion
 
-    [one] = surface.scans
-    measurement = one.trusted_measurement
+    measurement = found.scans[0].trusted_measurement
     adhesion = measured_adhesion(measurement, scales, place)
     write_field(
-        path,
+        field,
         adhesion,
         provenance(),
         source=f"{measurement.path}, checksum {measurement.checksum}",
         placement=place,
         **{name: getattr(scales, name) for name in scales.__slots__},
     )
-    if not quiet:
-        click.echo(f"field: {path}, e_el {adhesion.e_el:.4g} w_int on the tile")
+    if not as_json:
+        click.echo(f"field: {field}, e_el {adhesion.e_el:.4g} w_int on the tile")
 
 
 def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSurface:

@@ -233,7 +233,7 @@ class Store:
             return
         yield from set_aside_damaged(self.folder)
         yield from renew_journals(self.journals)
-        if any(self._lists()):
+        if any((self.folder / "shards").glob("*.json")):
             if not self.configuration.is_file():
                 text = configuration.read_text(encoding="utf-8")
                 write_text(self.configuration, text, sealed=True)
@@ -273,7 +273,7 @@ class Store:
     def _forget(self, missing: Sequence[Simulation]) -> int:
         """Remove lists of shards that are damaged or name missing simulations; their number."""
         keys, count = {one.key for one in missing}, 0
-        for path in self._lists():
+        for path in (self.folder / "shards").glob("*.json"):
             if integrity(path)[0] is Integrity.WHOLE:
                 content = json.loads(path.read_text(encoding="utf-8"))
                 if keys.isdisjoint(entry["key"] for entry in content["simulations"]):
@@ -281,10 +281,6 @@ class Store:
             path.unlink()
             count += 1
         return count
-
-    def _lists(self) -> Iterator[Path]:
-        """Files of the lists of shards."""
-        return (self.folder / "shards").glob("*.json")
 
     def archive(self, path: Path, *, curves: bool) -> int:
         """Write the files of the sweep and their checksums into a ZIP file; the number of files.
