@@ -30,7 +30,7 @@ class Filter(NamedTuple):
     Attributes
     ----------
     paired : bool
-        Whether sites stand in pairs; where their number is odd, each has a mode of its own.
+        Whether sites form pairs; where their number is odd, each has a mode of its own.
     straight, crossed : array
         Factors of a mode and of its conjugate partner.
     cosine, sine : array
@@ -63,7 +63,7 @@ def make_filter(count, like):
 
 @kernel
 def set_filter(filtering, geometry, shift, inverted):
-    """Give a filter the stiffness of the line plus a shift, or the inverse of that."""
+    """Set the factors to the stiffness of the line plus a shift, or to the inverse of that."""
     size, paired = filtering.sine.size, filtering.paired
     for k in range(size):
         one = mode_stiffness(geometry, k if paired else min(k, size - k)) + shift
@@ -79,13 +79,13 @@ _AXIS = np.zeros(1, np.int64)
 
 
 def _transform(source: Any, target: Any, forward: bool) -> None:
-    """Modes of a vector or, backward, the vector of modes, into memory that is there."""
+    """Write the modes of a vector or, backward, the vector of modes into a target."""
     target[:] = scipy.fft.fft(source) if forward else scipy.fft.ifft(source)
 
 
 @overload(_transform)
 def _transform_compiled(source, target, forward):
-    """By what scipy calls, as scipy's own functions allocate memory every time."""
+    """Call the library below scipy, whose own functions allocate memory every time."""
     return lambda source, target, forward: lowlevel.c2c(
         source, target, _AXIS, forward, 1.0 if forward else 1.0 / source.size, 1
     )

@@ -31,8 +31,11 @@ from crackfront.core.units import WORK_OF_ADHESION
 
 Array = NDArray[np.float64]
 
-CONVERGED, INWARD, OUTWARD, LIMIT, BLOCKED, TURNED, STILL = range(7)
+CONVERGED, INWARD, OUTWARD, LIMIT, BLOCKED, TURNED, STILL, NEEDLES = range(8)
 """Codes with which a compiled solver ends."""
+
+RIGID = 10.0
+"""Stiffness of a site's own force, over that of the line against it, above which it is a needle."""
 
 GROWTH = 8
 """Longest step of a site, over the longest distance that its step before looked ahead."""
@@ -117,6 +120,15 @@ def largest_entry(vector):
     for i in range(whole, vector.size):
         a = max(a, abs(vector[i]))
     return max(max(a, b), max(c, d))
+
+
+@kernel
+def largest_positive(vector):
+    """Largest entry, 0 if none is positive."""
+    largest = 0.0
+    for value in vector:
+        largest = max(largest, value)
+    return largest
 
 
 @jit

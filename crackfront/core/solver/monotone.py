@@ -24,6 +24,8 @@ from crackfront.core.solver.forces import (
     BLOCKED,
     CONVERGED,
     LIMIT,
+    NEEDLES,
+    RIGID,
     STILL,
     TURNED,
     Front,
@@ -33,12 +35,12 @@ from crackfront.core.solver.forces import (
     touch_samples,
 )
 from crackfront.core.solver.newton import make_workspace, newton_step
-from crackfront.core.solver.reference import rosso_krauth
+from crackfront.core.solver.reference import rosso_krauth, sweep_from
 from crackfront.core.solver.window import HALF_BAND, LONGEST, make_window, relax_window
 from crackfront.core.units import WORK_OF_ADHESION
 
 _CALM = 2e-3
-"""Drive, relative to w_int, below which only Newton steps of the whole front are taken."""
+"""Drive, relative to w_int, below which all steps are Newton steps of the whole front."""
 
 _LEVEL = 0.1
 """Sites above this share of the largest drive are active: windows hold and relax them to it."""
@@ -54,6 +56,15 @@ _MANY = 0.3
 
 _DOUBT = 200
 """Pairs of FFTs after which the line and the field are compared again."""
+
+_SWEEPS = 30
+"""Sweeps among needles before the first step of the whole front."""
+
+_WASTE = 0.5
+"""Most pairs of FFTs, over the sweeps, that went into steps shorter than as many sweeps."""
+
+_SLOW = 0.1
+"""Way of a step, over that of as many sweeps without a field, below which needles hold it."""
 
 _BETWEEN = 13
 """Sites added on each side of the active ones; those that then touch share a window."""
@@ -75,7 +86,7 @@ def monotone_newton(place, problem, max_sweeps):
         return rosso_krauth(place, problem, max_sweeps)
     code, pairs, updates, residual = _relax(place, problem, max_sweeps)
     if code == BLOCKED:
-        # The field is too steep for the digits of a radius: the reference knows how to stop there.
+        # The field is too steep for the digits of a radius: the reference ends there.
         code, sweeps, more, residual = rosso_krauth(place, problem, max_sweeps - pairs)
         pairs, updates = pairs + sweeps, updates + more
     return code, pairs, updates, residual
@@ -83,7 +94,11 @@ def monotone_newton(place, problem, max_sweeps):
 
 @jit
 def _relax(place, problem, max_sweeps):
-    """Alternate between windows around the largest drives and steps of the whole front."""
+    """Alternate between windows around the largest drives and steps of the whole front.
+
+    Once needles are met, every site also moves by its own force after the windows, at least as far
+    as in a sweep of the reference: no transform then brings the front less far than one there.
+    """
     count, tolerance = place.size, problem.tolerance
     work = make_workspace(count, problem.field.geometry)
     front = Front(place, np.zeros(count, np.int64), np.zeros(count), np.zeros(count))
@@ -95,6 +110,7 @@ def _relax(place, problem, max_sweeps):
     window = make_window(line)
     residual, first_least, pairs, updates = np.inf, 0.0, 0, 0
     share, collective, doubted = _LEVEL, False, 0
+    own, needles, swept, stepped, wasted = window.coupling[LONGEST], False, np.inf, 0, 0
     code = place_sites(problem, front)
     while code == CONVERGED:
         apply_filter(work.stiff_line, place, line)
@@ -114,10 +130,14 @@ def _relax(place, problem, max_sweeps):
         if count <= LONGEST:
             # Sums over pairs of sites cost no more than transforms.
             level = _EQUILIBRIUM * tolerance
-            code, used = relax_window(window, problem, front, np.argmin(front.drive), count, level)
+            code, used, _ = relax_window(
+                window, problem, front, np.argmin(front.drive), count, level
+            )
             updates += used
             continue
-        calm, level = residual <= _CALM, share * residual
+        sweeps = pairs - stepped
+        may_step = not needles or (sweeps > _SWEEPS and wasted <= _WASTE * sweeps)
+        calm, level = residual <= _CALM and may_step, share * residual
         n_run, n_active = (0, 0) if calm else _list_runs(problem, front, level, runs)
         share = (
             max(0.5 * share, _LEAST_LEVEL) if n_active < _FEW * count else min(2 * share, _LEVEL)
@@ -127,26 +147,45 @@ def _relax(place, problem, max_sweeps):
             # A front that grows far comes to other places; a comparison costs as much as a step.
             doubted = pairs + _DOUBT
             collective = _line_outweighs_field(work, problem, front, window)
-        if calm or (widespread and collective):
-            code, used = newton_step(work, problem, front)
+        if calm or (may_step and widespread and collective):
+            code, used = newton_step(work, problem, front, needles)
             pairs += used
+            stepped += used
             updates += count
-            if code != BLOCKED:
+            moved, drive = _sums(front, before)
+            if needles and moved < used * swept:
+                wasted += used
+            needles |= code == NEEDLES or (not calm and moved < _SLOW * used * drive / own)
+            if code != BLOCKED and code != NEEDLES:
                 continue
             n_run, _ = _list_runs(problem, front, level, runs)
-        code, used = _relax_runs(window, problem, front, runs[:n_run], level)
+        code, used, stiffest = _relax_runs(window, problem, front, runs[:n_run], level)
         updates += used
+        needles |= stiffest > RIGID * own
+        if needles and code == CONVERGED:
+            code, swept = sweep_from(problem, front, before, own)
+            updates += count
     return code, pairs, updates, residual
 
 
 @kernel
 def _remember(place, before):
-    """Note the places; return whether any has changed."""
+    """Store the places; return whether any has changed."""
     moved = 0
     for i in range(np.uint64(place.size)):
         moved += place[i] != before[i]
         before[i] = place[i]
     return moved > 0
+
+
+@kernel
+def _sums(front, before):
+    """Sum of the ways of the sites from the places before, and that of the forward drives there."""
+    moved, drive = 0.0, 0.0
+    for i in range(np.uint64(before.size)):
+        moved += abs(front.place[i] - before[i])
+        drive += max(front.drive[i], 0.0)
+    return moved, drive
 
 
 @jit
@@ -228,11 +267,16 @@ def _next_active(geometry, front, level, site):
 
 @kernel
 def _relax_runs(window, problem, front, runs, level):
-    """Relax every run, in pieces that fit a window, by the same drives; return code and updates."""
-    updates, code = 0, CONVERGED
+    """Relax every run, in pieces that fit a window, by the same drives.
+
+    Returns a code, the number of updates of a site and the largest stiffness of its own force.
+    """
+    updates, code, stiffest = 0, CONVERGED, 0.0
     for run in range(len(runs)):
         for first in range(runs[run, 0], runs[run, 1], LONGEST):
             count = min(runs[run, 1] - first, LONGEST)
-            end, used = relax_window(window, problem, front, first % front.drive.size, count, level)
-            code, updates = max(code, end), updates + used
-    return code, updates
+            end, used, most = relax_window(
+                window, problem, front, first % front.drive.size, count, level
+            )
+            code, updates, stiffest = max(code, end), updates + used, max(stiffest, most)
+    return code, updates, stiffest

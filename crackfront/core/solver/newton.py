@@ -13,18 +13,16 @@ from numpy.typing import NDArray
 
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import mode_stiffness, restoring_slope, self_modes
-from crackfront.core.solver.filters import (
-    Filter,
-    apply_filter,
-    make_filter,
-    set_filter,
-)
+from crackfront.core.solver.filters import Filter, apply_filter, make_filter, set_filter
 from crackfront.core.solver.forces import (
     BLOCKED,
     CONVERGED,
     GROWTH,
+    NEEDLES,
+    RIGID,
     harden,
     largest_entry,
+    largest_positive,
     locate,
     touch_samples,
 )
@@ -36,7 +34,7 @@ _ACCURACY = 0.05
 """Residual to which the linear system is solved, over the mean drive."""
 
 _SINGLE = 0.9
-"""Part of that residual to which single precision goes, before double precision checks it."""
+"""Part of that residual below which double precision checks what single precision has solved."""
 
 _MOST_PAIRS = 100
 """Pairs of FFTs after which conjugate gradients are given up."""
@@ -52,9 +50,6 @@ _RISE = 1.1
 
 _LEAST_SOFTENING = 0.2
 """Part of the softening below which none is used."""
-
-_RIGID = 10.0
-"""Stiffness of a site, over that of the line against it, above which the system is scaled."""
 
 
 class Workspace(NamedTuple):
@@ -120,7 +115,7 @@ def make_workspace(count, geometry):
         np.empty(count, np.float32),
         np.empty(count, np.float32),
         np.ones(1),
-        np.full(1, _RIGID),
+        np.full(1, RIGID),
         make_filter(count, double),
         make_filter(count, single),
         make_filter(count, single),
@@ -128,15 +123,6 @@ def make_workspace(count, geometry):
     set_filter(work.stiff_line, geometry, 0.0, False)
     set_filter(work.single_line, geometry, 0.0, False)
     return work
-
-
-@kernel
-def _largest(vector):
-    """Largest entry, 0 if none is positive."""
-    largest = 0.0
-    for value in vector:
-        largest = max(largest, value)
-    return largest
 
 
 @kernel(fastmath={"reassoc", "nsz"})
@@ -150,7 +136,7 @@ def _forward_sum(vector):
 
 @kernel(fastmath={"contract"})
 def _restart(work, started):
-    """Compute the residual in double precision and forget the search."""
+    """Compute the residual in double precision and reset the search."""
     for i in range(np.uint64(work.step.size)):
         force = work.line[i] + work.stiffness[i] * work.step[i] if started else 0.0
         work.residual[i] = work.scale[i] * (work.right[i] - force)
@@ -197,7 +183,7 @@ def _curvature(work):
 
 @kernel(fastmath={"contract"})
 def _advance(work, length):
-    """Go a length along the direction of search."""
+    """Add a length of the direction of search to the step."""
     step, residual, scale = work.step, work.residual, work.scale
     search, force = work.search, work.force_along
     length = np.float32(length)
@@ -301,16 +287,17 @@ def _solve_softest(work, geometry, own, floor, tolerance, all_free, started):
 
 
 @kernel
-def newton_step(work, problem, front):
+def newton_step(work, problem, front, among_needles):
     """Move the whole front by one step that passes no barrier; return code and pairs of FFTs.
 
     The right side is lowered by the largest residual of the linear solver and the step clipped at
     zero: an inexact step then still leaves every drive forward. Sites driven backward by more than
     the slack are held. Where a site would pass the lowest place nothing moves, and the code is
-    BLOCKED, as the step of a site is safe only together with all others.
+    BLOCKED, as the step of a site is safe only together with all others. Nothing moves either where
+    the first needle is met, and the code is NEEDLES.
     """
     step, drive, geometry = work.step, front.drive, problem.field.geometry
-    largest, longest = _largest(drive), largest_entry(work.reach)
+    largest, longest = largest_positive(drive), largest_entry(work.reach)
     own = mode_stiffness(geometry, 1) * self_modes(drive.size)
     floor, guess = largest / problem.furthest, 0.0
     if longest == 0.0:
@@ -321,6 +308,8 @@ def newton_step(work, problem, front):
     tolerance = _ACCURACY * max(_forward_sum(drive) / drive.size, 1e-4 * largest)
     all_free = _prepare(work, problem, front, tolerance, furthest, guess)
     _fails(work, problem, front, 1.0)
+    if not among_needles and largest_entry(work.hardening) > RIGID * own:
+        return NEEDLES, 0
     work.softening[0] = min(_RISE * max(work.softening[0], _LEAST_SOFTENING), 1.0)
     pairs, safe, part, longest = 0, False, 1.0, 0.0
     for _ in range(_TRIALS):
@@ -340,7 +329,7 @@ def newton_step(work, problem, front):
     for i in range(step.size):
         step[i] *= part
     if not safe or longest == 0.0:
-        _take_own_steps(work, problem, front, own, furthest)
+        _set_own_steps(work, problem, front, own, furthest)
     if _passes_lowest(work, front, problem.lowest):
         return BLOCKED, pairs
     return _move(work, problem, front), pairs
@@ -381,7 +370,7 @@ def _passes_lowest(work, front, lowest):
 
 @kernel
 def _move(work, problem, front):
-    """Take the step."""
+    """Move the sites by their steps."""
     place, segment, step = front.place, front.segment, work.step
     for i in range(place.size):
         moved = place[i] + problem.direction * step[i]
@@ -394,7 +383,7 @@ def _move(work, problem, front):
 
 
 @kernel
-def _take_own_steps(work, problem, front, own, furthest):
+def _set_own_steps(work, problem, front, own, furthest):
     """Replace the step by that of each site by its own force, all others held: always safe."""
     drive, step = front.drive, work.step
     for i in range(step.size):

@@ -16,8 +16,21 @@ from crackfront.core.geometry.base import (
     self_modes,
     weight,
 )
-from crackfront.core.solver.forces import CONVERGED, INWARD, LIMIT, OUTWARD, STILL, line_force
+from crackfront.core.solver.forces import (
+    CONVERGED,
+    GROWTH,
+    INWARD,
+    LIMIT,
+    OUTWARD,
+    STILL,
+    hardening,
+    line_force,
+    locate,
+)
 from crackfront.core.units import WORK_OF_ADHESION
+
+_OWN_STEPS = 8
+"""Most steps of a site in a sweep to where its own force rests."""
 
 
 @kernel
@@ -97,3 +110,42 @@ def rosso_krauth(place, problem, max_sweeps):
         if still:
             return STILL, sweep, sweep * count, residual
     return LIMIT, max_sweeps, max_sweeps * count, residual
+
+
+@kernel
+def sweep_from(problem, front, before, own):
+    """Move every site to where it would rest with all others held at the places before.
+
+    This is at least as far as the reference moves it. Both its place and this are behind the first
+    metastable front, so that a site which is further on already stays. The drives are those at the
+    places before. Returns a code and the sum of the ways from these.
+    """
+    field, direction, geometry = problem.field, problem.direction, problem.field.geometry
+    load, lowest, total = problem.load, problem.lowest, 0.0
+    for i in range(before.size):
+        place, drive, step = before[i], front.drive[i], np.inf
+        if not drive > 0.1 * problem.slack:
+            continue
+        segment, product = locate(problem, i, place, segment_below(field, place, direction))
+        for _ in range(_OWN_STEPS):
+            target = sample_place(field, segment + 1 if direction > 0 else segment)
+            target = target if direction > 0 else max(target, lowest)
+            rest = direction * (target - place)
+            reach = min(rest, GROWTH * step)
+            if not (drive > 0.1 * problem.slack and reach > 0.0):
+                break
+            stiffness = own + hardening(problem, i, place, product, segment, reach)
+            step = min(drive / stiffness, reach) if stiffness > 0.0 else reach
+            moved = target if step == rest else place + direction * step
+            if moved == place:
+                break
+            segment, value = locate(problem, i, moved, segment)
+            if segment < 0:
+                return -segment, total
+            rise = restoring_force(geometry, moved, load) - restoring_force(geometry, place, load)
+            drive += direction * (value - product - rise) - own * direction * (moved - place)
+            place, product = moved, value
+        total += direction * (place - before[i])
+        if direction * (place - front.place[i]) > 0.0:
+            front.place[i], front.segment[i], front.product[i] = place, segment, product
+    return CONVERGED, total

@@ -136,7 +136,7 @@ def _solve_banded(window, count):
         seventh = _eliminated(fresh, seen, inverse)
     s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
     for i in range(count - 1, -1, -1):
-        # The nearest site last: its step is known last.
+        # The nearest site last: its step is computed last.
         far = band[i, 7] * s7 + band[i, 6] * s6 + band[i, 5] * s5 + band[i, 4] * s4
         value = step[i] - far - band[i, 3] * s3 - band[i, 2] * s2 - band[i, 1] * s1
         step[i] = window.given[i] if window.given[i] >= 0.0 else max(value * band[i, 0], 0.0)
@@ -197,7 +197,7 @@ def _couple(drive, coupling, step, count):
 
 @kernel
 def _move(window, problem, front, first, count):
-    """Take the step and update the drives within the window."""
+    """Move the sites by their steps and update the drives within the window."""
     place, segment, product = front.place, front.segment, front.product
     drive, step, direction = window.drive, window.step, problem.direction
     geometry, load, lowest = problem.field.geometry, problem.load, problem.lowest
@@ -244,7 +244,8 @@ def relax_window(window, problem, front, first, count, level):
     """Move `count` sites from `first` on until their drives fall below a level, or for some steps.
 
     Sites driven backward by more than the slack are held, also those at the lowest place. The
-    drives of the front are left as they are. Returns a code and the number of updates of a site.
+    drives of the front are left as they are. Returns a code, the number of updates of a site and
+    the largest stiffness of a site's own force.
     """
     drive, reach, step = window.drive, window.reach, window.step
     own = window.coupling[LONGEST]
@@ -252,7 +253,7 @@ def relax_window(window, problem, front, first, count, level):
     for j in range(count):
         drive[j] = front.drive[(first + j) % front.drive.size]
         reach[j] = 4 * max(drive[j], 0.0) / own
-    updates = 0
+    updates, stiffest = 0, 0.0
     for _ in range(_ROUNDS):
         first, count = _trim(window, problem, front, first, count, level)
         if count == 0:
@@ -260,9 +261,10 @@ def relax_window(window, problem, front, first, count, level):
         furthest = min(GROWTH * largest_entry(reach[:count]), problem.furthest)
         _choose_step(window, problem, front, first, count, furthest)
         updates += count
+        stiffest = max(stiffest, largest_entry(window.stiffness[:count]))
         code = _move(window, problem, front, first, count)
         if code != CONVERGED:
-            return code, updates
+            return code, updates, stiffest
         for j in range(count):
             reach[j] = 3 * step[j]
-    return CONVERGED, updates
+    return CONVERGED, updates, stiffest

@@ -298,9 +298,32 @@ def test_needles_that_repel_take_no_more_transforms_than_the_reference_sweeps(
     adhesion.flat[rng.choice(n_point**2, n_needle, replace=False)] -= strength
     tile = AdhesionMap(WORK_OF_ADHESION * adhesion, pixel, 0.0, 0.0)
     field = tile_field(tile, sphere(1009), pixel / samples, 3.0)
-    loads = [(0.0, 1), (0.1, 1), (0.6, 1), (0.3, -1), (-0.3, -1)]
-    for expected, found in compared(field, np.full(1009, first_place(field)), loads):
+    assert_no_more_transforms_than_sweeps(field, 0.6)
+
+
+def assert_no_more_transforms_than_sweeps(field, top):
+    """On a cycle to a largest penetration and back, of equal fronts."""
+    loads = [(0.0, 1), (top / 6, 1), (top, 1), (top / 2, -1), (-0.3, -1)]
+    for expected, found in compared(
+        field, np.full(field.geometry.n_site, first_place(field)), loads
+    ):
         assert found.status is expected.status
         assert found.sweeps <= expected.sweeps
         if found.status is Status.CONVERGED:
             assert np.max(np.abs(found.front - expected.front)) < 1e-5
+
+
+# Without sweeps among needles, most of these take more transforms than the reference sweeps.
+@pytest.mark.parametrize("seed", [6, 10, 23, 30, 36, 37, 42, 46, 49, 60, 65, 66, 78])
+def test_no_harsh_needles_take_more_transforms_than_the_reference_sweeps(seed):
+    rng = np.random.default_rng(10_000 + seed)
+    n_point, pixel = int(rng.choice([16, 32, 64, 96, 128])), rng.uniform(0.03, 0.12)
+    samples = int(rng.choice([1, 2, 5, 8]))
+    n_needle = int(np.exp(rng.uniform(np.log(2), np.log(n_point**2 / 8))))
+    strength = np.exp(rng.uniform(np.log(10), np.log(1e5), n_needle))
+    adhesion = 1 + rng.choice([0, 0.1, 0.4]) * rng.standard_normal((n_point, n_point))
+    adhesion.flat[rng.choice(n_point**2, n_needle, replace=False)] -= strength
+    tile = AdhesionMap(WORK_OF_ADHESION * adhesion, pixel, 0.0, 0.0)
+    n_site, interpolation = int(rng.choice([300, 512, 1009])), str(rng.choice(["cubic", "linear"]))
+    field = tile_field(tile, sphere(n_site), pixel / samples, 3.0, interpolation)
+    assert_no_more_transforms_than_sweeps(field, rng.uniform(0.2, 1))
