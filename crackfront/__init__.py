@@ -6,8 +6,9 @@
 >>> axes = cf.plot_loop(loop)
 """
 
-import importlib
 from typing import TYPE_CHECKING
+
+from crackfront.core.lazy import lazy_names
 
 if TYPE_CHECKING:
     from crackfront.analysis.law import pinning_factor as pinning_factor
@@ -30,40 +31,5 @@ if TYPE_CHECKING:
     from crackfront.topography.library import predict as predict
     from crackfront.topography.library import read_scan as read_scan
 
-_HOMES = {
-    "pinning_factor": "analysis.law",
-    "SelfAffineSpectrum": "core.spectrum",
-    "__version__": "data.provenance",
-    "plot_fronts": "plots.library",
-    "plot_instabilities": "plots.library",
-    "plot_loop": "plots.library",
-    "plot_spectrum": "plots.library",
-    "plot_surface": "plots.library",
-    "load_result": "simulate.files",
-    "save_result": "simulate.files",
-    "find_instabilities": "simulate.loops",
-    "run_loop": "simulate.loops",
-    "Scales": "simulate.si_units",
-    "in_reduced_units": "simulate.si_units",
-    "in_si_units": "simulate.si_units",
-    "random_surface": "simulate.surfaces",
-    "sweep": "sweep.library",
-    "predict": "topography.library",
-    "read_scan": "topography.library",
-}
-"""Where the parts of the library stand."""
-
-__all__ = sorted(_HOMES)
-
 if not TYPE_CHECKING:
-    # Every rank and every `--help` imports the package; xarray alone costs a second.
-    def __getattr__(name: str) -> object:
-        """A part of the library, imported when it is first used."""
-        if name not in _HOMES:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        return getattr(importlib.import_module(f"crackfront.{_HOMES[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    """Names that the package offers."""
-    return [*globals(), *__all__]
+    __all__, __getattr__, __dir__ = lazy_names(__name__)

@@ -8,8 +8,9 @@
 'LOST_CONTACT'
 """
 
-import importlib
 from typing import TYPE_CHECKING
+
+from crackfront.core.lazy import lazy_names
 
 if TYPE_CHECKING:
     from crackfront.core.adhesion import chemical_adhesion as chemical_adhesion
@@ -26,34 +27,5 @@ if TYPE_CHECKING:
     from crackfront.core.spectrum import SelfAffineSpectrum as SelfAffineSpectrum
     from crackfront.core.synthesis import gaussian_field as gaussian_field
 
-_HOMES = {
-    "SOLVERS": "solver.relax",
-    "Load": "cycle.follow",
-    "LoadSchedule": "cycle.schedule",
-    "Recorder": "cycle.record",
-    "SelfAffineSpectrum": "spectrum",
-    "chemical_adhesion": "adhesion",
-    "contact_field": "contact",
-    "first_touch": "cycle.touch",
-    "follow": "cycle.follow",
-    "gaussian_field": "synthesis",
-    "line_field": "geometry.line",
-    "rough_adhesion": "adhesion",
-    "run_cycle": "cycle.run",
-}
-"""Modules of the names that core offers."""
-
-__all__ = sorted(_HOMES)
-
 if not TYPE_CHECKING:
-    # numba takes half a second to import, and most of the package does without.
-    def __getattr__(name: str) -> object:
-        """Something that core offers, imported when it is first used."""
-        if name not in _HOMES:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        return getattr(importlib.import_module(f"crackfront.core.{_HOMES[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    """Names that core offers."""
-    return [*globals(), *__all__]
+    __all__, __getattr__, __dir__ = lazy_names(__name__)
