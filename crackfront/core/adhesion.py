@@ -57,7 +57,7 @@ def front_stress_intensity(heights: Array, pixel: float, modulus: float = CONTAC
     kernel = 1j * along_x + np.abs(along_y)
     np.sqrt(kernel, out=kernel)
     if n_x % 2 == 0:
-        # The Nyquist mode stands for both signs of q_x: take their mean, which is real.
+        # The Nyquist mode stands for both signs of q_x: their mean is real.
         kernel[n_x // 2] = kernel[n_x // 2].real
     kernel[0, 0] = 0.0
     kernel *= -modulus / np.sqrt(2)

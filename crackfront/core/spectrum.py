@@ -69,7 +69,7 @@ class Spectrum(ABC):
 
     @property
     def identity(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Lengths and pure numbers that tell this shape from others, whatever its amplitude."""
+        """Lengths and pure numbers that differ between shapes, but not with the amplitude."""
         lengths, numbers = (
             tuple(float(value) for name in names for value in np.ravel(getattr(self, name)))
             for names in (self.lengths, self.numbers)
@@ -122,13 +122,11 @@ class Spectrum(ABC):
 
     def _with(self, names: Sequence[str], change: Callable[[float], float]) -> Self:
         """Copy with every number of some fields changed."""
-        known = {name: getattr(self, name) for name in names}
-        changed = {
-            name: tuple(map(change, value)) if isinstance(value, tuple) else change(value)
-            for name, value in known.items()
-        }
-        found: Self = replace(cast(Any, self), **changed)
-        return found
+        changed = {}
+        for name in names:
+            value = getattr(self, name)
+            changed[name] = tuple(map(change, value)) if isinstance(value, tuple) else change(value)
+        return cast(Self, replace(cast(Any, self), **changed))
 
     @property
     def longest_feature(self) -> float:
@@ -253,7 +251,7 @@ class SelfAffineSpectrum(Spectrum):
 
     def density(self, wavevector: ArrayLike) -> Array:
         """Spectral density C(q)."""
-        # A mode on the cutoff itself belongs to the spectrum whatever the round-off of its q.
+        # A mode on the cutoff itself counts whatever the round-off of its q.
         q = np.asarray(wavevector, dtype=float) * self.roll_off / (2 * np.pi)
         falling = self.plateau * np.maximum(q, 1.0) ** (-2 - 2 * self.hurst)
         return np.where(q <= self.roll_off / self.short_cutoff * (1 + 1e-12), falling, 0.0)
@@ -386,6 +384,6 @@ class TabulatedSpectrum(Spectrum):
         if not longer:
             longer = [2 * wavelength]
         end = float(self.density(2 * np.pi / wavelength))
-        # Where all of it is flat, the first density stands at any longer wavelength as well.
+        # Where all of it is flat, the first density holds at any longer wavelength as well.
         values = (self.densities[0], *self.densities[1 : len(longer)], end)
         return TabulatedSpectrum((*longer, wavelength), values)

@@ -24,7 +24,7 @@ def gaussian_field(
 ) -> Array:
     """Periodic Gaussian random field with uncorrelated phases.
 
-    The random numbers belong to wavevectors, not to pixels: the same generator gives the same
+    Random numbers are drawn for wavevectors, not for pixels: the same generator gives the same
     surface on every grid that resolves the spectrum. A mode on the grid's Nyquist wavevector has
     no sign there and is left out.
 

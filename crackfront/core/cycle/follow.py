@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 
 class Load(NamedTuple):
-    """A load to go to.
+    """A load and how it is reached.
 
     Attributes
     ----------
@@ -27,8 +27,7 @@ class Load(NamedTuple):
     direction : {1, -1}
         Direction in which it is reached.
     start : (n_site,) array or None
-        Front at which a branch begins with it, no matter how that was reached; by default the
-        front goes on from where it is.
+        Front at which a branch begins with it; by default the front of the load before.
     """
 
     value: float
@@ -75,18 +74,18 @@ def follow(
     field : Field
         Work of adhesion along the rays.
     front : (n_site,) array
-        Where it begins. (Units: reduced lateral length)
+        First front. (Units: reduced lateral length)
     loads : iterable of Load
-        Where it goes. The next one is taken when the step before it has been used, so that it may
-        depend on that.
+        Loads to visit. The next one is read after the step before it was used, so that it may
+        depend on that step.
     solver : Solver, optional
         How each front is found.
 
     Yields
     ------
     Step
-        One for every load. After a step that did not converge, only a load that brings its own
-        front goes on; the others end the iteration.
+        One for every load. After a step that did not converge, only a load with a front of its own
+        is followed; any other ends the iteration.
     """
     memory, at_rest = make_memory(field), True
     for load in loads:

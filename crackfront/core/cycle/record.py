@@ -1,10 +1,10 @@
-"""What is kept of the states that a front visits, and what it takes to go on from one of them."""
+"""Records of the states that a front visits, and checkpoints to continue them from."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -34,14 +34,14 @@ class CycleRecord:
         The states as the geometry records them, as
         :class:`crackfront.core.geometry.sphere.ContactState` that of a sphere.
     dissipated_energy : (n_step,) array or None
-        Energy lost in the jumps of each load step, where it was asked for; the first includes that
-        of making contact. (Units: pi w_int R times a reduced vertical length)
+        Energy lost in the jumps of each load step, if recorded; the first includes that of making
+        contact. (Units: pi w_int R times a reduced vertical length)
     pull_off_energy : float or None
         Energy lost when the contact vanishes after the last state; with it the dissipated energies
-        sum up to the loop integral of F db. None where energies were not asked for or contact was
-        not lost. (Units: as dissipated_energy)
+        sum up to the loop integral of F db. None where energies are not recorded or contact was not
+        lost. (Units: as dissipated_energy)
     fronts : (n_step, n_site) array or None
-        The fronts, where they were asked for. (Units: reduced lateral length)
+        The fronts, if recorded. (Units: reduced lateral length)
     """
 
     status: Status
@@ -56,7 +56,7 @@ class CycleRecord:
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """What it takes to go on from the last state.
+    """A record and the fronts with which it is continued.
 
     Attributes
     ----------
@@ -74,20 +74,20 @@ class Checkpoint:
 
 
 Observer = Callable[["Recorder"], None]
-"""What is called at every new state, with the recorder that holds it."""
+"""Function that is called at every new state, with the recorder that holds it."""
 
 
 class Recorder:
-    """What records the steps of a front.
+    """Recorder of the steps of a front.
 
     Parameters
     ----------
     fronts, energy : bool, optional
-        Whether every front is kept, and the energy computed that each load step dissipates.
+        Whether to record every front, and the energy that each load step dissipates.
     observers : sequence of callable, optional
         Called with the recorder at every new state, for progress, checkpoints, pictures.
     resume : Checkpoint, optional
-        An earlier run of the same loads to go on from, to the same record bit for bit.
+        An earlier run of the same loads to continue, to the same record bit for bit.
 
     Attributes
     ----------
@@ -96,9 +96,9 @@ class Recorder:
     front : (n_site,) array
         Front of the last state. (Units: reduced lateral length)
     load : float
-        Where the last step went. (Units: those of the load)
+        Load of the last step.
     status : Status
-        How it ended.
+        How the last step ended.
     """
 
     states: list[Any]
@@ -144,7 +144,7 @@ class Recorder:
                 self._add(step)
 
     def _recalled(self, loads: Iterator[Load]) -> Iterator[Load]:
-        """Take the loads that the checkpoint knows; the last one brings the front."""
+        """Yield the loads whose states the checkpoint holds, then restore its front."""
         if self._resume is None:
             return
         for state in rows(self._resume.record.states):
@@ -152,8 +152,8 @@ class Recorder:
             known = getattr(state, fields(state)[0].name), state.direction
             if known != (load.value, load.direction):
                 raise ValueError(
-                    f"the checkpoint goes to penetration {known[0]} where {load.value} is "
-                    "asked for; it is that of another load"
+                    f"the checkpoint goes to penetration {known[0]} where this run goes to "
+                    f"{load.value}; it is that of another load"
                 )
             self.states.append(state)
             yield load
@@ -182,11 +182,11 @@ class Recorder:
 
     @property
     def load_name(self) -> str:
-        """What the load is called."""
+        """Name of the load in the record of a state."""
         return fields(self._field.geometry.state_type)[0].name
 
     def checkpoint(self) -> Checkpoint:
-        """What it takes to go on from the last state."""
+        """Checkpoint at the last state."""
         return Checkpoint(self.record(), self.front, self._turn)
 
     def record(self, status: Status | None = None) -> CycleRecord:
@@ -195,19 +195,17 @@ class Recorder:
         Parameters
         ----------
         status : Status, optional
-            What ended them, if not the last relaxation.
+            What ended the cycle, if not the last relaxation.
         """
-        status = status or self.status
-        lost = self._dissipated is not None and status is Status.LOST_CONTACT
+        status, energies, fronts = status or self.status, self._dissipated, self._fronts
+        lost = energies is not None and status is Status.LOST_CONTACT
         return CycleRecord(
             status=status,
             end_load=self.load,
             states=columns(self.states, self._field.geometry.state_type),
-            dissipated_energy=None if self._dissipated is None else np.array(self._dissipated),
+            dissipated_energy=None if energies is None else np.array(energies),
             pull_off_energy=contact_energy(self.front, self.load, self._field) if lost else None,
-            fronts=None
-            if self._fronts is None
-            else np.array(self._fronts).reshape(-1, self.front.size),
+            fronts=None if fronts is None else np.array(fronts).reshape(-1, self.front.size),
         )
 
 
@@ -221,16 +219,11 @@ def columns(states: Sequence[Any], kind: type[Any]) -> Any:
     kind : type
         Their dataclass.
     """
-    return kind(
-        **{
-            item.name: np.array([getattr(one, item.name) for one in states])
-            for item in fields(kind)
-        }
-    )
+    names = [item.name for item in fields(kind)]
+    return kind(*(np.array([getattr(state, name) for state in states]) for name in names))
 
 
 def rows(states: Any) -> Iterator[Any]:
     """Many states from the columns of one."""
-    table = {item.name: getattr(states, item.name).tolist() for item in fields(states)}
-    for values in zip(*table.values(), strict=True):
-        yield replace(states, **dict(zip(table, values, strict=True)))
+    table = (getattr(states, item.name).tolist() for item in fields(states))
+    yield from (type(states)(*values) for values in zip(*table, strict=True))

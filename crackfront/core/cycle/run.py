@@ -25,7 +25,7 @@ def run_cycle(
     solver : Solver, optional
         How each front is found.
     recorder : Recorder, optional
-        What is kept beside the curves, who is told of every state, and where to go on from.
+        What to record beside the curves, observers of every state, and a run to continue.
 
     Returns
     -------

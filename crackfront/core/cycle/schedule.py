@@ -1,4 +1,4 @@
-"""Kinds of load, what simulations ask of each, and the loads of a full cycle."""
+"""Kinds of load with the methods that simulations use, and the loads of a full cycle."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ docs/hard-cases.md has the measure. (Units: reduced vertical length)
 
 
 class Schedule(ABC):
-    """A kind of load: what simulations ask of it.
+    """A kind of load, with the methods that simulations use.
 
     A kind is a frozen dataclass, whose fields enter the keys of simulations, with these attributes
     and the methods that are abstract here.
@@ -39,7 +39,7 @@ class Schedule(ABC):
     full_cycle : bool
         Whether the load goes from first contact to pull-off.
     uncorrelated : bool
-        Whether sites know nothing of each other.
+        Whether sites are independent of each other.
     max_penetration : float
         Largest penetration of a sphere; else 0. (Units: reduced vertical length)
     spring : float
@@ -98,7 +98,7 @@ class Schedule(ABC):
         """States of the whole load on a field of a correlation length and an e_el (w_int)."""
 
     def for_surface(self, *_: object) -> Schedule:
-        """Loads on one surface; a kind that does not choose them by the surface has them itself."""
+        """Loads on one surface, by default the same on all."""
         return self
 
 
@@ -172,7 +172,7 @@ class LoadSchedule(SphereSchedule):
         if not (math.isfinite(self.max_penetration) and self.max_penetration >= 0):
             raise ValueError(
                 f"max penetration {self.max_penetration} never makes contact; the sphere touches "
-                "at 0, so ask for 0 or more"
+                "at 0, so set it to 0 or more"
             )
 
     @property

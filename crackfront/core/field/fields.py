@@ -39,7 +39,7 @@ class RayField(NamedTuple):
 
 
 class TileField(NamedTuple):
-    """A periodic tile, evaluated by cubic B-splines when the front gets there.
+    """A periodic tile, evaluated by cubic B-splines where the front is.
 
     Attributes
     ----------
@@ -96,8 +96,8 @@ def polar_field(
         Local work of adhesion; on rings, where it depends on the radius alone, one ray is enough.
         (Units: reduced energy / area, w_int = 1/pi)
     interpolation : {"linear", "cubic"}, optional
-        How radius times work of adhesion goes on between the samples of a ray: straight, or as a
-        cubic spline through all of them.
+        Radius times work of adhesion between the samples of a ray: straight, or a cubic spline
+        through all of them.
 
     Returns
     -------
@@ -134,7 +134,7 @@ def polar_field(
     if interpolation == "cubic":
         from scipy.interpolate import CubicSpline
 
-        # Ray by ray: the coefficients of all rays at once take seven times the memory.
+        # Ray by ray: the coefficients of all rays at once need seven times the memory.
         slopes = np.empty_like(products)
         for slope, product in zip(slopes, products, strict=True):
             slope[:] = CubicSpline(radii, product)(radii, 1)
@@ -164,8 +164,8 @@ def tile_field(
     largest_place : float
         Place that the front must not leave. (Units: reduced lateral length)
     interpolation : {"cubic", "linear"}, optional
-        How radius times work of adhesion goes on between the samples of a ray: as a cubic with the
-        slopes of the tile, or straight.
+        Radius times work of adhesion between the samples of a ray: a cubic with the slopes of the
+        tile, or straight.
     band_limited : bool, optional
         The tile was synthesised from modes: the splines keep their amplitudes, rather than pass
         through the points, which weakens a wave of 4 pixels by 1.4% along each axis.
@@ -223,7 +223,7 @@ def _mode_coefficients(values: Array) -> Array:
 
 
 def _refuse_unknown(interpolation: str) -> None:
-    """Raise if an interpolation is not known."""
+    """Raise if there is no such interpolation."""
     if interpolation not in get_args(Interpolation):
         known = ", ".join(get_args(Interpolation))
         raise ValueError(f"interpolation is {interpolation!r}; choose one of {known}")

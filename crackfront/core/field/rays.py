@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @jit
 def segment_below(field, place, direction):
-    """Index of the sample below a place; a place on a sample belongs to the segment ahead."""
+    """Index of the sample below a place; for a place on a sample, of the segment ahead."""
     low, high = 0, sample_count(field) - 1
     while high - low > 1:
         middle = (low + high) // 2
@@ -136,10 +136,10 @@ def sampled_on_rays(field: TileField) -> RayField:
     Returns
     -------
     RayField
-        Field with identical samples; it takes n_site * n_sample numbers of memory.
+        Field with identical samples, n_site * n_sample numbers.
     """
     places = field.spacing * np.arange(1, field.n_sample + 1, dtype=np.float64) + field.origin
-    # Memory that numpy asks for comes in large pages, which halves the time to find a sample.
+    # numpy allocates in large pages, which halves the time to find a sample.
     products = np.empty((field.geometry.n_site, field.n_sample))
     slopes = np.empty(products.shape if field.cubic else (0, 0))
     _sample_rays(field, products, slopes)

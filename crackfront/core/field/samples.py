@@ -79,7 +79,7 @@ _LINEAR_MEMORY, _CUBIC_MEMORY = 128, 32
 
 
 def distance_ahead(field: Field) -> float:
-    """Largest distance that a solver may look ahead, over half of the samples of a memory."""
+    """Longest step that a solver may bound, half of the samples of a memory."""
     memory, last = _CUBIC_MEMORY if is_cubic(field) else _LINEAR_MEMORY, sample_count(field) - 1
     return float(memory // 2 * (sample_place(field, last) - sample_place(field, 0)) / last)
 
@@ -190,7 +190,7 @@ def _tile_memory(field: Any) -> SampleMemory:
 def _tile_fetch(field: Any, memory: Any, ray: int, first: int, last: int) -> None:
     """Evaluate samples where some are missing; the test stays small so that it is inlined."""
     if first < memory.first[ray] or last > memory.last[ray]:
-        # With one type for all callers it is one kernel, which gives the same bits to all.
+        # One type for all callers compiles one kernel, so that all compute the same bits.
         _fill(field, memory, np.int64(ray), first, last)
 
 
@@ -205,9 +205,9 @@ def _tile_peek(field: Any, memory: Any, ray: int, sample: int) -> Any:
 
 @kernel
 def _fill(field, memory, ray, first, last):
-    """Evaluate the samples that are missing, in blocks, and forget the furthest ones.
+    """Evaluate the samples that are missing, in blocks, over those furthest from the front.
 
-    Neighbours on a ray use the same part of the tile.
+    Neighbours on a ray lie in the same part of the tile.
     """
     low, high = memory.first[ray], memory.last[ray]
     size = memory.samples.shape[1]

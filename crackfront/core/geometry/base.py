@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 class Geometry(Protocol):
-    """What Python asks of a geometry beside the compiled functions of this module."""
+    """Properties and methods of a geometry, beside the compiled functions of this module."""
 
     @property
     def n_site(self) -> int:

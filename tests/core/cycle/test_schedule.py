@@ -51,6 +51,6 @@ def test_a_load_step_that_is_not_positive_is_refused(step):
 @pytest.mark.parametrize("largest", [-0.01, float("nan"), float("inf")])
 def test_a_penetration_that_never_makes_contact_is_refused(largest):
     with pytest.raises(
-        ValueError, match=rf"max penetration {largest} never makes contact; .* ask for 0 or more"
+        ValueError, match=rf"max penetration {largest} never makes contact; .* set it to 0 or more"
     ):
         LoadSchedule(largest, 0.1)
