@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import stdtrit
 
-Array = NDArray[np.float64]
+from crackfront.core.arrays import Array
+
 Other = TypeVar("Other")
 
 if TYPE_CHECKING:

@@ -23,17 +23,16 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.core.adhesion import FieldKind
+from crackfront.core.arrays import Array
 from crackfront.data.arguments import refuse_no_numbers
 
 if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum
-
-Array = NDArray[np.float64]
 
 FINITE_SIZE_EXPONENT = 0.612
 """1 - zeta, with zeta = 0.388 of the elastic line of long range [1]_.

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.table import AMPLITUDE, REALISATION, SPECTRUM, SweepTable
 from crackfront.core.adhesion import FieldKind
+from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, Variable, variable, variables
 
-Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 _SIZE_SLOPE = "change of k per doubling of the correlation length among spectra of one shape"

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import ADHESION, LATERAL, variable
-
-Array = NDArray[np.float64]
 
 FEWEST_STATES = 3
 """Steady states from which a standard error is computed."""

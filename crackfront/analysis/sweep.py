@@ -26,8 +26,7 @@ from crackfront.analysis.result import CellEstimates, ForceDifference, LawEstima
 from crackfront.analysis.sweep_law import SweepLaw, law_departure
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind
-
-Array = NDArray[np.float64]
+from crackfront.core.arrays import Array
 
 FEWEST_BOOTSTRAP = 100
 """Bootstrap samples below which a standard error is itself mostly noise."""

@@ -6,7 +6,6 @@ import math
 from dataclasses import astuple, dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import REACH, Estimate, mean_estimate
 from crackfront.analysis.law import (
@@ -19,8 +18,7 @@ from crackfront.analysis.law import (
 from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind, larkin_length
-
-Array = NDArray[np.float64]
+from crackfront.core.arrays import Array
 
 LARGE = 1.0
 """Sizes g above this are those that the law is held to."""

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.steady import SteadyMeasures
+from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
-
-Array = NDArray[np.float64]
 
 SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
 """Dimensions of a sweep."""

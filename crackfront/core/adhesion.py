@@ -6,15 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import fft2, fftfreq, irfft2, rfft2, rfftfreq
 
+from crackfront.core.arrays import Array
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum
 
-Array = NDArray[np.float64]
 FieldKind = Literal["roughness", "chemical"]
 
 

@@ -9,11 +9,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from crackfront.core.arrays import Array
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
-
-Array = NDArray[np.float64]
 
 
 def stress_intensity(radius: ArrayLike, penetration: ArrayLike) -> Array:

@@ -10,13 +10,12 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 from scipy.special import beta, betainc
 
+from crackfront.core.arrays import Array
 from crackfront.core.units import CONTACT_MODULUS
-
-Array = NDArray[np.float64]
 
 
 class Spectrum(ABC):

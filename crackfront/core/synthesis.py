@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, irfft2
 
+from crackfront.core.arrays import Array
 from crackfront.core.spectrum import Spectrum
-
-Array = NDArray[np.float64]
 
 _AT_ONCE = 16384
 """Modes that are drawn at once."""

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.data.bounds import ADHESION, NUMBER, refuse_outside
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-6
 """Largest deviation from equal spacing, relative to it."""

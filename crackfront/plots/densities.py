@@ -7,16 +7,15 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from crackfront.core.arrays import Array
 from crackfront.plots.parts import LATERAL_UNIT
 from crackfront.plots.style import BLACK, BLUE
 from crackfront.plots.units import REDUCED, AxisUnits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 WAVEVECTOR_LABEL = r"wavevector $q$ (m$^{-1}$)"
 PROFILE_LABEL = r"$C^\mathrm{1D}$ (m$^3$)"

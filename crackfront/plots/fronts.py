@@ -12,11 +12,10 @@ from matplotlib.image import AxesImage
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.plots.parts import field_colours
 from crackfront.plots.style import BLUE, VERMILION
 from crackfront.plots.units import REDUCED, AxisUnits
-
-Array = NDArray[np.float64]
 
 _MOST_GREYS = 10
 """Shades of the field; few, so that frames of an animation compress well."""

@@ -9,13 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm
-from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.plots.fronts import frame_plane
 from crackfront.plots.parts import ENERGY_UNIT
 from crackfront.plots.units import REDUCED, AxisUnits
-
-Array = NDArray[np.float64]
 
 ENERGY_LABEL = f"dissipated energy / {ENERGY_UNIT}"
 

@@ -14,6 +14,7 @@ from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
+from crackfront.core.arrays import Array
 from crackfront.core.geometry.line import LineState
 from crackfront.plots.parts import Series, draw_arrow
 from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
@@ -21,8 +22,6 @@ from crackfront.plots.units import REDUCED, AxisUnits
 
 if TYPE_CHECKING:
     from crackfront.simulate.run import SimulationResult
-
-Array = NDArray[np.float64]
 
 FEWEST_FOR_ARROW = 5
 """States that a branch must have for a part of it to have a direction."""

@@ -15,14 +15,13 @@ from crackfront.analysis.report import pooled_limits
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import SweepTable
+from crackfront.core.arrays import Array
 from crackfront.plots.style import BLACK, COLOURS, MARKERS
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.colors import Colormap
-
-Array = NDArray[np.float64]
 
 LATERAL_UNIT = r"$(3\pi w_\mathrm{int}R^2/4E')^{1/3}$"
 VERTICAL_UNIT = r"$(9\pi^2 w_\mathrm{int}^2 R/16E'^2)^{1/3}$"

@@ -17,7 +17,6 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
-from numpy.typing import NDArray
 
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.law import WEAKEST, law_value, pinning_factor, shipped_law, slope_breadth
@@ -25,6 +24,7 @@ from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import LARGE
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind
+from crackfront.core.arrays import Array
 from crackfront.plots.parts import (
     Series,
     draw_below,
@@ -42,8 +42,6 @@ from crackfront.plots.parts import (
     sweep_series,
 )
 from crackfront.plots.style import BLACK, COLUMN, PAGE, blank_figure, explain, house_style
-
-Array = NDArray[np.float64]
 
 POINTS_EXPLAINED = (
     "bars: 95% intervals over realisations; open symbols: amplitudes outside the range of the fit"

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
-from crackfront.core.field.fields import Array, TileField
+from crackfront.core.arrays import Array
+from crackfront.core.field.fields import TileField
 from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
 from crackfront.simulate.simulation import Simulation
 

@@ -23,8 +23,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule, Schedule
-from crackfront.core.field.fields import Array
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.data.bounds import (

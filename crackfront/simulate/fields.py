@@ -9,7 +9,8 @@ import numpy as np
 import xarray as xr
 
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.field.fields import Array, Interpolation, RayField, polar_field
+from crackfront.core.arrays import Array
+from crackfront.core.field.fields import Interpolation, RayField, polar_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL
 from crackfront.data.bounds import LENGTH, refuse_outside

@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from crackfront.analysis.table import RunMeasures
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
-from crackfront.core.field.fields import Array
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.follow import Load, follow
-from crackfront.core.field.fields import Array, Field
+from crackfront.core.field.fields import Field
 from crackfront.core.geometry.base import Geometry, weight, weight_slope
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Solver

@@ -26,13 +26,12 @@ from importlib.resources import files
 from typing import Literal, cast, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crackfront.core.adhesion import FieldKind, correlation_length, force_correlation_length
+from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
-
-Array = NDArray[np.float64]
 
 Knob = Literal["sites", "cubic", "linear", "pixels", "tolerance"]
 KNOBS: tuple[Knob, ...] = get_args(Knob)

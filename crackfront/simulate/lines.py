@@ -20,10 +20,11 @@ from crackfront.core.adhesion import (
     force_correlation_length,
     larkin_length,
 )
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import Schedule
-from crackfront.core.field.fields import Array, Interpolation, TileField
+from crackfront.core.field.fields import Interpolation, TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import Line, line_field
 from crackfront.core.outcome import Direction, Status

@@ -13,13 +13,14 @@ from xarray import DataArray, Dataset
 from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady import SteadyAdhesion, steady_adhesion
 from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.core.arrays import Array
 from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import first_touch
-from crackfront.core.field.fields import Array, TileField
+from crackfront.core.field.fields import TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState

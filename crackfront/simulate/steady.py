@@ -15,11 +15,12 @@ import numpy as np
 
 from crackfront.analysis.steady import standard_error
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder, columns
 from crackfront.core.cycle.schedule import SphereSchedule
 from crackfront.core.cycle.touch import first_touch, refuse_outgrown
-from crackfront.core.field.fields import Array, Field, first_place, last_place
+from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction, Status

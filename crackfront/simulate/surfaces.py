@@ -11,8 +11,8 @@ import xarray as xr
 from xarray import DataArray
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind, chemical_adhesion, rough_adhesion
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, Variable

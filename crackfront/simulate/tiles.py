@@ -9,7 +9,7 @@ from scipy.fft import fftfreq, rfft2, rfftfreq
 from xarray import DataArray
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind
-from crackfront.core.field.fields import Array
+from crackfront.core.arrays import Array
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
 

@@ -8,13 +8,14 @@ import numpy as np
 from scipy import stats
 
 from crackfront.analysis.steady import steady_adhesion
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.variables import ADHESION, variable
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Simulation, numerical_error, stated_error
 from crackfront.simulate.steady import SteadySchedule
-from studies.accuracy.scenes import HELD_OUT, Array, Progress, Scene
+from studies.accuracy.scenes import HELD_OUT, Progress, Scene
 from studies.accuracy.study import branches_seconds, measured_branches
 
 _RUN, _BRANCH = "realisation", "branch"

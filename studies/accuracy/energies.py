@@ -16,13 +16,13 @@ import numpy as np
 from scipy.ndimage import grey_dilation
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.measures import MeasuredSurface, measured_surface
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import read_measurements
 from studies.accuracy.scans import scanned
-from studies.accuracy.scenes import Array
 from studies.pages import markdown_table
 
 Distortion = Callable[[Array, np.random.Generator], Array]

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from scipy.optimize import minimize_scalar
 
+from crackfront.core.arrays import Array
 from crackfront.plots.style import (
     BLACK,
     COLOURS,
@@ -23,7 +24,6 @@ from crackfront.plots.style import (
     house_style,
 )
 from crackfront.simulate.laws import KNOBS, LAW_SIZE, Knob, Law, abscissa
-from studies.accuracy.scenes import Array
 from studies.accuracy.study import SceneErrors, rms
 
 _LEAST = 3e-4

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from crackfront.core.arrays import Array
 from crackfront.data.files import write_text
 from crackfront.plots.style import (
     COLOURS,
@@ -26,7 +27,7 @@ from crackfront.plots.style import (
 from studies.accuracy.averages import Coverage, Sample
 from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
-from studies.accuracy.scenes import SCENES, Array, Progress, Scene
+from studies.accuracy.scenes import SCENES, Progress, Scene
 from studies.accuracy.study import Errors, SceneErrors, pareto_front, rms
 from studies.pages import markdown_table, renewed
 

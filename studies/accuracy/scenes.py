@@ -7,15 +7,14 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.core.adhesion import FieldKind
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.laws import KNOBS, MEASURED, Knob, Knobs, chosen_knobs
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 """What is called with a line when a part of a study is done."""
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.signal import resample
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.field.fields import Field
@@ -20,7 +21,7 @@ from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.costs import featured_cost, features
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.steady import forward_circle
-from studies.accuracy.scenes import Array, Progress, Scene, Setting
+from studies.accuracy.scenes import Progress, Scene, Setting
 
 BRANCHES: tuple[tuple[Direction, str], ...] = ((1, "approach"), (-1, "retraction"))
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -21,7 +22,7 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.data.bounds import NUMBER, Range
 from crackfront.data.fingerprint import fingerprint
 from crackfront.data.section import Positive, Section, refusal, within
-from studies.boundary_elements.contact import Array, HalfSpaceContact, half_space_contact
+from studies.boundary_elements.contact import HalfSpaceContact, half_space_contact
 
 _STEADY = (0.25, 0.75)
 """Where the branches of a whole loop are steady, relative to the largest penetration."""

@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from scipy.fft import irfft2, rfft2
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
-Array = NDArray[np.float64]
 Values = TypeVar("Values", NDArray[np.float64], NDArray[np.float32])
 """In the precision of what they are made from."""
 

@@ -11,9 +11,10 @@ from itertools import islice
 import numpy as np
 from scipy.ndimage import map_coordinates
 
+from crackfront.core.arrays import Array
 from crackfront.core.variables import ENERGY, FORCE, LATERAL, STEP, VERTICAL, variable, variables
 from studies.boundary_elements.cases import Case
-from studies.boundary_elements.contact import Array, equilibrium
+from studies.boundary_elements.contact import equilibrium
 
 _ANGLE, _SHOWN, _X, _Y = "angle", "shown", "x", "y"
 PRESSURE = f"{FORCE} / ({LATERAL})^2"

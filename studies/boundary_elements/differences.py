@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, FORCE, VERTICAL, variable
 from studies.boundary_elements.cases import Case
-from studies.boundary_elements.contact import Array
 from studies.boundary_elements.cycle import BoundaryCycle
 from studies.boundary_elements.front import FrontCycle, shared_states, shown_states
 

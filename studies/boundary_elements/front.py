@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import contact_energy
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.touch import checked_touch
@@ -18,7 +19,6 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from studies.boundary_elements.cases import Case
-from studies.boundary_elements.contact import Array
 from studies.boundary_elements.cycle import N_ANGLE, BoundaryCycle
 from studies.boundary_elements.rotated import adhesion_on_rays
 

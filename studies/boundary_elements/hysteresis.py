@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.arrays import Array
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from studies.boundary_elements.cases import Case
-from studies.boundary_elements.contact import Array
 from studies.boundary_elements.cycle import BoundaryCycle
 from studies.boundary_elements.front import FrontCycle, States, shared_states
 

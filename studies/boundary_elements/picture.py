@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.core.arrays import Array
 from crackfront.core.variables import FORCE, LATERAL, VERTICAL, variable
 from crackfront.plots.fronts import closed_front, label_plane
 from crackfront.plots.parts import FORCE_LABEL, HEIGHT_LABEL, PENETRATION_LABEL, label_panel
@@ -29,7 +30,6 @@ from crackfront.plots.style import (
 )
 from studies.boundary_elements.averages import Setting, limit_settings, rough_settings, settings
 from studies.boundary_elements.cases import Case
-from studies.boundary_elements.contact import Array
 from studies.boundary_elements.cycle import N_ANGLE, PRESSURE, BoundaryCycle
 from studies.boundary_elements.front import FrontCycle, shown_states
 from studies.boundary_elements.hysteresis import Hysteresis

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from scipy.fft import fft2, fftfreq
 
 from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.arrays import Array
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
-from studies.boundary_elements.contact import Array
 
 _PRECISION = 1e-13
 """Precision of the transforms, relative to the sum of the amplitudes."""

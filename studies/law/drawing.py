@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import REACH
 from crackfront.analysis.finding import PERTURBATION_FACTOR
@@ -23,12 +22,11 @@ from crackfront.analysis.law import (
     law_value,
     shipped_law,
 )
+from crackfront.core.arrays import Array
 from crackfront.plots.parts import label_decimals
 from crackfront.plots.style import BLACK, COLOURS, MARKERS, PAGE, blank_figure, explain, house_style
 from crackfront.plots.sweep import draw_infinite_law
 from studies.law.cells import LawCell
-
-Array = NDArray[np.float64]
 
 _LARGE = 3.0
 """Size g above which points are extrapolated: their gain is small, and its error smaller."""

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from crackfront.analysis.law import (
@@ -17,9 +16,8 @@ from crackfront.analysis.law import (
     law_value,
     model_error,
 )
+from crackfront.core.arrays import Array
 from studies.law.cells import LawCell
-
-Array = NDArray[np.float64]
 
 _START = (3.9, 0.55, 0.05, 0.1, 1.2, 1.25, 1.8, 1.3, 0.6)
 

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
@@ -18,7 +19,7 @@ from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, h
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.run import compile_solver
 from studies.paper.drawing import BRANCHES, Animation
-from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rough import RoughCycleParameters, patch_of, whole_cycle
 
 _STATE, _ANGLE, _X, _Y = "state", "angle", "x", "y"

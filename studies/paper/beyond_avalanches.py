@@ -14,6 +14,7 @@ from matplotlib.ticker import FixedLocator, LogLocator
 
 from crackfront.analysis.estimate import with_error
 from crackfront.core.adhesion import force_correlation_length
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive
@@ -32,7 +33,7 @@ from studies.paper.events import (
     event_record,
     logarithmic_edges,
 )
-from studies.paper.figure import Array, Check, Figure, Integers, Progress, values_of
+from studies.paper.figure import Check, Figure, Integers, Progress, values_of
 from studies.paper.power_law import PowerLaw, truncated_power_law
 from studies.paper.rough import (
     STRONG,

@@ -17,11 +17,12 @@ from pydantic import model_validator
 from scipy.fft import rfft
 
 from crackfront.analysis.estimate import with_error
+from crackfront.core.arrays import Array
 from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.parts import legend_entries
 from crackfront.plots.style import BLUE, GREEN, PAGE, PURPLE, VERMILION, blank_figure, house_style
 from studies.paper.drawing import ON_WHITE, label_plain_numbers, name_panels
-from studies.paper.figure import Array, Check, Figure, Integers, Progress
+from studies.paper.figure import Check, Figure, Integers, Progress
 from studies.paper.front_spectra import (
     RoughnessFit,
     RoughnessRecord,

@@ -15,11 +15,12 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from crackfront.analysis.estimate import with_error
+from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
 from crackfront.data.section import Positive
 from crackfront.plots.style import BLACK, COLOURS, MARKERS
 from crackfront.simulate.instabilities import resolved_motion, swept_areas, swept_clusters
-from studies.paper.figure import Array, Check, Integers, Progress, close_to
+from studies.paper.figure import Check, Integers, Progress, close_to
 from studies.paper.power_law import JointPowerLaw, cutoff_scale, joint_power_law
 from studies.paper.rough import surface_means
 from studies.paper.straight import StraightParameters

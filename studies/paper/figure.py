@@ -23,7 +23,6 @@ from crackfront.data.fingerprint import fingerprint
 from crackfront.data.section import ConfigurationError, Section, content_of, validated
 from studies.paper.drawing import Animation
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 Progress = Callable[[str], None]

@@ -9,10 +9,10 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, model_validator
 
+from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.variables import variable
 from crackfront.data.section import InputFile, Plateau, Positive, Section
-from studies.paper.figure import Array
 from studies.paper.measured import read_profile_density
 from studies.paper.rough import rough_spectrum
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as student
 
+from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, LATERAL, variable
-from studies.paper.figure import Array, Integers
+from studies.paper.figure import Integers
 
 _DISORDER, _SURFACE, _MODE, _LAG = "disorder", "surface", "mode", "lag"
 

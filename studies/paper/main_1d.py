@@ -11,6 +11,7 @@ from matplotlib.figure import Figure as Drawing
 from pydantic import model_validator
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import polar_field
@@ -21,7 +22,7 @@ from crackfront.data.section import Positive, Section, refusal
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL, draw_arrow
 from crackfront.plots.style import COLUMN, VERMILION, blank_figure, house_style
 from studies.paper.drawing import BRANCHES, DOTTED, draw_jump, write_beside
-from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rings import INNERMOST, circle_steps
 
 _STATE = "state"

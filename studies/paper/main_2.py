@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive, Section, refusal
@@ -31,7 +32,7 @@ from crackfront.plots.style import (
     house_style,
 )
 from studies.paper.drawing import BRANCHES, write_beside
-from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rings import INNERMOST, Rings, first_stops, folds, steady_stiffness
 
 _STATE, _LOOP, _CASE = "state", "loop", "case"

@@ -13,6 +13,7 @@ from pydantic import model_validator
 from scipy.signal import resample
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.outcome import Direction
@@ -28,7 +29,7 @@ from crackfront.simulate.instabilities import (
     shortest_instability,
 )
 from studies.paper.drawing import BRANCHES, draw_jump, name_panels, write_beside
-from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to
+from studies.paper.figure import Check, Figure, Integers, Progress, close_to
 from studies.paper.rough import STRONG, WEAK, DisorderParameters, RoughContact, flat_spectrum
 
 _DISORDER, _EVENT, _ANGLE, _STATE = "disorder", "instability", "angle", "state"

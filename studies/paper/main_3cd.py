@@ -17,6 +17,7 @@ from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -30,7 +31,7 @@ from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, e
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.simulation import stated_error
 from studies.paper.drawing import name_panels
-from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rough import (
     ONE_DIGIT,
     RoughCycleParameters,

@@ -17,6 +17,7 @@ from scipy.fft import fft2, fftfreq
 from scipy.ndimage import maximum_filter
 
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
+from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
@@ -25,7 +26,7 @@ from crackfront.data.section import Count, Energy, Positive, Section, Seed, refu
 from crackfront.plots.parts import HEIGHT_LABEL, LENGTH_LABEL, label_panel
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from studies.paper.drawing import DOTTED, write_beside
-from studies.paper.figure import Array, Check, Figure, Integers, Progress, close_to
+from studies.paper.figure import Check, Figure, Integers, Progress, close_to
 from studies.paper.rough import rough_spectrum
 from studies.paper.tiles import tile_mean_square
 

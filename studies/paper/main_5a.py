@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from pydantic import model_validator
 
+from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
 from crackfront.data.section import Positive, refusal
 from crackfront.plots import densities
@@ -23,7 +24,7 @@ from crackfront.plots.style import (
     house_style,
 )
 from studies.paper.drawing import write_beside
-from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
+from studies.paper.figure import Check, Figure, Progress, close_to, values_of
 from studies.paper.film import CONVERTED_LABEL, FilmDensities, FilmParameters, conformity_energy
 
 _ORDER = "order"

@@ -18,13 +18,14 @@ from crackfront.analysis.estimate import REACH
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.outcome import Status
 from crackfront.plots.style import BLACK, ORANGE, PAGE, blank_figure, house_style
 from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from studies.paper.drawing import BRANCHES, name_panels
-from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
+from studies.paper.figure import Check, Figure, Progress, close_to, values_of
 from studies.paper.measured import ForceRadius, fitted_adhesion
 from studies.paper.nanodiamond import EVERY_WAVELENGTH, NanodiamondContact, NanodiamondParameters
 from studies.paper.perimeters import STRIDES, Perimeters

@@ -17,9 +17,10 @@ from scipy.optimize import curve_fit
 
 from crackfront.analysis.estimate import Estimate, student_estimate
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.units import Scales
 from crackfront.data.section import refusal
-from studies.paper.figure import Array, Integers
+from studies.paper.figure import Integers
 
 _FEWEST_POINTS = 3
 """Points that a fit with an interval needs."""

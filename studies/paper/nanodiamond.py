@@ -12,13 +12,14 @@ from pydantic import Field, model_validator
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.data.section import Positive, refusal
 from crackfront.simulate.simulation import Simulation
-from studies.paper.figure import Array, Integers
+from studies.paper.figure import Integers
 from studies.paper.film import FilmSection
 from studies.paper.measured import ForceRadius, read_force_radius
 from studies.paper.rough import RoughParameters

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import find_objects, label
 
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.geometry.sphere import ContactState
-from studies.paper.figure import Array
 
 STRIDES = (1, 2, 4)
 """Load steps, in those of the approach, at which the widest instability is looked for."""

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize, minimize_scalar
 
-from studies.paper.figure import Array, Integers
+from crackfront.core.arrays import Array
+from studies.paper.figure import Integers
 
 _FEWEST = 20
 """Fewest values to which a law is fitted."""

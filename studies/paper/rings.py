@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, Step, follow
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import RayField, polar_field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
-from studies.paper.figure import Array
 
 INNERMOST = 1e-3
 """Radius at which contact is made."""

@@ -13,6 +13,7 @@ from scipy.ndimage import map_coordinates
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -27,7 +28,7 @@ from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import Numerics, Simulation, missed_error, simulation_of
-from studies.paper.figure import Array, Check
+from studies.paper.figure import Check
 
 ONE_DIGIT = 0.5
 """How far k may be from a value that is given with one digit."""

@@ -17,12 +17,13 @@ from crackfront.analysis.report import pooled_limits
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
+from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.data.section import Section
 from crackfront.plots.parts import legend_entries
 from crackfront.plots.style import PAGE, blank_figure, explain, house_style
 from studies.paper.drawing import name_panels
-from studies.paper.figure import Array, Check, Figure, Progress, values_of
+from studies.paper.figure import Check, Figure, Progress, values_of
 from studies.paper.rough import ONE_DIGIT
 
 _SAME = 0.25

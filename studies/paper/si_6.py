@@ -13,13 +13,14 @@ from pydantic import Field, model_validator
 from scipy.signal import periodogram
 
 from crackfront.core.adhesion import half_derivative_mean_square
+from crackfront.core.arrays import Array
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.variables import variable
 from crackfront.data.section import Count, Positive, Seed, refusal
 from crackfront.plots import densities
 from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
 from studies.paper.drawing import DOTTED, write_beside
-from studies.paper.figure import Array, Check, Figure, Progress, close_to, values_of
+from studies.paper.figure import Check, Figure, Progress, close_to, values_of
 from studies.paper.film import CONVERTED_LABEL, POINTS_PER_DECADE, FilmDensities, FilmParameters
 from studies.paper.tiles import tile_mean_square
 

@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, follow
 from crackfront.core.field.fields import TileField
 from crackfront.core.geometry.line import straight_front
@@ -21,7 +22,6 @@ from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineLoad
 from crackfront.simulate.simulation import Numerics, simulation_of
-from studies.paper.figure import Array
 from studies.paper.rough import flat_spectrum
 
 _KIND: FieldKind = "roughness"

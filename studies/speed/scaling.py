@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost, measured_runs, predicted_seconds
 from crackfront.sweep.configuration import load_configuration
@@ -29,8 +29,6 @@ from crackfront.sweep.sweep import Sweep
 from crackfront.sweep.table import failed_row, row_fingerprint
 from studies.pages import markdown_table
 from studies.speed.machine import peak_memory, restart_peak
-
-Array = NDArray[np.float64]
 
 ROOT = Path(__file__).parents[2]
 RANKS = tuple(2**power for power in range(13))

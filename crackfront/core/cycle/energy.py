@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Field, first_place
 from crackfront.core.field.rays import front_products, swept_adhesion
-
-Array = NDArray[np.float64]
 
 
 def dissipated_energy(before: Array, after: Array, load: float, field: Field) -> float:

@@ -6,15 +6,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Field
 from crackfront.core.field.samples import make_memory
 from crackfront.core.outcome import Direction, Relaxation, Status
 from crackfront.core.solver.relax import Solver, relax
-
-Array = NDArray[np.float64]
 
 
 class Load(NamedTuple):

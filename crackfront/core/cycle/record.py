@@ -8,16 +8,14 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import contact_energy, dissipated_energy
 from crackfront.core.cycle.follow import Load, Step, follow
 from crackfront.core.field.fields import Field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Solver
 from crackfront.core.variables import ENERGY, STEP, variable
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

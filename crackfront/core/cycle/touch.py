@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.units import WORK_OF_ADHESION
-
-Array = NDArray[np.float64]
 
 
 def first_touch(field: Field) -> Array:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import fftfreq, irfft2, rfft2, rfftfreq
 from scipy.ndimage import spline_filter
 
 from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.arrays import Array
 from crackfront.core.geometry.sphere import sphere
 
-Array = NDArray[np.float64]
 Interpolation = Literal["cubic", "linear"]
 
 

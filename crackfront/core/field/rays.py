@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.field.fields import Field, RayField, TileField
 from crackfront.core.field.pieces import blend, evaluate_piece, ordinates
 from crackfront.core.field.samples import evaluate, sample_count, sample_place
 from crackfront.core.geometry.base import weight
-
-Array = NDArray[np.float64]
 
 
 @jit

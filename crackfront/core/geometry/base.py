@@ -12,14 +12,10 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from crackfront.core.arrays import Array
 from crackfront.core.compiled import dispatched, jit
 from crackfront.core.outcome import Direction, Relaxation
 from crackfront.core.variables import Variable
-
-Array = NDArray[np.float64]
 
 
 class Geometry(Protocol):

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import rfft
 
 from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.arrays import Array
 from crackfront.core.compiled import implements
 from crackfront.core.field.fields import Interpolation, TileField, tile_field
 from crackfront.core.geometry import base
@@ -25,7 +25,6 @@ from crackfront.core.outcome import Direction, Relaxation
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LENGTH, Variable, variable
 
-Array = NDArray[np.float64]
 Value = TypeVar("Value", float, Array)
 
 

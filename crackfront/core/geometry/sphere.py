@@ -12,17 +12,16 @@ from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.compiled import implements
 from crackfront.core.geometry import base
 from crackfront.core.outcome import Direction, Relaxation
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, Variable, variable
 
-Array = NDArray[np.float64]
 Value = TypeVar("Value", float, Array)
 
 RING = CONTACT_MODULUS / (2 * np.pi)

@@ -17,10 +17,10 @@ from numba.extending import overload
 from numpy.typing import NDArray
 from rocket_fft import lowlevel
 
+from crackfront.core.arrays import Array
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import mode_stiffness
 
-Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.field.pieces import blend, hull_until, peek_piece, polynomial, steepest_inside
 from crackfront.core.field.rays import front_products, segment_below
@@ -28,8 +29,6 @@ from crackfront.core.geometry.base import (
     weight,
 )
 from crackfront.core.units import WORK_OF_ADHESION
-
-Array = NDArray[np.float64]
 
 CONVERGED, INWARD, OUTWARD, LIMIT, BLOCKED, TURNED, STILL, NEEDLES = range(8)
 """Codes with which a compiled solver ends."""

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import mode_stiffness, restoring_slope, self_modes
 from crackfront.core.solver.filters import Filter, apply_filter, make_filter, set_filter
@@ -27,7 +28,6 @@ from crackfront.core.solver.forces import (
     touch_samples,
 )
 
-Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 
 _ACCURACY = 0.05

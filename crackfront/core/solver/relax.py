@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.samples import SampleMemory, evaluate, make_memory
 from crackfront.core.geometry.base import lowest_place
@@ -22,8 +22,6 @@ from crackfront.core.outcome import DefectError, Direction, Relaxation, Status
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE, forces
 from crackfront.core.solver.monotone import monotone_newton
 from crackfront.core.solver.reference import rosso_krauth
-
-Array = NDArray[np.float64]
 
 _CODES = {
     forces.CONVERGED: Status.CONVERGED,

@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import restoring_force, weight
 from crackfront.core.solver.forces import (
@@ -23,8 +23,6 @@ from crackfront.core.solver.forces import (
     touch_samples,
 )
 from crackfront.core.units import WORK_OF_ADHESION
-
-Array = NDArray[np.float64]
 
 HALF_BAND = 7
 """Neighbours on each side whose coupling the step keeps."""
