@@ -11,7 +11,6 @@ import numpy as np
 
 from crackfront.data.written_units import prefixed
 from crackfront.topography.densities import (
-    Array,
     Density,
     Periodogram,
     anisotropy,
@@ -19,6 +18,7 @@ from crackfront.topography.densities import (
     stripes,
 )
 from crackfront.topography.fitting import Instrument, seen_instrument
+from crackfront.topography.levelling import polynomial
 from crackfront.topography.reading import Measurement
 from crackfront.topography.tips import tip_wavelength
 
@@ -133,12 +133,9 @@ class Scan:
 def scan(
     measurement: Measurement, shortest: float | None = None, longest: float | None = None
 ) -> Scan:
-    """A measurement with its trusted band, whose ends may be named (Units: m).
+    """A measurement with its trusted band, refused if it is narrow; its ends may be named.
 
-    Raises
-    ------
-    ValueError
-        If hardly any wavelength can be trusted.
+    (Units: m)
     """
     waves, pixel = periodogram(measurement), max(measurement.pixels)
     striped = () if measurement.is_line else stripes(waves, measurement.shortest)
@@ -147,16 +144,17 @@ def scan(
     seen = density.within(_PIXELS * pixel, measurement.longest)
     cliff, behind = _cliff(seen)
     seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
-    instrument = seen_instrument(seen)
     instrument, lower = _lower_limits(measurement, seen, seen_instrument(seen), cliff)
     upper = [BandLimit("longest", "levelling", measurement.longest)]
     alternatives: tuple[Density, ...] = ()
     if not measurement.periodic:
         other_window = periodogram(measurement, window="blackman")
-        other_levelling = periodogram(measurement, _levelled(measurement.heights))
+        heights = measurement.heights
+        form = polynomial(heights, np.full(heights.shape, True), _ORDER)
+        other_levelling = periodogram(measurement, heights - form)
         alternatives = other_window.density(without), other_levelling.density(without)
-    if form := _form(density, alternatives, measurement.longest):
-        upper.append(BandLimit("longest", "form", form))
+    if left := _form(density, alternatives, measurement.longest):
+        upper.append(BandLimit("longest", "form", left))
     if shortest is not None:
         lower = [BandLimit("shortest", "named", shortest)]
     if longest is not None:
@@ -242,14 +240,3 @@ def _form(density: Density, alternatives: Sequence[Density], longest: float) -> 
     agree = np.max(apart, axis=0) < math.log(_FORM)
     first = int(np.argmax(agree)) if np.any(agree) else here.size - 1
     return float(2 * math.pi / density.wavevector[here[first]]) if first else 0.0
-
-
-def _levelled(heights: Array) -> Array:
-    """Heights without the polynomials up to the order of :data:`_ORDER`."""
-    axes = [np.polynomial.legendre.legvander(np.linspace(-1, 1, n), _ORDER) for n in heights.shape]
-    bases = [np.linalg.qr(one)[0] for one in axes]
-    if heights.ndim == 1:
-        return np.asarray(heights - bases[0] @ (bases[0].T @ heights))
-    weights = bases[0].T @ heights @ bases[1]
-    orders = np.add.outer(np.arange(_ORDER + 1), np.arange(_ORDER + 1))
-    return np.asarray(heights - bases[0] @ np.where(orders <= _ORDER, weights, 0.0) @ bases[1].T)

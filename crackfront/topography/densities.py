@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import fftfreq, rfft, rfft2, rfftfreq
+from scipy.fft import fftfreq, rfftfreq, rfftn
 
 from crackfront.topography.reading import Measurement
 
@@ -60,7 +60,7 @@ class Periodogram:
     power: Array
     """Density of each wave. (Units: m^4 of a map, m^3 of a line)"""
     count: Array
-    """Waves that an entry stands for, 2 where its conjugate is not among them."""
+    """Waves that an entry stands for, 2 where its conjugate is not among them; as `power`."""
     dependence: float
     """Modes of which the window makes one."""
 
@@ -69,11 +69,14 @@ class Periodogram:
         """Magnitudes, of the shape of `power` (Units: 1 / m)."""
         return np.abs(self.along[0]) if len(self.along) == 1 else np.hypot(*self.along)
 
+    @property
+    def steps(self) -> tuple[float, ...]:
+        """Least wavevectors along the axes (Units: 1 / m)."""
+        return tuple(float(np.min(np.abs(one[one != 0]))) for one in self.along)
+
     def near_axis(self, axis: int) -> NDArray[np.bool_]:
         """Waves that hardly change along the other axis of a map: rows or columns as wholes."""
-        other = self.along[1 - axis]
-        step = np.min(np.abs(other[other != 0]))
-        near = np.abs(other) < (_AXIS + 0.5) * step
+        near = np.abs(self.along[1 - axis]) < (_AXIS + 0.5) * self.steps[1 - axis]
         return np.broadcast_to(near, self.power.shape)
 
     def density(self, without: NDArray[np.bool_] | None = None) -> Density:
@@ -82,7 +85,7 @@ class Periodogram:
         used = wavevector > 0
         if without is not None:
             used &= ~without
-        values, count = wavevector[used], np.broadcast_to(self.count, self.power.shape)[used]
+        values, count = wavevector[used], self.count[used]
         place = bin_numbers(values)
         place -= place.min()
         modes = np.bincount(place, count)
@@ -100,10 +103,9 @@ class Periodogram:
         """Mean square of a derivative between two wavelengths (Units: m^(2 - 2 order))."""
         wavevector = self.wavevector
         inside = (wavevector >= 2 * np.pi / longest) & (wavevector <= 2 * np.pi / shortest)
-        count = np.broadcast_to(self.count, self.power.shape)[inside]
-        step = math.prod(float(np.min(np.abs(one[one != 0]))) for one in self.along)
-        total = float(np.sum(count * self.power[inside] * wavevector[inside] ** (2 * order)))
-        return total * step / (2 * math.pi) ** len(self.along)
+        power = self.count[inside] * self.power[inside]
+        total = float(np.sum(power * wavevector[inside] ** (2 * order)))
+        return total * math.prod(step / (2 * math.pi) for step in self.steps)
 
 
 def bin_numbers(wavevector: Array) -> NDArray[np.int64]:
@@ -113,59 +115,49 @@ def bin_numbers(wavevector: Array) -> NDArray[np.int64]:
 
 
 def periodogram(
-    measurement: Measurement, heights: Array | None = None, window: str = "hann"
+    measurement: Measurement,
+    heights: Array | None = None,
+    window: str = "hann",
+    *,
+    is_profile: bool = False,
 ) -> Periodogram:
     """Power of all waves of a measurement, or of other heights in its place.
 
-    A periodic measurement needs no window.
+    A profile holds the waves along x, with the mean power of all lines along x of a map; of these,
+    the modes of one line are counted. A periodic measurement needs no window.
     """
     heights = measurement.heights if heights is None else heights
-    shape, pixels = heights.shape, measurement.pixels
+    axes = (0,) if is_profile else tuple(range(heights.ndim))
     windows = [
-        np.ones(count) if measurement.periodic else cosine_window(window, count) for count in shape
+        np.ones(count) if measurement.periodic or axis not in axes else cosine_window(window, count)
+        for axis, count in enumerate(heights.shape)
     ]
-    weight = windows[0] if len(shape) == 1 else windows[0][:, None] * windows[1]
+    weight = np.asarray(math.prod(np.ix_(*windows)))
     square = math.prod(float(np.mean(one**2)) for one in windows)
     dependence = math.prod(float(np.mean(one**4)) for one in windows) / square**2
-    level = float(np.sum(weight * heights) / np.sum(weight))
-    windowed = weight * (heights - level)
-    half = 2 * np.pi * rfftfreq(shape[-1], pixels[-1])
-    count = np.full(half.size, 2.0)
+    level = np.sum(weight * heights, axes, keepdims=True) / np.sum(weight, axes, keepdims=True)
+    transform = rfftn(weight * (heights - level), axes=axes, norm="forward")
+    power = transform.real**2 + transform.imag**2
+    if len(axes) < heights.ndim:
+        power = np.mean(power, axis=1)
+    counts = [(heights.shape[axis], measurement.pixels[axis]) for axis in axes]
+    waves = [*(fftfreq(*one) for one in counts[:-1]), rfftfreq(*counts[-1])]
+    count = np.full(waves[-1].size, 2.0)
     count[0] = 1.0
-    if shape[-1] % 2 == 0:
+    if counts[-1][0] % 2 == 0:
         count[-1] = 1.0
-    if len(shape) == 1:
-        along: tuple[Array, ...] = (half,)
-        transform = rfft(windowed, norm="forward")
-    else:
-        along = (2 * np.pi * fftfreq(shape[0], pixels[0])[:, None], half[None, :])
-        transform = rfft2(windowed, norm="forward")
-        count = count[None, :]
-    power = (transform.real**2 + transform.imag**2) * (math.prod(measurement.size) / square)
-    return Periodogram(along, power, count, dependence)
+    return Periodogram(
+        along=tuple(2 * np.pi * one for one in np.ix_(*waves)),
+        power=power * (math.prod(measurement.size[axis] for axis in axes) / square),
+        count=np.broadcast_to(count, power.shape),
+        dependence=dependence,
+    )
 
 
 def cosine_window(name: str, count: int) -> Array:
     """Weights of points of a period, a sum of cosines that is least at its ends."""
     angle = np.linspace(-np.pi, np.pi, count + 1)[:-1]
     return np.asarray(sum(part * np.cos(k * angle) for k, part in enumerate(_WINDOWS[name])))
-
-
-def profile_density(measurement: Measurement) -> Density:
-    """Density of a line scan, or mean of those of the lines along x of a map."""
-    if measurement.is_line:
-        return periodogram(measurement).density()
-    count = measurement.heights.shape[0]
-    window = np.ones(count) if measurement.periodic else cosine_window("hann", count)
-    lines = window[:, None] * (measurement.heights - measurement.heights.mean(axis=0))
-    transform = rfft(lines, axis=0, norm="forward")
-    along = 2 * np.pi * rfftfreq(count, measurement.pixels[0])
-    square = float(np.mean(window**2))
-    dependence = float(np.mean(window**4)) / square**2
-    power = np.mean(np.abs(transform) ** 2, axis=1) * measurement.size[0] / square
-    # The lines of a map are not independent: the modes of one are counted.
-    one = Periodogram((along,), power, np.full(along.size, 2.0), dependence)
-    return one.density()
 
 
 def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
@@ -178,13 +170,10 @@ def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
     inside = wavevector <= 2 * np.pi / shortest
     place = bin_numbers(np.where(wavevector > 0, wavevector, np.max(wavevector)))
     place -= place.min()
-    count = np.broadcast_to(waves.count, waves.power.shape)
-    size = int(place.max()) + 1
-    found = []
+    size, count, found = int(place.max()) + 1, waves.count, []
     base = np.bincount(place[beside], (count * waves.power)[beside], size)
     number = np.bincount(place[beside], count[beside], size)
-    for axis in (0, 1):
-        step = float(np.min(np.abs(waves.along[axis][waves.along[axis] != 0])))
+    for axis, step in enumerate(waves.steps):
         chosen = waves.near_axis(axis) & inside & (wavevector > (_FIRST_ON_AXIS - 0.5) * step)
         chosen &= number[place] > 0
         here = place[chosen]

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -37,48 +35,21 @@ def taken_off(detrend: Detrend) -> str:
 
 
 def levelled(heights: Array, fitted: Points, detrend: Detrend) -> Array:
-    """Heights without their trend, which is fitted to some of the points.
+    """Heights without their trend, which is fitted to some of the points; they may have any unit.
 
-    Parameters
-    ----------
-    heights : (n_x, n_y) or (n_x,) array
-        Any number where there is none. (Units: any)
-    fitted : array of bool, of the same shape
-        Points that the trend is fitted to.
-    detrend : {"center", "height", "slope", "curvature"} or int
-        The trend.
-
-    Returns
-    -------
-    array
-        Of the same shape and units.
-
-    Raises
-    ------
-    ValueError
-        If the points do not determine the trend, or the heights are it but for round-off.
+    Refused if these points do not determine the trend, or the heights are it but for round-off.
     """
-    terms = [
-        term
-        for term in itertools.product(range(order_of(detrend) + 1), repeat=heights.ndim)
-        if sum(term) <= order_of(detrend)
-    ]
-    if np.count_nonzero(fitted) < 2 * len(terms):
+    n_term = math.comb(order_of(detrend) + heights.ndim, heights.ndim)
+    if np.count_nonzero(fitted) < 2 * n_term:
         raise ValueError(
             f"{np.count_nonzero(fitted)} points are left to fit {taken_off(detrend)}; mask fewer "
             "of them"
         )
     level = heights - np.mean(heights[fitted])
-    bases = [
-        legvander(np.linspace(-1, 1, count), order_of(detrend)).astype(float)
-        for count in heights.shape
-    ]
-    weights = fitted.astype(float)
     if detrend == "slope":
-        trend = _plane_of_least_slope(level, fitted)
+        level -= _plane_of_least_slope(level, fitted)
     else:
-        trend = _polynomial(np.where(fitted, level, 0.0), weights, bases, terms)
-    level = level - trend
+        level -= polynomial(level, fitted, order_of(detrend))
     level -= np.mean(level[fitted])
     if np.ptp(level[fitted]) <= _ROUND_OFF * np.ptp(heights[fitted]):
         raise ValueError(
@@ -88,45 +59,28 @@ def levelled(heights: Array, fitted: Points, detrend: Detrend) -> Array:
     return level
 
 
-def _polynomial(
-    level: Array, weights: Array, bases: Sequence[Array], terms: Sequence[tuple[int, ...]]
-) -> Array:
-    """Polynomial of least squares, by normal equations of Legendre polynomials, at all points."""
-    size = len(terms)
-    moments, right = np.empty((size, size)), np.empty(size)
-    for row, one in enumerate(terms):
-        right[row] = _projected(level, _product(bases, one))
-        for column, other in enumerate(terms[: row + 1]):
-            pairs = zip(_product(bases, one), _product(bases, other), strict=True)
-            found = _projected(weights, [first * second for first, second in pairs])
-            moments[row, column] = moments[column, row] = found
-    values = np.linalg.lstsq(moments, right, rcond=None)[0]
-    coefficients = np.zeros([base.shape[1] for base in bases])
-    for term, value in zip(terms, values, strict=True):
-        coefficients[term] = value
-    trend = bases[0] @ coefficients
-    return np.asarray(trend @ bases[1].T if len(bases) > 1 else trend)
-
-
-def _product(bases: Sequence[Array], term: tuple[int, ...]) -> list[Array]:
-    """Legendre polynomials whose product over the directions is a term."""
-    return [base[:, order] for base, order in zip(bases, term, strict=True)]
-
-
-def _projected(values: Array, factors: Sequence[Array]) -> float:
-    """Sum of values times a product of factors along the directions."""
-    found = factors[0] @ values
-    return float(found @ factors[1] if len(factors) > 1 else found)
+def polynomial(heights: Array, fitted: Points, order: int) -> Array:
+    """Polynomial of an order at all points, by least squares over those that it is fitted to."""
+    columns = (len(heights), -1)  # A line is a map with one column.
+    points = fitted.reshape(columns)
+    along, across = (
+        legvander(np.linspace(-1, 1, count), min(order, count - 1)) for count in points.shape
+    )
+    used = np.add.outer(np.arange(along.shape[1]), np.arange(across.shape[1])) <= order
+    sums = along.T @ np.where(points, heights.reshape(columns), 0.0) @ across
+    pairs = [np.einsum("ni,nj->nij", base, base) for base in (along, across)]
+    moments = np.einsum("xik,xy,yjl->ijkl", pairs[0], points.astype(float), pairs[1], optimize=True)
+    coefficients = np.zeros(used.shape)
+    coefficients[used] = np.linalg.lstsq(moments[used][:, used], sums[used], rcond=None)[0]
+    return np.asarray((along @ coefficients @ across.T).reshape(heights.shape))
 
 
 def _plane_of_least_slope(level: Array, fitted: Points) -> Array:
     """Plane with the mean slope between neighbouring points, along every direction."""
-    trend = np.zeros(level.shape)
-    for axis, count in enumerate(level.shape):
-        pairs = range(count - 1), range(1, count)
-        both = np.logical_and(*(np.take(fitted, points, axis) for points in pairs))
-        slope = float(np.mean(np.diff(level, axis=axis)[both])) if both.any() else math.nan
-        shape = [1] * level.ndim
-        shape[axis] = count
-        trend += slope * np.arange(count).reshape(shape)
-    return trend
+    slopes = []
+    for axis in range(level.ndim):
+        rows, known = np.moveaxis(level, axis, 0), np.moveaxis(fitted, axis, 0)
+        both = known[1:] & known[:-1]
+        slopes.append(np.mean(np.diff(rows, axis=0)[both]) if both.any() else math.nan)
+    places = np.ogrid[tuple(map(slice, level.shape))]
+    return np.asarray(sum(slope * place for slope, place in zip(slopes, places, strict=True)))

@@ -12,7 +12,7 @@ from scipy.special import beta
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.topography.bands import Scan, scan
-from crackfront.topography.densities import Density, profile_density
+from crackfront.topography.densities import Density, periodogram
 from crackfront.topography.joining import JointSpectrum, joint_spectrum
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import Measurement, read_measurements
@@ -85,7 +85,8 @@ def measured_surface(
     return MeasuredSurface(
         scans=scans,
         profiles=tuple(
-            profile_density(one.measurement).within(*one.band.wavelengths) for one in scans
+            periodogram(one.measurement, is_profile=True).density().within(*one.band.wavelengths)
+            for one in scans
         ),
         joint=joint,
         measures=tuple(_measure(order, joint, scans) for order in _ORDERS),

@@ -8,7 +8,7 @@ import pytest
 from scipy.signal import get_window
 
 from crackfront.core.synthesis import gaussian_field
-from crackfront.topography.densities import cosine_window, periodogram, profile_density
+from crackfront.topography.densities import cosine_window, periodogram
 from crackfront.topography.instruments import surface_library
 from crackfront.topography.reading import Measurement
 from studies.paper.si_6 import profile_periodogram
@@ -48,7 +48,7 @@ def test_densities_scatter_about_the_spectrum_as_their_modes_say(rng, is_line):
         )
         if is_line:
             line = replace(measurement, heights=heights[:, 0], size=(SIDE,))
-            density = profile_density(line).within(0.625e-6, 10e-6)
+            density = periodogram(line).density().within(0.625e-6, 10e-6)
             expected = SPECTRUM.profile_density(density.wavevector)
         else:
             density = periodogram(measurement).density().within(0.625e-6, 10e-6)
