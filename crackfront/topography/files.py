@@ -30,15 +30,7 @@ _ADVICE = "export the scan again, or write nan where there is no value"
 
 
 def refuse_special(path: Path) -> None:
-    """Raise where a path is no regular file, or one that is empty or larger than the memory.
-
-    Raises
-    ------
-    ValueError
-        With a sentence.
-    OSError
-        If there is no such file.
-    """
+    """Raise where a path is no regular file, or one that is empty or larger than the memory."""
     if not regular_file(path, _LARGEST_FILE * memory_at_hand()).stat().st_size:
         raise ValueError(f"{path} is empty; export it from the instrument again")
 
@@ -61,10 +53,7 @@ def checksum(path: Path) -> str:
 def readable(path: Path) -> Path | BytesIO:
     """What a library shall read: the file, or its text with numbers as every reader knows them.
 
-    Raises
-    ------
-    ValueError
-        If it is a text with a row that a reader would leave out.
+    A text with a row that a reader would leave out is refused.
     """
     text = _text(path)
     if text is None:

@@ -44,11 +44,6 @@ def library_part(name: str) -> Any:
     """A module of the library SurfaceTopography, and of the others only those that it imports.
 
     All of them take seconds, most of which is for formats and analyses that are not used.
-
-    Raises
-    ------
-    ValueError
-        If the library is not installed, with the command that installs it.
     """
     with _importing():
         for package in (_LIBRARY, f"{_LIBRARY}.IO"):
@@ -90,15 +85,7 @@ def _silenced() -> Iterator[None]:
 
 @_silenced()
 def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
-    """The heights of a file in metres.
-
-    Raises
-    ------
-    ValueError
-        If the library is missing or the file cannot be used; one sentence.
-    OSError
-        If the file cannot be opened.
-    """
+    """The heights of a file in metres."""
     reader = _reader(path)
     channel, name = _channel(path, reader, options.channel)
     if channel.nb_grid_pts is not None:
@@ -119,13 +106,7 @@ def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
 
 @_silenced()
 def array_of(path: Path) -> np.ndarray[Any, Any]:
-    """Numbers of a file without units, as of a mask.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be read.
-    """
+    """Numbers of a file without units, as of a mask."""
     reader = _reader(path)
     channel = reader.default_channel
     sized = {} if channel.physical_sizes else {"physical_sizes": (1.0,) * channel.dim}

@@ -106,13 +106,7 @@ class JointSpectrum:
 
 
 def joint_spectrum(scans: Sequence[Scan]) -> JointSpectrum:
-    """Spectrum of all scans of a surface.
-
-    Raises
-    ------
-    ValueError
-        If the densities do not determine a spectrum.
-    """
+    """Spectrum of all scans of a surface, refused where their densities do not determine one."""
     fit = fitted_model([(one.informative, one.band.instrument) for one in scans])
     trusted = [one.trusted for one in scans]
     logarithms = [fit.isotropic(item, index) for index, item in enumerate(trusted)]

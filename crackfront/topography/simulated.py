@@ -89,13 +89,7 @@ class Simulated:
 def prediction_plan(
     surface: MeasuredSurface, scales: Scales, realisations: int, seed: int
 ) -> SimulationPlan:
-    """Simulations of surfaces with the fitted spectrum and its amplitude, and noise of a seed.
-
-    Raises
-    ------
-    ValueError
-        If whatever is simulated would be too large.
-    """
+    """Simulations of surfaces with the fitted spectrum and its amplitude, and noise of a seed."""
     spectrum = reduced_spectrum(surface.joint.spectrum, scales)
     energy = spectrum.elastic_energy
     first, correction, remark = _affordable(
@@ -164,13 +158,7 @@ def _extent(simulation: Simulation) -> str:
 
 
 def simulated(plan: SimulationPlan, scales: Scales) -> Simulated:
-    """Run the simulations of one surface, one after the other, and average what they find.
-
-    Raises
-    ------
-    ValueError
-        If none of them has a value.
-    """
+    """Run the simulations of one surface, one after the other, and average what they find."""
     rows, failed = [], []
     for simulation in plan.simulations:
         result = run_simulation(simulation)

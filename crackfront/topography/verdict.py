@@ -115,14 +115,8 @@ def verdict(
 ) -> Verdict:
     """Whether the theory applies to a surface under a sphere, of scales in SI units.
 
-    Parameters
-    ----------
-    surface, scales : MeasuredSurface and Scales
-        What is pressed on what.
-    attraction_range : float, optional
-        Distance over which they attract each other, by default :data:`ASSUMED_RANGE`. (Units: m)
-    factors : SphereFactors, optional
-        Factors k by the law, which may not have been measured there.
+    The range of attraction (Units: m) is :data:`ASSUMED_RANGE` where none is given; factors k are
+    in doubt where the law was not measured.
     """
     reach = ASSUMED_RANGE if attraction_range is None else attraction_range
     conditions = (
