@@ -126,12 +126,9 @@ def predict(
     Exit code 0: the theory applies. 3: it applies with reservations, which are named. 4: it does
     not apply; nothing is predicted, and it is said what modulus, radius or roughness would do.
     """
-    from crackfront.topography.on_use import packages_on_use
-
-    with packages_on_use():
-        from crackfront.topography.prediction import predicted
-        from crackfront.topography.report import machine_readable, report_text, simulation_text
-        from crackfront.topography.verdict import verdict
+    from crackfront.topography.prediction import predicted
+    from crackfront.topography.report import machine_readable, report_text, simulation_text
+    from crackfront.topography.verdict import verdict
 
     scales = _scales(options)
     reach = parsed_options(PredictionOptions, options, "--").range
