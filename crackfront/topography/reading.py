@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -114,17 +115,54 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
     """Measurement of one file."""
     scan = raw_scan(path, options)
     raw = scan.level
+    heights, fitted, size = _used_part(path, raw, options)
+    gaps = np.ma.getmaskarray(heights)
+    try:
+        values = levelled(np.ma.getdata(heights), fitted, options.detrend)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+    periodic = raw.is_periodic and options.crop is None and not order_of(options.detrend)
+    level = library_scan(
+        np.ma.array(values, mask=gaps), size, periodic=bool(periodic), info=raw.info
+    )
+    if gaps.any():
+        library_part("Uniform.Imputation")
+        level = level.interpolate_undefined_data()
+    levelling = taken_off(options.detrend)
+    if options.mask:
+        left_out = 1 - np.count_nonzero(fitted) / np.ma.count(heights)
+        levelling += f" of all but {left_out:.2%} of the points"
+    shortest, longest = _trusted_wavelengths(path, level, size)
+    return Measurement(
+        path=path,
+        format=scan.format,
+        comment=str(raw.info.get("comment") or "").strip(),
+        checksum=checksum(path),
+        size=size,
+        heights=np.array(np.ma.getdata(level.heights()), dtype=float),
+        periodic=bool(level.is_periodic),
+        missing=float(np.mean(gaps)),
+        shortest=shortest,
+        longest=longest,
+        channel=scan.channel,
+        levelling=levelling,
+    )
+
+
+def _used_part(
+    path: Path, raw: Any, options: ReadingOptions
+) -> tuple[np.ma.MaskedArray[Any, Any], Points, tuple[float, ...]]:
+    """Heights of the part that is used, which of them the trend is fitted to, and its sides."""
     heights = np.ma.masked_invalid(raw.heights())
     counts, size = heights.shape, tuple(map(float, raw.physical_sizes))
     fitted = ~np.ma.getmaskarray(heights) & ~_masked(path, options, counts, size)
-    part: tuple[slice, ...] = tuple(map(slice, counts))
     if options.crop is not None:
         part = _slices(path, "crop", options.crop, counts, size)
-    heights, fitted = heights[part], fitted[part]
-    if options.crop is not None and min(heights.shape) < _FEWEST_POINTS:
-        raise ValueError(
-            f"{path}: the crop leaves fewer than {_FEWEST_POINTS} points along a side; widen it"
-        )
+        heights, fitted = heights[part], fitted[part]
+        if min(heights.shape) < _FEWEST_POINTS:
+            raise ValueError(
+                f"{path}: the crop leaves fewer than {_FEWEST_POINTS} points along a side; widen it"
+            )
     size = tuple(
         side * kept / count for side, kept, count in zip(size, heights.shape, counts, strict=True)
     )
@@ -134,24 +172,23 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
             f"{path}: {missing:.0%} of the points are missing; more than {_MOST_MISSING:.0%} are "
             "too many to interpolate, so use a part with --crop, or measure again"
         )
-    _refuse_impossible_heights(path, np.ma.compressed(heights), size)
-    try:
-        values = levelled(np.ma.getdata(heights), fitted, options.detrend)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
-    periodic = raw.is_periodic and options.crop is None and not order_of(options.detrend)
-    level = library_scan(
-        np.ma.array(values, mask=np.ma.getmask(heights)),
-        size,
-        periodic=bool(periodic),
-        info=raw.info,
-    )
-    if missing > 0:
-        library_part("Uniform.Imputation")
-        level = level.interpolate_undefined_data()
-    pixel = max(side / count for side, count in zip(size, heights.shape, strict=True))
-    shortest = _PIXELS_PER_WAVE * pixel
-    if raw.info.get("instrument", {}).get("parameters"):
+    known = np.ma.compressed(heights)
+    rms, span = float(np.std(known)), float(np.ptp(known))
+    if not span > 0:
+        raise ValueError(f"{path}: all heights are equal; a smooth surface has no spectrum")
+    if rms < _LEAST_HEIGHT or span > _MOST_HEIGHT * max(size):
+        raise ValueError(
+            f"{path}: the heights vary by {prefixed('m', rms)} rms and span {prefixed('m', span)} "
+            f"on {shown_sides(size)}, which cannot be; their unit is wrong, so export them with "
+            "the right one"
+        )
+    return heights, fitted, size
+
+
+def _trusted_wavelengths(path: Path, level: Any, size: tuple[float, ...]) -> tuple[float, float]:
+    """Wavelengths that points, instrument and sides allow to trust, refused where they are few."""
+    shortest = _PIXELS_PER_WAVE * max(np.divide(size, level.nb_grid_pts).tolist())
+    if level.info.get("instrument", {}).get("parameters"):
         surface_library()
         shortest = max(shortest, level.short_reliability_cutoff() or 0.0)
     longest = min(size) / _WAVES_PER_SIDE
@@ -161,24 +198,7 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
             f"{prefixed('m', shortest)} (points or instrument) and below {prefixed('m', longest)} "
             "(half a side); use a larger or finer scan"
         )
-    levelling = taken_off(options.detrend)
-    if options.mask:
-        left_out = 1 - np.count_nonzero(fitted) / np.ma.count(heights)
-        levelling += f" of all but {left_out:.2%} of the points"
-    return Measurement(
-        path=path,
-        format=scan.format,
-        comment=str(raw.info.get("comment") or "").strip(),
-        checksum=checksum(path),
-        size=size,
-        heights=np.array(np.ma.getdata(level.heights()), dtype=float),
-        periodic=bool(level.is_periodic),
-        missing=missing,
-        shortest=shortest,
-        longest=longest,
-        channel=scan.channel,
-        levelling=levelling,
-    )
+    return shortest, longest
 
 
 def _masked(
@@ -220,16 +240,3 @@ def _slices(
         slice(*(math.ceil(end / side * count - 1e-6) for end in ends))
         for ends, side, count in zip(region, size, counts, strict=True)
     )
-
-
-def _refuse_impossible_heights(path: Path, heights: Array, size: tuple[float, ...]) -> None:
-    """Raise where heights are equal, or vary as no instrument measures."""
-    rms, span = float(np.std(heights)), float(np.ptp(heights))
-    if not span > 0:
-        raise ValueError(f"{path}: all heights are equal; a smooth surface has no spectrum")
-    if rms < _LEAST_HEIGHT or span > _MOST_HEIGHT * max(size):
-        raise ValueError(
-            f"{path}: the heights vary by {prefixed('m', rms)} rms and span {prefixed('m', span)} "
-            f"on {shown_sides(size)}, which cannot be; their unit is wrong, so export them with "
-            "the right one"
-        )
