@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import functools
 import inspect
 from collections.abc import Callable, Iterable, Iterator
 from os import PathLike
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, TypeVar
 
 from xarray import DataArray
 
@@ -31,14 +30,11 @@ from crackfront.topography.prediction import Prediction, predicted
 from crackfront.topography.reading import Measurement, read_measurements
 from crackfront.topography.tile import tile_heights, zero_load_radius
 
-Arguments = ParamSpec("Arguments")
-Result = TypeVar("Result")
+Function = TypeVar("Function", bound=Callable[..., Any])
 File = str | PathLike[str]
 
 
-def _taking(
-    *records: type[Any],
-) -> Callable[[Callable[Arguments, Result]], Callable[Arguments, Result]]:
+def _taking(*records: type[Any]) -> Callable[[Function], Function]:
     """Give a function the options of records: as keywords, in its signature and its docstring."""
     keywords = [
         inspect.Parameter(
@@ -51,19 +47,13 @@ def _taking(
         for one in declared(record)
     ]
 
-    def decorated(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+    def decorated(function: Function) -> Function:
         plain = inspect.signature(function)
         named = [item for item in plain.parameters.values() if item.kind is not item.VAR_KEYWORD]
+        function.__doc__ = str(function.__doc__).replace("{options}", parameters_text(*records))
         signature = plain.replace(parameters=[*named, *keywords])
-
-        @functools.wraps(function)
-        def taking(*arguments: Arguments.args, **given: Arguments.kwargs) -> Result:
-            signature.bind(*arguments, **given)
-            return function(*arguments, **given)
-
-        taking.__doc__ = str(function.__doc__).replace("{options}", parameters_text(*records))
-        taking.__signature__ = signature  # type: ignore[attr-defined]
-        return taking
+        function.__signature__ = signature  # type: ignore[attr-defined]
+        return function
 
     return decorated
 
@@ -95,6 +85,7 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     OSError
         If the file cannot be opened.
     """
+    inspect.signature(read_scan).bind(path, sphere, **options)
     refuse_no_scales(sphere)
     file = _path(path)
     reading = parsed_options(ReadingOptions, options)
@@ -166,6 +157,7 @@ def predict(scans: File | Iterable[File], sphere: Scales, **options: Any) -> Pre
     OSError
         If a file cannot be opened.
     """
+    inspect.signature(predict).bind(scans, sphere, **options)
     refuse_no_scales(sphere)
     paths = [scans] if isinstance(scans, (str, PathLike)) else scans
     refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
