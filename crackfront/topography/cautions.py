@@ -62,7 +62,7 @@ def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
             f"{joint.shares.continued:.0%} of e_el is not measured but continued by a model; look "
             "at the figure, and add a scan of the waves that are missing."
         )
-    hurst, _, _ = joint.fit.hurst
+    hurst = joint.fit.hurst.value
     if min(hurst, 1 - hurst) < _EDGE and joint.shares.continued > _MATTERS:
         yield (
             f"The Hurst exponent of the shortest waves, {hurst:.2g}, is at the edge of what is "

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from crackfront.topography.densities import Array, Density
+from crackfront.analysis.estimate import Estimate
+from crackfront.topography.densities import Density
+from crackfront.topography.levelling import Array
 
 _SHAPE = 5
 """Parameters of P: logarithm of the plateau, Hurst exponents at longer and at shorter waves,
@@ -134,24 +137,24 @@ class Fit:
         return found
 
     @property
-    def roll_off(self) -> tuple[float, float, float]:
-        """Median of the roll-off and its 95% interval (Units: m)."""
-        return _quantiles(2 * np.pi / np.exp(self.surface[:, 4]))
+    def roll_off(self) -> Estimate[float]:
+        """Median of the roll-off with its 95% interval (Units: m)."""
+        return _median(2 * np.pi / np.exp(self.surface[:, 4]))
 
     @property
-    def hurst(self) -> tuple[float, float, float]:
-        """Median of the Hurst exponent of the shortest waves and its 95% interval."""
-        return _quantiles(self.surface[:, 2])
+    def hurst(self) -> Estimate[float]:
+        """Median of the Hurst exponent of the shortest waves with its 95% interval."""
+        return _median(self.surface[:, 2])
 
     @property
-    def plateau(self) -> tuple[float, float, float]:
-        """Median of C on the plateau and its 95% interval (Units: m^4)."""
-        return _quantiles(np.exp(self.surface[:, 0]))
+    def plateau(self) -> Estimate[float]:
+        """Median of C on the plateau with its 95% interval (Units: m^4)."""
+        return _median(np.exp(self.surface[:, 0]))
 
     @property
     def has_roll_off(self) -> bool:
         """Whether the plateau is seen: the roll-off is certainly among the fitted waves."""
-        return bool(self.roll_off[2] < 2 * np.pi / self.lowest)
+        return bool(self.roll_off.high < 2 * np.pi / self.lowest)
 
 
 def seen_instrument(density: Density) -> Instrument:
@@ -163,34 +166,48 @@ def seen_instrument(density: Density) -> Instrument:
     floor = math.log(float(np.min(density.value)))
     nothing = Instrument().row
     limits = np.array([*_limits(low, high), (low, high + 1.0), _SHARPNESS, (floor - 5, floor + 1)])
-    tries: dict[tuple[int, ...], list[Array]] = {
-        (): [nothing],
-        (5, 6): [np.array([low + part * (high - low), 2.0, -np.inf]) for part in (0.5, 0.7, 0.95)],
-        (7,): [np.array([np.inf, 2.0, floor])],
-        (5, 6, 7): [np.array([low + part * (high - low), 2.0, floor]) for part in (0.45, 0.75)],
-    }
+    tries: list[tuple[list[bool], list[Array]]] = [
+        ([False] * 3, [nothing]),
+        ([True, True, False], [np.array([low + p * (high - low), 2, 0]) for p in (0.5, 0.7, 0.95)]),
+        ([False, False, True], [np.array([0, 2, floor])]),
+        ([True] * 3, [np.array([low + p * (high - low), 2, floor]) for p in (0.45, 0.75)]),
+    ]
     best, found, shapes = math.inf, nothing, _first_shapes([(density, nothing)], low, high)
-    for extra, begins in tries.items():
-        gain = _GAIN * len(extra) ** 0.5
+    for varied, begins in tries:
+        gain = _GAIN * sum(varied) ** 0.5
         if best <= gain:  # No deviance is negative.
             continue
-        free = (*range(_SHAPE), *extra)
-
-        def model(trials: Array, free: tuple[int, ...] = free) -> list[Array]:
-            every = np.tile(np.concatenate([np.zeros(_SHAPE), nothing]), (len(trials), 1))
-            every[:, free] = trials
-            return [_model(every[:, :_SHAPE], every[:, _SHAPE:], density)]
-
-        chosen = list(free)
-        starts = [np.concatenate([shape, begin])[chosen] for begin in begins for shape in shapes]
-        cost, parameters = _likeliest([density], model, starts, limits[chosen])
-        if not extra:
+        models = _Models([density], nothing[None], np.array([varied]))
+        starts = [np.array([*shape, *begin[varied]]) for begin in begins for shape in shapes]
+        cost, parameters = _likeliest(models, starts, limits[[True] * _SHAPE + varied])
+        if not any(varied):
             shapes = [parameters]
         if cost < best - gain:
-            best, found = cost, nothing.copy()
-            for place, value in zip(extra, parameters[_SHAPE:], strict=True):
-                found[place - _SHAPE] = value
+            best, found = cost, models.instruments(parameters[None])[0, 0]
     return Instrument(math.exp(found[0]), float(found[1]), math.exp(found[2]))
+
+
+@dataclass(frozen=True, slots=True)
+class _Models:
+    """Models of densities, of which a trial has the parameters of P and some of instruments."""
+
+    densities: list[Density]
+    seen: Array
+    """Parameters of the instruments where they do not vary. Shape (n_density, 3)."""
+    varied: NDArray[np.bool_]
+    """Which of them vary, of the same shape."""
+
+    def instruments(self, trials: Array) -> Array:
+        """Parameters of the instruments, (n, n_density, 3)."""
+        rows = np.repeat(self.seen[None], len(trials), axis=0)
+        rows[:, self.varied] = trials[:, _SHAPE:]
+        return rows
+
+    def __call__(self, trials: Array) -> Iterator[tuple[Density, Array]]:
+        """Every density, and the logarithm of what it should be, (n, n_wavevector)."""
+        rows = self.instruments(trials)
+        for index, item in enumerate(self.densities):
+            yield item, _model(trials[:, :_SHAPE], rows[:, index], item)
 
 
 def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
@@ -216,30 +233,18 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
     around[np.isnan(reach)] = _SHARPNESS
     limits = np.array([*_limits(low, high), *around])
 
-    def instruments(trials: Array) -> Array:
-        rows = np.repeat(seen[None], len(trials), axis=0)
-        rows[:, varied] = trials[:, _SHAPE:]
-        return rows
-
-    def models(trials: Array) -> list[Array]:
-        rows = instruments(trials)
-        return [
-            _model(trials[:, :_SHAPE], rows[:, index], item)
-            for index, (item, _) in enumerate(densities)
-        ]
+    models = _Models([item for item, _ in densities], seen, varied)
 
     def deviance(trials: Array) -> Array:
         inside = ((trials >= limits[:, 0]) & (trials <= limits[:, 1])).all(axis=1)
         inside &= trials[:, 4] <= trials[:, 3]
         total = ((trials[:, 2] - trials[:, 1]) / _BEND) ** 2
-        for (item, _), model in zip(densities, models(trials), strict=True):
+        for item, model in models(trials):
             total += _deviances(item, model).sum(axis=1)
         return np.where(inside, total, np.inf)
 
-    only = [item for item, _ in densities]
-    shapes = _first_shapes(list(zip(only, seen, strict=True)), low, high)
-    starts = [np.array([*shape, *begin]) for shape in shapes]
-    _, start = _likeliest(only, models, starts, limits)
+    shapes = _first_shapes(list(zip(models.densities, seen, strict=True)), low, high)
+    _, start = _likeliest(models, [np.array([*shape, *begin]) for shape in shapes], limits)
     rng = np.random.default_rng(_SEED)
     scale = np.array([0.05, 0.05, 0.05, 0.2, 0.1, *[0.05] * begin.size])
     walkers = start + rng.standard_normal((_WALKERS, start.size)) * scale
@@ -249,7 +254,7 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
     least = float(np.min(deviance(states)))
     return Fit(
         states[:, :_SHAPE],
-        instruments(states),
+        models.instruments(states),
         math.exp(low),
         least / max(count - start.size, 1),
     )
@@ -276,18 +281,13 @@ def _first_shapes(
     return found
 
 
-def _likeliest(
-    densities: Sequence[Density],
-    models: Callable[[Array], Sequence[Array]],
-    starts: Sequence[Array],
-    limits: Array,
-) -> tuple[float, Array]:
+def _likeliest(models: _Models, starts: Sequence[Array], limits: Array) -> tuple[float, Array]:
     """Half of the least deviance from some starts, and the parameters that have it."""
 
     def residuals(trials: Array) -> Array:
         roots = [
             np.sign(np.log(item.value) - model) * np.sqrt(np.maximum(_deviances(item, model), 0))
-            for item, model in zip(densities, models(trials), strict=True)
+            for item, model in models(trials)
         ]
         return np.concatenate([*roots, (trials[:, 2:3] - trials[:, 1:2]) / _BEND], axis=1)
 
@@ -339,10 +339,9 @@ def _projector(wavevector: tuple[float, ...]) -> tuple[Array, Array]:
     for row, wave in zip(weights, wavevector, strict=True):
         k = wave * np.cosh(way)
         share = weight * _FURTHEST / 2 / k / np.pi
-        at = np.clip(np.log(k / wavevector[0]) / places[1], 0, count - 1.000001)
-        first = at.astype(int)
-        np.add.at(row, first, share * (first + 1 - at))
-        np.add.at(row, first + 1, share * (at - first))
+        part, first = np.modf(np.clip(np.log(k / wavevector[0]) / places[1], 0, count - 1.000001))
+        for index, portion in ((first, 1 - part), (first + 1, part)):
+            row += np.bincount(index.astype(int), share * portion, count)
     return wavevector[0] * np.exp(places), weights
 
 
@@ -391,7 +390,7 @@ def _chain(deviance: Callable[[Array], Array], walkers: Array, rng: np.random.Ge
     return np.concatenate(kept[-_KEPT:])
 
 
-def _quantiles(values: Array) -> tuple[float, float, float]:
-    """Median and 95% interval."""
-    low, middle, high = np.quantile(values, (0.025, 0.5, 0.975))
-    return float(middle), float(low), float(high)
+def _median(values: Array) -> Estimate[float]:
+    """Median with a 95% interval."""
+    low, middle, high = np.quantile(values, (0.025, 0.5, 0.975)).tolist()
+    return Estimate(middle, math.nan, low, high)

@@ -12,8 +12,9 @@ import numpy as np
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.bands import Scan
-from crackfront.topography.densities import Array, Density, bin_numbers
+from crackfront.topography.densities import Density, bin_numbers
 from crackfront.topography.fitting import Fit, fitted_model
+from crackfront.topography.levelling import Array
 
 _DRAWS = 400
 _SEED = np.random.SeedSequence(20240229, spawn_key=(0xD4A3,))
@@ -139,14 +140,13 @@ def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float],
         value[row, here], modes[row, here] = one.value, one.modes
     power, found = value * modes, []
     for row in range(len(densities)):
-        other_modes = np.delete(modes, row, axis=0).sum(axis=0)
-        shared = (modes[row] > 0) & (other_modes > 0)
+        others, other_power = (np.delete(one, row, axis=0).sum(axis=0) for one in (modes, power))
+        shared = (modes[row] > 0) & (others > 0)
         if not np.any(shared):
             found.append((math.nan, math.nan))
             continue
-        mean = np.delete(power, row, axis=0).sum(axis=0)[shared] / other_modes[shared]
-        apart = np.log(value[row, shared] / mean)
-        weights = 1 / (1 / modes[row, shared] + 1 / other_modes[shared])
+        apart = np.log(value[row, shared] / (other_power[shared] / others[shared]))
+        weights = 1 / (1 / modes[row, shared] + 1 / others[shared])
         found.append((float(np.average(apart, weights=weights)), float(np.sum(weights)) ** -0.5))
     known = np.array([pair for pair in found if math.isfinite(pair[0])])
     scatter = 0.0

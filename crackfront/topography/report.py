@@ -117,8 +117,8 @@ def machine_readable(
     }
 
 
-def _continuation(fit: Fit) -> tuple[tuple[str, tuple[float, float, float], str], ...]:
-    """Parameters of the model that continues a density, with 95% intervals, and units."""
+def _continuation(fit: Fit) -> tuple[tuple[str, Number, str], ...]:
+    """Parameters of the model that continues a density, and units."""
     return (
         ("roll_off", fit.roll_off, "m"),
         ("hurst", fit.hurst, "1"),
@@ -153,9 +153,9 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
         f"  {'continued':22}down to {prefixed('m', joint.spectrum.short_cutoff)} and to longer "
         f"waves, {shares.continued:.0%} of e_el"
     )
-    for name, ends, units in _continuation(joint.fit):
+    for name, found, units in _continuation(joint.fit):
         unsure = name == "roll_off" and not joint.fit.has_roll_off
-        yield f"    {name:20}{_in_unit(units, *ends)}{', not resolved' if unsure else ''}"
+        yield f"    {name:20}{_shown(units, found)}{', not resolved' if unsure else ''}"
     yield (
         f"  {'missing':22}two more decades of short waves would add {shares.missing_short:.0%} "
         f"to e_el, longer ones {shares.missing_long:.0%}"
@@ -167,16 +167,9 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
             one / other for one, other in zip(measure.measured, measure.expected, strict=True)
         )
         name, unit = _MEASURES[measure.order]
-        rms = _in_unit(unit, measure.rms.value, measure.rms.low, measure.rms.high)
+        rms = _shown(unit, measure.rms)
         compared = ", ".join(map("{:.2f}".format, ratios))
         yield f"  rms of {name:16}{rms:40}{_span(measure.shortest, measure.longest):22}{compared}"
-
-
-def _in_unit(unit: str, value: float, low: float, high: float) -> str:
-    """A number with its interval; lengths have a prefix, powers of lengths have none."""
-    if unit == "m":
-        return prefixed(unit, value, low, high)
-    return f"{value:.3g} ({low:.3g} to {high:.3g}) {unit}".removesuffix(" 1")
 
 
 def _prediction_lines(item: Prediction) -> Iterator[str]:
@@ -257,8 +250,10 @@ def _verdict_entry(found: Verdict) -> dict[str, Any]:
 
 
 def _shown(unit: str, found: Number) -> str:
-    """A number with its interval, if it has one, in a unit with a prefix."""
-    return prefixed(unit, found.value, found.low, found.high)
+    """A number with its interval, if it has one; powers of lengths have no prefix."""
+    if unit in ("m", "N", _ENERGY):
+        return prefixed(unit, found.value, found.low, found.high)
+    return f"{found.value:.3g} ({found.low:.3g} to {found.high:.3g}) {unit}".removesuffix(" 1")
 
 
 def _factor(found: Number) -> str:
@@ -326,8 +321,7 @@ def _spectrum_entry(joint: JointSpectrum) -> dict[str, Any]:
 def _continuation_entry(fit: Fit) -> dict[str, Any]:
     """The model that continues a density."""
     parameters = {
-        name: {"value": value, "low": low, "high": high, "units": units}
-        for name, (value, low, high), units in _continuation(fit)
+        name: _interval_entry(found) | {"units": units} for name, found, units in _continuation(fit)
     }
     return parameters | {"deviance_per_freedom": fit.misfit, "has_roll_off": fit.has_roll_off}
 

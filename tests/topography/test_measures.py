@@ -36,7 +36,7 @@ def test_the_spectrum_of_the_shipped_scans_is_that_of_nanodiamond():
     surface = measured_surface(read_measurements(SHIPPED))
     fit, truth = surface.joint.fit, SelfAffineSpectrum(0.1e-6, 2.1e-6, 1.0, 8.4e-27)
     for found, value in ((fit.roll_off, 2.1e-6), (fit.hurst, 1.0), (fit.plateau, 8.4e-27)):
-        assert 0.99 * found[1] < value < 1.01 * found[2]
+        assert 0.99 * found.low < value < 1.01 * found.high
     assert fit.has_roll_off
     assert 0.2 < fit.misfit < 1.5
     found = half(surface)
@@ -67,8 +67,8 @@ def test_a_second_measurement_widens_the_wavelengths(rng, tmp_path, scan):
     both = measured_surface(read_measurements([scan, detail])).joint
     assert both.shortest == pytest.approx(4 * 5e-6 / 128, rel=0.1)
     assert both.longest == pytest.approx(alone.longest) == pytest.approx(10e-6, rel=0.15)
-    assert both.fit.hurst[1] < 0.8 < both.fit.hurst[2]
-    widths = [high - low for _, low, high in (both.fit.hurst, alone.fit.hurst)]
+    assert both.fit.hurst.low < 0.8 < both.fit.hurst.high
+    widths = [one.high - one.low for one in (both.fit.hurst, alone.fit.hurst)]
     assert widths[0] < widths[1]
     assert not any(both.density.disagrees(index) for index in range(2))
 
@@ -102,7 +102,7 @@ def test_a_surface_without_plateau_says_so(rng, tmp_path):
     path = write_al3d(tmp_path / "steep.al3d", map_heights(rng, spectrum=steep))
     fit = measured_surface(read_measurements([path])).joint.fit
     assert not fit.has_roll_off
-    assert fit.roll_off[0] > 5e-6
+    assert fit.roll_off.value > 5e-6
 
 
 def test_anisotropy_is_the_ratio_of_the_slopes(rng, tmp_path, scan):
