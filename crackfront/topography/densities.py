@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fftfreq, rfftfreq, rfftn
 
+from crackfront.topography.levelling import Array
 from crackfront.topography.reading import Measurement
-
-Array = NDArray[np.float64]
 
 _BINS_PER_DECADE = 20
 """Bins of wavevectors; their edges are the same for all scans."""

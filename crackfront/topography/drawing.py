@@ -31,7 +31,8 @@ from crackfront.plots.style import (
     blank_figure,
     house_style,
 )
-from crackfront.topography.densities import Array, Density
+from crackfront.topography.densities import Density
+from crackfront.topography.levelling import Array
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import Prediction
 from crackfront.topography.reading import Measurement

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.fft import fftfreq, irfft2, rfft2
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
-from crackfront.topography.instruments import library_scan, shown_sides, surface_library
+from crackfront.topography.instruments import shown_sides
+from crackfront.topography.levelling import Array
 from crackfront.topography.reading import Measurement
-
-Array = NDArray[np.float64]
 
 Placement = Literal["tiled", "within"]
 """Whether the contact may go on to mirror images of the scan, or must fit in the scan itself."""
@@ -74,20 +72,18 @@ def tile_heights(measurement: Measurement) -> tuple[Array, float]:
             f"{measurement.path} is a line scan, which is no field; use its spectrum, as "
             "crackfront predict --simulate does"
         )
-    library = surface_library()
-    square, periodic = _with_square_pixels(measurement), measurement.periodic
-    scan = library_scan(square.heights, square.size, periodic=periodic)
-    whole = scan if periodic else scan.mirror_stitch()
-    tile = library_scan(whole.heights(), whole.physical_sizes, periodic=True)
-    with warnings.catch_warnings():
-        # The library calls an inverse transform in a way that numpy will change.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        cut = library.Uniform.Filtering.ShortCutTopography
-        heights = cut(tile, cutoff_wavelength=measurement.shortest).heights()
-    # Mirror images stand behind the scan: half a scan further its centre is that of the tile.
-    behind = [0 if periodic else count // 4 for count in heights.shape]
-    centred = np.ascontiguousarray(np.roll(heights, behind, axis=(0, 1)))
-    return centred, float(tile.pixel_size[0])
+    square = _with_square_pixels(measurement)
+    sides, tile = np.array(square.size), square.heights
+    if not measurement.periodic:
+        # Mirror images on all sides: the centre of the scan is that of the tile.
+        halves = [(count // 2, count - count // 2) for count in tile.shape]
+        sides, tile = 2 * sides, np.pad(tile, halves, "symmetric")
+    n_x, n_y = tile.shape
+    # In this order of operations, which decides on waves of exactly the shortest wavelength.
+    along = 2 * np.pi * (np.rint(n_x * fftfreq(n_x)) / sides[0])
+    across = 2 * np.pi / sides[1] * np.arange(n_y // 2 + 1)
+    kept = np.sqrt(along[:, None] ** 2 + across**2) <= 2 * np.pi / measurement.shortest
+    return np.asarray(irfft2(rfft2(tile) * kept, tile.shape)), float(sides[0] / n_x)
 
 
 def zero_load_radius(scales: Scales) -> float:

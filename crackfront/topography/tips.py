@@ -10,11 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crackfront.topography.levelling import Array
 from crackfront.topography.reading import Measurement
-
-Array = NDArray[np.float64]
 
 _TAIL = 0.01
 """Part of the curvatures in either of the tails that are compared."""
