@@ -30,22 +30,15 @@ REACH = 1.96
 
 @dataclass(frozen=True, slots=True)
 class Estimate(Generic[Number]):
-    """A number, or an array of numbers, with its uncertainty.
-
-    Attributes
-    ----------
-    value : array or float
-        Point estimate; NaN where the data give none.
-    standard_error : array of the same shape, or float
-        NaN where the data give none, as one realisation does, or where an interval is all there is.
-    low, high : array of the same shape, or float
-        95% interval; NaN where the data give none.
-    """
+    """A number, or an array of numbers, with its uncertainty."""
 
     value: Number
+    """Point estimate; NaN where the data give none."""
     standard_error: Number
+    """NaN where the data give none, as one realisation does, or nothing but an interval."""
     low: Number
     high: Number
+    """95% interval; NaN where the data give none."""
 
     def each(self, function: Callable[[Number], Other]) -> Estimate[Other]:
         """The estimate whose four entries are those of a function, as of an index or a unit."""

@@ -73,45 +73,32 @@ class SweepFit:
 
     What each number means stands in :data:`crackfront.analysis.sweep.FIT_DEFINITION`;
     :func:`fit_columns` gives all arrays with dimensions, units and long names.
-
-    Attributes
-    ----------
-    table : SweepTable
-        What was fitted.
-    kind : {"roughness", "chemical"}
-        Whether the mean of w_loc is w_int - e_el or w_int.
-    lowest_elastic_energy, highest_elastic_energy : float
-        Range of requested e_el, ends included. (Units: w_int)
-    n_bootstrap, seed : int
-        Bootstrap samples and the seed of their draws.
-    uncorrelated : bool
-        Whether the sites of straight fronts know nothing of each other.
-    midpoint_largest, midpoint_probability : () array
-        Of any cell in the range, by Student's t and Bonferroni.
-    cells : CellEstimates of (n_spectrum, n_amplitude) arrays
-        Means at every spectrum and amplitude.
-    spectra, pooled : LawEstimates of (n_spectrum,) and of () arrays
-        The fit of every spectrum, and of all together.
-    from_force : ForceDifference of (n_spectrum,) arrays
-        How far the experimenter's estimates differ.
     """
 
     table: SweepTable
     kind: FieldKind
+    """Whether the mean of w_loc is w_int - e_el or w_int."""
     lowest_elastic_energy: float
     highest_elastic_energy: float
+    """Range of requested e_el, ends included. (Units: w_int)"""
     n_bootstrap: int
     seed: int
+    """Bootstrap samples and the seed of their draws."""
     uncorrelated: bool
+    """Whether the sites of straight fronts know nothing of each other."""
     cells: CellEstimates
+    """Means at every spectrum and amplitude, (n_spectrum, n_amplitude)."""
     spectra: LawEstimates
     pooled: LawEstimates
+    """The fit of every spectrum, (n_spectrum,), and of all together, ()."""
     from_force: ForceDifference
+    """How far the experimenter's estimates differ, (n_spectrum,)."""
     in_range: NDArray[np.bool_] = variable("amplitude is in the fit", "1", AMPLITUDE)
     n_realisation: Counts = variable("realisations with a value in the range", "1", SPECTRUM)
     n_failed: Counts = variable("simulations without a value in the range", "1", SPECTRUM)
     midpoint_largest: Array = variable("largest deviation of a midpoint in standard errors", "1")
     midpoint_probability: Array = variable("probability of that deviation among all cells", "1")
+    """Of any cell in the range, by Student's t and Bonferroni."""
     size_slope: Estimate = variable(_SIZE_SLOPE, "1", AMPLITUDE)
     pooled_size_slope: Estimate = variable(_SIZE_SLOPE, "1")
     k_0: Estimate = variable("k of weak disorder in the infinite contact, by the law", "1")

@@ -24,36 +24,25 @@ _ALIKE = 0.9
 
 @dataclass(frozen=True, slots=True)
 class ValidityRow:
-    """Both models at one spectrum and amplitude.
-
-    Attributes
-    ----------
-    roll_off : float
-        Roll-off wavelength over the shortest; 1 for a flat spectrum.
-    hurst : float
-        Hurst exponent.
-    elastic_energy : float
-        Energy of full conformity. (Units: w_int)
-    ratio, error : float
-        Hysteresis of the front over that of boundary elements, and its standard error; NaN for one
-        surface.
-    surfaces, fine : int
-        Surfaces that are averaged, and those of them on the finest grids.
-    n_point : int
-        Points along a side of the boundary elements' grid.
-    interaction_range : float
-        Gap at which their attraction ends. (Units: reduced vertical length)
-    """
+    """Both models at one spectrum and amplitude."""
 
     roll_off: float
+    """Roll-off wavelength over the shortest; 1 for a flat spectrum."""
     hurst: float
+    """Hurst exponent."""
     elastic_energy: float
+    """Energy of full conformity. (Units: w_int)"""
     ratio: float
     error: float
+    """Hysteresis of the front over that of boundary elements, and its standard error; NaN for one
+    surface."""
     surfaces: int
     fine: int
+    """Surfaces that are averaged, and those of them on the finest grids."""
     n_point: int
+    """Points along a side of the boundary elements' grid."""
     interaction_range: float
+    """Gap at which their attraction ends. (Units: reduced vertical length)"""
 
 
 @functools.cache

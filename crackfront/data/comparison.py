@@ -29,23 +29,16 @@ _KEY = re.compile(r"-[0-9a-f]{16}(?=\.nc$)")
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """How much a variable or an attribute of two files differs.
-
-    Attributes
-    ----------
-    file, variable : str
-        Where it stands; the name of the file is empty where two files are compared.
-    largest : float
-        Largest difference relative to the largest magnitude in the second; of texts 0 or 1.
-        Infinite where the shapes disagree, or one of the two lacks it.
-    in_bits : bool
-        Whether the values are the same bit by bit.
-    """
+    """How much a variable or an attribute of two files differs."""
 
     file: str
     variable: str
+    """Where it stands; the name of the file is empty where two files are compared."""
     largest: float
+    """Largest difference relative to the largest magnitude in the second; of texts 0 or 1.
+    Infinite where the shapes disagree, or one of the two lacks it."""
     in_bits: bool
+    """Whether the values are the same bit by bit."""
 
 
 @dataclass(frozen=True, slots=True)

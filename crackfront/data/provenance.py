@@ -26,28 +26,19 @@ except PackageNotFoundError:
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """What every result file says about its origin.
-
-    Attributes
-    ----------
-    git_commit : str
-        As :func:`git_commit`.
-    solver_fingerprint : str
-        Changes with every source that determines a result.
-    command : str
-        Command line of the process, the program without its folder.
-    platform : str
-        Operating system, machine and Python.
-    configuration : str
-        Text of the configuration file, empty where there was none.
-    """
+    """What every result file says about its origin."""
 
     crackfront_version: str
     git_commit: str
+    """As :func:`git_commit`."""
     solver_fingerprint: str
+    """Changes with every source that determines a result."""
     command: str
+    """Command line of the process, the program without its folder."""
     platform: str
+    """Operating system, machine and Python."""
     configuration: str
+    """Text of the configuration file, empty where there was none."""
 
 
 def provenance(configuration: str = "") -> Provenance:

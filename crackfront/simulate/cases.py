@@ -35,29 +35,20 @@ def option(text: str, bounds: Range, *, flag: str | None = None, default: Any = 
 
 
 class Problem(NamedTuple):
-    """Field, first front and loads of a cycle.
-
-    Attributes
-    ----------
-    field, front, loads
-        As of :func:`crackfront.core.cycle.follow.follow`.
-    expected : int
-        States that it will have, roughly.
-    seconds : float
-        Processor time that they will take, roughly.
-    sites : (n_site,) array or None
-        Coordinates that are not those of the geometry.
-    measures : TileMeasures or None
-        Those of the tile of a sphere.
-    """
+    """Field, first front and loads of a cycle."""
 
     field: Field
     front: Array
     loads: Iterable[Load]
+    """As of :func:`crackfront.core.cycle.follow.follow`."""
     expected: int
+    """States that it will have, roughly."""
     seconds: float
+    """Processor time that they will take, roughly."""
     sites: Array | None = None
+    """Coordinates that are not those of the geometry, (n_site,)."""
     measures: TileMeasures | None = None
+    """Those of the tile of a sphere."""
 
 
 @dataclass(frozen=True, slots=True)

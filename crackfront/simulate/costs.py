@@ -65,30 +65,21 @@ fewer sites is pinned as a whole."""
 
 @dataclass(frozen=True, slots=True)
 class Features:
-    """Sizes and settings that the time of a simulation depends on.
-
-    Attributes
-    ----------
-    n_point : float
-        Root of the number of points of the tile.
-    breadth : float
-        Roll-off over short cutoff.
-    travel : float
-        Way of a smooth front from state to state, in correlation lengths.
-    full_cycle : float
-        1 where the load goes from first contact to pull-off, else 0.
-    n_state : float
-        States that it is expected to find.
-    """
+    """Sizes and settings that the time of a simulation depends on."""
 
     n_angle: float
     n_point: float
+    """Root of the number of points of the tile."""
     elastic_energy: float
     tolerance: float
     breadth: float
+    """Roll-off over short cutoff."""
     travel: float
+    """Way of a smooth front from state to state, in correlation lengths."""
     full_cycle: float
+    """1 where the load goes from first contact to pull-off, else 0."""
     n_state: float
+    """States that it is expected to find."""
 
 
 @dataclass(frozen=True, slots=True)

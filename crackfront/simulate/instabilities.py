@@ -27,23 +27,16 @@ _JUMP = "instability"
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """One step between two metastable fronts.
-
-    Attributes
-    ----------
-    start, end : float
-        Loads of the two, penetrations of a sphere. (Units: reduced vertical length)
-    before, after : (n_site,) array
-        The fronts. (Units: reduced lateral length)
-    unstable : bool
-        Whether the front jumped, however small the step.
-    """
+    """One step between two metastable fronts."""
 
     start: float
     end: float
+    """Loads of the two, penetrations of a sphere. (Units: reduced vertical length)"""
     before: Array
     after: Array
+    """The fronts, (n_site,). (Units: reduced lateral length)"""
     unstable: bool
+    """Whether the front jumped, however small the step."""
 
 
 def resolved_motion(
@@ -159,22 +152,15 @@ def measured_instabilities(jumps: Sequence[Motion], field: Field, travel: float)
 
 @dataclass(frozen=True, slots=True)
 class Cluster:
-    """A contiguous part of the perimeter that moved in one instability.
-
-    Attributes
-    ----------
-    area : float
-        Area between the fronts. (Units: reduced lateral length**2)
-    depth : float
-        Largest motion of a site. (Units: reduced lateral length)
-    extent : float
-        Area over depth: the width along the perimeter of a patch that has that depth everywhere.
-        (Units: reduced lateral length)
-    """
+    """A contiguous part of the perimeter that moved in one instability."""
 
     area: float
+    """Area between the fronts. (Units: reduced lateral length**2)"""
     depth: float
+    """Largest motion of a site. (Units: reduced lateral length)"""
     extent: float
+    """Area over depth: the width along the perimeter of a patch that has that depth everywhere.
+    (Units: reduced lateral length)"""
 
 
 def swept_areas(before: Array, after: Array, geometry: Geometry) -> Array:

@@ -51,21 +51,6 @@ _LEAD_IN = 3.0
 class LineSchedule(Schedule):
     """Loads of a straight front on a tile, first forward, then back over the same places.
 
-    Parameters
-    ----------
-    spring : float
-        Length of the springs, L_kappa. (Units: length)
-    length : float
-        Period of the front. (Units: length)
-    period : float
-        Period of the tile along the motion, over which each branch is averaged. (Units: length)
-    lead_in : float
-        Travel before that, after which the start is forgotten. (Units: length)
-    step : float
-        Largest load step. (Units: length)
-    uncorrelated : bool, optional
-        Whether sites know nothing of each other: the limit of weak disorder.
-
     Raises
     ------
     ValueError
@@ -73,11 +58,17 @@ class LineSchedule(Schedule):
     """
 
     spring: float
+    """Length of the springs, L_kappa. (Units: length)"""
     length: float
+    """Period of the front. (Units: length)"""
     period: float
+    """Period of the tile along the motion, over which each branch is averaged. (Units: length)"""
     lead_in: float
+    """Travel before that, after which the start is forgotten. (Units: length)"""
     step: float
+    """Largest load step. (Units: length)"""
     uncorrelated: bool = False
+    """Whether sites know nothing of each other: the limit of weak disorder."""
 
     straight = True
     max_penetration = 0.0
@@ -166,30 +157,20 @@ class LineSchedule(Schedule):
 
 @dataclass(frozen=True, slots=True)
 class LineLoad:
-    """How the straight fronts of a sweep are held and pulled.
-
-    Attributes
-    ----------
-    spring_unit : {"correlation_length", "larkin_length"}
-        What the springs of the spectra are multiples of.
-    length : float
-        Period of the front over the length of its springs.
-    period : float
-        Period of the tile along the motion over the expected rms of the front.
-    transient : float
-        Travel before a branch is averaged, over the same rms.
-    step : float
-        Largest load step, in correlation lengths.
-    uncorrelated : bool
-        Whether sites know nothing of each other: the limit of weak disorder.
-    """
+    """How the straight fronts of a sweep are held and pulled."""
 
     spring_unit: SpringUnit
+    """What the springs of the spectra are multiples of."""
     length: float
+    """Period of the front over the length of its springs."""
     period: float
+    """Period of the tile along the motion over the expected rms of the front."""
     transient: float
+    """Travel before a branch is averaged, over the same rms."""
     step: float
+    """Largest load step, in correlation lengths."""
     uncorrelated: bool = False
+    """Whether sites know nothing of each other: the limit of weak disorder."""
 
     straight: ClassVar[bool] = True
     full_cycle: ClassVar[bool] = False

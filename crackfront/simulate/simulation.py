@@ -28,27 +28,19 @@ from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error, 
 
 @dataclass(frozen=True, slots=True)
 class Numerics:
-    """How simulations are resolved and solved.
-
-    Attributes
-    ----------
-    knobs : Knobs or float
-        Resolution and tolerance, or the standard error of the factor k of either branch that they
-        may leave: measured laws then choose them for every spectrum and amplitude.
-    tile_roll_offs, tile_cutoffs : float
-        Side of the tile in roll-off wavelengths, of other spectra in the longest wavelengths that
-        matter, and at least so many short cutoffs.
-    max_sweeps : int
-        Limit on the sweeps of one load step.
-    solver : str
-        A name in :data:`crackfront.core.solver.relax.SOLVERS`.
-    """
+    """How simulations are resolved and solved."""
 
     knobs: Knobs | float
+    """Resolution and tolerance, or the standard error of the factor k of either branch that they
+    may leave: measured laws then choose them for every spectrum and amplitude."""
     tile_roll_offs: float = 4.0
     tile_cutoffs: float = 200.0
+    """Side of the tile in roll-off wavelengths, of other spectra in the longest wavelengths that
+    matter, and at least so many short cutoffs."""
     max_sweeps: int = DEFAULT_MAX_SWEEPS
+    """Limit on the sweeps of one load step."""
     solver: str = "newton"
+    """A name in :data:`crackfront.core.solver.relax.SOLVERS`."""
 
     def knobs_of(
         self, kind: FieldKind, spectrum: Spectrum, elastic_energy: float, *, straight: bool = False
@@ -110,43 +102,29 @@ def resolution(
 
 @dataclass(frozen=True, slots=True)
 class Simulation:
-    """Everything that determines one cycle, and the name of its spectrum.
-
-    Attributes
-    ----------
-    spectrum_name : str
-        Name of the spectrum in the configuration; the only item without effect on the result.
-    kind : {"roughness", "chemical"}
-        What the spectrum describes: heights, or the work of adhesion itself.
-    spectrum : Spectrum
-        Shape of the spectrum; its plateau has no effect. (Units: reduced lateral length)
-    elastic_energy : float
-        Requested e_el / w_int; for a chemical field the equivalent (w_rms / w_int)^2 / 4.
-    realisation : int
-        Number of the realisation of the noise.
-    sweep_seed : int
-        Seed of the sweep.
-    resolution : Resolution
-        Sizes of the front and of the tile.
-    schedule : Schedule
-        Loads of a kind, such as penetrations of a full cycle, or those of a straight front.
-    solver : Solver
-        How its fronts are found.
-    record_fronts, record_energy : bool
-        What to record beside the curves.
-    """
+    """Everything that determines one cycle, and the name of its spectrum."""
 
     spectrum_name: str
+    """Name of the spectrum in the configuration; the only item without effect on the result."""
     kind: FieldKind
+    """What the spectrum describes: heights, or the work of adhesion itself."""
     spectrum: Spectrum
+    """Shape of the spectrum; its plateau has no effect. (Units: reduced lateral length)"""
     elastic_energy: float
+    """Requested e_el / w_int; for a chemical field the equivalent (w_rms / w_int)^2 / 4."""
     realisation: int
+    """Number of the realisation of the noise."""
     sweep_seed: int
+    """Seed of the sweep."""
     resolution: Resolution
+    """Sizes of the front and of the tile."""
     schedule: Schedule
+    """Loads of a kind, such as penetrations of a full cycle, or those of a straight front."""
     solver: Solver
+    """How its fronts are found."""
     record_fronts: bool = False
     record_energy: bool = False
+    """What to record beside the curves."""
 
     @property
     def key(self) -> str:

@@ -48,18 +48,6 @@ on fine spectra the drive above needs hundreds; fronts deviate by 7 at most."""
 class SteadySchedule(SphereSchedule):
     """Approach from a penetration until w_appr is known well enough, and back over the same radii.
 
-    Parameters
-    ----------
-    start : float
-        Penetration at which the approach begins. (Units: reduced vertical length)
-    max_penetration : float
-        Largest penetration. (Units: reduced vertical length)
-    travel : float
-        Way of a smooth front from state to state, in correlation lengths of w_loc.
-    standard_error : float
-        Standard error of k, of (w_retr - w_appr) / (2 e_el), at which the approach turns: the
-        retraction is taken to scatter as much.
-
     Raises
     ------
     ValueError
@@ -67,9 +55,14 @@ class SteadySchedule(SphereSchedule):
     """
 
     start: float
+    """Penetration at which the approach begins. (Units: reduced vertical length)"""
     max_penetration: float
+    """Largest penetration. (Units: reduced vertical length)"""
     travel: float
+    """Way of a smooth front from state to state, in correlation lengths of w_loc."""
     standard_error: float
+    """Standard error of k, of (w_retr - w_appr) / (2 e_el), at which the approach turns: the
+    retraction is taken to scatter as much."""
 
     def __post_init__(self) -> None:
         for name in ("travel", "standard_error"):

@@ -47,21 +47,14 @@ def stated_spectrum(surface: DataArray) -> Spectrum | None:
 
 @dataclass(frozen=True, slots=True)
 class Modes:
-    """Modes of a periodic tile that have any power, by increasing wavevector.
-
-    Attributes
-    ----------
-    wavevector : (n_mode,) array
-        Magnitudes. (Units: 1 / length)
-    power : (n_mode,) array
-        Part of the mean square, of a mode and its conjugate. (Units: value**2)
-    count : (n_mode,) array
-        2 where the conjugate is another mode, else 1.
-    """
+    """Modes of a periodic tile that have any power, by increasing wavevector."""
 
     wavevector: Array
+    """Magnitudes, (n_mode,). (Units: 1 / length)"""
     power: Array
+    """Part of the mean square, of a mode and its conjugate, (n_mode,). (Units: value**2)"""
     count: Array
+    """2 where the conjugate is another mode, else 1; (n_mode,)."""
 
     @property
     def mean_wavelength(self) -> float:
@@ -108,23 +101,16 @@ def tile_modes(values: Array, pixel: float) -> Modes:
 
 @dataclass(frozen=True, slots=True)
 class TileMeasures:
-    """Measures of the tile of a loop.
-
-    Attributes
-    ----------
-    kind : {"roughness", "chemical"}
-        Whether the mean work of adhesion lies below w_int by e_el, as that of a rough surface.
-    e_el, w_rms : float
-        Energy of full conformity and rms work of adhesion. (Units: w_int)
-    correlation_length : float
-        Mean wavelength of the work of adhesion, the pixel where it is uniform.
-        (Units: reduced lateral length)
-    """
+    """Measures of the tile of a loop."""
 
     kind: FieldKind
+    """Whether the mean work of adhesion lies below w_int by e_el, as that of a rough surface."""
     e_el: float
     w_rms: float
+    """Energy of full conformity and rms work of adhesion. (Units: w_int)"""
     correlation_length: float
+    """Mean wavelength of the work of adhesion, the pixel where it is uniform.
+    (Units: reduced lateral length)"""
 
 
 def tile_measures(adhesion: AdhesionMap, kind: FieldKind | None = None) -> TileMeasures:

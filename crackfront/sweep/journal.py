@@ -27,29 +27,20 @@ from crackfront.sweep.table import row_fingerprint
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """What one line says: a simulation was begun, or it ended.
-
-    Attributes
-    ----------
-    key, label, parts
-        As of the :class:`crackfront.simulate.simulation.Simulation`.
-    size : int
-        Bytes of its file, 0 where it has none.
-    definition : str
-        :func:`crackfront.sweep.table.row_fingerprint` of its row; empty where it was only begun.
-    row : SweepRow or None
-        Its row, if it ended and rows have the same definition now.
-    digest : str
-        Digest of its file, empty where it has none.
-    """
+    """What one line says: a simulation was begun, or it ended."""
 
     key: str
     label: str
     parts: dict[str, str]
+    """Those of the :class:`crackfront.simulate.simulation.Simulation`."""
     size: int = 0
+    """Bytes of its file, 0 where it has none."""
     definition: str = ""
+    """:func:`crackfront.sweep.table.row_fingerprint` of its row; empty where it was only begun."""
     row: SweepRow | None = None
+    """Its row, if it ended and rows have the same definition now."""
     digest: str = ""
+    """Digest of its file, empty where it has none."""
 
 
 class Journal:
@@ -113,23 +104,16 @@ class Journal:
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """A simulation that a living process runs.
-
-    Attributes
-    ----------
-    key, label : str
-        Key and label of the simulation.
-    host, process : str
-        Machine and number of the process.
-    silent_seconds : float
-        Time since its last sign of life, by the clock of this machine. (Units: s)
-    """
+    """A simulation that a living process runs."""
 
     key: str
     label: str
+    """Key and label of the simulation."""
     host: str
     process: str
+    """Machine and number of the process."""
     silent_seconds: float
+    """Time since its last sign of life, by the clock of this machine. (Units: s)"""
 
 
 _SECONDS_TO_LIVE = 120.0

@@ -53,21 +53,14 @@ class Holding:
 
 @dataclass(frozen=True, slots=True)
 class Inventory:
-    """What a store lacks, and why.
-
-    Attributes
-    ----------
-    missing : tuple of Simulation
-        What is to be computed.
-    unreadable : tuple of str
-        A sentence for every file that is of no use.
-    stale : tuple of tuple of str
-        Of every missing simulation that is stored with another key the parts of it that changed.
-    """
+    """What a store lacks, and why."""
 
     missing: tuple[Simulation, ...]
+    """What is to be computed."""
     unreadable: tuple[str, ...]
+    """A sentence for every file that is of no use."""
     stale: tuple[tuple[str, ...], ...]
+    """Of every missing simulation that is stored with another key the parts of it that changed."""
 
     def stale_sentence(self) -> str:
         """How many are stale for which reason; empty where none is."""
@@ -78,22 +71,16 @@ class Inventory:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far one spectrum is.
-
-    Attributes
-    ----------
-    done, failed, running, waiting : int
-        Simulations with values; rows without; those that a process is at; all others.
-    seconds : float
-        Processor time that is expected for those that are running or waiting. (Units: s)
-    """
+    """How far one spectrum is."""
 
     name: str
     done: int
     failed: int
     running: int
     waiting: int
+    """Simulations with values; rows without; those that a process is at; all others."""
     seconds: float
+    """Processor time that is expected for those that are running or waiting. (Units: s)"""
 
 
 @dataclass(frozen=True, slots=True)

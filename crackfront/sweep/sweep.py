@@ -56,38 +56,26 @@ class FitRange:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """All parameters of a sweep, in reduced units.
-
-    Attributes
-    ----------
-    kind : {"roughness", "chemical"}
-        What the spectra describe.
-    scales : Scales or None
-        Scene that the configuration was written for, where it was in SI units.
-    elastic_energies : tuple of float
-        Requested e_el / w_int.
-    n_realisation : int
-        Realisations of the noise for every spectrum.
-    numerics : Numerics
-        How simulations are resolved and solved.
-    schedule : Schedule or LineLoad
-        Loads of all simulations, or how straight fronts are held.
-    record : tuple of {"fronts", "energy"}
-        What to record beside the curves.
-    failed_fraction : float
-        Part of the simulations that may end without a value.
-    """
+    """All parameters of a sweep, in reduced units."""
 
     seed: int
     kind: FieldKind
+    """What the spectra describe."""
     scales: Scales | None
+    """Scene that the configuration was written for, where it was in SI units."""
     spectra: tuple[NamedSpectrum, ...]
     elastic_energies: tuple[float, ...]
+    """Requested e_el / w_int."""
     n_realisation: int
+    """Realisations of the noise for every spectrum."""
     numerics: Numerics
+    """How simulations are resolved and solved."""
     schedule: Schedule | LineLoad
+    """Loads of all simulations, or how straight fronts are held."""
     record: tuple[Literal["fronts", "energy"], ...]
+    """What to record beside the curves."""
     failed_fraction: float
+    """Part of the simulations that may end without a value."""
     fit: FitRange
 
     def named(self, name: str) -> NamedSpectrum:

@@ -23,19 +23,13 @@ LINES = "lines of journals"
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """What was found in a folder.
-
-    Attributes
-    ----------
-    counts : dict
-        Numbers of whole and damaged files by their folder, and of such lines of journals.
-    damaged, missing : tuple of str
-        Files that are not as they were written, and absent ones that a list or a journal names.
-    """
+    """What was found in a folder."""
 
     counts: dict[str, Counter[Integrity]]
+    """Numbers of whole and damaged files by their folder, and of such lines of journals."""
     damaged: tuple[str, ...]
     missing: tuple[str, ...]
+    """Files that are not as they were written, and absent ones that a list or a journal names."""
 
 
 def verification(place: Path) -> Verification:
