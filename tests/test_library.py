@@ -20,11 +20,10 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL
-from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.files import cycle_record
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.surfaces import chosen_simulation, surface_adhesion
-from crackfront.simulate.tiles import tile_modes
+from crackfront.simulate.simulation import simulation_adhesion, simulation_field
+from crackfront.simulate.surfaces import chosen_simulation, surface_adhesion, tile_modes
 from crackfront.sweep import parallel, tasks
 from crackfront.topography.bands import scan
 from crackfront.topography.measures import measured_surface

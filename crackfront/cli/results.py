@@ -83,9 +83,9 @@ def figures(configuration: Path, output: Path | None) -> None:
     fill_store(store, missing, origin)
     result = read_simulation(store.path(simulation), simulation)
     drawn = {
-        "hysteresis": hysteresis_figure(fitted.table, fitted),
+        "hysteresis": hysteresis_figure(fitted),
         "loop": simulation_figure(result),
-        "factor": factor_figure(fitted.table, fitted),
+        "factor": factor_figure(fitted),
     }
     for name, figure in drawn.items():
         for path in save_figure(figure, store.folder / "figures" / name):

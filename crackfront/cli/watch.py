@@ -27,12 +27,7 @@ _LINE_START, _LINE_END = "\r", "\x1b[K"
 class Progress:
     """What is called at every new state and prints it, with the time that is left.
 
-    Parameters
-    ----------
-    expected : int
-        States that the cycle will have, roughly.
-    every_state : bool, optional
-        Whether a log gets a line for every state, not one now and then.
+    A cycle is expected to have so many states. A log gets a line now and then, or for every state.
     """
 
     def __init__(self, expected: int, *, every_state: bool = False) -> None:

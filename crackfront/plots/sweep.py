@@ -22,8 +22,6 @@ from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.law import WEAKEST, law_value, pinning_factor, shipped_law, slope_breadth
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import LARGE
-from crackfront.analysis.table import SweepTable
-from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.plots.parts import (
     Series,
@@ -51,19 +49,19 @@ SHAPES_EXPLAINED = "grey line: spectra of one shape"
 """What figures say of their points below themselves."""
 
 
-def hysteresis_figure(table: SweepTable, fit: SweepFit) -> Figure:
+def hysteresis_figure(fit: SweepFit) -> Figure:
     """Hysteresis against the variance of w_loc, with the spectra in an inset (SI Fig. S-5)."""
     with house_style():
         figure = blank_figure(COLUMN, 1.04 * COLUMN)
         axes = figure.add_subplot()
-        draw_hysteresis(axes, table, fit)
+        draw_hysteresis(axes, fit)
         inset = axes.inset_axes((0.685, 0.135, 0.29, 0.25))
-        draw_spectra(inset, table, fit.kind)
+        draw_spectra(inset, fit)
         explain(figure, f"{POINTS_EXPLAINED}; arrows: means below the edge; inset: spectra")
         return figure
 
 
-def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
+def factor_figure(fit: SweepFit) -> Figure:
     """Dependence of k on disorder and, averaged over the range, on correlation length.
 
     Of straight fronts it is that on size at every amplitude, and that of the infinite contact on
@@ -73,11 +71,11 @@ def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
         figure = blank_figure(PAGE, 0.45 * PAGE)
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
         text = POINTS_EXPLAINED
-        if table.straight:
-            _draw_line_factors(left, right, table, fit)
+        if fit.table.straight:
+            _draw_line_factors(left, right, fit)
         else:
-            draw_factor_by_disorder(left, table, fit)
-            draw_factor_by_length(right, table, fit)
+            draw_factor_by_disorder(left, fit)
+            draw_factor_by_length(right, fit)
             set_factor_limits(left, fit)
             figure.legend(*legend_entries(left), loc="outside upper center", ncols=3)
             text += f"; {SHIFTS_EXPLAINED} (a); {SHAPES_EXPLAINED} (b)"
@@ -87,11 +85,12 @@ def factor_figure(table: SweepTable, fit: SweepFit) -> Figure:
         return figure
 
 
-def _draw_line_factors(left: Axes, right: Axes, table: SweepTable, fit: SweepFit) -> None:
+def _draw_line_factors(left: Axes, right: Axes, fit: SweepFit) -> None:
     """Draw k of straight fronts against size, and its limit against disorder."""
-    draw_factor_by_size(left, table, fit)
+    draw_factor_by_size(left, fit)
     draw_infinite_law(right)
-    families, cells = spectrum_families(table), fit.cells
+    table, cells = fit.table, fit.cells
+    families = spectrum_families(table)
     for index, family in enumerate(families):
         label = "" if family in families[:index] else spectrum_label(table, index)
         series = Series(spectrum_colour(family), spectrum_marker(family), label)
@@ -104,9 +103,10 @@ def _draw_line_factors(left: Axes, right: Axes, table: SweepTable, fit: SweepFit
     left.set_ylim(0.0, 1.1 * PERTURBATION_FACTOR)
 
 
-def draw_factor_by_size(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
+def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
     """Draw mean k of straight fronts against g, a colour an amplitude, a marker a spectrum."""
-    families, size, law = spectrum_families(table), fit.cells.size, shipped_law()
+    table, size, law = fit.table, fit.cells.size, shipped_law()
+    families = spectrum_families(table)
     spectra = (table.shape_of(index) for index in range(table.spectrum.size))
     breadth = float(np.mean([slope_breadth(fit.kind, spectrum) for spectrum in spectra]))
     breadth = min(breadth, law.breadth[1])
@@ -150,7 +150,7 @@ def _ends(values: Array, margin: float) -> Array:
     return np.array([np.nanmin(values) / margin, np.nanmax(values) * margin])
 
 
-def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
+def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the law and the theory."""
     variance, hysteresis = fit.cells.w_rms**2, fit.cells.hysteresis
     ends = _ends(variance, 1.8)
@@ -159,7 +159,7 @@ def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     above = np.nan_to_num(hysteresis.value) > floor
     reach = np.fmax(hysteresis.low[above], floor)
     lowest = min(float(np.min(reach, initial=np.inf)), PAPER_FACTOR / 2 * ends[0]) / 1.6
-    for index, series in enumerate(sweep_series(table)):
+    for index, series in enumerate(sweep_series(fit.table)):
         row = hysteresis.at(index)
         below = np.nan_to_num(row.value, nan=np.inf) <= floor
         draw_below(axes, index, series.colour, variance[index, below])
@@ -174,19 +174,19 @@ def draw_hysteresis(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
     axes.set_xlabel(r"disorder $(w_\mathrm{rms}/w_\mathrm{int})^2$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
     handles, labels = legend_entries(axes)
-    if table.straight:
-        families = spectrum_families(table)
+    if fit.table.straight:
+        families = spectrum_families(fit.table)
         for index in (index for index, family in enumerate(families) if family == 0):
-            marker = sweep_series(table)[index].marker
+            marker = sweep_series(fit.table)[index].marker
             handles.append(Line2D([], [], color="0.4", linestyle="none", marker=marker))
             labels.append(spring_label(fit, index))
     axes.legend(handles, labels, loc="upper left")
 
 
-def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -> None:
+def draw_spectra(axes: Axes, fit: SweepFit) -> None:
     """Draw the spectra (of heights or of w_loc), all scaled to one variance of w_loc."""
-    lowest = np.pi / np.max(table.roll_off)
-    families, densities = spectrum_families(table), []
+    table, kind, densities = fit.table, fit.kind, []
+    lowest, families = np.pi / np.max(table.roll_off), spectrum_families(table)
     for index in (families.index(family) for family in dict.fromkeys(families)):
         spectrum = table.shape_of(index)
         scale = spectrum.elastic_energy if kind == "roughness" else spectrum.mean_square(0)
@@ -208,15 +208,15 @@ def draw_spectra(axes: Axes, table: SweepTable, kind: FieldKind = "roughness") -
         axis.set_minor_formatter(NullFormatter())
 
 
-def draw_factor_by_disorder(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
+def draw_factor_by_disorder(axes: Axes, fit: SweepFit) -> None:
     """Draw mean k against measured e_el, the law, the pooled mean over the range and the theory.
 
     Points of different spectra are set off sideways by up to 6% so that their bars do not hide
     each other.
     """
-    energy, n_spectrum = fit.cells.e_el, table.spectrum.size
+    energy, n_spectrum = fit.cells.e_el, fit.table.spectrum.size
     aside = 1 + 0.12 * (np.arange(n_spectrum) - (n_spectrum - 1) / 2) / max(n_spectrum - 1, 1)
-    for index, series in enumerate(sweep_series(table)):
+    for index, series in enumerate(sweep_series(fit.table)):
         abscissa = energy[index] * aside[index]
         draw_estimates(axes, series, abscissa, fit.cells.factor.at(index), fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (energy, factor))
@@ -228,17 +228,17 @@ def draw_factor_by_disorder(axes: Axes, table: SweepTable, fit: SweepFit) -> Non
     axes.set_xlabel(r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$")
 
 
-def draw_factor_by_length(axes: Axes, table: SweepTable, fit: SweepFit) -> None:
+def draw_factor_by_length(axes: Axes, fit: SweepFit) -> None:
     """Draw k, averaged over the range, against the correlation length.
 
     Spectra of one shape are joined by a line.
     """
-    length, factor = table.correlation_length, fit.spectra.factor
-    for shape in np.unique(table.shape):
-        family = np.flatnonzero(table.shape == shape)
+    length, factor, shapes = fit.table.correlation_length, fit.spectra.factor, fit.table.shape
+    for shape in np.unique(shapes):
+        family = np.flatnonzero(shapes == shape)
         family = family[np.argsort(length[family])]
         axes.plot(length[family], factor.value[family], color="0.6", linewidth=0.6, zorder=1)
-    for index, series in enumerate(sweep_series(table)):
+    for index, series in enumerate(sweep_series(fit.table)):
         here = factor.at([index])
         draw_estimates(axes, replace(series, label=""), length[[index]], here, np.array([True]))
     ends = _ends(length, 1.6)

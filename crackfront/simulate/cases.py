@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from crackfront.core.cycle.follow import Load
     from crackfront.core.field.fields import Field, Interpolation
     from crackfront.simulate.fields import PolarSamples
-    from crackfront.simulate.tiles import TileMeasures
+    from crackfront.simulate.surfaces import TileMeasures
 
 _PLACE, _DEPTH = (Range(-bounds.most, bounds.most) for bounds in (NUMBER, PENETRATION))
 """What the parser accepts; loads refuse negative steps and penetrations themselves."""
@@ -84,7 +84,7 @@ class SphereCase:
         from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
         from crackfront.core.cycle.touch import checked_touch
         from crackfront.simulate.costs import affordable_seconds
-        from crackfront.simulate.tiles import tile_measures
+        from crackfront.simulate.surfaces import tile_measures
 
         step = DEFAULT_STEP if self.step is None else self.step
         way = LoadSchedule(self.max_penetration, step).loads()

@@ -166,15 +166,7 @@ class Cluster:
 def swept_areas(before: Array, after: Array, geometry: Geometry) -> Array:
     """Area that each site of a front sweeps on its way to another, never negative.
 
-    Parameters
-    ----------
-    before, after, geometry
-        As of :func:`swept_clusters`.
-
-    Returns
-    -------
-    (n_site,) array
-        Areas. (Units: reduced lateral length**2)
+    Parameters are those of :func:`swept_clusters`. (Units: reduced lateral length**2)
     """
     # The weight, of a sphere the radius, is linear: that of the middle makes a sector exact.
     width = weight(geometry, 0.0) + weight_slope(geometry) * (before + after) / 2

@@ -131,18 +131,10 @@ class LineSchedule(Schedule):
         correlation_length: float = math.nan,
         elastic_energy: float,
     ) -> CycleRecord:
-        """Both branches over the lead-in and a period.
+        """Both branches over the lead-in and a period, `STEADY` where both are whole.
 
-        Parameters
-        ----------
-        field, solver, recorder, correlation_length, elastic_energy
-            As of :meth:`crackfront.core.cycle.schedule.Schedule.run`; e_el decides how far behind
-            the load a branch begins, and the correlation length has no effect.
-
-        Returns
-        -------
-        CycleRecord
-            The states; its status is `STEADY` where both branches are whole.
+        Parameters are those of :meth:`crackfront.core.cycle.schedule.Schedule.run`; e_el decides
+        how far behind the load a branch begins, and the correlation length has no effect.
         """
         behind = _BEHIND * 4 * elastic_energy * self.spring + self.step
         directions: tuple[Direction, Direction] = (1, -1)

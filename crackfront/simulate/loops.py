@@ -32,18 +32,19 @@ from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.provenance import __version__
-from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
 from crackfront.simulate.run import compile_solver
-from crackfront.simulate.simulation import Simulation, missed_error, stated_error
+from crackfront.simulate.simulation import Simulation, missed_error, simulation_field, stated_error
 from crackfront.simulate.surfaces import (
+    TileMeasures,
     chosen_simulation,
     refuse_no_fraction,
+    stated_spectrum,
     surface_adhesion,
     surface_kind,
+    tile_measures,
 )
-from crackfront.simulate.tiles import TileMeasures, stated_spectrum, tile_measures
 
 _KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
 

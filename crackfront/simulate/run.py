@@ -17,9 +17,8 @@ from crackfront.core.cycle.record import Checkpoint, CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.solver.window import HALF_BAND
-from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.lines import LineSchedule
-from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
 
 
 @dataclass(frozen=True, slots=True)

@@ -88,13 +88,9 @@ class SteadySchedule(SphereSchedule):
 
         Each branch begins at the circle of `forward_circle`. The approach goes on until k has the
         requested standard error or the largest penetration is reached; the retraction from about
-        its largest radius until it has left the radii over which the approach was steady.
-
-        Parameters
-        ----------
-        field, solver, recorder, correlation_length, elastic_energy
-            As of :meth:`crackfront.core.cycle.schedule.Schedule.run`. Every site must travel a
-            correlation length before a branch counts as steady.
+        its largest radius until it has left the radii over which the approach was steady, which
+        a branch is once every site has travelled a correlation length. Parameters are those of
+        :meth:`crackfront.core.cycle.schedule.Schedule.run`.
 
         Returns
         -------

@@ -225,14 +225,9 @@ def _entry(line: bytes, definition: str) -> Entry | None:
 
 
 class RowIndex:
-    """Rows in the journals of a store, by the labels of their simulations.
+    """Rows in the journals of the store in a folder, by the labels of their simulations.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the store.
-    checked : bool, optional
-        Whether the file of a row must have the digest that was stored with it, or its size alone.
+    The file of a row must have the digest that was stored with it; unless `checked`, its size only.
     """
 
     def __init__(self, folder: Path, *, checked: bool = True) -> None:

@@ -14,7 +14,7 @@ from crackfront.core import jkr
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import first_place, last_place
 from crackfront.core.outcome import Direction
-from crackfront.simulate.contact import simulation_field
+from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.steady import forward_circle
 from studies.accuracy.scenes import SCENES, Scene
 from studies.accuracy.study import BRANCHES, branch_record

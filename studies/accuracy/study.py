@@ -17,9 +17,9 @@ from crackfront.core.field.fields import Field
 from crackfront.core.outcome import Direction
 from crackfront.core.solver.relax import Solver
 from crackfront.core.variables import ADHESION, FORCE, variable
-from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.costs import featured_cost, features
 from crackfront.simulate.laws import Knobs
+from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.steady import forward_circle
 from studies.accuracy.scenes import Progress, Scene, Setting
 

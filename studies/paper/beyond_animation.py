@@ -16,8 +16,8 @@ from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL
 from crackfront.plots.fronts import closed_front, draw_field
 from crackfront.plots.parts import FORCE_LABEL, PENETRATION_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
-from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.run import compile_solver
+from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from studies.paper.drawing import BRANCHES, Animation
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rough import RoughCycleParameters, patch_of, whole_cycle

@@ -23,7 +23,7 @@ from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.outcome import Status
 from crackfront.plots.style import BLACK, ORANGE, PAGE, blank_figure, house_style
-from crackfront.simulate.contact import simulation_adhesion, simulation_field
+from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from studies.paper.drawing import BRANCHES, name_panels
 from studies.paper.figure import Check, Figure, Progress, close_to, values_of
 from studies.paper.measured import ForceRadius, fitted_adhesion

@@ -24,10 +24,16 @@ from crackfront.core.solver.relax import Newton, Solver
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
-from crackfront.simulate.contact import simulation_adhesion, simulation_field
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run import compile_solver
-from crackfront.simulate.simulation import Numerics, Simulation, missed_error, simulation_of
+from crackfront.simulate.simulation import (
+    Numerics,
+    Simulation,
+    missed_error,
+    simulation_adhesion,
+    simulation_field,
+    simulation_of,
+)
 from studies.paper.figure import Check
 
 ONE_DIGIT = 0.5

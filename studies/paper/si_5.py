@@ -209,10 +209,10 @@ def parametric_study_figure(study: ParametricStudy) -> Drawing:
     with house_style():
         figure = blank_figure(PAGE, 0.68 * PAGE)
         panels = figure.subplot_mosaic([["a", "b"], ["a", "c"]], width_ratios=(1.2, 1))
-        draw_hysteresis(panels["a"], fit.table, fit)
-        draw_spectra(panels["a"].inset_axes((0.7, 0.12, 0.28, 0.26)), fit.table, fit.kind)
-        draw_factor_by_disorder(panels["b"], fit.table, fit)
-        draw_factor_by_length(panels["c"], fit.table, fit)
+        draw_hysteresis(panels["a"], fit)
+        draw_spectra(panels["a"].inset_axes((0.7, 0.12, 0.28, 0.26)), fit)
+        draw_factor_by_disorder(panels["b"], fit)
+        draw_factor_by_length(panels["c"], fit)
         for name in ("b", "c"):
             set_factor_limits(panels[name], fit)
         panels["c"].set_ylabel("mean $k$")

@@ -27,11 +27,10 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variable
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
-from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.files import cycle_dataset, write_simulation
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.run import compile_solver, run_simulation
-from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
+from crackfront.simulate.simulation import Numerics, Simulation, simulation_field, simulation_of
 from crackfront.simulate.steady import SteadySchedule
 from studies.pages import markdown_table
 from studies.speed.machine import peak_memory, restart_peak

@@ -62,11 +62,11 @@ def line_labelled(axes, words):
 
 
 def test_the_theory_lines_lie_where_theory_says(table, fit):
-    axes = hysteresis_figure(table, fit).axes[0]
+    axes = hysteresis_figure(fit).axes[0]
     for factor, words in ((3, "paper"), (4, "perturbation")):
         variance, hysteresis = line_labelled(axes, words).get_data()
         np.testing.assert_allclose(hysteresis, factor * variance / 2)
-    pooled = line_labelled(factor_figure(table, fit).axes[0], "pooled")
+    pooled = line_labelled(factor_figure(fit).axes[0], "pooled")
     np.testing.assert_allclose(pooled.get_data(), ([0.01, 0.15], [fit.pooled.factor.value] * 2))
 
 
@@ -82,7 +82,7 @@ def curves(axes, colour):
 
 
 def test_the_law_is_drawn_for_every_spectrum_through_its_values_at_the_amplitudes(table, fit):
-    hysteresis, factor = hysteresis_figure(table, fit).axes[0], factor_figure(table, fit).axes[0]
+    hysteresis, factor = hysteresis_figure(fit).axes[0], factor_figure(fit).axes[0]
     for index, colour in enumerate(COLOURS[:4]):
         ((variance, jump),) = (line.get_data() for line in curves(hysteresis, colour))
         ((energy, k),) = (line.get_data() for line in curves(factor, colour))
@@ -139,7 +139,7 @@ def line_table():
 
 def test_straight_fronts_share_the_colour_of_their_spectrum_and_differ_by_marker(line_table):
     fit = fit_sweep(line_table, lowest_elastic_energy=0.01, highest_elastic_energy=0.04)
-    axes = hysteresis_figure(line_table, fit).axes[0]
+    axes = hysteresis_figure(fit).axes[0]
     points = [container.lines[0] for container in axes.containers]
     assert [to_hex(line.get_color()).upper() for line in points] == [
         *[COLOURS[0]] * 3,
@@ -158,7 +158,7 @@ def test_straight_fronts_share_the_colour_of_their_spectrum_and_differ_by_marker
 
 def test_k_of_straight_fronts_is_shown_against_their_size_beside_the_law(line_table):
     fit = fit_sweep(line_table, lowest_elastic_energy=0.01, highest_elastic_energy=0.04)
-    left, right = factor_figure(line_table, fit).axes
+    left, right = factor_figure(fit).axes
     points = [container.lines[0].get_data() for container in left.containers]
     sizes, factors = (np.sort(np.concatenate(column)) for column in zip(*points, strict=True))
     np.testing.assert_allclose(sizes, np.sort(fit.cells.size, axis=None))
@@ -174,7 +174,7 @@ def test_k_of_straight_fronts_is_shown_against_their_size_beside_the_law(line_ta
 
 
 def test_points_are_the_means_over_realisations(table, fit):
-    axes = hysteresis_figure(table, fit).axes[0]
+    axes = hysteresis_figure(fit).axes[0]
     drawn = axes.containers[0].lines[0]
     np.testing.assert_allclose(drawn.get_xdata(), 4 * np.array([0.01, 0.05, 0.15]))
     expected = np.mean(table.w_retr - table.w_appr, axis=-1)[0, 1:]
@@ -182,7 +182,7 @@ def test_points_are_the_means_over_realisations(table, fit):
 
 
 def test_every_positive_mean_lies_within_the_axes_and_others_are_arrows(table, fit):
-    axes = hysteresis_figure(table, fit).axes[0]
+    axes = hysteresis_figure(fit).axes[0]
     low, high = axes.get_ylim()
     values = fit.cells.hysteresis.value
     shown = values[np.isfinite(values) & (values > 0)]
@@ -195,7 +195,7 @@ def test_the_labels_of_a_narrow_range_of_disorder_do_not_meet(table):
     strongest = {name: one[:, 2:] for name, one in arrays.items() if np.ndim(one) > 1}
     narrow = replace(table, **strongest, e_el_requested=table.e_el_requested[2:])
     figure = hysteresis_figure(
-        narrow, fit_sweep(narrow, lowest_elastic_energy=0.05, highest_elastic_energy=0.15)
+        fit_sweep(narrow, lowest_elastic_energy=0.05, highest_elastic_energy=0.15)
     )
     figure.draw_without_rendering()
     axis = figure.axes[0].xaxis
@@ -208,14 +208,14 @@ def test_the_labels_of_a_narrow_range_of_disorder_do_not_meet(table):
 
 
 def test_spectra_differ_by_colour_and_marker(table, fit):
-    axes = factor_figure(table, fit).axes[0]
+    axes = factor_figure(fit).axes[0]
     filled = [c.lines[0] for c in axes.containers if c.lines[0].get_markerfacecolor() != "white"]
     assert [to_hex(line.get_color()).upper() for line in filled] == list(COLOURS[:4])
     assert [line.get_marker() for line in filled] == list(MARKERS[:4])
 
 
 def test_the_inset_compares_spectra_of_equal_elastic_energy(table, fit):
-    (inset,) = hysteresis_figure(table, fit).axes[0].child_axes
+    (inset,) = hysteresis_figure(fit).axes[0].child_axes
     for index, line in enumerate(inset.get_lines()):
         wavevector, density = (np.asarray(values)[:-1] for values in line.get_data())
         spectrum = SelfAffineSpectrum(
@@ -225,9 +225,9 @@ def test_the_inset_compares_spectra_of_equal_elastic_energy(table, fit):
 
 
 def test_a_figure_is_the_same_file_again_whatever_the_user_settings(table, fit, tmp_path):
-    first = save_figure(hysteresis_figure(table, fit), tmp_path / "one" / "figure.0")
+    first = save_figure(hysteresis_figure(fit), tmp_path / "one" / "figure.0")
     with matplotlib.rc_context({"font.size": 20.0, "lines.linewidth": 9.0}):
-        second = save_figure(hysteresis_figure(table, fit), tmp_path / "two" / "figure.0")
+        second = save_figure(hysteresis_figure(fit), tmp_path / "two" / "figure.0")
         assert matplotlib.rcParams["font.size"] == 20.0
     assert [path.name for path in first] == ["figure.0.pdf", "figure.0.png"]
     for one, two in zip(first, second, strict=True):
@@ -236,7 +236,7 @@ def test_a_figure_is_the_same_file_again_whatever_the_user_settings(table, fit, 
 
 
 def test_k_is_shown_against_disorder_and_size(table, fit):
-    left, right = factor_figure(table, fit).axes
+    left, right = factor_figure(fit).axes
     np.testing.assert_allclose(
         left.containers[0].lines[0].get_ydata(), fit.cells.factor.value[0, 1:]
     )

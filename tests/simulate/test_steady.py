@@ -20,9 +20,8 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.contact import simulation_adhesion
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Resolution, Simulation
+from crackfront.simulate.simulation import Resolution, Simulation, simulation_adhesion
 from crackfront.simulate.steady import SteadySchedule, forward_circle, own_part, standard_error
 
 SPECTRUM = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)

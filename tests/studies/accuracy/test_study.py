@@ -13,8 +13,8 @@ from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
-from crackfront.simulate.contact import simulation_field
 from crackfront.simulate.laws import chosen_knobs
+from crackfront.simulate.simulation import simulation_field
 from studies.accuracy.files import errors_dataset, read_errors
 from studies.accuracy.scenes import SCENES, with_knob
 from studies.accuracy.study import (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crackfront.core.field.rays import front_adhesion
-from crackfront.simulate.contact import simulation_field
+from crackfront.simulate.simulation import simulation_field
 from studies.paper.rough import patch_of
 from tests.studies.paper.made import computed, drawn_from_file, failed, is_labelled, parameters
 
