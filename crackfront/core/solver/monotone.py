@@ -31,6 +31,7 @@ from crackfront.core.solver.forces import (
     Front,
     drive_sites,
     harden,
+    largest_entry,
     place_sites,
     touch_samples,
 )
@@ -63,8 +64,12 @@ _SWEEPS = 30
 _WASTE = 0.5
 """Most pairs of FFTs, over the sweeps, that went into steps shorter than as many sweeps."""
 
-_SLOW = 0.1
-"""Way of a step, over that of as many sweeps without a field, below which needles hold it."""
+_SLOW, _STIFF = 0.1, 8.0
+"""Way of a step, over that of as many sweeps without a field, below which needles hold it.
+
+They do where a site's own force is so many times as stiff as the line against it; elsewhere the
+line itself is slow.
+"""
 
 _BETWEEN = 13
 """Sites added on each side of the active ones; those that then touch share a window."""
@@ -111,6 +116,7 @@ def _relax(place, problem, max_sweeps):
     residual, first_least, pairs, updates = np.inf, 0.0, 0, 0
     share, collective, doubted = _LEVEL, False, 0
     own, needles, swept, stepped, wasted = window.coupling[LONGEST], False, np.inf, 0, 0
+    hardest = 0.0
     code = place_sites(problem, front)
     while code == CONVERGED:
         apply_filter(work.stiff_line, place, line)
@@ -155,13 +161,16 @@ def _relax(place, problem, max_sweeps):
             moved, drive = _sums(front, before)
             if needles and moved < used * swept:
                 wasted += used
-            needles |= code == NEEDLES or (not calm and moved < _SLOW * used * drive / own)
+            hardest = max(hardest, largest_entry(work.hardening))
+            is_held = hardest > _STIFF * own and moved < _SLOW * used * drive / own
+            needles |= code == NEEDLES or (not calm and is_held)
             if code != BLOCKED and code != NEEDLES:
                 continue
             n_run, _ = _list_runs(problem, front, level, runs)
         code, used, stiffest = _relax_runs(window, problem, front, runs[:n_run], level)
         updates += used
-        needles |= stiffest > RIGID * own
+        hardest = max(hardest, stiffest)
+        needles |= hardest > RIGID * own
         if needles and code == CONVERGED:
             code, swept = sweep_from(problem, front, before, own)
             updates += count
