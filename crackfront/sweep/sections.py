@@ -78,6 +78,17 @@ class SurfaceSection(_ReadingSection):
         return TabulatedSpectrum(lengths, densities), surface.checksum
 
 
+class TableSection(Section):
+    """Spectral densities at wavelengths, as in `TabulatedSpectrum`; amplitudes scale them."""
+
+    wavelengths: Annotated[tuple[Positive, ...], Field(min_length=2)]
+    densities: Annotated[tuple[Positive, ...], Field(min_length=2)]
+
+    def shape(self) -> tuple[TabulatedSpectrum, str]:
+        """Spectrum in the unit of length of the configuration; no ending of its name."""
+        return TabulatedSpectrum(self.wavelengths, self.densities), ""
+
+
 class SpectrumSection(Section):
     """Shape of one spectrum: self-affine by its parameters, or another by its own section.
 
@@ -89,6 +100,7 @@ class SpectrumSection(Section):
     roll_off: Positive | None = None
     hurst: Annotated[float, Field(gt=0, le=1)] | None = None
     surface: SurfaceSection | None = None
+    table: TableSection | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> SpectrumSection:
@@ -96,7 +108,7 @@ class SpectrumSection(Section):
             others = "short_cutoff", "roll_off", "hurst", *sections[1:]
             _refuse_overruled(self, sections[0], others)
         elif missing := _missing(self, ("short_cutoff", "hurst")):
-            raise refusal(f"key {', '.join(missing)} is missing; add it, or name a surface")
+            raise refusal(f"key {', '.join(missing)} is missing; add it, or a table or surface")
         if self.roll_off and self.short_cutoff and self.roll_off < self.short_cutoff:
             raise refusal(
                 f"roll_off {self.roll_off:g} is shorter than short_cutoff {self.short_cutoff:g}; "

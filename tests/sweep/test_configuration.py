@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 from crackfront.analysis.law import slope_breadth
+from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.data.provenance import provenance
 from crackfront.data.section import ConfigurationError
@@ -455,6 +456,14 @@ def test_a_spectrum_may_be_that_of_measurements(tmp_path):
     assert first.key == replace(first, spectrum=item.spectrum.amplified(2.0)).key
 
 
+def test_a_spectrum_may_be_a_table_of_densities(tmp_path):
+    table = "{name: ring, table: {wavelengths: [0.12, 0.1], densities: [1.0, 2.0]}}"
+    text = changed("{name: flat, short_cutoff: 0.1, hurst: 1.0}", table)
+    sweep = load_configuration(written(tmp_path, text))
+    assert sweep.spectra[0].name == "ring"
+    assert sweep.spectra[0].spectrum == TabulatedSpectrum((0.12, 0.1), (1.0, 2.0))
+
+
 def test_a_surface_is_read_in_the_words_of_the_commands(tmp_path):
     words = "channel: 0, crop: '1um:6um,1um:6um', detrend: 3, mask: '2um:3um,2um:3um'"
     file = SCANS / "nanodiamond-detail.al3d"
@@ -560,8 +569,15 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
             "spectra[0].surface.file[0] is 3; it must be the name of a file",
         ),
         (
+            changed(
+                "{name: flat, short_cutoff: 0.1, hurst: 1.0}",
+                "{name: table, table: {wavelengths: [1, 2], densities: [1, 1]}}",
+            ),
+            "spectra[0].table: the wavelengths of a table must fall",
+        ),
+        (
             changed("{name: flat, short_cutoff: 0.1, hurst: 1.0}", "{name: flat, hurst: 1.0}"),
-            "spectra[0]: key short_cutoff is missing; add it, or name a surface",
+            "spectra[0]: key short_cutoff is missing; add it, or a table or surface",
         ),
     ],
 )
