@@ -10,9 +10,9 @@ along the front times the number of its states. Each knob has a law of its own,
 
 where x is the number of sites per short cutoff (the front is smooth, so that the error falls
 exponentially), or the logarithm of samples, pixels or tolerance. Between measured shapes and
-amplitudes errors are interpolated. Scatters of different knobs are added in quadrature, biases as
-they are where they have one sign: too few samples make the hysteresis too small, all else makes it
-too large.
+amplitudes errors are interpolated; beyond the amplitudes they are not known. Scatters of different
+knobs are added in quadrature, biases as they are where they have one sign: too few samples make the
+hysteresis too small, all else makes it too large.
 """
 
 from __future__ import annotations
@@ -59,6 +59,9 @@ _NARROW: dict[FieldKind, str] = {"chemical": "chemical", "roughness": "flat"}
 
 _ONSET = 0.7
 """Larkin length, in radii of the sphere, at which scatter was largest in all shapes."""
+
+_LEEWAY = 1.05
+"""By how much the e_el of a tile may lie beyond the measured amplitudes, relative to them."""
 
 _RANGES: dict[Knob, tuple[float, float]] = {
     "sites": (1.4, 12.0),
@@ -219,7 +222,14 @@ def chosen_knobs(
         e_el / w_int.
     straight : bool, optional
         Whether the front is straight, not that of a sphere.
+
+    Raises
+    ------
+    ValueError
+        If errors were not measured at such an e_el, or for spectra as narrow.
     """
+    if refusal := _beyond(kind, spectrum, elastic_energy):
+        raise ValueError(f"error is {error:g}, but {refusal}")
     place = _place(kind, spectrum, elastic_energy, straight)
     found = _chosen_values(error, place, usual_size(spectrum, straight) * place.independent)
     return Knobs(
@@ -230,6 +240,35 @@ def chosen_knobs(
         pixels_per_cutoff=found["pixels"],
         tolerance=found["tolerance"],
     )
+
+
+def _beyond(kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> str:
+    """Why errors are not known of a spectrum and amplitude; empty where they are.
+
+    Spectra broader than all that were measured have smaller errors for their cutoff.
+    """
+    low, high = measured_energies()
+    remedy = "give the resolution and the tolerance instead"
+    if not low / _LEEWAY <= elastic_energy <= high * _LEEWAY:
+        return (
+            f"errors were measured for e_el/w_int from {low:g} to {high:g}, not at "
+            f"{elastic_energy:.3g}; {remedy}"
+        )
+    shape = _NARROW[kind]
+    least = _relative_correlation_length(*MEASURED[shape])
+    length = _relative_correlation_length(kind, spectrum)
+    if length * _LEEWAY < least:
+        return (
+            f"errors were measured for correlation lengths of w_loc from {least:.3g} short cutoffs "
+            f"on, not {length:.3g}; {remedy}"
+        )
+    return ""
+
+
+def measured_energies() -> tuple[float, float]:
+    """Smallest and largest e_el / w_int at which errors were measured."""
+    energies = [law.elastic_energy for laws in _laws().values() for law in laws]
+    return min(energies), max(energies)
 
 
 @functools.cache
@@ -294,6 +333,8 @@ def combined_error(
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that values of all knobs leave (Units: w_int).
 
+    They are NaN where errors were not measured.
+
     Parameters
     ----------
     kind, spectrum, elastic_energy
@@ -305,6 +346,8 @@ def combined_error(
     straight : bool, optional
         As of :func:`chosen_knobs`.
     """
+    if _beyond(kind, spectrum, elastic_energy):
+        return math.nan, math.nan
     place = _place(kind, spectrum, elastic_energy, straight)
     parts = {knob: _parts(place, knob, value) for knob, value in values.items()}
     approach, retraction = _combined(parts, size * place.independent)

@@ -41,6 +41,11 @@ _REFERENCE = replace(
     _FINER, angles_per_cutoff=6, samples_per_cutoff=8, pixels_per_cutoff=8, tolerance=1e-8
 )
 _LARGE_REFERENCE = replace(_REFERENCE, angles_per_cutoff=4, samples_per_cutoff=6)
+_STRONG_REFERENCE = replace(_REFERENCE, angles_per_cutoff=12, samples_per_cutoff=12)
+_STRONG_FINER = replace(_FINER, angles_per_cutoff=16, samples_per_cutoff=16)
+
+_STRONG = 0.2
+"""Largest e_el / w_int where the numerics of moderate disorder have converged."""
 
 _VALUES: dict[Knob, tuple[float, ...]] = {
     "sites": (1.4, 1.8, 2.2, 2.7, 3.6),
@@ -51,7 +56,13 @@ _VALUES: dict[Knob, tuple[float, ...]] = {
 }
 """What is tried of each knob while the others are those of the reference."""
 
-_FEW_SITES = 2.2
+_STRONG_VALUES: dict[Knob, tuple[float, ...]] = _VALUES | {
+    "sites": (2.2, 2.7, 3.6, 5, 7),
+    "cubic": (3, 4, 5, 6, 8),
+}
+"""The same at strong disorder, which bends fronts more sharply."""
+
+_FEW_SITES, _FEW_STRONG_SITES = 2.2, 5.0
 """Sites per short cutoff where other knobs are varied, one of those that are tried.
 
 Images of coarse pixels are short waves: many sites resolve them, to few they are long ones.
@@ -98,13 +109,16 @@ class Scene:
     @property
     def single_settings(self) -> list[Setting]:
         """The finer numerics, other numbers of sites, and few sites with another knob varied."""
-        few = with_knob(self.reference, "sites", _FEW_SITES)
+        finer, values, n_few = _FINER, _VALUES, _FEW_SITES
+        if self.elastic_energy > _STRONG:
+            finer, values, n_few = _STRONG_FINER, _STRONG_VALUES, _FEW_STRONG_SITES
+        few = with_knob(self.reference, "sites", n_few)
         return [
-            Setting("finer", 0.0, _FINER),
+            Setting("finer", 0.0, finer),
             *(
                 Setting(knob, value, with_knob(few, knob, value))
                 for knob in KNOBS
-                for value in _VALUES[knob]
+                for value in values[knob]
             ),
         ]
 
@@ -142,7 +156,7 @@ def with_knob(knobs: Knobs, knob: Knob, value: float) -> Knobs:
 
 
 def _measured_shapes() -> list[Scene]:
-    """Every shape of the laws at four amplitudes."""
+    """Every shape of the laws at six amplitudes."""
     sides = {"chemical": 64, "flat": 64, "h08": 96, "h03": 120}
     authors = {"chemical-0.04": 100.0, "chemical-0.0025": 160.0}
     return [
@@ -151,28 +165,49 @@ def _measured_shapes() -> list[Scene]:
             *MEASURED[shape],
             energy,
             cutoffs,
+            reference=_reference(energy),
             authors_seconds=authors.get(f"{shape}-{energy:g}"),
         )
         for shape, cutoffs in sides.items()
-        for energy in (0.0025, 0.01, 0.04, 0.16)
+        for energy in (0.001, 0.0025, 0.01, 0.04, 0.16, 0.4)
     ]
+
+
+def _reference(energy: float) -> Knobs:
+    """Numerics that have converged at an e_el / w_int."""
+    return _STRONG_REFERENCE if energy > _STRONG else _REFERENCE
 
 
 def _unseen() -> list[Scene]:
     """Spectra between those of the laws, and weak disorder under shorter cutoffs."""
     shapes: tuple[tuple[str, FieldKind, SelfAffineSpectrum, float, tuple[float, ...]], ...] = (
-        ("c015", "chemical", SelfAffineSpectrum(0.015, 0.015, 1.0), 64, (0.005, 0.02, 0.08)),
-        ("f013", "roughness", SelfAffineSpectrum(0.013, 0.013, 1.0), 64, (0.003, 0.01, 0.06, 0.14)),
+        ("c015", "chemical", SelfAffineSpectrum(0.015, 0.015, 1.0), 64, (0.005, 0.02, 0.08, 0.25)),
+        (
+            "f013",
+            "roughness",
+            SelfAffineSpectrum(0.013, 0.013, 1.0),
+            64,
+            (0.0015, 0.003, 0.01, 0.06, 0.14, 0.25, 0.4),
+        ),
         ("band", "roughness", SelfAffineSpectrum(0.02, 0.05, 0.7), 64, (0.005, 0.03, 0.1)),
-        ("h02", "roughness", SelfAffineSpectrum(0.012, 0.1, 0.2), 80, (0.005, 0.02)),
-        ("h05", "roughness", SelfAffineSpectrum(0.008, 0.08, 0.5), 80, (0.003, 0.01, 0.06, 0.14)),
-        ("h09", "roughness", SelfAffineSpectrum(0.01, 0.16, 0.9), 96, (0.02, 0.06)),
+        ("h02", "roughness", SelfAffineSpectrum(0.012, 0.1, 0.2), 80, (0.005, 0.02, 0.4)),
+        (
+            "h05",
+            "roughness",
+            SelfAffineSpectrum(0.008, 0.08, 0.5),
+            80,
+            (0.0015, 0.003, 0.01, 0.06, 0.14, 0.25, 0.4),
+        ),
+        ("h09", "roughness", SelfAffineSpectrum(0.01, 0.16, 0.9), 96, (0.02, 0.06, 0.25)),
     )
     return [
-        Scene(f"{name}-{energy:g}", kind, spectrum, energy, cutoffs, single_knobs=False)
+        Scene(
+            f"{name}-{energy:g}", kind, spectrum, energy, cutoffs,
+            reference=_reference(energy), single_knobs=False,
+        )
         for name, kind, spectrum, cutoffs, energies in shapes
         for energy in energies
-    ]
+    ]  # fmt: skip
 
 
 SCENES: dict[str, Scene] = {
@@ -199,5 +234,5 @@ SCENES: dict[str, Scene] = {
         *_unseen(),
     )
 }  # fmt: skip
-"""All scenes by name. The first sixteen give the laws, those behind `paper` test them; `paper`, the
-finest spectrum of the paper, takes most of an hour by itself."""
+"""All scenes by name. The first twenty-four give the laws, those behind `paper` test them; `paper`,
+the finest spectrum of the paper, takes most of an hour by itself."""

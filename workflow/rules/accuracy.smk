@@ -3,15 +3,17 @@ ACCURACY = "results/accuracy"
 MEASURED = [
     f"{shape}-{energy}"
     for shape in ("chemical", "flat", "h08", "h03")
-    for energy in ("0.0025", "0.01", "0.04", "0.16")
+    for energy in ("0.001", "0.0025", "0.01", "0.04", "0.16", "0.4")
 ]
 UNSEEN = [
-    *("c015-0.005", "c015-0.02", "c015-0.08"),
-    *("f013-0.003", "f013-0.01", "f013-0.06", "f013-0.14"),
-    *("band-0.005", "band-0.03", "band-0.1", "h02-0.005", "h02-0.02"),
-    *("h05-0.003", "h05-0.01", "h05-0.06", "h05-0.14", "h09-0.02", "h09-0.06"),
+    *("c015-0.005", "c015-0.02", "c015-0.08", "c015-0.25"),
+    *("f013-0.0015", "f013-0.003", "f013-0.01", "f013-0.06", "f013-0.14"),
+    *("f013-0.25", "f013-0.4", "band-0.005", "band-0.03", "band-0.1"),
+    *("h02-0.005", "h02-0.02", "h02-0.4", "h05-0.0015", "h05-0.003", "h05-0.01"),
+    *("h05-0.06", "h05-0.14", "h05-0.25", "h05-0.4", "h09-0.02", "h09-0.06"),
+    "h09-0.25",
 ]
-COVERED = [scene for scene in MEASURED if scene.endswith(("-0.01", "-0.16"))]
+COVERED = [scene for scene in MEASURED if scene.endswith(("-0.01", "-0.16", "-0.4"))]
 
 
 wildcard_constraints:
@@ -41,7 +43,7 @@ rule accuracy_study:
         surfaces=lambda wildcards: (
             24
             if wildcards.study == "knobs"
-            and wildcards.scene.endswith(("-0.0025", "-0.01"))
+            and wildcards.scene.endswith(("-0.001", "-0.0025", "-0.01"))
             else 8
         ),
     shell:
