@@ -104,7 +104,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
     order = float(spearmanr(study.correlation_length, onset).statistic)
     rows = zip(study.spectrum, study.correlation_length, onset, strict=True)
     text = ", ".join(f"{name} {length:.3g}: {energy:.2g}" for name, length, energy in rows)
-    law = _by_law(fit)
+    law, largest = _by_law(fit), float(np.nanmax(fit.cells.factor.value))
     return (
         Check(
             f"k of all spectra, e_el from {study.lowest_elastic_energy:g} to "
@@ -115,6 +115,16 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"{', '.join(['95% interval', *pooled_limits(fit, fit.spectra.factor)])}; k grows with "
             "the size of the contact, and falls with disorder beyond the onset: panels b and c",
             law=_said(float(factor.value), *law.factor),
+        ),
+        Check(
+            "k of any one spectrum and amplitude of the sweep: 3, which the paper draws as a line",
+            f"{PAPER_FACTOR:g} or more",
+            f"at most {largest:.2f}",
+            largest >= PAPER_FACTOR,
+            "for its dashed line the paper states one digit, no range, weights, resolution or "
+            "number of surfaces; the authors' published code has the k of this solver "
+            "(docs/law.md, The paper's 3)",
+            law=_said(largest, *law.largest),
         ),
         Check(
             "hysteresis in proportion to w_rms^2: exponent 2",
@@ -148,14 +158,15 @@ class _ByLaw(NamedTuple):
     factor: tuple[float, float]
     exponent: tuple[float, float]
     spread: tuple[float, float]
+    largest: tuple[float, float]
 
 
 def _by_law(fit: SweepFit) -> _ByLaw:
-    """Pooled k, exponent of the hysteresis and spread among spectra by the law, NaN if unknown."""
+    """Pooled and largest k, exponent and spread among spectra by the law, NaN if unknown."""
     law = fit.cells.law_factor
     k, error = law.value[:, fit.in_range], law.standard_error[:, fit.in_range]
     if not np.all(np.isfinite(k)):
-        return _ByLaw(*[(math.nan, math.nan)] * 3)
+        return _ByLaw(*[(math.nan, math.nan)] * 4)
     strength = np.log(fit.cells.w_rms[:, fit.in_range])
     along, weight = slope(strength, np.log(k))
     # Errors of one amplitude of one spectrum count as independent of those of others.
@@ -165,6 +176,7 @@ def _by_law(fit: SweepFit) -> _ByLaw:
         (float(np.mean(k)), REACH * float(np.mean(error))),
         (2 + float(np.mean(along)), REACH * relative / math.sqrt(float(np.mean(weight)))),
         (float(100 * np.ptp(mean) / np.mean(mean)), 100 * REACH * relative * math.sqrt(2)),
+        (float(np.max(k)), REACH * relative * float(np.max(k))),
     )
 
 
