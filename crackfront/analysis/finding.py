@@ -1,10 +1,18 @@
-"""What was found about k, in three sentences that README, fits and reports open with."""
+"""What was found about k, in five sentences that README, fits and reports open with."""
 
 from __future__ import annotations
 
 import math
 
-from crackfront.analysis.law import WEAKEST, law_value, pinning_factor, shipped_law
+from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.law import (
+    WEAKEST,
+    law_value,
+    pinning_factor,
+    shipped_law,
+    spectral_breadth,
+)
+from crackfront.core.spectrum import SelfAffineSpectrum
 
 PAPER_FACTOR, PERTURBATION_FACTOR = 3.0, 4.0
 """k of the paper's fit, and of second-order perturbation theory in the limit of weak disorder."""
@@ -13,8 +21,20 @@ STRONG = 0.84
 """Disorder s of the paper's experiment, up to which the finding follows k."""
 
 
+STATED = {
+    "a flat spectrum": SelfAffineSpectrum(1.0, 1.0, 1.0),
+    "H = 0.8 over three octaves": SelfAffineSpectrum(1.0, 8.0, 0.8),
+}
+"""Spectra of roughness for which the limit of the infinite contact is quoted."""
+
+
+def stated_breadths() -> dict[str, float]:
+    """Breadths of these spectra by their names."""
+    return {name: spectral_breadth("roughness", shape) for name, shape in STATED.items()}
+
+
 def finding(departure: str) -> str:
-    """The three sentences, with the numbers of the shipped law.
+    """The five sentences, with the numbers of the shipped law.
 
     Parameters
     ----------
@@ -25,21 +45,29 @@ def finding(departure: str) -> str:
     Examples
     --------
     >>> finding("; no sphere was held against it").count(". ")
-    2
+    4
     """
-    weak, strong = (pinning_factor(s, math.inf).factor for s in (WEAKEST, STRONG))
     s, low, high = crossing()
+    weak = pinning_factor(WEAKEST, math.inf).factor
+    strong = " and ".join(
+        f"{_with_interval(pinning_factor(STRONG, math.inf, breadth=breadth).factor)} for {name}"
+        for name, breadth in stated_breadths().items()
+    )
     return (
         "The factor k of w_retr, w_appr = w_int - e_el ± k e_el is no constant: it falls with the "
         "disorder s = w_rms/w_int and rises with the size g, the length over which the contact "
-        "holds its edge over the Larkin length of the roughness. "
-        f"In the infinite contact k is {weak.value:.2f} ({weak.low:.2f} to {weak.high:.2f}) at "
-        f"vanishing disorder and {strong.value:.2f} ({strong.low:.2f} to {strong.high:.2f}) at "
-        f"s = {STRONG:g}, and a finite contact has less, so that k is {PAPER_FACTOR:g}, as the "
-        f"paper has it, only along a line from g = {least_size():.1f} at vanishing disorder to "
+        "holds its edge over the Larkin length of the roughness. In the infinite contact k is "
+        f"{_with_interval(weak)} at vanishing disorder, and at s = {STRONG:g}, the disorder of the "
+        f"paper's experiment, {strong}. A finite contact has less. So k is {PAPER_FACTOR:g}, as "
+        f"the paper has it, only along a line from g = {least_size():.1f} at vanishing disorder to "
         f"s = {s:.2f} ({low:.2f} to {high:.2f}) in the infinite contact. "
         f"The law was measured on straight fronts held by springs{departure}."
     )
+
+
+def _with_interval(k: Estimate[float]) -> str:
+    """A factor with its 95% interval."""
+    return f"{k.value:.2f} ({k.low:.2f} to {k.high:.2f})"
 
 
 def departure_of_spheres(rms: float, n_large: int, n_cell: int) -> str:

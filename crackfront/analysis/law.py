@@ -1,12 +1,12 @@
 r"""The law behind k: of a straight front on springs, by disorder s = w_rms / w_int and size g.
 
 The size is the length of the springs over the Larkin length, g = L_kappa / ell. With
-:math:`x = g_s^{-(1-\zeta)}`, :math:`g_s = g / (1 + c\, s^d)`,
+:math:`x = g_s^{-(1-\zeta)}`, :math:`g_s = g\, (\beta_0 / \beta)^f / (1 + c\, s^d)`,
 
 .. math:: k = \frac{k_0}{(1 + a\, s^b (\beta_0 / \beta)^e)(1 + A x + B x^2 + C x^3)} .
 
-The Larkin length makes one curve of all surfaces at weak disorder. At strong disorder k falls with
-s, the less the broader the spectrum of the slope of w_loc is (:func:`slope_breadth`, beta).
+The Larkin length makes almost one curve of all surfaces at weak disorder. At strong disorder k
+falls with s, the less the broader the spectrum of w_loc is (:func:`spectral_breadth`, beta).
 `python -m studies law fit` fits the coefficients to straight fronts and writes `law.json`.
 A sphere is locally such a front (:mod:`crackfront.analysis.law_spheres`).
 docs/law.md derives all lengths.
@@ -40,10 +40,10 @@ FINITE_SIZE_EXPONENT = 0.612
 .. [1] Rosso, Krauth, Phys. Rev. E 65, 025101 (2002).
 """
 
-COEFFICIENTS = ("k_0", "A", "B", "C", "a", "b", "c", "d", "e")
+COEFFICIENTS = ("k_0", "A", "B", "C", "a", "b", "c", "d", "e", "f")
 """Names of the coefficients of the law, in the order of the files and arrays that hold them."""
 
-TYPICAL_BREADTH = 1.18
+TYPICAL_BREADTH = 1.75
 """Breadth beta_0 in the middle of those of spectra; that of one that is not known."""
 
 LEAST_SIZE = 0.3
@@ -51,6 +51,13 @@ LEAST_SIZE = 0.3
 
 WEAKEST = 1e-6
 """Rms of w_loc that stands for the limit of weak disorder. (Units: w_int)"""
+
+
+_NARROWEST = 0.25
+"""E-folds of the wavevector within which waves count as of one length."""
+
+_BROADER = 1.25
+"""By how much a spectrum may be broader than those that were measured."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +69,7 @@ class Law:
     coefficients : tuple of float
         As :data:`COEFFICIENTS` names them.
     covariance : tuple of tuple of float
-        Statistical, of the coefficients.
+        Statistical, of the coefficients and the finite-size exponent, with that one free.
     model_factor, model_length : float
         Model error: standard deviation of ln k, and of ln g, between surfaces of the same s and g.
     numerical : float
@@ -121,19 +128,33 @@ def law_value(
     exponent: float = FINITE_SIZE_EXPONENT,
 ) -> Array:
     """Values of k, for arrays of s, g (infinity for the infinite contact) and the breadth."""
-    k_0, *series, a, b, c, d, e = coefficients
+    k_0, *series, a, b, _, _, e, _ = coefficients
     s = np.asarray(disorder, dtype=float)
-    x = (np.asarray(size, dtype=float) / (1 + c * s**d)) ** -exponent
+    x = effective_size(coefficients, s, size, breadth) ** -exponent
     fall = 1 + a * s**b * (TYPICAL_BREADTH / np.asarray(breadth, dtype=float)) ** e
     return np.asarray(k_0 / fall / (1 + x * np.polyval(series[::-1], x)))
 
 
-def slope_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
-    r"""Breadth of the spectrum of the slope of w_loc, integrated along the front.
+def effective_size(
+    coefficients: Sequence[float] | Array,
+    disorder: ArrayLike,
+    size: ArrayLike,
+    breadth: ArrayLike = TYPICAL_BREADTH,
+) -> Array:
+    """Sizes g_s of the law, for arrays of s, g and the breadth."""
+    *_, c, d, _, f = coefficients
+    broader = TYPICAL_BREADTH / np.asarray(breadth, dtype=float)
+    return np.asarray(size, dtype=float) * broader**f / (1 + c * np.asarray(disorder) ** d)
 
-    .. math:: \beta = \frac{M_2 M_4}{M_3^2}, \quad M_n = \int_0^\infty dq\, q^n C_w(q, 0) ,
 
-    1 for a single wavelength, larger for broader spectra.
+def spectral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
+    r"""Breadth of the spectrum of w_loc, in e-folds of the wavevector that share its variance.
+
+    .. math:: \beta = \frac{1}{4} + \frac{1}{\int p^2\, d\ln q}, \quad
+              p = \frac{q^2 C_w(q)}{\int q^2 C_w\, d\ln q}
+
+    Waves within a quarter of an e-fold count as of one length and pin a front together; others do
+    so each with its own part of the variance, hence as at weaker disorder.
 
     Parameters
     ----------
@@ -145,12 +166,15 @@ def slope_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
     Examples
     --------
     >>> from crackfront.core.spectrum import SelfAffineSpectrum
-    >>> round(slope_breadth("roughness", SelfAffineSpectrum(1.0, 1.0, hurst=1.0)), 4)
-    1.0417
+    >>> round(spectral_breadth("roughness", SelfAffineSpectrum(1.0, 1.0, hurst=1.0)), 3)
+    0.917
     """
-    order = 1.0 if kind == "roughness" else 0.5
-    low, middle, high = (spectrum.mean_square(order + more) for more in (0.0, 0.5, 1.0))
-    return low * high / middle**2
+    shortest, longest = spectrum.short_cutoff, 20 * spectrum.longest_feature
+    wavevector = 2 * np.pi / np.geomspace(longest, shortest, 4001)
+    # C_w is q times the density of heights.
+    variance = wavevector ** (3 if kind == "roughness" else 2) * spectrum.density(wavevector)
+    step = math.log(longest / shortest) / 4000
+    return _NARROWEST + float(step * np.sum(variance) ** 2 / np.sum(variance**2))
 
 
 def _slope(
@@ -207,9 +231,8 @@ def pinning_factor(
     kind : {"roughness", "chemical"}, optional
         What makes w_loc vary; decides its mean, and by that the negative share alone.
     breadth : float, optional
-        That of the spectrum, as :func:`crackfront.analysis.law.slope_breadth`; of one that is
-        broader than any that was measured k is that of the broadest. By default k is that of a
-        typical one, and the interval covers the others.
+        That of the spectrum, as :func:`crackfront.analysis.law.spectral_breadth`. By default k is
+        that of a typical one, and the interval covers the others.
 
     Returns
     -------
@@ -238,10 +261,10 @@ def pinning_factor(
     if not size > 0:
         raise ValueError(f"size g is {size:g}; it must be positive, or inf")
     law = shipped_law()
-    place = w_rms, size, TYPICAL_BREADTH if breadth is None else measured_breadth(breadth)
+    place = w_rms, size, TYPICAL_BREADTH if breadth is None else breadth
     value = float(law_value(law.coefficients, *place))
     statistical = _statistical_error(
-        law, lambda coefficients: float(law_value(coefficients, *place))
+        law, lambda coefficients, exponent: float(law_value(coefficients, *place, exponent))
     )
     errors = law.model_factor, law.model_length
     model = float(model_error(law.coefficients, *place, errors))
@@ -249,7 +272,7 @@ def pinning_factor(
         ends = [float(law_value(law.coefficients, w_rms, size, end)) for end in law.breadth]
         model = math.hypot(model, (max(ends) - min(ends)) / math.sqrt(12))
     numerical = law.numerical * value
-    outside, warning = _outside(law, w_rms, size)
+    outside, warning = _outside(law, *place)
     error = math.hypot(statistical, numerical, model, outside * value)
     found = normal_estimate(value, error)
     low, high = max(found.low, 0.0), found.high
@@ -263,11 +286,6 @@ def pinning_factor(
         negative_share=float(ndtr(-mean_adhesion(kind, w_rms**2 / 4) / w_rms)),
         warning=warning,
     )
-
-
-def measured_breadth(breadth: float) -> float:
-    """A breadth, or the largest that was measured."""
-    return min(breadth, shipped_law().breadth[1])
 
 
 def mean_adhesion(kind: FieldKind, elastic_energy: float) -> float:
@@ -285,7 +303,7 @@ def infinite_ratio(w_rms: float, size: float, breadth: float = TYPICAL_BREADTH) 
     size : float
         g; below the smallest of the law the ratio is NaN.
     breadth : float, optional
-        That of the spectrum, as :func:`crackfront.analysis.law.slope_breadth`.
+        That of the spectrum, as :func:`crackfront.analysis.law.spectral_breadth`.
 
     Examples
     --------
@@ -293,12 +311,15 @@ def infinite_ratio(w_rms: float, size: float, breadth: float = TYPICAL_BREADTH) 
     >>> 1.0 < ratio.low < ratio.value < ratio.high < 1.3
     True
     """
-    law, breadth = shipped_law(), measured_breadth(breadth)
+    law = shipped_law()
     if not size >= law.size[0]:
         return Estimate(*(math.nan,) * 4)
 
-    def ratio(coefficients: Sequence[float] | Array) -> float:
-        infinite, finite = law_value(coefficients, w_rms, np.array([math.inf, size]), breadth)
+    def ratio(
+        coefficients: Sequence[float] | Array, exponent: float = FINITE_SIZE_EXPONENT
+    ) -> float:
+        sizes = np.array([math.inf, size])
+        infinite, finite = law_value(coefficients, w_rms, sizes, breadth, exponent)
         return float(infinite / finite)
 
     value = ratio(law.coefficients)
@@ -308,24 +329,28 @@ def infinite_ratio(w_rms: float, size: float, breadth: float = TYPICAL_BREADTH) 
     return normal_estimate(value, error)
 
 
-def _statistical_error(law: Law, function: Callable[[Array], float]) -> float:
-    """Standard error of a function of the coefficients by their covariance."""
-    coefficients = np.array(law.coefficients)
-    steps = 1e-5 * np.maximum(np.abs(coefficients), 1e-3)
-    value = function(coefficients)
+def _statistical_error(law: Law, function: Callable[[Array, float], float]) -> float:
+    """Standard error of a function of the coefficients and the exponent by their covariance."""
+    place = np.array([*law.coefficients, FINITE_SIZE_EXPONENT])
+    steps = 1e-5 * np.maximum(np.abs(place), 1e-3)
+
+    def at(values: Array) -> float:
+        return function(values[:-1], float(values[-1]))
+
     gradient = np.array(
         [
-            (function(coefficients + shift) - value) / step
+            (at(place + shift) - at(place)) / step
             for shift, step in zip(np.diag(steps), steps, strict=True)
         ]
     )
     return math.sqrt(float(gradient @ np.array(law.covariance) @ gradient))
 
 
-def _outside(law: Law, w_rms: float, size: float) -> tuple[float, str]:
+def _outside(law: Law, w_rms: float, size: float, breadth: float) -> tuple[float, str]:
     """Additional relative error outside of the measured range, and a sentence that says so."""
     _, strongest = law.disorder
     smallest, _ = law.size
+    _, broadest = law.breadth
     if w_rms > strongest:
         return 0.25 * math.log2(w_rms / strongest), (
             f"w_rms {w_rms:.3g} w_int is above the strongest disorder that was measured "
@@ -335,5 +360,10 @@ def _outside(law: Law, w_rms: float, size: float) -> tuple[float, str]:
         return 0.5, (
             f"size g {size:.3g} is below the smallest of the law ({smallest:.3g}): hysteresis sets "
             "in there, and the interval of k reaches down to zero"
+        )
+    if breadth > _BROADER * broadest:
+        return 0.1 * math.log2(breadth / broadest), (
+            f"breadth {breadth:.3g} of the spectrum is above the largest that was measured "
+            f"({broadest:.3g}): k is extrapolated and its interval widened"
         )
     return 0.0, ""

@@ -13,7 +13,7 @@ from crackfront.analysis.law import (
     infinite_ratio,
     pinning_factor,
     shipped_law,
-    slope_breadth,
+    spectral_breadth,
 )
 from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.analysis.table import SweepTable
@@ -67,7 +67,7 @@ class SweepLaw:
             w_rms = 2 * math.sqrt(energy)
             size = hold / larkin_length(self.kind, spectrum, w_rms)
             disorder = WEAKEST if self.uncorrelated else w_rms
-            breadth = slope_breadth(self.kind, spectrum)
+            breadth = spectral_breadth(self.kind, spectrum)
             return pinning_factor(disorder, size, self.kind, breadth).factor, size
         try:
             found = sphere_factors(self.kind, spectrum, energy, hold)
@@ -118,7 +118,7 @@ class SweepLaw:
         energies, values = self.energy, np.full((4, *size.shape), np.nan)
         for cell in np.ndindex(size.shape):
             w_rms = WEAKEST if self.uncorrelated else 2 * math.sqrt(energies[cell])
-            breadth = slope_breadth(self.kind, self.table.shape_of(cell[0]))
+            breadth = spectral_breadth(self.kind, self.table.shape_of(cell[0]))
             gain = infinite_ratio(w_rms, float(size[cell]), breadth)
             measured, own_error = float(factor.value[cell]), float(factor.standard_error[cell])
             value, relative = measured * gain.value, measured * gain.standard_error

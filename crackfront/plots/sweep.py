@@ -19,7 +19,13 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
-from crackfront.analysis.law import WEAKEST, law_value, pinning_factor, shipped_law, slope_breadth
+from crackfront.analysis.law import (
+    WEAKEST,
+    law_value,
+    pinning_factor,
+    shipped_law,
+    spectral_breadth,
+)
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import LARGE
 from crackfront.core.arrays import Array
@@ -108,8 +114,7 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
     table, size, law = fit.table, fit.cells.size, shipped_law()
     families = spectrum_families(table)
     spectra = (table.shape_of(index) for index in range(table.spectrum.size))
-    breadth = float(np.mean([slope_breadth(fit.kind, spectrum) for spectrum in spectra]))
-    breadth = min(breadth, law.breadth[1])
+    breadth = float(np.mean([spectral_breadth(fit.kind, spectrum) for spectrum in spectra]))
     ends = _ends(size, 1.5)
     abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
     shades = colormaps["viridis"](np.linspace(0, 0.88, table.e_el_requested.size))

@@ -15,7 +15,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from crackfront.analysis.estimate import mean_estimate
-from crackfront.analysis.law import slope_breadth
+from crackfront.analysis.law import spectral_breadth
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
 from crackfront.core.variables import variable
 from crackfront.data.files import read_dataset
@@ -29,6 +29,10 @@ COLUMNS = ("e_el", "w_appr", "w_retr", "w_appr_numerical_error", "w_retr_numeric
 
 MEASURED = Path(__file__).with_name("law.csv")
 """Straight fronts that the law of the package is fitted to."""
+
+
+HELD_OUT = ("h05", "gaussian")
+"""Spectra of straight fronts that have no part in the fit."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +142,7 @@ def law_cells(configuration: Path) -> list[LawCell]:
         cells.append(
             LawCell(
                 spectrum=name if sweep.kind == "roughness" else f"{name}-{sweep.kind}",
-                breadth=slope_breadth(sweep.kind, item.spectrum),
+                breadth=spectral_breadth(sweep.kind, item.spectrum),
                 disorder=0.0 if load.uncorrelated else 2 * math.sqrt(found.elastic_energy),
                 size=simulation.schedule.spring / larkin,
                 realisations=found.realisations,

@@ -31,7 +31,7 @@ from studies.pages import renewed
 PAGES = ("README.md", "docs/index.md", "docs/law.md")
 """Pages with numbers of the law."""
 
-_FRONTS = "config/line.yaml config/line-chemical.yaml config/line-weak.yaml"
+_FRONTS = "config/line.yaml config/line-weak.yaml"
 
 
 @click.group()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from crackfront.analysis.law import (
     LEAST_SIZE,
     TYPICAL_BREADTH,
     WEAKEST,
+    effective_size,
     infinite_ratio,
     law_value,
     shipped_law,
@@ -45,10 +45,10 @@ class LawPoints:
 
 
 def spectra_points(cells: Sequence[LawCell]) -> tuple[LawPoints, ...]:
-    """Straight fronts of `law.csv`, one entry a spectrum."""
-    found = []
-    for name in dict.fromkeys(cell.spectrum for cell in cells):
-        rows = [cell for cell in cells if cell.spectrum == name]
+    """Straight fronts of `law.csv`, one entry a spectrum, its limit of weak disorder with it."""
+    found, names = [], [cell.spectrum.removesuffix("-weak") for cell in cells]
+    for name in dict.fromkeys(names):
+        rows = [cell for cell, own in zip(cells, names, strict=True) if own == name]
         columns = (
             np.array([getattr(cell, item) for cell in rows])
             for item in ("disorder", "size", "both", "error", "breadth")
@@ -61,13 +61,15 @@ def spectra_points(cells: Sequence[LawCell]) -> tuple[LawPoints, ...]:
 
 def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
     """Collapse of straight fronts and spheres on the shipped law, and its infinite contact."""
+    n_colour, n_marker = len(COLOURS), len(MARKERS)
+    # Where colours repeat, markers are others.
     styles = [
-        _style(colour, marker)
-        for _, colour, marker in zip(fronts, cycle(COLOURS), cycle(MARKERS), strict=False)
+        _style(COLOURS[index % n_colour], MARKERS[(index + index // n_colour) % n_marker])
+        for index in range(len(fronts))
     ]
     drawn = [*zip(fronts, styles, strict=True), (spheres, _style(BLACK, "o", is_open=True))]
     with house_style():
-        figure = blank_figure(PAGE, 0.49 * PAGE)
+        figure = blank_figure(PAGE, 0.56 * PAGE)
         left, right = figure.subplots(1, 2, width_ratios=(1.2, 1))
         _draw_collapse(left, drawn)
         draw_infinite_law(right)
@@ -75,6 +77,7 @@ def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
             _draw_extrapolated(right, points, style)
         right.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
         right.legend(loc="lower left")
+        figure.legend(*left.get_legend_handles_labels(), loc="outside upper center", ncols=6)
         for axes, letter in ((left, "a"), (right, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
         explain(
@@ -105,8 +108,12 @@ def _style(colour: str, marker: str, *, is_open: bool = False) -> dict[str, Any]
 def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]) -> None:
     """Draw k freed of its fall with s against g / (1 + c s^d), and the law, then one curve."""
     law = shipped_law()
-    k_0, *_, a, b, c, d, e = law.coefficients
-    largest = max(float(np.max(one.size / (1 + c * one.disorder**d))) for one, _ in drawn)
+    k_0, *_, a, b, _, _, e, _ = law.coefficients
+    sizes = {
+        one.name: effective_size(law.coefficients, one.disorder, one.size, one.breadth)
+        for one, _ in drawn
+    }
+    largest = max(float(np.max(size)) for size in sizes.values())
     abscissa = np.geomspace(LEAST_SIZE / 4, 2 * largest, 200)
     axes.plot(
         abscissa,
@@ -119,7 +126,7 @@ def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]
     for points, style in drawn:
         rise = 1 + a * points.disorder**b * (TYPICAL_BREADTH / points.breadth) ** e
         axes.errorbar(
-            points.size / (1 + c * points.disorder**d),
+            sizes[points.name],
             points.factor * rise,
             yerr=REACH * points.error * rise,
             label=points.name,
@@ -137,9 +144,8 @@ def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]
     axes.set_xlim(abscissa[0], abscissa[-1])
     axes.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
     label_decimals(axes)
-    axes.set_xlabel(r"size $g\,/\,(1+c\,s^d)$")
+    axes.set_xlabel(r"size $g\,(\beta_0/\beta)^f/\,(1+c\,s^d)$")
     axes.set_ylabel(r"$k\,(1+a\,s^b\,(\beta_0/\beta)^e)$")
-    axes.legend(loc="lower right")
 
 
 def _draw_extrapolated(axes: Axes, points: LawPoints, style: dict[str, Any]) -> None:

@@ -17,21 +17,21 @@ from crackfront.analysis.law import (
     model_error,
 )
 from crackfront.core.arrays import Array
-from studies.law.cells import LawCell
+from studies.law.cells import HELD_OUT, LawCell
 
-_START = (3.9, 0.55, 0.05, 0.1, 1.2, 1.25, 1.8, 1.3, 0.6)
+_START = (3.8, 0.55, 0.05, 0.1, 1.1, 1.35, 1.9, 1.3, 0.15, 0.0)
 
 _NEAR = 0.8
 """Largest difference of ln g of cells whose scatter is pooled, as few tiles say little of it."""
 
 
 def fitted_law(cells: Sequence[LawCell]) -> Law:
-    """Law of measured cells, by weighted least squares, from :data:`LEAST_SIZE` on.
+    """Law of measured cells but those held out, by least squares, from :data:`LEAST_SIZE` on.
 
     A cell weighs by its own error and the model error together, which is found in the same way as
     the residuals: once with the first guess, then with what they say.
     """
-    used = [cell for cell in cells if cell.size >= LEAST_SIZE]
+    used = [cell for cell in cells if cell.size >= LEAST_SIZE and cell.spectrum not in HELD_OUT]
     s, g, breadth, k = (
         np.array([getattr(cell, name) for cell in used])
         for name in ("disorder", "size", "breadth", "both")
@@ -51,16 +51,17 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
         coefficients = found.x
         model = _likeliest_model(coefficients, places, k, error)
     free = least_squares(residuals, [*coefficients, FINITE_SIZE_EXPONENT])
+    covariance = _covariance(free.jac)
     relative = law_value(coefficients, s, g, breadth)[g >= 1] / k[g >= 1] - 1
     numerical = [cell.numerical_error / cell.both for cell in used if cell.size >= 1]
     ranges = [(float(values[values > 0].min()), float(values.max())) for values in places]
     return Law(
         coefficients=tuple(coefficients.tolist()),
-        covariance=tuple(map(tuple, _covariance(found.jac).tolist())),
+        covariance=tuple(map(tuple, covariance.tolist())),
         model_factor=model[0],
         model_length=model[1],
-        numerical=float(np.sqrt(np.mean(np.square(numerical)))),
-        exponent=(float(free.x[-1]), float(np.sqrt(_covariance(free.jac)[-1, -1]))),
+        numerical=float(np.sqrt(np.nanmean(np.square(numerical)))),
+        exponent=(float(free.x[-1]), float(np.sqrt(covariance[-1, -1]))),
         rms=float(np.sqrt(np.mean(relative**2))),
         worst=float(np.max(np.abs(relative))),
         disorder=ranges[0],
@@ -70,10 +71,15 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
 
 
 def _pooled_error(size: Array, error: Array) -> Array:
-    """Standard errors of cells, each by the median square of those of cells of about its size."""
-    near = np.abs(np.log(size[:, None] / size)) < _NEAR
+    """Standard errors of cells, each by the median square of those of cells of about its size.
+
+    Cells of a single tile have none of their own; where no other is near, the next one counts.
+    """
+    known = np.isfinite(error)
+    apart = np.abs(np.log(size[:, None] / size[known]))
+    near = apart <= np.maximum(_NEAR, apart.min(axis=1, keepdims=True))
     # The median of the squares of normal numbers is 0.455 of their mean.
-    return np.array([np.sqrt(np.nanmedian(error[row] ** 2) / 0.455) for row in near])
+    return np.array([np.sqrt(np.median(error[known][row] ** 2) / 0.455) for row in near])
 
 
 def _covariance(jacobian: Array) -> Array:

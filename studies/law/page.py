@@ -8,16 +8,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.finding import (
     PAPER_FACTOR,
     STRONG,
     crossing,
     departure_of_spheres,
     finding,
+    stated_breadths,
 )
-from crackfront.analysis.law import COEFFICIENTS, WEAKEST, Law, pinning_factor, shipped_law
-from studies.law.cells import LawCell, measured_cells
-from studies.law.spheres import SphereRow, departures, sphere_table
+from crackfront.analysis.law import (
+    COEFFICIENTS,
+    WEAKEST,
+    Law,
+    pinning_factor,
+    shipped_law,
+)
+from studies.law.cells import HELD_OUT, LawCell, measured_cells
+from studies.law.spheres import SphereRow, departures, is_within, sphere_table
 from studies.pages import markdown_table
 
 DISORDERS = (WEAKEST, 0.2, 0.4, STRONG)
@@ -31,6 +39,7 @@ def law_parts(spheres: Sequence[SphereRow]) -> dict[str, str]:
     return {
         "coefficients": coefficients_part(shipped_law()),
         "limit": limit_part(),
+        "shapes": shapes_part(measured_cells()),
         "fronts": fronts_part(measured_cells()),
         "spheres": sphere_table(spheres),
         "finding": _wrapped(finding(departure_of_spheres(rms, len(apart), len(spheres)))),
@@ -42,7 +51,7 @@ def coefficients_part(law: Law) -> str:
     errors = np.sqrt(np.diag(law.covariance)).tolist()
     rows = [
         (name, f"{value:.3f}", f"{error:.3f}")
-        for name, value, error in zip(COEFFICIENTS, law.coefficients, errors, strict=True)
+        for name, value, error in zip(COEFFICIENTS, law.coefficients, errors[:-1], strict=True)
     ]
     exponent, error = law.exponent
     text = (
@@ -58,19 +67,54 @@ def coefficients_part(law: Law) -> str:
 
 
 def limit_part() -> str:
-    """Table of k in the infinite contact, and where it is 3."""
-    rows = []
+    """Table of k in the infinite contact by spectrum, and where it is 3."""
+    rows, breadths = [], stated_breadths()
     for s in DISORDERS:
-        found = pinning_factor(s, math.inf)
-        k, name = found.factor, "0, k_0" if s == WEAKEST else f"{s:g}"
-        interval = f"{k.value:.2f} ({k.low:.2f} to {k.high:.2f})"
-        rows.append((name, interval, f"{found.negative_share:.1%}"))
+        found = [pinning_factor(s, math.inf, breadth=breadth) for breadth in breadths.values()]
+        name = "0, k_0" if s == WEAKEST else f"{s:g}"
+        ks = (one.factor for one in found)
+        intervals = (f"{k.value:.2f} ({k.low:.2f} to {k.high:.2f})" for k in ks)
+        rows.append((name, *intervals, f"{found[0].negative_share:.1%}"))
     s, low, high = crossing()
-    header = "s | k, infinite contact (95% interval) | share of negative w_loc"
+    names = (f"k, {name} (beta {breadth:.2f})" for name, breadth in breadths.items())
+    header = f"s | {' | '.join(names)} | share of negative w_loc"
     return (
-        f"{markdown_table(header, rows)}\n\nIn the infinite contact k is {PAPER_FACTOR:g} at s = "
-        f"{s:.2f} ({low:.2f} to {high:.2f}) alone."
+        f"{markdown_table(header, rows)}\n\nk of the infinite contact, with 95% intervals. It is "
+        f"{PAPER_FACTOR:g} at s = {s:.2f} ({low:.2f} to {high:.2f}) alone, of a typical spectrum."
     )
+
+
+def shapes_part(cells: Sequence[LawCell]) -> str:
+    """Table of how far the measured k of each spectrum are from the law, for g above 1."""
+    rows = []
+    for name in dict.fromkeys(cell.spectrum for cell in cells):
+        large = [cell for cell in cells if cell.spectrum == name and cell.size > 1]
+        laws = [_law_of(cell) for cell in large]
+        apart = np.array([law.value / one.both - 1 for law, one in zip(laws, large, strict=True)])
+        inside = sum(
+            is_within(one.both, np.nan_to_num(one.error), law)
+            for law, one in zip(laws, large, strict=True)
+        )
+        rows.append(
+            (
+                name,
+                "no" if name in HELD_OUT else "yes",
+                f"{large[0].breadth:.2f}",
+                f"{min(one.disorder for one in large):.2g} to "
+                f"{max(one.disorder for one in large):.2g}",
+                f"{max(one.size for one in large):.3g}",
+                f"{np.sqrt(np.mean(apart**2)):.1%}",
+                f"{apart[np.argmax(np.abs(apart))]:+.1%}",
+                f"{inside} of {len(large)}",
+            )
+        )
+    header = "spectrum | in the fit | beta | s | largest g | rms | worst | in the 95% interval"
+    return markdown_table(header, rows)
+
+
+def _law_of(cell: LawCell) -> Estimate[float]:
+    """Factor k of the law at the place of a cell."""
+    return pinning_factor(max(cell.disorder, WEAKEST), cell.size, breadth=cell.breadth).factor
 
 
 def fronts_part(cells: Sequence[LawCell]) -> str:

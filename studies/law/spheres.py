@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from crackfront.analysis.estimate import REACH, with_error
-from crackfront.analysis.law import slope_breadth
+from crackfront.analysis.estimate import REACH, Estimate, with_error
+from crackfront.analysis.law import spectral_breadth
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
@@ -102,6 +102,9 @@ SCENES = (
     Scene(
         "nanodiamond", "roughness", SelfAffineSpectrum(0.00104, 0.0334, 1.0), 0.173, _steady(1.0)
     ),
+    Scene("weak", "roughness", SelfAffineSpectrum(0.006, 0.06, 0.2), 0.01, _steady(1.0)),
+    Scene("strong", "roughness", SelfAffineSpectrum(0.008, 0.128, 0.5), 0.25, _steady(1.0)),
+    Scene("strongest", "roughness", SelfAffineSpectrum(0.013, 0.013, 1.0), 0.4, _steady(1.0)),
 )
 
 
@@ -113,7 +116,7 @@ def scene_rows(realisations: int = 3) -> Iterator[SphereRow]:
             scene.spectrum,
             scene.elastic_energy,
             scene.schedule,
-            Numerics(0.03),
+            Numerics(0.015),
             seed=20261122,
         )
         runs = [
@@ -144,10 +147,13 @@ def law_of(row: SphereRow) -> SphereFactors:
 
 def is_covered(row: SphereRow, law: SphereFactors) -> bool:
     """Whether a simulated k lies in the interval of the law, widened by the row's own errors."""
-    difference = row.both - law.both.value
-    reach = (law.both.high if difference > 0 else law.both.low) - law.both.value
-    own = REACH * np.hypot(row.both_error, row.numerical_error)
-    return bool(abs(difference) <= np.hypot(reach, own))
+    return is_within(row.both, float(np.hypot(row.both_error, row.numerical_error)), law.both)
+
+
+def is_within(k: float, error: float, law: Estimate[float]) -> bool:
+    """Whether a k with a standard error lies in the interval of a law, widened by the error."""
+    reach = (law.high if k > law.value else law.low) - law.value
+    return bool(abs(k - law.value) <= np.hypot(reach, REACH * error))
 
 
 def departures(rows: Sequence[SphereRow]) -> list[float]:
@@ -192,5 +198,5 @@ def sphere_points(rows: Sequence[SphereRow]) -> LawPoints:
         size=np.array([law_of(row).size for row in rows]),
         factor=np.array([row.both for row in rows]),
         error=np.array([row.both_error for row in rows]),
-        breadth=np.array([slope_breadth(row.kind, row.shape) for row in rows]),
+        breadth=np.array([spectral_breadth(row.kind, row.shape) for row in rows]),
     )

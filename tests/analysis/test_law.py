@@ -15,14 +15,15 @@ from crackfront.analysis.law import (
     law_value,
     pinning_factor,
     shipped_law,
-    slope_breadth,
+    spectral_breadth,
 )
 from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import force_correlation_length, larkin_length
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 
 FLAT = SelfAffineSpectrum(short_cutoff=0.01, roll_off=0.01, hurst=1.0)
+RING = TabulatedSpectrum((1.2, 1.199, 1.0), (1e-4, 1.0, 1.0))
 SPECTRA = (FLAT, SelfAffineSpectrum(0.01, 0.08, 0.8), SelfAffineSpectrum(0.01, 0.2, 0.3))
 
 
@@ -98,6 +99,10 @@ def test_outside_of_what_was_measured_there_is_a_warning_and_a_wider_interval(la
     assert "above the strongest disorder" in strong.warning
     assert strong.factor.standard_error > inside.factor.standard_error
     assert "below the smallest" in small.warning
+    usual = pinning_factor(0.3, 5.0, breadth=law.breadth[1])
+    broad = pinning_factor(0.3, 5.0, breadth=1.5 * law.breadth[1])
+    assert "above the largest that was measured" in broad.warning
+    assert broad.factor.standard_error > usual.factor.standard_error
     assert small.factor.low == 0
 
 
@@ -117,12 +122,34 @@ def test_a_sphere_has_the_k_of_the_straight_front_at_the_springs_of_either_branc
     for sign, branch in ((-1, found.approach), (1, found.retraction)):
         adhesion = 0.95 + sign * branch.factor.value * 0.05
         size = jkr.spring(1.9, adhesion) / larkin_length("roughness", FLAT, w_rms)
-        k = law_value(law.coefficients, w_rms, size, slope_breadth("roughness", FLAT))
+        k = law_value(law.coefficients, w_rms, size, spectral_breadth("roughness", FLAT))
         assert branch.factor.value == pytest.approx(float(k))
     assert found.both.value == pytest.approx(
         (found.approach.factor.value + found.retraction.factor.value) / 2
     )
     assert found.size == pytest.approx(found.spring / found.larkin_length)
+
+
+def test_narrow_spectra_have_the_smallest_k_at_strong_disorder_and_nearly_the_same_at_weak():
+    breadths = [spectral_breadth("roughness", one) for one in (RING, *SPECTRA)]
+    assert breadths[0] < 0.5 < breadths[1] < breadths[2]
+    ring, flat, broad = (
+        pinning_factor(0.84, np.inf, breadth=breadth).factor.value for breadth in breadths[:3]
+    )
+    assert ring < flat < broad
+    weak = [pinning_factor(WEAKEST, 3.0, breadth=breadth).factor.value for breadth in breadths]
+    assert weak == pytest.approx([weak[0]] * 4, rel=0.04)
+    limits = [pinning_factor(WEAKEST, np.inf, breadth=one).factor.value for one in breadths]
+    assert limits == pytest.approx([limits[0]] * 4)
+
+
+def test_a_spectrum_in_pieces_of_equal_variance_is_as_broad_as_their_number():
+    # Two rings of equal variance, q^3 C d(ln q), share it over twice the e-folds of one.
+    pair = TabulatedSpectrum(
+        (4.8, 4.796, 4.0, 3.996, 1.2, 1.199, 1.0), (1e-7, 64.0, 64.0, 1e-7, 1e-7, 1.0, 1.0)
+    )
+    one, two = (spectral_breadth("roughness", spectrum) - 0.25 for spectrum in (RING, pair))
+    assert two == pytest.approx(2 * one, rel=0.02)
 
 
 def test_what_is_no_number_has_no_k():
@@ -147,9 +174,9 @@ def test_what_has_no_k_is_refused(call, sentence):
         call()
 
 
-def test_the_finding_is_three_sentences_with_the_numbers_of_the_law(law):
+def test_the_finding_is_five_sentences_with_the_numbers_of_the_law(law):
     text = finding(departure_of_spheres(0.0251, 65, 87))
-    assert len(re.findall(r"\.(?= [A-Z]|$)", text)) == 3
+    assert len(re.findall(r"\.(?= [A-Z]|$)", text)) == 5
     k_0 = pinning_factor(WEAKEST, np.inf).factor
     assert f"k is {k_0.value:.2f} ({k_0.low:.2f} to {k_0.high:.2f}) at vanishing" in text
     assert float(law_value(law.coefficients, 0.0, least_size())) == pytest.approx(3)

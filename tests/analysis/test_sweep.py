@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crackfront.analysis.estimate import Estimate, mean_estimate
-from crackfront.analysis.law import law_value, shipped_law, slope_breadth
+from crackfront.analysis.law import law_value, shipped_law, spectral_breadth
 from crackfront.analysis.report import fit_notes, fit_table, trend_sentence
 from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.sweep import fit_sweep
@@ -269,8 +269,8 @@ def test_a_sweep_by_the_law_departs_from_it_by_nothing_and_extrapolates_to_its_l
     assert fit.n_large == np.count_nonzero(size > 1) > 3
     law = shipped_law()
     measured = size >= law.size[0]
-    breadth = slope_breadth("roughness", table.shape_of(0))
-    limit = law_value(law.coefficients, fit.cells.w_rms, np.inf, min(breadth, law.breadth[1]))
+    breadth = spectral_breadth("roughness", table.shape_of(0))
+    limit = law_value(law.coefficients, fit.cells.w_rms, np.inf, breadth)
     infinite = fit.cells.infinite_factor
     # The branches of a sphere have two sizes, whose mean k is not quite that of their mean size.
     tolerance = 1e-9 if straight else 0.01
@@ -298,7 +298,8 @@ def test_uncorrelated_sites_are_the_limit_of_weak_disorder_at_any_amplitude():
     table, _, size = by_the_law(straight=True)
     fit = fit_all(table, uncorrelated=True)
     coefficients = shipped_law().coefficients
-    expected = law_value(coefficients, 0.0, size)
+    breadth = spectral_breadth("roughness", table.shape_of(0))
+    expected = law_value(coefficients, 0.0, size, breadth)
     np.testing.assert_allclose(fit.cells.law_factor.value, expected, rtol=1e-6)
     assert fit.k_0.value == pytest.approx(coefficients[0], rel=1e-6)
     assert fit.k_0.low < coefficients[0] < fit.k_0.high

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import yaml
 
-from crackfront.analysis.law import slope_breadth
+from crackfront.analysis.law import spectral_breadth
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.data.provenance import provenance
@@ -504,8 +504,8 @@ def test_the_table_of_a_sweep_keeps_measured_spectra(tmp_path):
     assert table.shape_of(0).wavelengths == measured.wavelengths
     assert table.shape_of(0).densities == pytest.approx(measured.identity[1], rel=1e-12)
     assert table.shape_of(1) == flat
-    breadth = slope_breadth("roughness", measured)
-    assert slope_breadth("roughness", table.shape_of(0)) == pytest.approx(breadth)
+    breadth = spectral_breadth("roughness", measured)
+    assert spectral_breadth("roughness", table.shape_of(0)) == pytest.approx(breadth)
     assert np.isnan(table.hurst[0])
 
 

@@ -30,7 +30,8 @@ def test_the_figure_collapses_fronts_and_spheres_on_one_curve():
         np.full(2, 0.01),
         np.full(2, TYPICAL_BREADTH),
     )
-    left, right = law_figure(fronts, spheres).axes
+    figure = law_figure(fronts, spheres)
+    left, right = figure.axes
     curve = left.get_lines()[0].get_xydata()
     points = drawn_at(left.containers[len(fronts)])
     expected = np.interp(np.log(points[:, 0]), np.log(curve[:, 0]), curve[:, 1])
@@ -39,7 +40,7 @@ def test_the_figure_collapses_fronts_and_spheres_on_one_curve():
     np.testing.assert_allclose(
         drawn_at(right.containers[-1]), np.transpose([s, law_value(law.coefficients, s, np.inf)])
     )
-    labels = [text.get_text() for text in left.get_legend().get_texts()]
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert len(labels) == len(fronts) + 2
     assert "$H=0.8$" in labels
     theories = [text.get_text() for text in right.get_legend().get_texts()]

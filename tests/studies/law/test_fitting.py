@@ -14,12 +14,12 @@ from studies.law.fitting import fitted_law
 
 
 def test_the_fit_finds_the_law_that_was_planted(rng):
-    truth = (3.6, 0.5, 0.1, 0.05, 1.0, 1.2, 2.0, 1.2, 0.6)
+    truth = (3.6, 0.5, 0.1, 0.05, 1.0, 1.2, 2.0, 1.2, 0.2, 0.05)
     template = measured_cells()[0]
     cells = [
         planted_cell(template, truth, s, g, breadth, 1 + 0.01 * rng.standard_normal())
         for s, breadth in zip(
-            (0.1, 0.2, 0.4, 0.6, 0.84, 1.1), (1, 1.2, 1.4, 1, 1.4, 1.2), strict=True
+            (0.1, 0.2, 0.4, 0.6, 0.84, 1.1), (1, 2.0, 3.0, 1, 3.0, 0.5), strict=True
         )
         for g in np.geomspace(0.3, 100, 10)
     ]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from crackfront.analysis.finding import crossing
+from crackfront.analysis.finding import crossing, stated_breadths
 from crackfront.analysis.law import law_value, pinning_factor, shipped_law
 from studies.__main__ import main
 from studies.law.commands import PAGES
@@ -30,8 +30,9 @@ def test_the_pages_hold_the_numbers_of_the_law(tmp_path, monkeypatch):
 
 def test_the_table_of_the_limit_holds_its_values_and_where_k_is_that_of_the_paper():
     text = limit_part()
-    k = pinning_factor(0.4, np.inf).factor
-    assert f"| 0.4 | {k.value:.2f} ({k.low:.2f} to {k.high:.2f}) |" in text
+    for breadth in stated_breadths().values():
+        k = pinning_factor(0.4, np.inf, breadth=breadth).factor
+        assert f"| {k.value:.2f} ({k.low:.2f} to {k.high:.2f}) |" in text
     s, low, high = crossing()
     assert float(law_value(shipped_law().coefficients, s, np.inf)) == pytest.approx(3)
     assert pinning_factor(low, np.inf).factor.low == pytest.approx(3)
