@@ -180,29 +180,19 @@ def _reference(energy: float) -> Knobs:
 
 def _unseen() -> list[Scene]:
     """Spectra between those of the laws, and weak disorder under shorter cutoffs."""
-    shapes: tuple[tuple[str, FieldKind, SelfAffineSpectrum, float, tuple[float, ...]], ...] = (
-        ("c015", "chemical", SelfAffineSpectrum(0.015, 0.015, 1.0), 64, (0.005, 0.02, 0.08, 0.25)),
-        (
-            "f013",
-            "roughness",
-            SelfAffineSpectrum(0.013, 0.013, 1.0),
-            64,
-            (0.0015, 0.003, 0.01, 0.06, 0.14, 0.25, 0.4),
-        ),
-        ("band", "roughness", SelfAffineSpectrum(0.02, 0.05, 0.7), 64, (0.005, 0.03, 0.1)),
-        ("h02", "roughness", SelfAffineSpectrum(0.012, 0.1, 0.2), 80, (0.005, 0.02, 0.4)),
-        (
-            "h05",
-            "roughness",
-            SelfAffineSpectrum(0.008, 0.08, 0.5),
-            80,
-            (0.0015, 0.003, 0.01, 0.06, 0.14, 0.25, 0.4),
-        ),
-        ("h09", "roughness", SelfAffineSpectrum(0.01, 0.16, 0.9), 96, (0.02, 0.06, 0.25)),
+    wide = (0.0015, 0.003, 0.01, 0.06, 0.14, 0.25, 0.4)
+    shapes: tuple[tuple[str, FieldKind, tuple[float, float, float], float, tuple[float, ...]], ...]
+    shapes = (
+        ("c015", "chemical", (0.015, 0.015, 1.0), 64, (0.005, 0.02, 0.08, 0.25)),
+        ("f013", "roughness", (0.013, 0.013, 1.0), 64, wide),
+        ("band", "roughness", (0.02, 0.05, 0.7), 64, (0.005, 0.03, 0.1)),
+        ("h02", "roughness", (0.012, 0.1, 0.2), 80, (0.005, 0.02, 0.4)),
+        ("h05", "roughness", (0.008, 0.08, 0.5), 80, wide),
+        ("h09", "roughness", (0.01, 0.16, 0.9), 96, (0.02, 0.06, 0.25)),
     )
     return [
         Scene(
-            f"{name}-{energy:g}", kind, spectrum, energy, cutoffs,
+            f"{name}-{energy:g}", kind, SelfAffineSpectrum(*spectrum), energy, cutoffs,
             reference=_reference(energy), single_knobs=False,
         )
         for name, kind, spectrum, cutoffs, energies in shapes
