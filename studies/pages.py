@@ -13,19 +13,20 @@ from crackfront.data.provenance import provenance
 _BLOCK = re.compile(r"<!-- (?P<study>[\w-]+): (?P<name>.*?) -->.*?<!-- end -->", re.DOTALL)
 
 
-def markdown_table(header: str, rows: Iterable[Sequence[str]]) -> str:
-    """Table in Markdown; the header has a bar between columns.
+def markdown_table(header: str, rows: Iterable[str | Sequence[str]]) -> str:
+    """Table in Markdown; the header has a bar between columns, and so has a row that is one text.
 
     Examples
     --------
-    >>> print(markdown_table("scene | time / s", [["flat", "3"]]))
+    >>> print(markdown_table("scene | time / s", [["flat", "3"], "h08 | 4"]))
     | scene | time / s |
     | --- | --- |
     | flat | 3 |
+    | h08 | 4 |
     """
-    columns = header.split(" | ")
-    lines = [columns, ["---"] * len(columns), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    lines = [header, ["---"] * len(header.split(" | ")), *rows]
+    texts = (line if isinstance(line, str) else " | ".join(line) for line in lines)
+    return "\n".join(f"| {text} |" for text in texts)
 
 
 def renewed(page: str, study: str, parts: Mapping[str, str]) -> str:

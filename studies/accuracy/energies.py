@@ -226,15 +226,9 @@ def energy_table(found: Mapping[Kind, Sequence[Found]]) -> str:
         ratios = np.array([one.ratio.value for one in scans])
         shares = [one.surface.joint.shares.measured for one in scans]
         rows.append(
-            (
-                kind.name,
-                "yes" if kind.resolved else "no",
-                f"{np.median(ratios):.2f}",
-                f"{np.median(np.abs(ratios - 1)):.0%}",
-                f"{np.mean([one.covers for one in scans]):.0%}",
-                f"{np.median([one.factor for one in scans]):.2f}",
-                f"{np.median(shares):.0%}",
-            )
+            f"{kind.name} | {'yes' if kind.resolved else 'no'} | {np.median(ratios):.2f} | "
+            f"{np.median(np.abs(ratios - 1)):.0%} | {np.mean([one.covers for one in scans]):.0%} | "
+            f"{np.median([one.factor for one in scans]):.2f} | {np.median(shares):.0%}"
         )
     table = markdown_table(
         "scans | resolved | e_el found / true | median error | intervals that hold it | "

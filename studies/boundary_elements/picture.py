@@ -33,6 +33,7 @@ from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import N_ANGLE, PRESSURE, BoundaryCycle
 from studies.boundary_elements.front import FrontCycle, shown_states
 from studies.boundary_elements.hysteresis import Hysteresis
+from studies.paper.drawing import draw_jump
 
 _MOST_POINTS, _MARGIN = 320, 0.15
 """Points along a side of the part that is kept, and its margin around the contact."""
@@ -146,15 +147,14 @@ def _draw_jumps(axes: Axes, picture: ValidationPicture) -> None:
     if end == picture.boundary_penetration.size:
         return
     theirs, ours = picture.boundary_force, picture.front_force
-    for dashed, place, start, force in (
-        (False, picture.boundary_penetration[first], 0.0, theirs[first]),
-        (False, picture.boundary_penetration[end], theirs[last], 0.0),
-        (True, picture.front_penetration[0], 0.0, ours[0]),
-        (True, picture.front_end, ours[-1], 0.0),
+    for line, place, start, force in (
+        ("-", picture.boundary_penetration[first], 0.0, theirs[first]),
+        ("-", picture.boundary_penetration[end], theirs[last], 0.0),
+        ((0, _DASHES), picture.front_penetration[0], 0.0, ours[0]),
+        ((0, _DASHES), picture.front_end, ours[-1], 0.0),
     ):
-        style = {"linewidth": 0.8, "linestyle": (0, _DASHES) if dashed else "-", "color": "0.25"}
-        arrow = {"arrowstyle": "-|>", "mutation_scale": 7, "shrinkA": 0, "shrinkB": 0}
-        axes.annotate("", xy=(place, force), xytext=(place, start), arrowprops=style | arrow)
+        style: dict[str, Any] = {"linewidth": 0.8, "linestyle": line, "mutation_scale": 7}
+        draw_jump(axes, (place, start), (place, force), "0.25", **style)
 
 
 def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:

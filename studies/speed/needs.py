@@ -188,19 +188,10 @@ def sections(rows: list[Row]) -> list[str]:
         "asked for | CPU s | sites | load steps | samples crossed | peak MB | field MB | record kB "
         "| file kB"
     )
-    cells = [
-        (
-            row.name,
-            f"{row.seconds:.3g}",
-            f"{row.n_angle}",
-            f"{row.n_step}",
-            f"{row.samples:.2g}",
-            f"{row.peak:.1f}",
-            f"{row.field:.2f}",
-            f"{1e3 * row.record:.1f}",
-            f"{row.file:.1f}",
-        )
+    lines = [
+        f"{row.name} | {row.seconds:.3g} | {row.n_angle} | {row.n_step} | {row.samples:.2g} | "
+        f"{row.peak:.1f} | {row.field:.2f} | {1e3 * row.record:.1f} | {row.file:.1f}"
         for row in rows
     ]
     listed = "\n".join(f"- {need.name}: {need.asked}" for need in NEEDS)
-    return [listed, markdown_table(header, cells)]
+    return [listed, markdown_table(header, lines)]

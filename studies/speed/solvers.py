@@ -92,21 +92,14 @@ def table(rows: Iterable[Row]) -> str:
         "problem | reference s | newton s | ratio | FFT pairs | updates a site and cutoff | "
         "newton us a site and cutoff | error / lambda_s | MB"
     )
-    cells = [
-        (
-            row.label,
-            f"{row.reference_seconds:.2f}",
-            f"{row.newton_seconds:.2f}",
-            f"{row.ratio:.1f}",
-            f"{row.reference_pairs} / {row.newton_pairs}",
-            f"{row.reference_updates / row.n_cutoff:.1f} / {row.newton_updates / row.n_cutoff:.1f}",
-            f"{1e6 * row.newton_seconds / row.n_cutoff:.2f}",
-            f"{row.error:.1e}",
-            f"{row.memory:.0f}",
-        )
+    lines = (
+        f"{row.label} | {row.reference_seconds:.2f} | {row.newton_seconds:.2f} | {row.ratio:.1f} | "
+        f"{row.reference_pairs} / {row.newton_pairs} | "
+        f"{row.reference_updates / row.n_cutoff:.1f} / {row.newton_updates / row.n_cutoff:.1f} | "
+        f"{1e6 * row.newton_seconds / row.n_cutoff:.2f} | {row.error:.1e} | {row.memory:.0f}"
         for row in rows
-    ]
-    return markdown_table(header, cells)
+    )
+    return markdown_table(header, lines)
 
 
 def _by_disorder(rows: Iterable[Row]) -> dict[float, list[Row]]:
