@@ -12,12 +12,7 @@ import xarray as xr
 from crackfront.core.variables import Variable, variables
 from crackfront.data.files import UnreadableFileError, labelled, labelled_fields, read_dataset
 from crackfront.data.records import read_records, stacked
-from studies.accuracy.averages import (
-    coverage_seconds,
-    held_out_coverage,
-    sampling_errors,
-    sampling_seconds,
-)
+from studies.accuracy import averages
 from studies.accuracy.scenes import HELD_OUT, SCENES, Progress, Scene, Setting
 from studies.accuracy.study import Errors, SceneErrors, scene_errors, setting_seconds
 
@@ -51,13 +46,13 @@ def _of_settings(settings: Callable[[Scene], list[Setting]], first: int = 0) -> 
 
 def _averages(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
     """Errors of schedules and tiles."""
-    samples = sampling_errors(scene, range(n_realisation), progress)
+    samples = averages.sampling_errors(scene, range(n_realisation), progress)
     return records_dataset("errors of averaging", scene, samples)
 
 
 def _coverage(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
     """True errors beside the stated ones."""
-    found = held_out_coverage(scene, _COVERED, n_realisation, progress)
+    found = averages.held_out_coverage(scene, _COVERED, n_realisation, progress)
     return records_dataset("true and stated errors", scene, found)
 
 
@@ -65,8 +60,8 @@ STUDIES = {
     "knobs": _of_settings(lambda scene: scene.single_settings),
     "asked": _of_settings(lambda scene: scene.asked_settings()),
     "unseen": _of_settings(lambda scene: scene.asked_settings(_UNSEEN), HELD_OUT),
-    "averages": Study(_averages, sampling_seconds),
-    "coverage": Study(_coverage, lambda scene: coverage_seconds(scene, _COVERED)),
+    "averages": Study(_averages, averages.sampling_seconds),
+    "coverage": Study(_coverage, lambda scene: averages.coverage_seconds(scene, _COVERED)),
 }
 """The studies of a scene, by the first part of the names of their files."""
 

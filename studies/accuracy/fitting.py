@@ -13,16 +13,7 @@ from matplotlib.ticker import NullFormatter
 from scipy.optimize import minimize_scalar
 
 from crackfront.core.arrays import Array
-from crackfront.plots.style import (
-    BLACK,
-    COLOURS,
-    COLUMN,
-    MARKERS,
-    PAGE,
-    blank_figure,
-    explain,
-    house_style,
-)
+from crackfront.plots import style
 from crackfront.simulate.laws import KNOBS, LAW_SIZE, Knob, Law, abscissa
 from studies.accuracy.study import SceneErrors, rms
 
@@ -147,19 +138,17 @@ def laws_text(laws: Iterable[Law]) -> str:
 
 def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
     """Measured errors of k of w_retr of one shape against every knob, and the fitted laws."""
-    with house_style():
-        figure = blank_figure(PAGE, 1.1 * COLUMN)
+    with style.house_style():
+        figure = style.blank_figure(style.PAGE, 1.1 * style.COLUMN)
         panels = figure.subplots(2, 3).ravel()
         for axes, knob in zip(panels, KNOBS, strict=False):
             _draw_laws(axes, knob, studies, laws)
         for axes in panels[::3]:
             axes.set_ylabel(r"rms error of $w_\mathrm{retr}$ / $e_\mathrm{el}$")
         panels[-1].set_axis_off()
-        handles, labels = panels[0].get_legend_handles_labels()
-        panels[-1].legend(
-            handles, labels, loc="center left", title=r"$e_\mathrm{el}/w_\mathrm{int}$"
-        )
-        explain(
+        entries = panels[0].get_legend_handles_labels()
+        panels[-1].legend(*entries, loc="center left", title=r"$e_\mathrm{el}/w_\mathrm{int}$")
+        style.explain(
             figure,
             "lines: the fitted laws, of a scatter for both branches; broken line: an error of 0.01",
         )
@@ -168,7 +157,7 @@ def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
 
 def _draw_laws(axes: Axes, knob: Knob, studies: Sequence[SceneErrors], laws: Sequence[Law]) -> None:
     """Draw the errors of one knob and their laws, a colour a scene."""
-    for study, colour, marker in zip(studies, COLOURS, MARKERS, strict=False):
+    for study, colour, marker in zip(studies, style.COLOURS, style.MARKERS, strict=False):
         scene = study.scene
         values, found = _knob_errors(study, knob)
         axes.plot(
@@ -187,7 +176,7 @@ def _draw_laws(axes: Axes, knob: Knob, studies: Sequence[SceneErrors], laws: Seq
         )
         between = np.geomspace(values.min(), values.max(), 60)
         axes.plot(between, [law.error(x, LAW_SIZE) for x in between], color=colour)
-    axes.axhline(0.01, color=BLACK, linewidth=0.4, dashes=(4, 2))
+    axes.axhline(0.01, color=style.BLACK, linewidth=0.4, dashes=(4, 2))
     axes.set_yscale("log")
     if knob != "sites":
         axes.set_xscale("log")

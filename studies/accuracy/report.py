@@ -14,16 +14,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from crackfront.core.arrays import Array
 from crackfront.data.files import write_text
-from crackfront.plots.style import (
-    COLOURS,
-    COLUMN,
-    MARKERS,
-    PAGE,
-    blank_figure,
-    explain,
-    house_style,
-    save_figure,
-)
+from crackfront.plots import style
 from studies.accuracy.averages import Coverage, Sample
 from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
@@ -93,7 +84,7 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     if flat := [study for study in fitted if study.scene.shape == "flat"]:
         drawn["laws"] = laws_figure(flat, laws)
     for name, figure in drawn.items():
-        for path in save_figure(figure, folder / name):
+        for path in style.save_figure(figure, folder / name):
             progress(f"figure: {path}")
     if page is not None:
         write_text(page, renewed(page.read_text(encoding="utf-8"), "accuracy", tables))
@@ -254,8 +245,8 @@ def _sample_table(samples: tuple[Sample, ...]) -> str:
 
 def _work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
     """Error of the hysteresis against time of up to four scenes; the Pareto front is marked."""
-    with house_style():
-        figure = blank_figure(PAGE, 1.25 * COLUMN)
+    with style.house_style():
+        figure = style.blank_figure(style.PAGE, 1.25 * style.COLUMN)
         rows = (len(studies) + 1) // 2
         panels = figure.subplots(rows, 2, squeeze=False).ravel()
         for axes, study in zip(panels, studies, strict=False):
@@ -266,9 +257,11 @@ def _work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
             axes.set_xlabel("CPU time of one realisation / s")
         for axes in panels[::2]:
             axes.set_ylabel("rms error of the hysteresis / %")
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside right upper", title="varied")
-        explain(figure, "grey: the Pareto front, from setting to setting that none beats in both")
+        entries = panels[0].get_legend_handles_labels()
+        figure.legend(*entries, loc="outside right upper", title="varied")
+        style.explain(
+            figure, "grey: the Pareto front, from setting to setting that none beats in both"
+        )
         return figure
 
 
@@ -278,7 +271,7 @@ def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
     error, best = 100 * relative, pareto_front(seconds, relative)
     knobs = np.array([errors.knob for errors in study.errors])
     axes.plot(seconds[best], error[best], color="0.8", linewidth=4, zorder=1, label="Pareto front")
-    for knob, colour, marker in zip(_NAMES, COLOURS, MARKERS, strict=False):
+    for knob, colour, marker in zip(_NAMES, style.COLOURS, style.MARKERS, strict=False):
         chosen = knobs == knob
         axes.plot(
             seconds[chosen],

@@ -38,22 +38,18 @@ def validate(configuration: Path, output: Path | None, finished: bool) -> None:
     """
     from crackfront.data.provenance import provenance
     from crackfront.sweep.configuration import results_folder
+    from studies.boundary_elements import study
     from studies.boundary_elements.parameters import load_validation, validation_cases
-    from studies.boundary_elements.study import (
-        expected_seconds,
-        refuse_missing_libraries,
-        write_validation,
-    )
 
     parameters = load_validation(configuration)
     folder = output or results_folder(configuration)
-    refuse_missing_libraries()
+    study.refuse_missing_libraries()
     refuse_unwritable(folder)
     origin = provenance(configuration.read_text(encoding="utf-8"))
     if not finished:
-        announce_cost(expected_seconds(validation_cases(parameters), folder))
+        announce_cost(study.expected_seconds(validation_cases(parameters), folder))
     announce_compilation()
     try:
-        write_validation(folder, parameters, origin, click.echo, compute=not finished)
+        study.write_validation(folder, parameters, origin, click.echo, compute=not finished)
     except KeyboardInterrupt as error:
         raise StoppedError("Run the same command to continue with the next load step") from error

@@ -10,14 +10,7 @@ from typing import Any
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.validity import validity_sentence
-from studies.boundary_elements.averages import (
-    ORDER,
-    Setting,
-    limit_settings,
-    rough_settings,
-    settings,
-    validity_row,
-)
+from studies.boundary_elements import averages
 from studies.boundary_elements.differences import Differences
 from studies.boundary_elements.hysteresis import Hysteresis
 from studies.pages import markdown_table
@@ -30,8 +23,8 @@ def validation_report(
     rows: Sequence[Hysteresis], loops: Sequence[Differences], short_cutoff: float
 ) -> str:
     """Markdown tables of the finished cases, and of those that are whole loops."""
-    found, limits = settings(rows), limit_settings(rows)
-    told = [validity_row(one, short_cutoff) for one in rough_settings(limits)]
+    found, limits = averages.settings(rows), averages.limit_settings(rows)
+    told = [averages.validity_row(one, short_cutoff) for one in averages.rough_settings(limits)]
     parts = [
         ["# Crack front against boundary elements", ""],
         [validity_sentence(told), ""] if told else [],
@@ -45,14 +38,14 @@ def validation_report(
 
 def _table(text: str, header: str, lines: Iterable[str]) -> list[str]:
     """A paragraph and its table, or nothing where the table has no lines."""
-    rows = [[line] for line in lines]
+    rows = list(lines)
     return [text, "", markdown_table(header, rows), ""] if rows else []
 
 
 _SETTING = "roll-off | e_el | points | range | step"
 
 
-def _cells(found: Setting, *names: str) -> list[str]:
+def _cells(found: averages.Setting, *names: str) -> list[str]:
     """Cells of the setting, of the number of surfaces, and of means over them by their fields."""
     row, energy = found.rows[0], float(found.mean(attrgetter("elastic_energy")).value)
     grid = f"{row.n_point} | {row.interaction_range:g} | {row.step:g}"
@@ -66,7 +59,7 @@ def _shown(found: Estimate, digits: int = 4) -> str:
     return f"{value:.{digits}f}" + (f" ({error:.{digits}f})" if math.isfinite(error) else "")
 
 
-def _hysteresis_table(found: Sequence[Setting]) -> list[str]:
+def _hysteresis_table(found: Sequence[averages.Setting]) -> list[str]:
     """Works of adhesion and hysteresis of both models."""
     models = [
         f"{model}_{name}"
@@ -78,9 +71,9 @@ def _hysteresis_table(found: Sequence[Setting]) -> list[str]:
         "w_int; boundary elements first, then the front on the same surfaces; in brackets standard "
         "errors over surfaces. Hysteresis: the energy that either branch loses per area that it "
         "sweeps, summed; k is half of it over e_el. Ratio: front over boundary elements. Range 0 "
-        f"is extrapolated by the range to the power {ORDER} from the two shortest of a surface: "
-        "the mean of the longest over all surfaces, and that of what extrapolation changes on "
-        "those that have a shorter one.",
+        f"is extrapolated by the range to the power {averages.ORDER} from the two shortest of a "
+        "surface: the mean of the longest over all surfaces, and that of what extrapolation "
+        "changes on those that have a shorter one.",
         f"{_SETTING} | surfaces | w_appr | front | w_retr | front | hysteresis | front | ratio",
         (
             " | ".join(
@@ -94,7 +87,7 @@ def _hysteresis_table(found: Sequence[Setting]) -> list[str]:
     )
 
 
-def _run_table(found: Sequence[Setting]) -> list[str]:
+def _run_table(found: Sequence[averages.Setting]) -> list[str]:
     """What the minimiser did, and the processor time."""
     hours = sum(row.boundary_seconds for one in found for row in one.rows) / 3600
     return _table(

@@ -19,18 +19,7 @@ from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive, Section, refusal
-from crackfront.plots import parts
-from crackfront.plots.style import (
-    BLACK,
-    BLUE,
-    ORANGE,
-    PAGE,
-    SKY,
-    VERMILION,
-    blank_figure,
-    explain,
-    house_style,
-)
+from crackfront.plots import parts, style
 from studies.paper.drawing import BRANCHES, write_beside
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rings import INNERMOST, Rings, first_stops, folds, steady_stiffness
@@ -237,7 +226,7 @@ def _case_checks(loops: RingLoops) -> Iterator[Check]:
             yield near(name, found, 0.0, _ROUND_OFF, remark=remark)
 
 
-_COLOURS = ({1: BLUE, -1: VERMILION}, {1: SKY, -1: ORANGE})
+_COLOURS = ({1: style.BLUE, -1: style.VERMILION}, {1: style.SKY, -1: style.ORANGE})
 """Of both branches, dark for the long and light for the short rings."""
 
 _REACH = 2.2
@@ -246,8 +235,8 @@ _REACH = 2.2
 
 def rings_figure(loops: RingLoops) -> Drawing:
     """Contact and rings, sampled works of adhesion for both wavelengths, force against radius."""
-    with house_style():
-        figure = blank_figure(PAGE, 0.8 * PAGE)
+    with style.house_style():
+        figure = style.blank_figure(style.PAGE, 0.8 * style.PAGE)
         grid = figure.add_gridspec(2, 2, height_ratios=(1.15, 1))
         left = grid[0, 0].subgridspec(2, 1, height_ratios=(1, 1.25), hspace=0.02)
         profile = figure.add_subplot(left[0])
@@ -260,7 +249,7 @@ def rings_figure(loops: RingLoops) -> Drawing:
         _draw_forces(force, loops)
         for name, axes in zip("abcd", (profile, long, short, force), strict=True):
             parts.label_panel(axes, name)
-        explain(
+        style.explain(
             figure,
             "thick: the edge is pinned; thin: it jumps (b, d with arrows); grey: $w_\\mathrm{loc}$ "
             "of the rings; A, B: contact at b = 0 in approach and retraction; broken lines: the "
@@ -305,7 +294,7 @@ def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float,
     adhesion, label = loops.rings(index).adhesion(radius), r"$w_\mathrm{loc}(a)$"
     axes.plot(radius, adhesion, color="0.72", label=f"{label}, $d={loops.wavelength[index]:g}$")
     release = jkr.apparent_work_of_adhesion(radius, 0.0)
-    axes.plot(radius, release, color=BLACK, linewidth=0.8, label=r"$G_\mathrm{JKR}(b=0,a)$")
+    axes.plot(radius, release, color=style.BLACK, linewidth=0.8, label=r"$G_\mathrm{JKR}(b=0,a)$")
     for direction, name, short, _ in BRANCHES:
         _draw_branch(axes, loops, index, direction, jkr.apparent_work_of_adhesion, name)
         level = 1 - direction * loops.amplitude
@@ -343,7 +332,9 @@ def _draw_forces(axes: Axes, loops: RingLoops) -> None:
             label=rf"JKR, $w_\mathrm{{{short}}}={adhesion:g}\,w_\mathrm{{int}}$",
             zorder=1,
         )
-    axes.plot(radius, jkr.force(radius, 0.0), color=BLACK, linewidth=0.8, label="$b=0$", zorder=1)
+    axes.plot(
+        radius, jkr.force(radius, 0.0), color=style.BLACK, linewidth=0.8, label="$b=0$", zorder=1
+    )
     axes.set(
         xlim=(0, _REACH), ylim=(-2.7, 2.7), xlabel=parts.RADIUS_LABEL, ylabel=parts.FORCE_LABEL
     )

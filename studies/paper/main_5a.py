@@ -13,16 +13,7 @@ from pydantic import model_validator
 from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
 from crackfront.data.section import Positive, refusal
-from crackfront.plots import densities
-from crackfront.plots.style import (
-    BLACK,
-    BLUE,
-    COLUMN,
-    VERMILION,
-    blank_figure,
-    explain,
-    house_style,
-)
+from crackfront.plots import densities, style
 from studies.paper.drawing import write_beside
 from studies.paper.figure import Check, Figure, Progress, close_to, values_of
 from studies.paper.film import CONVERTED_LABEL, FilmDensities, FilmParameters, conformity_energy
@@ -140,27 +131,26 @@ def _range_check(record: FilmScales, index: int) -> Check:
 
 def film_scales_figure(record: FilmScales) -> Drawing:
     """Isotropic density with the dominating scales, and density of profiles below."""
-    with house_style():
-        figure, q = blank_figure(COLUMN, 1.35 * COLUMN), record.wavevector
+    with style.house_style():
+        figure, q = style.blank_figure(style.COLUMN, 1.35 * style.COLUMN), record.wavevector
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.25, 1))
         for axes in (upper, lower):
             densities.set_density_scales(axes, q)
-        upper.plot(q, record.isotropic, color=BLACK)
+        upper.plot(q, record.isotropic, color=style.BLACK)
         densities.draw_dominant_scales(upper, record.mean_square, record.shortest, record.longest)
         _draw_roll_off(upper, record)
-        lower.plot(q, record.profile, color=BLACK, label="exact projection")
-        lower.plot(q, record.converted, color=BLUE, dashes=(4, 2), label=CONVERTED_LABEL)
+        lower.plot(q, record.profile, color=style.BLACK, label="exact projection")
+        lower.plot(q, record.converted, color=style.BLUE, dashes=(4, 2), label=CONVERTED_LABEL)
         if record.measured_wavevector.size:
             points, density = record.measured_wavevector, record.measured_profile
-            upper.plot(points, np.pi / points * density, ".", color=VERMILION, markersize=2)
-            lower.plot(points, density, ".", color=VERMILION, markersize=2, label="measured")
+            upper.plot(points, np.pi / points * density, ".", color=style.VERMILION, markersize=2)
+            lower.plot(points, density, ".", color=style.VERMILION, markersize=2, label="measured")
         lower.axvline(2 * np.pi / record.roll_off, color="0.6", linewidth=0.6, zorder=1)
         lower.legend(loc="upper right")
         upper.set_ylabel(densities.ISOTROPIC_LABEL)
-        lower.set_ylabel(densities.PROFILE_LABEL)
+        lower.set(xlabel=densities.WAVEVECTOR_LABEL, ylabel=densities.PROFILE_LABEL)
         densities.add_wavelengths(upper)
-        lower.set_xlabel(densities.WAVEVECTOR_LABEL)
-        explain(figure, "bars: scales of 80% of a mean square; grey: the roll-off")
+        style.explain(figure, "bars: scales of 80% of a mean square; grey: the roll-off")
         return figure
 
 
