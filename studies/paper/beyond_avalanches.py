@@ -20,19 +20,8 @@ from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, varia
 from crackfront.data.section import Count, Positive
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.simulate.instabilities import resolved_motion, swept_clusters
+from studies.paper import events as line_events
 from studies.paper.drawing import DASHED, ON_WHITE, THEORY, label_plain_numbers, name_panels
-from studies.paper.events import (
-    SIZE_EXPONENT,
-    EventParameters,
-    EventRecord,
-    binned_density,
-    draw_cutoffs,
-    draw_depths,
-    draw_events,
-    event_checks,
-    event_record,
-    logarithmic_edges,
-)
 from studies.paper.figure import Check, Figure, Integers, Progress, values_of
 from studies.paper.power_law import PowerLaw, truncated_power_law
 from studies.paper.rough import (
@@ -60,13 +49,13 @@ class AvalancheParameters(RetractionParameters):
     precision: Positive  # penetration to which an avalanche is located; closer ones come out as one
     # Where the power law begins, over the Larkin length times the correlation length of the force.
     smallest_area: Positive
-    line: EventParameters  # straight fronts, and how their events are told apart
+    line: line_events.EventParameters  # straight fronts, and how their events are told apart
     springs: Springs
     n_tile: Count  # of each spring; each front goes over a whole period
 
 
 @dataclass(frozen=True, slots=True)
-class AvalancheRecord(EventRecord):
+class AvalancheRecord(line_events.EventRecord):
     """Whole events of straight fronts, and avalanches of all surfaces of a sphere."""
 
     short_cutoff: float = variable("shortest wavelength of the roughness", LATERAL)
@@ -115,7 +104,7 @@ class _Surface:
 def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> AvalancheRecord:
     """Whole events of straight fronts, then avalanches on surfaces of two amplitudes."""
     line, springs = parameters.line, parameters.springs
-    whole = event_record(line, springs, parameters.n_tile, parameters.seed, progress)
+    whole = line_events.event_record(line, springs, parameters.n_tile, parameters.seed, progress)
     surfaces: list[list[_Surface]] = []
     energies = parameters.strong, parameters.weak
     for name, energy in zip(("strong", "weak"), energies, strict=True):
@@ -205,7 +194,7 @@ def avalanche_checks(record: AvalancheRecord) -> tuple[Check, ...]:
     extents = [record.extent[record.disorder_index == index] for index in (STRONG, WEAK)]
     smallest = [float(np.quantile(extent, 0.1)) for extent in extents]
     return (
-        *event_checks(record),
+        *line_events.event_checks(record),
         *_checks(record, STRONG, "strong"),
         *_checks(record, WEAK, "weak"),
         Check(
@@ -225,12 +214,14 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
     chosen = record.disorder_index == index
     energy, extent = record.energy[chosen], record.extent[chosen]
     law = size_law(record, index)
-    contained = "contains it" if law.low <= SIZE_EXPONENT <= law.high else "leaves it out"
+    contained = (
+        "contains it" if law.low <= line_events.SIZE_EXPONENT <= law.high else "leaves it out"
+    )
     yield Check(
         f"sphere, {name} disorder: exponent of the swept areas",
-        with_error(SIZE_EXPONENT, _TOLERANCE),
+        with_error(line_events.SIZE_EXPONENT, _TOLERANCE),
         f"{law.exponent:.2f} ({law.low:.2f} to {law.high:.2f})",
-        abs(law.exponent - SIZE_EXPONENT) <= _TOLERANCE,
+        abs(law.exponent - line_events.SIZE_EXPONENT) <= _TOLERANCE,
         f"{law.n_value} of {energy.size} avalanches; the 95% interval of a bootstrap over "
         f"avalanches {contained}; from {law.smallest:.2g} to the cut-off at {law.cutoff:.2g}, "
         f"{np.log10(law.cutoff / law.smallest):.1f} decades; an effective exponent where these are "
@@ -264,9 +255,9 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
         grid = figure.add_gridspec(2, 1)
         above, below = (figure.add_subfigure(grid[row]) for row in range(2))
         lines, panels = above.subplots(1, 3), below.subplots(1, 3)
-        draw_events(lines[0], record)
-        draw_cutoffs(lines[1], record)
-        draw_depths(lines[2], record)
+        line_events.draw_events(lines[0], record)
+        line_events.draw_cutoffs(lines[1], record)
+        line_events.draw_depths(lines[2], record)
         _draw_areas(panels[0], record)
         _draw_extents(panels[1], record)
         # The reduced unit of energy is pi times w_int times the lateral unit squared.
@@ -291,10 +282,10 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
 
 def _draw_densities(axes: Axes, record: AvalancheRecord, values: Array, what: str) -> None:
     """Densities of both disorders in logarithmic bins, with the error of counting."""
-    edges = logarithmic_edges(values)
+    edges = line_events.logarithmic_edges(values)
     for index, name, colour, marker in _KINDS:
         chosen = values[record.disorder_index == index]
-        middle, density, counts = binned_density(chosen, edges)
+        middle, density, counts = line_events.binned_density(chosen, edges)
         disorder = rf"$w_\mathrm{{rms}} = {record.rms[index]:.2f}\,w_\mathrm{{int}}$"
         axes.errorbar(
             middle,
@@ -328,8 +319,8 @@ def _draw_areas(axes: Axes, record: AvalancheRecord) -> None:
     start = record.smallest_area[STRONG] / unit
     ends = start * np.array([1.0, 40.0])
     level = 4 * float(size_law(record, STRONG).density(record.smallest_area[STRONG])) * unit
-    theory = level * (ends / start) ** -SIZE_EXPONENT
-    axes.plot(ends, theory, label=rf"$\tau = {SIZE_EXPONENT:.2f}$", **THEORY)
+    theory = level * (ends / start) ** -line_events.SIZE_EXPONENT
+    axes.plot(ends, theory, label=rf"$\tau = {line_events.SIZE_EXPONENT:.2f}$", **THEORY)
     _legend_of(axes, "tau")
 
 
