@@ -1,0 +1,74 @@
+"""No table that the package ships is clamped, without a word, beyond what was measured."""
+
+from dataclasses import replace
+from importlib.resources import files
+
+import pytest
+
+from crackfront.analysis.law import pinning_factor, shipped_law
+from crackfront.analysis.validity import largest_energy, shipped_validity, validity_sentence
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.simulate.costs import featured_cost, measured_runs
+from crackfront.simulate.laws import chosen_knobs, measured_energies
+
+FLAT = SelfAffineSpectrum(0.02, 0.02, 1.0)
+
+
+def errors_of_the_numerics():
+    """An error is refused."""
+    least, most = measured_energies()
+    for energy in (0.9 * least, 1.1 * most):
+        with pytest.raises(ValueError, match="errors were measured for e_el/w_int from"):
+            chosen_knobs(0.03, "roughness", FLAT, energy)
+
+
+def law_of_k():
+    """There is a warning, and a wider interval."""
+    law = shipped_law()
+    for s, g, breadth in (
+        (1.1 * law.disorder[1], 5.0, 1.0),
+        (0.3, 0.9 * law.size[0], 1.0),
+        (0.3, 5.0, 1.5 * law.breadth[1]),
+    ):
+        assert pinning_factor(s, g, breadth=breadth).warning
+
+
+def costs_of_simulations():
+    """A cost rises on."""
+    largest = max((run.features for run in measured_runs()), key=lambda item: item.n_angle)
+    costs = [
+        featured_cost(replace(largest, n_angle=factor * largest.n_angle), fronts=False).seconds
+        for factor in (1, 2, 4)
+    ]
+    assert costs[0] < costs[1] < costs[2]
+
+
+def range_of_validity():
+    """No amplitude beyond the strongest that was compared is stated."""
+    rows = shipped_validity()
+    assert largest_energy(rows, 10.0) == max(row.elastic_energy for row in rows)
+    assert f"e_el/w_int = {max(row.elastic_energy for row in rows):.2g}" in validity_sentence()
+
+
+TABLES = {
+    "laws.csv": errors_of_the_numerics,
+    "law.json": law_of_k,
+    "costs.csv": costs_of_simulations,
+    "validity.csv": range_of_validity,
+}
+
+
+def test_every_table_is_held_against_its_ends():
+    shipped = {
+        path.name
+        for folder in files("crackfront").iterdir()
+        if folder.is_dir()
+        for path in folder.iterdir()
+        if path.name.endswith((".csv", ".json"))
+    }
+    assert shipped == set(TABLES)
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_no_table_is_clamped_beyond_its_ends(name):
+    TABLES[name]()
