@@ -131,7 +131,7 @@ def test_a_local_module_that_is_renamed_changes_no_key(sources):
         ("crackfront/core/geometry/line.py", ("_spring_force.*\n.*\n    return", r"\g<0> 2 *")),
         ("crackfront/simulate/lines.py", ("^_BEHIND = 1.3", "_BEHIND = 1.4")),
         ("crackfront/core/cycle/follow.py", ("is Status.CONVERGED", "is Status.STEP_LIMIT")),
-        ("crackfront/simulate/contact.py", (r"2 \* math.sqrt", "3 * math.sqrt")),
+        ("crackfront/simulate/simulation.py", (r"= 2 \* math.sqrt", "= 3 * math.sqrt")),
     ],
 )
 def test_what_determines_the_numbers_of_a_simulation_changes_its_key(sources, place, change):
