@@ -198,12 +198,14 @@ def simulate(
     the same command to continue.
     """
     from crackfront.sweep import parallel
-    from crackfront.sweep.library import opened
 
     if not parallel.is_manager(ranks):
         with parallel.deferring_stops():
             parallel.serve_tasks("crackfront.sweep.tasks")
         return
+    # MPI has to begin before what reads a sweep is imported.
+    from crackfront.sweep.library import opened
+
     sweep, store, origin = opened(configuration, output)
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
     chosen = range(sweep.n_realisation) if realisations is None else realisations
