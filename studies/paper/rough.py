@@ -25,6 +25,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.laws import chosen_knobs, measured_energies
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import (
     Numerics,
@@ -121,12 +122,15 @@ class DisorderParameters(Section):
         """Contact with one surface: e_el in units of w_int, `least_angles` sites or more."""
         spectrum = flat_spectrum(self.short_cutoff)
         side = _SIDE * jkr.equilibrium_radius(self.max_penetration)
+        # Below the weakest disorder of the laws of errors the numerics are those of there.
+        energy = max(elastic_energy, measured_energies()[0])
+        knobs = chosen_knobs(self.error, "roughness", spectrum, energy)
         simulation = simulation_of(
             "roughness",
             spectrum,
             elastic_energy,
             LoadSchedule(self.max_penetration, max(self.max_penetration, 1.0)),
-            Numerics(self.error, side / self.short_cutoff, tile_cutoffs=1.0),
+            Numerics(knobs, side / self.short_cutoff, tile_cutoffs=1.0),
             seed=self.seed,
             realisation=realisation,
             name="flat",

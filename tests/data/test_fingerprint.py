@@ -182,6 +182,10 @@ DRAWN = {"sweep_figures", "accuracy_report", "validate", *FIGURES[:2]}
 LAWS = {"accuracy_study", "accuracy_report", "row", "aggregate", FIGURES[2]}
 
 
+MAIN_2 = {"main-2 data", "main-2 drawing", "figure_checks"}
+"""What the rings of main-2 are in."""
+
+
 @pytest.mark.parametrize(
     ("place", "change", "stale"),
     [
@@ -197,9 +201,9 @@ LAWS = {"accuracy_study", "accuracy_report", "row", "aggregate", FIGURES[2]}
             {"accuracy_study"},
         ),
         ("studies/accuracy/report.py", ("laws.csv", "law.csv"), {"accuracy_report"}),
-        ("studies/paper/main_2.py", ("^_PATH = 257", "_PATH = 513"), {"main-2 data"}),
-        ("studies/paper/main_2.py", (r"\+ 0\.5\) / count", "+ 0.4) / count"), {"main-2 data"}),
-        ("studies/paper/main_2.py", (r"0\.8 \* PAGE", "0.9 * PAGE"), {"main-2 drawing"}),
+        ("studies/paper/rings.py", ("^_PATH = 257", "_PATH = 513"), MAIN_2),
+        ("studies/paper/rings.py", (r"\+ 0\.5\) / count", "+ 0.4) / count"), MAIN_2),
+        ("studies/paper/main_2.py", (r"0\.8 \* style", "0.9 * style"), {"main-2 drawing"}),
         ("studies/paper/main_2.py", ("^_ROUND_OFF = 1e-9", "_ROUND_OFF = 1e-8"), {"figure_checks"}),
     ],
 )
