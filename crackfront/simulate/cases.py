@@ -12,11 +12,11 @@ from dataclasses import MISSING, dataclass
 from dataclasses import field as dataclass_field
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from crackfront.core.arrays import Array
 from crackfront.data.bounds import NUMBER, PENETRATION, Range
 
 if TYPE_CHECKING:
     from crackfront.core.adhesion import AdhesionMap
+    from crackfront.core.arrays import Array
     from crackfront.core.cycle.follow import Load
     from crackfront.core.field.fields import Field, Interpolation
     from crackfront.simulate.fields import PolarSamples
