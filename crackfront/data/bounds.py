@@ -43,7 +43,12 @@ DENSITY = Range(1e-3, 1e3)
 SEED = Range(0, 2**63 - 1)
 """Seeds: what a netCDF file can hold as an attribute."""
 
-SI = {"m": Range(1e-12, 1e7), "Pa": Range(1e-6, 1e14), "J/m^2": Range(1e-9, 1e6)}
+SI = {
+    "m": Range(1e-12, 1e7),
+    "Pa": Range(1e-6, 1e14),
+    "J/m^2": Range(1e-9, 1e6),
+    "N": Range(1e-18, 1e9),
+}
 """Lengths from below an atom to planets, moduli beyond those of foams and diamond, and adhesion."""
 
 MOST_MEMORY = 64e12

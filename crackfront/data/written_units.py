@@ -14,8 +14,8 @@ from crackfront.data.bounds import SI, refuse_outside
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 """A number and what stands behind it."""
 
-_NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area"}
-_EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2"}
+_NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area", "N": "force"}
+_EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2", "N": "0.4mN"}
 
 _POWER = re.compile(r"([A-Za-zµ]+)([2-9])(?!\w)")
 """A power without a sign for it, as in J/m2."""
@@ -125,6 +125,6 @@ def prefixed(unit: str, *values: float, digits: int = 3) -> str:
     known = abs(values[0]) > 0 and math.isfinite(values[0])
     power = 3 * math.floor(math.log10(abs(values[0]) * (1 + 1e-9)) / 3) if known else 0
     power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
-    first, *ends = (f"{value / 10.0**power:.{digits}g}" for value in values)
+    first, *ends = (f"{float(f'{value / 10.0**power:.{digits}g}'):g}" for value in values)
     interval = f" ({ends[0]} to {ends[1]})" if ends and math.isfinite(values[1]) else ""
     return f"{first} {_PREFIXES[power]}{unit}{interval}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -14,20 +14,20 @@ from crackfront.topography.densities import (
     Density,
     Periodogram,
     anisotropy,
+    periodic_part,
     periodogram,
     stripes,
 )
 from crackfront.topography.fitting import Instrument, seen_instrument
 from crackfront.topography.levelling import polynomial
 from crackfront.topography.reading import Measurement
-from crackfront.topography.tips import tip_wavelength
 
 End = Literal["shortest", "longest"]
 
 Cause = Literal["pixels", "resolution", "tip", "noise", "levelling", "form", "named"]
-"""What ends a band: points or what the file states of its instrument, waves that fall faster than
-those of any surface, peaks that are rounder than valleys, a flat density, the levelling, what this
-left of the form, or the user."""
+"""What ends a band: points or the resolution that the file states, waves that fall faster than
+those of any surface, the radius of the tip, a flat density, the levelling, what this left of the
+form, or the user."""
 
 _PIXELS = 2.5
 """Points in the shortest wave of the densities in which instruments are looked for."""
@@ -35,11 +35,14 @@ _PIXELS = 2.5
 _ATTENUATED, _NOISY = 0.2, 0.2
 """Parts that an instrument may take away and its noise may add in the band; both are corrected."""
 
-_LOST, _BLURRED, _DROWNED = 0.85, 0.5, 1.0
-"""The same for the waves that are fitted: lost by an optic or filter, by a tip, and to noise."""
+_LOST, _DROWNED = 0.85, 1.0
+"""The same for the waves that are fitted."""
 
-_NYQUIST = 2.0
+NYQUIST = 2.0
 """Points in the shortest wave that pixels hold."""
+
+_BLUNTEST = 32.0
+"""Points in the longest wave of which an optic may take so much: with more it is badly chosen."""
 
 _CLIFF, _CLIFF_BINS, _CLIFF_MODES = 0.1, 2, 8
 """Ratio by which a density ends, over how many bins, and modes that each of these must have."""
@@ -52,6 +55,9 @@ _FINER = 2.0
 
 _FEWEST_OCTAVES = 1
 """Octaves that must be left of a band."""
+
+MOST_PERIODIC = 0.25
+"""Part of e_el in one wave from which on a surface is not random."""
 
 _ORDER = 3
 """Order of the polynomials whose removal shows what the levelling changes."""
@@ -81,7 +87,11 @@ class Band:
     """Axes along which the map is shifted or levelled row by row; these waves are left out."""
     anisotropy: float
     """Of a map the rms slope along x over that along y; 1 for lines."""
+    periodic: tuple[float, float]
+    """Part of e_el in one wave, as of grooves, and its wavelength; 0 if none. (Units: 1, m)"""
     instrument: Instrument
+    drowned: float
+    """Wavelength below which noise is more than half of the density; 0 if nowhere. (Units: m)"""
     informative: float
     """Shortest wavelength that is fitted by the model. (Units: m)"""
     end: float
@@ -138,13 +148,20 @@ def scan(
     (Units: m)
     """
     waves, pixel = periodogram(measurement), max(measurement.pixels)
-    striped = () if measurement.is_line else stripes(waves, measurement.shortest)
+    periodic = periodic_part(waves, measurement.shortest, measurement.longest)
+    # Grooves along an axis are no rows that the instrument has shifted.
+    is_map = not measurement.is_line and periodic[0] < MOST_PERIODIC
+    striped = stripes(waves, measurement.shortest) if is_map else ()
     without = np.any([waves.near_axis(axis) for axis in striped], axis=0) if striped else None
     density = waves.density(without)
     seen = density.within(_PIXELS * pixel, measurement.longest)
     cliff, behind = _cliff(seen)
     seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
-    instrument, lower = _lower_limits(measurement, seen, seen_instrument(seen), cliff)
+    instrument = seen_instrument(seen)
+    if measurement.tip_radius or instrument.wavelength(_ATTENUATED) > _BLUNTEST * pixel:
+        # A surface whose slope grows towards short waves looks like that.
+        instrument = replace(instrument, attenuation=math.inf)
+    lower = list(_lower_limits(measurement, seen, instrument, cliff))
     upper = [BandLimit("longest", "levelling", measurement.longest)]
     alternatives: tuple[Density, ...] = ()
     if not measurement.periodic:
@@ -168,14 +185,15 @@ def scan(
             f"{long} ({high.cause}) can be trusted, less than an octave; use a better scan, or "
             "name --shortest and --longest"
         )
+    drowned = instrument.noisy(seen, _DROWNED)
     informative, coarsest = low.wavelength, high.wavelength
-    last = max(behind, _NYQUIST * pixel)
+    last = max(behind, NYQUIST * pixel)
     finest = last / _FINER
     if low.cause in ("resolution", "tip", "noise"):
-        least = max(cliff, instrument.noisy(seen, _DROWNED), measurement.shortest)
+        least = max(cliff, drowned, measurement.shortest)
         if low.cause == "tip":
-            # It leaves the waves below its mark there, though weaker: they end with the pixels.
-            informative, coarsest = max(least, instrument.wavelength(_BLURRED)), least
+            # It leaves the waves below there, though weaker: they end with the pixels.
+            coarsest = least
         else:
             informative = max(least, instrument.wavelength(_LOST))
             last = max(last, behind or informative)
@@ -187,7 +205,9 @@ def scan(
         limits=(lower[0], upper[0], *lower[1:], *upper[1:]),
         stripes=striped,
         anisotropy=1.0 if measurement.is_line else anisotropy(waves, low.wavelength),
+        periodic=periodic,
         instrument=instrument,
+        drowned=drowned,
         informative=informative,
         end=min(last, low.wavelength),
         finest=min(finest, low.wavelength),
@@ -198,21 +218,17 @@ def scan(
 
 def _lower_limits(
     measurement: Measurement, seen: Density, instrument: Instrument, cliff: float
-) -> tuple[Instrument, list[BandLimit]]:
-    """Instrument with the mark of its tip, and shortest wavelengths to trust by all causes."""
-    nyquist = _NYQUIST * max(measurement.pixels)
-    resolution, tip = instrument.wavelength(_ATTENUATED), tip_wavelength(measurement)
-    if tip > resolution:
-        instrument = instrument.losing(_ATTENUATED, tip)
-    # It is corrected, so that an octave is left whatever it takes away.
-    tip = min(tip, measurement.longest / 2**_FEWEST_OCTAVES)
-    found = [BandLimit("shortest", "pixels", measurement.shortest)]
-    if (lost := max(cliff, resolution, tip)) > nyquist:
-        # What a tip takes away may look like an attenuation as well.
-        found.append(BandLimit("shortest", "tip" if tip > cliff else "resolution", lost))
-    if (noise := instrument.noisy(seen, _NOISY)) > nyquist:
-        found.append(BandLimit("shortest", "noise", noise))
-    return instrument, found
+) -> Iterator[BandLimit]:
+    """Shortest wavelengths to trust by all causes."""
+    yield BandLimit("shortest", "pixels", measurement.shortest)
+    causes: dict[Cause, float] = {
+        "resolution": max(cliff, instrument.wavelength(_ATTENUATED)),
+        "tip": measurement.tip_wavelength,
+        "noise": instrument.noisy(seen, _NOISY),
+    }
+    for cause, wavelength in causes.items():
+        if wavelength > NYQUIST * max(measurement.pixels):
+            yield BandLimit("shortest", cause, wavelength)
 
 
 def _cliff(density: Density) -> tuple[float, float]:

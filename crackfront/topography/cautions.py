@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from crackfront.data.written_units import prefixed
 from crackfront.topography.measures import MeasuredSurface
 
 _MOST_ANISOTROPY = 1.25
 _MOST_UNMEASURED = 0.1
-_MOST_CONTINUED = 0.5
 """Ratio of slopes and parts of e_el from which on they are doubts."""
 
 _EDGE, _MATTERS = 0.05, 0.1
@@ -28,6 +28,11 @@ def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None)
             )
         elif max(item.pixels) > 1.001 * min(item.pixels):
             yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
+        if item.tip_is_assumed:
+            yield (
+                f"{item.path}: the file does not say what its tip is, which is taken for one of "
+                f"{1e9 * item.tip_radius:g} nm; --tip-radius names another."
+            )
         for axis in one.band.stripes:
             yield (
                 f"{item.path}: waves along {'xy'[axis]} alone have another density than all "
@@ -39,6 +44,20 @@ def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None)
                 f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
                 "spectrum."
             )
+
+
+def measure_next(surface: MeasuredSurface) -> str:
+    """What another scan would change."""
+    shares, joint = surface.joint.shares, surface.joint
+    short, long = prefixed("m", joint.shortest), prefixed("m", joint.longest)
+    shorter = max(shares.missing_short, shares.continued)
+    if max(shorter, shares.missing_long) < _MATTERS:
+        return f"A finer or larger scan changes e_el by less than {_MATTERS:.0%}: not needed."
+    if shorter >= shares.missing_long:
+        factor, waves = 1 + shorter, f"shorter than {short}"
+    else:
+        factor, waves = 1 + shares.missing_long, f"longer than {long}"
+    return f"Measure next: waves {waves}, by which e_el may be up to {factor:.3g} times as large."
 
 
 def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
@@ -57,10 +76,10 @@ def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
                 f"({level.low:.2g} to {level.high:.2g}) times theirs where they overlap; the "
                 "intervals hold that."
             )
-    if joint.shares.continued > _MOST_CONTINUED:
+    if joint.is_lower_bound:
         yield (
-            f"{joint.shares.continued:.0%} of e_el is not measured but continued by a model; look "
-            "at the figure, and add a scan of the waves that are missing."
+            "Most of e_el is not measured: what is recorded is a lower bound, and the interval "
+            "reaches to what a model continues; add a scan of the waves that are missing."
         )
     hurst = joint.fit.hurst.value
     if min(hurst, 1 - hurst) < _EDGE and joint.shares.continued > _MATTERS:
@@ -75,7 +94,7 @@ def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
             f"above, longer waves would add about {joint.shares.missing_long:.0%} to e_el, and its "
             "interval holds roll-offs of up to four sides of the scan; add a larger scan."
         )
-    if joint.shares.missing_short > _MOST_UNMEASURED:
+    if joint.shares.missing_short > _MOST_UNMEASURED and not joint.is_lower_bound:
         yield (
             "Waves shorter than the points hold are left out: two more decades of the power law "
             f"would add {joint.shares.missing_short:.0%} to e_el; add a finer scan."

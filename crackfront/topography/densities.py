@@ -27,6 +27,10 @@ _FIRST_ON_AXIS = 6
 _STRIPES, _STRIPE_SIGMA = 1.5, 5.0
 """Ratio of the density on an axis to that beside it, and its significance, that are stripes."""
 
+_NEAR, _PEAK = 2.5, 30.0
+"""Modes about a wave over which a window spreads it, and how far its power is above those of
+similar waves where it is periodic: powers of random surfaces are distributed exponentially."""
+
 
 @dataclass(frozen=True, slots=True)
 class Density:
@@ -180,11 +184,34 @@ def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
         modes = np.sum(count[chosen]) / (2 * waves.dependence)
         if modes < 4:
             continue
-        level = float(np.average(ratio, weights=count[chosen]))
-        apart = abs(math.log(max(level, 1e-300))) * math.sqrt(modes)
+        # That of half of the waves, as grooves are one wave among many. Powers are distributed
+        # exponentially: with this median, which is known less well than a mean.
+        level = float(np.median(ratio)) / math.log(2)
+        apart = abs(math.log(max(level, 1e-300))) * math.sqrt(modes) * math.log(2)
         if max(level, 1 / level) > _STRIPES and apart > _STRIPE_SIGMA:
             found.append(axis)
     return tuple(found)
+
+
+def periodic_part(waves: Periodogram, shortest: float, longest: float) -> tuple[float, float]:
+    """Part of e_el in the one wave that stands out most, and its wavelength (Units: m); 0 if none.
+
+    Waves between two wavelengths count.
+    """
+    wavevector = waves.wavevector
+    inside = (wavevector >= 2 * np.pi / longest) & (wavevector <= 2 * np.pi / shortest)
+    energy = np.where(inside, waves.count * waves.power * wavevector, 0.0)
+    index = np.unravel_index(np.argmax(energy), energy.shape)
+    apart = [
+        np.abs(np.abs(one) - abs(one.flat[place])) / step
+        for one, place, step in zip(waves.along, index, waves.steps, strict=True)
+    ]
+    near = np.max(np.broadcast_arrays(*apart), axis=0) < _NEAR
+    alike = np.abs(np.log(np.where(inside, wavevector, np.inf) / wavevector[index])) < 0.1
+    others = waves.power[alike & ~near]
+    if not others.size or waves.power[index] < _PEAK * np.mean(others):
+        return 0.0, 0.0
+    return float(energy[near].sum() / energy.sum()), float(2 * np.pi / wavevector[index])
 
 
 def anisotropy(waves: Periodogram, shortest: float) -> float:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,11 +70,6 @@ class Instrument:
         """Wavelength at which a part of the density is lost; 0 where nothing is (Units: m)."""
         return 2 * math.pi / self.attenuation / (-math.log1p(-part)) ** (1 / self.sharpness)
 
-    def losing(self, part: float, wavelength: float) -> Instrument:
-        """The instrument with a blunt attenuation that takes a part at a wavelength (Units: m)."""
-        attenuation = 2 * math.pi / wavelength / -math.log1p(-part)
-        return replace(self, attenuation=attenuation, sharpness=_SHARPNESS[0])
-
     def noisy(self, density: Density, part: float) -> float:
         """Wavelength below which noise adds more than a part to a density; 0 if nowhere."""
         quiet = np.flatnonzero(density.value > self.noise * (1 + 1 / part))
@@ -120,17 +115,18 @@ class Fit:
         surface = self.surface[number : number + 1]
         return lambda wavevector: np.asarray(np.exp(_logarithm(surface, wavevector)[0]))
 
-    def isotropic(self, density: Density, index: int) -> Array:
+    def isotropic(self, density: Density, index: int, *, restored: bool = True) -> Array:
         """Logarithm of C of every state where a density was measured, (n, n_wavevector).
 
-        The measured value without the noise, over the transfer of its instrument; of a line by the
-        ratio of the model to its projection.
+        The measured value without the noise, over the transfer of its instrument unless it is not
+        to be restored; of a line by the ratio of the model to its projection.
         """
         instrument = self.instruments[:, index]
         clean = density.value - np.exp(instrument[:, 2:])
         # Noise is a small part of what is trusted; named limits may trust more.
-        found = np.log(np.maximum(clean, 0.1 * density.value))
-        found += _loss(instrument, density.wavevector)
+        found = np.log(np.maximum(clean, (0.1 if restored else 1e-3) * density.value))
+        if restored:
+            found += _loss(instrument, density.wavevector)
         if density.is_profile:
             found += self.logarithms(density.wavevector)
             found -= _projection(self.surface, density.wavevector)

@@ -225,7 +225,7 @@ def _completed(
     """What a file does not state, and sides in metres where it states impossible ones."""
     unit, size = channel.unit, channel.physical_sizes
     is_sized = size is not None and None not in size
-    if unit is not None and is_sized and not _are_possible(stated := _in_metres(size, unit)):
+    if unit is not None and is_sized and not _are_possible(stated := in_metres(size, unit)):
         if options.size is None or options.unit is None:
             raise ValueError(
                 f"{path} states sides of {shown_sides(stated)}, which no instrument measures; its "
@@ -260,7 +260,7 @@ def _completed(
     return given, None
 
 
-def _in_metres(sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
+def in_metres(sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
     """Sides of a scan in metres."""
     factor = library_part("Support.UnitConversion").get_unit_conversion_factor(unit, "m")
     return tuple(float(factor * side) for side in sides)
@@ -273,7 +273,7 @@ def _are_possible(sides: tuple[float, ...]) -> bool:
 
 def _named_sides(path: Path, sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
     """Sides in metres, refused where no instrument measures them."""
-    found = _in_metres(sides, unit)
+    found = in_metres(sides, unit)
     if not _are_possible(found):
         raise ValueError(
             f"{path} cannot have sides of {shown_sides(found)}: instruments measure from "

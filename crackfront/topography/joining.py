@@ -11,7 +11,7 @@ import numpy as np
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.spectrum import TabulatedSpectrum
-from crackfront.topography.bands import Scan
+from crackfront.topography.bands import NYQUIST, Scan
 from crackfront.topography.densities import Density, bin_numbers
 from crackfront.topography.fitting import Fit, fitted_model
 from crackfront.topography.levelling import Array
@@ -33,6 +33,10 @@ _FIRST_BINS = 3
 
 _DECADES = 2
 """Decades below the pixels over which the model is continued, to see what is missing."""
+
+_MOST_CONTINUED, _MOST_MISSING = 0.5, 1.0
+"""Part of e_el that is not recorded, and what two more decades would add to it, above which no
+estimate is given but a lower bound."""
 
 _LEVEL_SIGMA, _LEVEL = 3.0, math.log(1.25)
 """Standard errors, and ratio of densities, from which on a scan disagrees with the others."""
@@ -78,15 +82,26 @@ class Shares:
 class JointSpectrum:
     """Spectrum of a surface, measured where it can be and continued beyond."""
 
-    spectrum: TabulatedSpectrum
+    estimated: TabulatedSpectrum
     """Measured over the bands; by the model to the shortest wave that pixels and instrument hold,
     and to the plateau where this is seen; else flat above the longest measured wave. (Units: m)"""
+    recorded: TabulatedSpectrum
+    """As measured, and below the band what the finest scan holds down to its pixels, without its
+    noise but as weak as its instrument made it. (Units: m)"""
     draws: tuple[TabulatedSpectrum, ...]
+    recorded_draws: tuple[TabulatedSpectrum, ...]
     """Spectra that agree as well with what was measured: noise of the modes, scatter of scans,
     window and levelling, ends of the band, and continuation."""
+    is_lower_bound: bool
+    """Whether too little of e_el is recorded for an estimate: then what is recorded counts."""
     density: JointDensity
     fit: Fit
     shares: Shares
+
+    @property
+    def spectrum(self) -> TabulatedSpectrum:
+        """The estimated spectrum, or the recorded one where that is a lower bound (Units: m)."""
+        return self.recorded if self.is_lower_bound else self.estimated
 
     @property
     def shortest(self) -> float:
@@ -99,11 +114,25 @@ class JointSpectrum:
         return float(2 * np.pi / self.density.wavevector[0])
 
     def estimate(self, quantity: Callable[[TabulatedSpectrum], float]) -> Estimate[float]:
-        """A positive quantity of the spectrum with its 95% interval, on a logarithmic scale."""
-        value, drawn = quantity(self.spectrum), np.array([quantity(item) for item in self.draws])
-        low, high = np.quantile(drawn, (0.025, 0.975))
-        error = value * float(np.std(np.log(drawn)))
-        return Estimate(value, error, min(value, float(low)), max(value, float(high)))
+        """Median of a positive quantity over the draws of the spectrum, with its 95% interval.
+
+        That of a lower bound reaches from what is recorded to what the model continues.
+        """
+        recorded, estimated = self.both(quantity)
+        if not self.is_lower_bound:
+            return estimated
+        return replace(recorded, high=max(recorded.high, estimated.high))
+
+    def both(
+        self, quantity: Callable[[TabulatedSpectrum], float]
+    ) -> tuple[Estimate[float], Estimate[float]]:
+        """A quantity of what is recorded, and of what is estimated, as :meth:`estimate`."""
+        found = []
+        for spectra in (self.recorded_draws, self.draws):
+            drawn = np.array([quantity(item) for item in spectra])
+            low, value, high = np.quantile(drawn, (0.025, 0.5, 0.975)).tolist()
+            found.append(Estimate(value, value * float(np.std(np.log(drawn))), low, high))
+        return found[0], found[1]
 
 
 def joint_spectrum(scans: Sequence[Scan]) -> JointSpectrum:
@@ -121,13 +150,31 @@ def joint_spectrum(scans: Sequence[Scan]) -> JointSpectrum:
     longer = spectrum = _continued(*measured, fit.median, fit.lowest, end)
     if not fit.has_roll_off:
         spectrum = _continued(*measured, fit.median, None, end)
+    shares = _shares(spectrum, longer, density.wavevector, fit.median)
+    rest = _beyond(scans, fit)
+    draws, recorded_draws = _draws(scans, trusted, logarithms, scatter, fit, rest)
     return JointSpectrum(
-        spectrum=spectrum,
-        draws=_draws(scans, trusted, logarithms, scatter, fit),
+        estimated=spectrum,
+        recorded=_recorded(*measured, rest),
+        draws=draws,
+        recorded_draws=recorded_draws,
+        is_lower_bound=_is_unknown(draws, recorded_draws, shares.missing_short),
         density=density,
         fit=fit,
-        shares=_shares(spectrum, longer, density.wavevector, fit.median),
+        shares=shares,
     )
+
+
+def _is_unknown(
+    draws: Sequence[TabulatedSpectrum], recorded: Sequence[TabulatedSpectrum], missing: float
+) -> bool:
+    """Whether e_el is mostly not recorded, by its draws and by what shorter waves would add."""
+    whole, part = ([item.mean_square(0.5) for item in every] for every in (draws, recorded))
+    measured = float(np.median(part))
+    if measured < (1 - _MOST_CONTINUED) * float(np.median(whole)):
+        return True
+    # What is recorded beyond all draws is no surface.
+    return missing > _MOST_MISSING and measured < float(np.quantile(whole, 0.975))
 
 
 def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float], ...]]:
@@ -182,6 +229,25 @@ def _joined(
     return np.exp(logarithm), value, np.asarray(total**-0.5)
 
 
+def _beyond(scans: Sequence[Scan], fit: Fit) -> Density:
+    """What the finest scan holds below all trusted waves and above its noise, without this."""
+    index, one = min(enumerate(scans), key=lambda item: max(item[1].measurement.pixels))
+    shortest = min(other.band.shortest.wavelength for other in scans) / (1 + 1e-6)
+    last = max(NYQUIST * max(one.measurement.pixels), one.band.drowned)
+    rest = one.density.within(last, shortest)
+    logarithms = fit.isotropic(rest, index, restored=False)
+    return replace(rest, value=np.exp(np.median(logarithms, axis=0)), is_profile=False)
+
+
+def _recorded(wavevector: Array, value: Array, rest: Density) -> TabulatedSpectrum:
+    """Table of measured values and of what lies below their waves."""
+    shorter = rest.wavevector > wavevector[-1]
+    waves = 2 * np.pi / np.append(wavevector, rest.wavevector[shorter])
+    return TabulatedSpectrum(
+        tuple(waves.tolist()), tuple(np.append(value, rest.value[shorter]).tolist())
+    )
+
+
 def _continued(
     wavevector: Array,
     value: Array,
@@ -234,13 +300,17 @@ def _draws(
     logarithms: Sequence[Array],
     scatter: float,
     fit: Fit,
-) -> tuple[TabulatedSpectrum, ...]:
-    """Spectra that agree with what was measured; `logarithms` are those of every state of a fit."""
+    rest: Density,
+) -> tuple[tuple[TabulatedSpectrum, ...], tuple[TabulatedSpectrum, ...]]:
+    """Spectra that agree with what was measured, continued by the model and by what is recorded.
+
+    The logarithms are those of every state of the fit.
+    """
     finest = math.log(min(one.band.finest for one in scans))
     coarsest = math.log(min(one.band.coarsest for one in scans))
     rng = np.random.default_rng(_SEED)
     choices = [_choices(one, density) for one, density in zip(scans, densities, strict=True)]
-    drawn = []
+    drawn, recorded = [], []
     for state in rng.integers(len(fit.surface), size=_DRAWS):
         parts = []
         for one, item, options, every in zip(scans, densities, choices, logarithms, strict=True):
@@ -260,7 +330,8 @@ def _draws(
         shortest = min(math.log(2 * np.pi / wavevector[-1]), coarsest)
         last = math.exp(rng.uniform(min(finest, shortest), shortest))
         drawn.append(_continued(wavevector, value, fit.of_state(state), fit.lowest, last))
-    return tuple(drawn)
+        recorded.append(_recorded(wavevector, value, rest))
+    return tuple(drawn), tuple(recorded)
 
 
 def _choices(one: Scan, density: Density) -> list[Array]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from scipy.special import beta
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.bands import Scan, scan
 from crackfront.topography.densities import Density, periodogram
 from crackfront.topography.joining import JointSpectrum, joint_spectrum
@@ -54,6 +55,9 @@ class MeasuredSurface:
     """Of the heights, their half-derivative and their slopes."""
     half_derivative: Estimate[float]
     """Mean square of the half-derivative of the joint spectrum. (Units: m)"""
+    recorded: Estimate[float]
+    estimated: Estimate[float]
+    """That of what the scans hold, and that with what the model continues. (Units: m)"""
 
     @property
     def checksum(self) -> str:
@@ -61,9 +65,15 @@ class MeasuredSurface:
         text = "".join(one.measurement.checksum for one in self.scans)
         return hashlib.sha256(text.encode()).hexdigest()[:8]
 
-    def conformity_energy(self, contact_modulus: float) -> Estimate[float]:
-        """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2, of E' in Pa (Units: J / m^2)."""
-        return self.half_derivative.each(lambda number: contact_modulus / 4 * number)
+    def conformity_energy(
+        self, contact_modulus: float, half_derivative: Estimate[float] | None = None
+    ) -> Estimate[float]:
+        """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2, of E' in Pa (Units: J / m^2).
+
+        By another mean square of the half-derivative where one is given. (Units: m)
+        """
+        square = half_derivative or self.half_derivative
+        return square.each(lambda number: contact_modulus / 4 * number)
 
 
 def measured_surface(
@@ -82,6 +92,11 @@ def measured_surface(
     """
     scans = tuple(scan(item, shortest, longest) for item in measurements)
     joint = joint_spectrum(scans)
+
+    def square(spectrum: TabulatedSpectrum) -> float:
+        return spectrum.mean_square(0.5)
+
+    recorded, estimated = joint.both(square)
     return MeasuredSurface(
         scans=scans,
         profiles=tuple(
@@ -90,7 +105,9 @@ def measured_surface(
         ),
         joint=joint,
         measures=tuple(_measure(order, joint, scans) for order in _ORDERS),
-        half_derivative=joint.estimate(lambda spectrum: spectrum.mean_square(0.5)),
+        half_derivative=joint.estimate(square),
+        recorded=recorded,
+        estimated=estimated,
     )
 
 

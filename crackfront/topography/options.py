@@ -261,9 +261,15 @@ class ReadingOptions:
         "Sides of scans that state none, in that unit, as in 50,50 or 50",
         Kind(_sides, "str or sequence of float"),
     )
+    tip_radius: float | None = option(
+        "Radius of the tip that scanned it, as in 20nm; by default what the file says, and 10nm "
+        "for formats of scanning probes that do not",
+        LENGTH,
+        times="for each",
+    )
     shortest: float | None = option(
-        "Shortest wavelength to trust, as in 0.4um; by default found by resolution, noise, what "
-        "the file says of its tip, and four pixels",
+        "Shortest wavelength to trust, as in 0.4um; by default found by resolution, noise, tip, "
+        "and four pixels",
         LENGTH,
     )
     longest: float | None = option(
@@ -276,6 +282,11 @@ class ReadingOptions:
 @dataclass(frozen=True, slots=True)
 class PredictionOptions:
     """What a prediction takes into account beside the surface and the sphere."""
+
+    pull_off: float | None = option(
+        "Measured pull-off force, as in 0.4mN; the w_int that it implies is told",
+        quantity("N", "force", "0.4mN"),
+    )
 
     range: float | None = option(
         "Range of the attraction, as in 0.3nm; by default 0.5nm, that of van der Waals forces",

@@ -13,7 +13,9 @@ import numpy as np
 from crackfront.data.written_units import prefixed
 from crackfront.topography.files import checksum
 from crackfront.topography.instruments import (
+    RawScan,
     array_of,
+    in_metres,
     library_part,
     library_scan,
     raw_scan,
@@ -37,6 +39,12 @@ _FEWEST_OCTAVES = 2
 
 _FEWEST_POINTS = 8
 """Points along a side that a crop must leave."""
+
+_SCANNING_PROBES = {"di", "ezd", "ibw", "jpk", "mdt", "mi", "ps", "wsxm"}
+"""Formats of scanning probes, whose files seldom say what their tip is."""
+
+_TIP = 10e-9
+"""Radius of a tip of which nothing is known (Units: m)."""
 
 _LEAST_HEIGHT, _MOST_HEIGHT = 1e-12, 10.0
 """Least rms of heights (Units: m), and most span over the side, that instruments measure."""
@@ -63,7 +71,13 @@ class Measurement:
     """Part of the points that were interpolated."""
     shortest: float
     longest: float
-    """Wavelengths that pixels, instrument and size of the scan allow to trust. (Units: m)"""
+    """Wavelengths that pixels, resolution and size of the scan allow to trust. (Units: m)"""
+    tip_radius: float = 0.0
+    tip_wavelength: float = 0.0
+    """Radius of the tip, and wavelength below which it shapes what it records; 0 where there is
+    none. (Units: m)"""
+    tip_is_assumed: bool = False
+    """Whether its radius is that of a tip of which nothing is known."""
     channel: str = ""
     """Name of the channel in the file, and which of how many of heights it is."""
     levelling: str = ""
@@ -132,6 +146,11 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
     if options.mask:
         left_out = 1 - np.count_nonzero(fitted) / np.ma.count(heights)
         levelling += f" of all but {left_out:.2%} of the points"
+    radius, is_assumed = _tip(scan, options)
+    tip = 0.0
+    if radius:
+        surface_library()
+        tip = float(level.scanning_probe_reliability_cutoff(radius) or 0.0)
     shortest, longest = _trusted_wavelengths(path, level, size)
     return Measurement(
         path=path,
@@ -144,6 +163,9 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
         missing=float(np.mean(gaps)),
         shortest=shortest,
         longest=longest,
+        tip_radius=radius,
+        tip_wavelength=tip,
+        tip_is_assumed=is_assumed,
         channel=scan.channel,
         levelling=levelling,
     )
@@ -185,12 +207,27 @@ def _used_part(
     return heights, fitted, size
 
 
+def _tip(scan: RawScan, options: ReadingOptions) -> tuple[float, bool]:
+    """Radius of the tip of a scan, 0 where it has none, and whether it is assumed (Units: m)."""
+    if options.tip_radius is not None:
+        return options.tip_radius, False
+    if stated := _instrument(scan.level).get("tip_radius"):
+        return in_metres((float(stated["value"]),), stated["unit"])[0], False
+    is_assumed = scan.format in _SCANNING_PROBES
+    return (_TIP if is_assumed else 0.0), is_assumed
+
+
+def _instrument(level: Any) -> dict[str, Any]:
+    """What a file says of its instrument."""
+    return dict(level.info.get("instrument", {}).get("parameters", {}))
+
+
 def _trusted_wavelengths(path: Path, level: Any, size: tuple[float, ...]) -> tuple[float, float]:
-    """Wavelengths that points, instrument and sides allow to trust, refused where they are few."""
+    """Wavelengths that points, resolution and sides allow to trust, refused where they are few."""
     shortest = _PIXELS_PER_WAVE * max(np.divide(size, level.nb_grid_pts).tolist())
-    if level.info.get("instrument", {}).get("parameters"):
-        surface_library()
-        shortest = max(shortest, level.short_reliability_cutoff() or 0.0)
+    if resolution := _instrument(level).get("resolution"):
+        [stated] = in_metres((float(resolution["value"]),), resolution["unit"])
+        shortest = max(shortest, stated)
     longest = min(size) / _WAVES_PER_SIDE
     if longest < 2**_FEWEST_OCTAVES * shortest:
         raise ValueError(

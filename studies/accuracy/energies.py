@@ -52,6 +52,7 @@ class Kind:
     resolved: bool = True
     oblong: bool = False
     is_line: bool = False
+    tip_radius: float | None = None
 
     @property
     def truth(self) -> Spectrum:
@@ -99,16 +100,12 @@ def _pupil(wavevector: Array) -> Array:
     return np.asarray(2 / np.pi * (np.arccos(x) - x * np.sqrt(1 - x**2)))
 
 
-def _tip(radius: float) -> Distortion:
-    """Dilation by a parabolic tip of a radius in m."""
-
-    def distorted(heights: Array, rng: np.random.Generator) -> Array:
-        reach = math.ceil(math.sqrt(2 * radius * float(np.ptp(heights))) / PIXEL)
-        along = PIXEL * np.arange(-reach, reach + 1)
-        shape = -(along[:, None] ** 2 + along**2) / (2 * radius)
-        return np.asarray(grey_dilation(heights, structure=shape, mode="wrap"))
-
-    return distorted
+def _dilated(heights: Array, radius: float) -> Array:
+    """What a parabolic tip of a radius in m records."""
+    reach = math.ceil(math.sqrt(2 * radius * float(np.ptp(heights))) / PIXEL)
+    along = PIXEL * np.arange(-reach, reach + 1)
+    shape = -(along[:, None] ** 2 + along**2) / (2 * radius)
+    return np.asarray(grey_dilation(heights, structure=shape, mode="wrap"))
 
 
 def _noise(heights: Array, rng: np.random.Generator) -> Array:
@@ -167,7 +164,7 @@ KINDS = (
     Kind("end at four pixels", _self_affine(0.8, cutoff=4.0)),
     Kind("optic, Gaussian", FILM, _filtered(_gaussian)),
     Kind("optic, circular pupil", FILM, _filtered(_pupil), resolved=False),
-    Kind("tip of an AFM", FILM, _tip(1e-6)),
+    Kind("tip of 1 um", FILM, tip_radius=1e-6),
     Kind("noise", FILM, _noise),
     Kind("rows that are shifted", FILM, _rows),
     Kind("tilt and bow", FILM, _bow),
@@ -175,8 +172,8 @@ KINDS = (
     Kind("missing points", FILM, _holes),
     Kind("oblong pixels", _self_affine(0.8, cutoff=4.0), oblong=True),
     Kind("three line scans", _self_affine(0.8), is_line=True),
-    Kind("tip of 3 um, H = 0.4", _self_affine(0.4), _tip(3e-6), resolved=False),
-    Kind("tip of 10 um, H = 0.4", _self_affine(0.4), _tip(10e-6), resolved=False),
+    Kind("tip of 3 um, H = 0.4", _self_affine(0.4), resolved=False, tip_radius=3e-6),
+    Kind("tip of 10 um, H = 0.4", _self_affine(0.4), resolved=False, tip_radius=10e-6),
 )
 
 
@@ -195,10 +192,12 @@ def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     heights = gaussian_field(kind.truth, whole, kind.tile * SIDE, rng)
     if kind.distortion in (_bow, _form, _holes):
         heights = heights[:N_POINT, :N_POINT]
+    if kind.tip_radius:
+        heights = _dilated(heights, kind.tip_radius)
     heights = kind.distortion(heights, rng)[:N_POINT, :N_POINT]
     if kind.oblong:
         return scanned(heights[:, ::2], (PIXEL, 2 * PIXEL), kind.name)
-    return scanned(heights, PIXEL, kind.name)
+    return scanned(heights, PIXEL, kind.name, kind.tip_radius)
 
 
 def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:

@@ -16,6 +16,7 @@ from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.measures import MeasuredSurface, measured_surface
+from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import read_measurements
 
 SEED = 20240229
@@ -83,12 +84,18 @@ def _tag(key: str, value: str) -> bytes:
     return key.encode("ascii").ljust(20, b"\x00") + value.encode("ascii").ljust(30, b"\x00") + END
 
 
-def scanned(heights: Array, pixel: float | tuple[float, float], comment: str) -> MeasuredSurface:
-    """Surface that is read from an AL3D file, as of :func:`al3d`."""
+def scanned(
+    heights: Array,
+    pixel: float | tuple[float, float],
+    comment: str,
+    tip_radius: float | None = None,
+) -> MeasuredSurface:
+    """Surface that is read from an AL3D file, as of :func:`al3d`, with a tip if one is named."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scan.al3d"
         path.write_bytes(al3d(heights, pixel, comment))
-        return measured_surface(read_measurements([path]))
+        options = ReadingOptions(tip_radius=tip_radius)
+        return measured_surface(read_measurements([path], options))
 
 
 def write_scans(folder: Path) -> None:

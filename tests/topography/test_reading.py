@@ -80,14 +80,23 @@ def test_several_files_may_have_options_each(tmp_path, noise):
     ],
 )
 def test_the_reliability_that_a_file_states_bounds_the_wavelengths(
-    tmp_path, heights, known, low, high
+    tmp_path, monkeypatch, heights, known, low, high
 ):
     info = {"instrument": {"name": "test", "parameters": known}}
     library = surface_library().Topography(heights, (SIDE, SIDE), unit="m", info=info)
     library.to_netcdf(str(tmp_path / "scan.nc"))
     [measurement] = read_measurements([tmp_path / "scan.nc"])
     assert measurement.format == "nc"
-    assert low * (1 - 1e-6) <= measurement.shortest <= high * (1 + 1e-6)
+    shortest = max(measurement.shortest, measurement.tip_wavelength)
+    assert low * (1 - 1e-6) <= shortest <= high * (1 + 1e-6)
+    assert measurement.tip_radius == pytest.approx(0.5e-6 if "tip_radius" in known else 0)
+    assert not measurement.tip_is_assumed
+    [named] = read_measurements([tmp_path / "scan.nc"], ReadingOptions(tip_radius=2e-6))
+    assert named.tip_wavelength > measurement.tip_wavelength
+    monkeypatch.setattr("crackfront.topography.reading._SCANNING_PROBES", {"nc"})
+    [assumed] = read_measurements([tmp_path / "scan.nc"])
+    assert assumed.tip_is_assumed == ("tip_radius" not in known)
+    assert assumed.tip_radius == pytest.approx(measurement.tip_radius or 10e-9)
 
 
 def test_a_few_missing_points_are_interpolated(rng, tmp_path, heights, scan):
