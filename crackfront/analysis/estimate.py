@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -73,6 +74,24 @@ def normal_estimate(value: float, standard_error: float) -> Estimate[float]:
     """Estimate with the interval of the normal distribution."""
     reach = REACH * standard_error
     return Estimate(value, standard_error, value - reach, value + reach)
+
+
+def product(*factors: Estimate[float]) -> Estimate[float]:
+    """Product of independent positive numbers, whose relative intervals add in quadrature.
+
+    Examples
+    --------
+    >>> part = Estimate(2.0, math.nan, 1.0, 4.0)
+    >>> found = product(part, Estimate(3.0, math.nan, 3.0, 3.0))
+    >>> found.low, found.value, found.high
+    (3.0, 6.0, 12.0)
+    """
+    value = math.prod(one.value for one in factors)
+    above = math.hypot(*(math.log(one.high / one.value) for one in factors))
+    low = 0.0
+    if all(one.low > 0 for one in factors):
+        low = value * math.exp(-math.hypot(*(math.log(one.value / one.low) for one in factors)))
+    return Estimate(value, math.nan, low, value * math.exp(above))
 
 
 def student_estimate(value: ArrayLike, standard_error: ArrayLike, freedom: ArrayLike) -> Estimate:

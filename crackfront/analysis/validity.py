@@ -1,7 +1,8 @@
-"""Up to which roughness the hysteresis of a crack front is that of boundary elements.
+"""How much more hysteresis a crack front has than boundary elements on the same surfaces.
 
-`python -m studies boundary-elements validate` computes both on the same surfaces and writes
-`validity.csv`, which is kept here.
+`python -m studies boundary-elements validate` computes both and writes `validity.csv`, which is
+kept here. What the front leaves out of linear elasticity is of second order in the disorder, w_rms
+over w_int, so that the logarithm of the ratio is fitted by c e_el / w_int.
 """
 
 from __future__ import annotations
@@ -15,16 +16,21 @@ from dataclasses import asdict, dataclass, fields
 from importlib.resources import files
 from typing import get_type_hints
 
-TOLERANCES = (0.10, 0.25)
-"""Relative differences of the hysteresis whose ranges a sentence gives."""
+import numpy as np
 
-_ALIKE = 0.9
-"""Energies measured on tiles differ by some percent from the requested one."""
+from crackfront.analysis.estimate import REACH, Estimate
+
+_MODEL_ERROR = 0.05
+"""Standard error of the logarithm that the form of the law leaves: half of what powers of the
+disorder from 2 to 4 differ by between the measured amplitudes."""
+
+_FURTHER = 1.5
+"""How far beyond the measured sizes and energies the law is used, as a factor."""
 
 
 @dataclass(frozen=True, slots=True)
 class ValidityRow:
-    """Both models at one spectrum and amplitude."""
+    """Both models at one spectrum and amplitude, by w_retr - w_appr."""
 
     roll_off: float
     """Roll-off wavelength over the shortest; 1 for a flat spectrum."""
@@ -32,17 +38,31 @@ class ValidityRow:
     """Hurst exponent."""
     elastic_energy: float
     """Energy of full conformity. (Units: w_int)"""
+    size: float
+    """g, L_kappa over the Larkin length."""
     ratio: float
+    """Hysteresis of the front over that of boundary elements at a vanishing range."""
     error: float
-    """Hysteresis of the front over that of boundary elements, and its standard error; NaN for one
-    surface."""
+    """Standard error of the logarithm of the ratio, with that of the extrapolation to no range; NaN
+    for one surface."""
     surfaces: int
     fine: int
     """Surfaces that are averaged, and those of them on the finest grids."""
     n_point: int
     """Points along a side of the boundary elements' grid."""
-    interaction_range: float
-    """Gap at which their attraction ends. (Units: reduced vertical length)"""
+
+
+@dataclass(frozen=True, slots=True)
+class Excess:
+    """Hysteresis of the front over that of boundary elements for a surface."""
+
+    ratio: Estimate[float]
+    """What the front's hysteresis is divided by, and its interval: where the ratio was not
+    measured, 1 with an interval that reaches to what the law says."""
+    is_measured: bool
+    """Whether the amplitude and the size are among those that were measured."""
+    sentence: str
+    """Both as a sentence."""
 
 
 @functools.cache
@@ -65,46 +85,50 @@ def validity_text(rows: Sequence[ValidityRow]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def largest_energy(rows: Sequence[ValidityRow], tolerance: float) -> float:
-    """Largest e_el up to which every row's hysteresis is right to a tolerance (Units: w_int).
+def excess_coefficient(rows: Sequence[ValidityRow]) -> tuple[float, float]:
+    """Coefficient c of the law ln(ratio) = c e_el / w_int, and its standard error.
 
-    Right within its standard error. That of a row, not between two; 0 where the smoothest surface
-    is outside already.
+    Rows of one surface, which have no error, do not count.
 
     Examples
     --------
-    >>> ratios = {0.03: 1.05, 0.06: 1.2, 0.1: 1.5}
-    >>> rows = [ValidityRow(1, 1, e, r, 0.01, 4, 4, 512, 0.2) for e, r in ratios.items()]
-    >>> [largest_energy(rows, tolerance) for tolerance in (0.01, 0.1, 0.25)]
-    [0.0, 0.03, 0.06]
+    >>> rows = [ValidityRow(1, 1, e, 1, math.exp(2 * e), 0.1, 4, 4, 512) for e in (0.1, 0.2)]
+    >>> c, error = excess_coefficient(rows)
+    >>> round(c, 12), round(error, 3)
+    (2.0, 0.447)
     """
-    outside = [row.elastic_energy for row in rows if not _departure(row) <= tolerance]
-    least = _ALIKE * min(outside, default=math.inf)
-    return max((row.elastic_energy for row in rows if row.elastic_energy < least), default=0.0)
+    known = [row for row in rows if math.isfinite(row.error)]
+    energy, ratio, error = np.array([(r.elastic_energy, r.ratio, r.error) for r in known]).T
+    information = float(np.sum((energy / error) ** 2))
+    return float(np.sum(energy * np.log(ratio) / error**2)) / information, information**-0.5
 
 
-def _departure(row: ValidityRow) -> float:
-    """How far the ratio is from one, beyond its standard error if it has one."""
-    return abs(row.ratio - 1) - (row.error if math.isfinite(row.error) else 0.0)
+def front_excess(energy: float, size: float, rows: Sequence[ValidityRow] | None = None) -> Excess:
+    """Excess of the front at an e_el (Units: w_int) and a size g, by the shipped table or another.
 
-
-def validity_sentence(rows: Sequence[ValidityRow] | None = None) -> str:
-    """What the hysteresis of a front is worth by amplitude, by the shipped table or another."""
+    Examples
+    --------
+    >>> rows = [ValidityRow(1, 1, e, 1, math.exp(2 * e), 0.01, 4, 4, 512) for e in (0.1, 0.2)]
+    >>> front_excess(0.1, 1.0, rows).sentence.split(" times")[0]
+    'A front has 1.22 (1.11 to 1.35)'
+    >>> near, far = (front_excess(0.1, size, rows).ratio for size in (1.0, 100.0))
+    >>> round(near.value, 2), far.value, round(far.high, 2)
+    (1.22, 1.0, 1.35)
+    """
     rows = shipped_validity() if rows is None else rows
-    energies = [row.elastic_energy for row in rows]
-    ranges: dict[float, str] = {}
-    for tolerance in TOLERANCES:
-        energy = largest_energy(rows, tolerance)
-        if energy:
-            strongest = ", the strongest that was compared" if energy == max(energies) else ""
-            words = f"to {tolerance:.0%} up to e_el/w_int = {energy:.2g}{strongest}"
-        else:
-            words = f"to {tolerance:.0%} nowhere from e_el/w_int = {min(energies):.2g} on"
-        ranges.setdefault(energy, words)
-    worst = max(rows, key=_departure)
-    error = f" ± {worst.error:.1f}" if math.isfinite(worst.error) else ""
-    return (
-        f"Against boundary elements on the same surfaces the front's hysteresis is right, within "
-        f"the error of the comparison, {', and '.join(ranges.values())}; at worst it is "
-        f"{worst.ratio:.1f}{error} times theirs, at e_el/w_int = {worst.elastic_energy:.2g}."
+    slope, error = excess_coefficient(rows)
+    logarithm, reach = slope * energy, REACH * math.hypot(error * energy, _MODEL_ERROR)
+    strongest = max(row.elastic_energy for row in rows)
+    largest = max(row.size for row in rows)
+    law = Estimate(logarithm, math.nan, logarithm - reach, logarithm + reach).each(math.exp)
+    told = f"{law.value:.2f} ({law.low:.2f} to {law.high:.2f}) times the hysteresis that boundary "
+    if energy <= _FURTHER * strongest and size <= _FURTHER * largest:
+        sentence = f"A front has {told}elements have at this e_el, and is divided by it here."
+        return Excess(law, True, sentence)
+    sentence = (
+        f"A front may have {told}elements have at this e_el, which were compared up to e_el/w_int "
+        f"= {strongest:.2g} and g = {largest:.2g}; here they are {energy:.2g} and {size:.3g}: it "
+        "is not divided, but its interval reaches as far."
     )
+    ends = math.exp(-REACH * _MODEL_ERROR), max(law.high, math.exp(REACH * _MODEL_ERROR))
+    return Excess(Estimate(1.0, math.nan, *ends), False, sentence)

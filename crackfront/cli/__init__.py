@@ -133,7 +133,7 @@ Exit codes:
       a cycle that ended early, ranks that failed, results that are damaged or do not
       agree
   2   the input cannot be used; one sentence says why, and nothing was computed
-  3   predict: the theory applies with reservations, each of which is named
+  3   predict --strict: the theory applies with reservations, which are named
   4   predict: the theory does not apply, and what modulus, radius or roughness would do
   75  interrupted (Ctrl-C or SIGTERM); run the same command to continue
 

@@ -39,7 +39,8 @@ if TYPE_CHECKING:
 
 Command = Callable[..., None]
 
-_EXIT_CODES = {"applies": 0, "applies with reservations": 3, "does not apply": 4}
+_RESERVATIONS, _NO_PREDICTION = 3, 4
+"""Exit codes where the theory applies with reservations, if strict, and where it does not apply."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +105,8 @@ _scans = click.argument("scans", type=FILE, nargs=-1, required=True)
     help="Figure, without suffix; PDF and PNG.  [default: results/predict/<first scan>]",
 )
 @click.option("--no-figure", is_flag=True, help="Draw none: most of the time goes into it.")
+@click.option("--long", "is_long", is_flag=True, help="Print all that is known, not one page.")
+@click.option("--strict", is_flag=True, help="Let reservations fail as well.")
 @click.pass_context
 def predict(
     context: click.Context,
@@ -115,6 +118,8 @@ def predict(
     seed: int,
     figure: Path | None,
     no_figure: bool,
+    is_long: bool,
+    strict: bool,
     **options: Any,
 ) -> None:
     """Predict how strongly a soft sphere sticks to a measured surface, from the fitted law.
@@ -123,25 +128,34 @@ def predict(
     the surface or several. w = w_int - e_el -+ k e_el with k by the law of straight fronts
     (crackfront law).
 
-    Exit code 0: the theory applies. 3: it applies with reservations, which are named. 4: it does
-    not apply; nothing is predicted, and it is said what modulus, radius or roughness would do.
+    Exit code 0: a prediction, with reservations where there are any (3 with --strict). 4: the
+    theory does not apply; nothing is predicted, and it is said what modulus, radius or roughness
+    would do.
     """
     from crackfront.topography.prediction import predicted
-    from crackfront.topography.report import machine_readable, report_text, simulation_text
+    from crackfront.topography.report import (
+        machine_readable,
+        prediction_page,
+        report_text,
+        simulation_text,
+    )
     from crackfront.topography.verdict import verdict
 
     scales = _scales(options)
-    reach = parsed_options(PredictionOptions, options, "--").range
+    given = parsed_options(PredictionOptions, options, "--")
     stem = Path("results/predict", scans[0].stem) if figure is None else figure
     if not no_figure:
         refuse_unwritable(stem.parent)
     surface = _surface(scans, options)
-    ruling, prediction, outcome = verdict(surface, scales, reach), None, None
+    ruling, prediction, outcome = verdict(surface, scales, given.range), None, None
     if ruling.outcome != "does not apply":
-        prediction = predicted(surface, scales, reach)
+        prediction = predicted(surface, scales, given.range, given.pull_off)
         ruling = prediction.verdict
     if not as_json:
-        click.echo(report_text(surface, scales, ruling, prediction))
+        if prediction is not None:
+            click.echo(prediction_page(prediction))
+        if is_long or prediction is None:
+            click.echo("\n" * is_long + report_text(surface, scales, ruling, prediction))
     if prediction is not None and not no_figure:
         from crackfront.plots.style import save_figure
         from crackfront.topography.drawing import prediction_figure
@@ -163,7 +177,9 @@ def predict(
             click.echo(simulation_text(outcome))
     if as_json:
         echo_json(machine_readable(surface, scales, ruling, prediction, outcome))
-    context.exit(_EXIT_CODES[ruling.outcome])
+    if prediction is None:
+        context.exit(_NO_PREDICTION)
+    context.exit(_RESERVATIONS if strict and ruling.reservations else 0)
 
 
 @click.command(

@@ -29,6 +29,7 @@ from crackfront.topography.options import (
 from crackfront.topography.prediction import Prediction, predicted
 from crackfront.topography.reading import Measurement, read_measurements
 from crackfront.topography.tile import tile_heights, zero_load_radius
+from crackfront.topography.verdict import verdict
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 File = str | PathLike[str]
@@ -131,7 +132,9 @@ def _treatments(measurement: Measurement, across: float) -> Iterator[tuple[str, 
 
 
 @_taking(ReadingOptions, PredictionOptions)
-def predict(scans: File | Iterable[File], sphere: Scales, **options: Any) -> Prediction:
+def predict(
+    scans: File | Iterable[File], sphere: Scales, *, strict: bool = False, **options: Any
+) -> Prediction:
     """How strongly a sphere sticks to a measured surface, by the law of k.
 
     Parameters
@@ -140,24 +143,26 @@ def predict(scans: File | Iterable[File], sphere: Scales, **options: Any) -> Pre
         One measurement of the surface or several, maps or lines.
     sphere : Scales
         What is pressed on it.
+    strict : bool, optional
+        Raise where the theory applies with reservations as well.
     {options}
 
     Returns
     -------
     Prediction
-        e_el, k, w_appr, w_retr, pull-off forces and more, in SI units; printed, it says all of them
-        with intervals, limits and notes.
+        e_el, k, w_appr, w_retr, pull-off forces and more, in SI units, with intervals; printed, it
+        is a page of those that matter most.
 
     Raises
     ------
     ValueError
-        If a file cannot be used, or no contact conforms, e_el >= w_int.
+        If a file cannot be used, or the theory does not apply.
     TypeError
         If an argument is of another type.
     OSError
         If a file cannot be opened.
     """
-    inspect.signature(predict).bind(scans, sphere, **options)
+    inspect.signature(predict).bind(scans, sphere, strict=strict, **options)
     refuse_no_scales(sphere)
     paths = [scans] if isinstance(scans, (str, PathLike)) else scans
     refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
@@ -165,4 +170,9 @@ def predict(scans: File | Iterable[File], sphere: Scales, **options: Any) -> Pre
     given = parsed_options(PredictionOptions, options)
     surface_library()  # Whole: the program may use it too.
     surface = read_surface(files, options_for_each(ReadingOptions, options, len(files)))
-    return predicted(surface, sphere, given.range)
+    ruling = verdict(surface, sphere, given.range)
+    if ruling.outcome == "does not apply":
+        raise ValueError(f"the theory does not apply; what would meet {'; '.join(ruling.remedies)}")
+    if strict and ruling.reservations:
+        raise ValueError(f"the theory applies with reservations: {' '.join(ruling.reservations)}")
+    return predicted(surface, sphere, given.range, given.pull_off)

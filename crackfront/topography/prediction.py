@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
-from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.finding import PAPER_FACTOR
+from scipy.optimize import brentq
+
+from crackfront.analysis.estimate import Estimate, product
 from crackfront.analysis.law import shipped_law
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
-from crackfront.analysis.validity import validity_sentence
+from crackfront.analysis.validity import Excess, front_excess
 from crackfront.core import jkr
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
@@ -25,12 +27,14 @@ from crackfront.topography.verdict import Verdict, verdict
 class Prediction:
     """Adhesion that is predicted for a surface, in SI units.
 
-    The intervals of the works of adhesion hold those of k and of e_el.
+    The intervals of the works of adhesion hold those of k, of e_el, and of what the front's
+    hysteresis is divided by.
     """
 
     surface: MeasuredSurface
     verdict: Verdict
     factors: SphereFactors
+    excess: Excess
     radius: float = variable("radius of the sphere", "m")
     contact_modulus: float = variable("contact modulus E'", "Pa")
     work_of_adhesion: float = variable("intrinsic work of adhesion w_int", "J m-2")
@@ -42,23 +46,25 @@ class Prediction:
     larkin_length: float = variable("Larkin length", "m")
     size: float = variable("g, L_kappa over the Larkin length", "1")
     negative_share: float = variable("part of the surface where w_loc is negative", "1")
-    k_appr: Estimate[float] = variable("factor k of the approach", "1")
-    k_retr: Estimate[float] = variable("factor k of the retraction", "1")
+    k_appr: Estimate[float] = variable("factor k of the approach, of the front", "1")
+    k_retr: Estimate[float] = variable("factor k of the retraction, of the front", "1")
+    front_excess: Estimate[float] = variable("what the front's hysteresis is divided by", "1")
+    front_hysteresis: Estimate[float] = variable("w_retr - w_appr of the front itself", "J m-2")
     w_appr: Estimate[float] = variable("work of adhesion of the approach", "J m-2")
     w_retr: Estimate[float] = variable("work of adhesion of the retraction", "J m-2")
     hysteresis: Estimate[float] = variable("w_retr - w_appr", "J m-2")
     pull_off_force: Estimate[float] = variable("pull-off force at a given load", "N")
     pull_off_force_held: Estimate[float] = variable("pull-off force at a given displacement", "N")
     pull_off_force_smooth: float = variable("pull-off force of a smooth surface at a load", "N")
-    paper_factor: float = variable("factor k of the paper", "1")
-    paper_w_appr: float = variable("work of adhesion of the approach by that factor", "J m-2")
-    paper_w_retr: float = variable("work of adhesion of the retraction by that factor", "J m-2")
+    implied_work_of_adhesion: Estimate[float] = variable(
+        "w_int that a measured pull-off force implies", "J m-2"
+    )
 
     def __repr__(self) -> str:
         """The page that the command `crackfront predict` prints."""
-        from crackfront.topography.report import report_text
+        from crackfront.topography.report import prediction_page
 
-        return report_text(self.surface, ruling=self.verdict, prediction=self)
+        return prediction_page(self)
 
 
 def prediction_notes(prediction: Prediction) -> Iterator[str]:
@@ -74,10 +80,17 @@ def prediction_notes(prediction: Prediction) -> Iterator[str]:
             f"Size g {prediction.size:.3g} is above the largest that was measured "
             f"({largest:.3g}): k follows the finite-size exponent of the elastic line from there."
         )
-    yield validity_sentence()
-    if prediction.w_appr.value <= 0:
+    yield prediction.excess.sentence
+    yield from repelled_note(prediction)
+
+
+def repelled_note(prediction: Prediction) -> Iterator[str]:
+    """What a w_appr that is not positive means, where its interval holds one."""
+    if prediction.w_appr.low <= 0:
+        reach = "is not" if prediction.w_appr.value <= 0 else "may not be"
         yield (
-            "w_appr is not positive: the sphere is not drawn into contact, it has to be pressed on."
+            f"w_appr {reach} positive: there the sphere is not drawn into contact but has to be "
+            "pressed on, and the theory ends."
         )
 
 
@@ -87,44 +100,56 @@ def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSp
     return spectrum.in_units(scales.lateral).amplified(1 / unit)
 
 
+class _Works(NamedTuple):
+    """Works of adhesion of a surface under a sphere, and what they come from."""
+
+    energy: Estimate[float]  # e_el (J / m^2)
+    factors: SphereFactors
+    excess: Excess
+    appr: Estimate[float]
+    retr: Estimate[float]
+
+
+def surface_spectrum(surface: MeasuredSurface, scales: Scales) -> TabulatedSpectrum:
+    """The spectrum of a surface in reduced units, with its e_el: the median over its draws."""
+    shape = reduced_spectrum(surface.joint.spectrum, scales)
+    energy = surface.conformity_energy(scales.contact_modulus).value / scales.work_of_adhesion
+    return shape.amplified(energy / shape.elastic_energy)
+
+
 def predicted(
-    surface: MeasuredSurface, scales: Scales, attraction_range: float | None = None
+    surface: MeasuredSurface,
+    scales: Scales,
+    attraction_range: float | None = None,
+    pull_off: float | None = None,
 ) -> Prediction:
     """Prediction for a surface under a sphere, of scales in SI units.
 
-    The range of attraction (Units: m) is that of van der Waals forces where none is given.
+    The range of attraction (Units: m) is that of van der Waals forces where none is given. A
+    measured pull-off force (Units: N) gives the w_int that it implies.
 
     Raises
     ------
     ValueError
         If no contact conforms, e_el >= w_int.
     """
-    shape, radius = reduced_spectrum(surface.joint.spectrum, scales), zero_load_radius(scales)
-    reduced_energy = shape.elastic_energy
-    if not reduced_energy < 1:
-        raise ValueError(
-            f"e_el is {reduced_energy:.3g} w_int, so that no contact conforms fully and the theory "
-            "does not apply; a softer sphere, a stronger adhesion or a smoother surface would"
-        )
-    factors = sphere_factors("roughness", shape, reduced_energy, radius / scales.lateral)
-    k_appr, k_retr, k = (
-        replace(factor, standard_error=math.nan)
-        for factor in (factors.approach.factor, factors.retraction.factor, factors.both)
-    )
-    adhesion = scales.work_of_adhesion
-    energy = surface.conformity_energy(scales.contact_modulus)
-    appr = _linear(adhesion, energy, k_appr, -1.0, -1.0)
-    retr = _linear(adhesion, energy, k_retr, -1.0, 1.0)
-    hysteresis = _linear(0.0, energy, k, 0.0, 2.0)
+    works = _works(surface, scales)
+    energy, factors, excess, appr, retr = works
+    radius, adhesion = zero_load_radius(scales), scales.work_of_adhesion
+    front = product(_exactly(2.0), factors.both, energy)
     # By JKR, pull-off forces are linear in the work of adhesion.
     at_load, at_displacement = (
         -reduced * scales.force / adhesion
         for reduced in (jkr.pull_off_force(), float(jkr.equilibrium_force(jkr.pull_off_radius())))
     )
+    implied = _exactly(math.nan)
+    if pull_off is not None:
+        implied = _implied_work_of_adhesion(surface, scales, pull_off / at_load)
     return Prediction(
         surface=surface,
         verdict=verdict(surface, scales, attraction_range, factors),
         factors=factors,
+        excess=excess,
         radius=scales.radius,
         contact_modulus=scales.contact_modulus,
         work_of_adhesion=adhesion,
@@ -136,30 +161,81 @@ def predicted(
         larkin_length=factors.larkin_length * scales.lateral,
         size=factors.size,
         negative_share=factors.approach.negative_share,
-        k_appr=k_appr,
-        k_retr=k_retr,
+        k_appr=replace(factors.approach.factor, standard_error=math.nan),
+        k_retr=replace(factors.retraction.factor, standard_error=math.nan),
+        front_excess=excess.ratio,
+        front_hysteresis=front,
         w_appr=appr,
         w_retr=retr,
-        hysteresis=replace(hysteresis, low=max(0.0, hysteresis.low)),
+        hysteresis=product(front, _inverse(excess.ratio)),
         pull_off_force=retr.each(lambda work: at_load * work),
         pull_off_force_held=retr.each(lambda work: at_displacement * work),
         pull_off_force_smooth=-jkr.pull_off_force() * scales.force,
-        paper_factor=PAPER_FACTOR,
-        paper_w_appr=adhesion - (1 + PAPER_FACTOR) * energy.value,
-        paper_w_retr=adhesion - (1 - PAPER_FACTOR) * energy.value,
+        implied_work_of_adhesion=implied,
     )
 
 
-def _linear(
-    base: float, energy: Estimate[float], factor: Estimate[float], own: float, slope: float
+def _works(surface: MeasuredSurface, scales: Scales) -> _Works:
+    """Works of adhesion by the law of k, divided by what the front has more than others."""
+    energy, adhesion = surface.conformity_energy(scales.contact_modulus), scales.work_of_adhesion
+    relative = energy.value / adhesion
+    if not relative < 1:
+        raise ValueError(
+            f"e_el is {relative:.3g} w_int, so that no contact conforms fully and the theory "
+            "does not apply; a softer sphere, a stronger adhesion or a smoother surface would"
+        )
+    radius = zero_load_radius(scales) / scales.lateral
+    factors = sphere_factors("roughness", surface_spectrum(surface, scales), relative, radius)
+    excess = front_excess(relative, factors.size)
+    appr, retr = (
+        _linear(adhesion, energy, product(branch.factor, _inverse(excess.ratio)), sign)
+        for branch, sign in ((factors.approach, -1.0), (factors.retraction, 1.0))
+    )
+    return _Works(energy, factors, excess, appr, retr)
+
+
+def _implied_work_of_adhesion(
+    surface: MeasuredSurface, scales: Scales, measured: float
 ) -> Estimate[float]:
-    """`base + (own + slope k) e_el`, with the intervals of k and of e_el in quadrature."""
-    value = base + (own + slope * factor.value) * energy.value
+    """The w_int at which the prediction for w_retr is the measured one (Units: J / m^2).
+
+    Its interval ends where those of predictions do. NaN where no w_int in reach gives it.
+    """
+    least = 1.001 * surface.conformity_energy(scales.contact_modulus).value
+
+    def solved(end: str) -> float:
+        def apart(adhesion: float) -> float:
+            works = _works(surface, replace(scales, work_of_adhesion=adhesion))
+            return float(getattr(works.retr, end)) - measured
+
+        most = 10 * max(measured, least)
+        if apart(least) * apart(most) > 0:
+            return math.nan
+        return float(brentq(apart, least, most, rtol=1e-4))
+
+    return Estimate(solved("value"), math.nan, solved("high"), solved("low"))
+
+
+def _exactly(value: float) -> Estimate[float]:
+    """A number that is known."""
+    return Estimate(value, math.nan, value, value)
+
+
+def _inverse(number: Estimate[float]) -> Estimate[float]:
+    """One over a positive number."""
+    return Estimate(1 / number.value, math.nan, 1 / number.high, 1 / number.low)
+
+
+def _linear(
+    adhesion: float, energy: Estimate[float], factor: Estimate[float], sign: float
+) -> Estimate[float]:
+    """Work of adhesion w_int - e_el + sign k e_el, intervals of k and e_el in quadrature."""
+    value = adhesion + (sign * factor.value - 1) * energy.value
     ends = [
         sorted(end - value for end in pair)
         for pair in (
-            [base + (own + slope * end) * energy.value for end in (factor.low, factor.high)],
-            [base + (own + slope * factor.value) * end for end in (energy.low, energy.high)],
+            [adhesion + (sign * end - 1) * energy.value for end in (factor.low, factor.high)],
+            [adhesion + (sign * factor.value - 1) * end for end in (energy.low, energy.high)],
         )
     ]
     low, high = (math.hypot(*(one[end] for one in ends)) for end in (0, 1))

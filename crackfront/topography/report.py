@@ -8,18 +8,18 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.law import PinningFactor
+from crackfront.analysis.law import PinningFactor, shipped_law
 from crackfront.analysis.law_spheres import SphereFactors
 from crackfront.core.units import Scales
 from crackfront.core.variables import variables
 from crackfront.data.written_units import prefixed
 from crackfront.topography.bands import BandLimit, Scan
-from crackfront.topography.cautions import surface_doubts, surface_notes
+from crackfront.topography.cautions import measure_next, surface_doubts, surface_notes
 from crackfront.topography.densities import Density
 from crackfront.topography.fitting import Fit
 from crackfront.topography.joining import JointSpectrum
 from crackfront.topography.measures import MeasuredSurface
-from crackfront.topography.prediction import Prediction, prediction_notes
+from crackfront.topography.prediction import Prediction, prediction_notes, repelled_note
 from crackfront.topography.verdict import Condition, Verdict
 
 if TYPE_CHECKING:
@@ -34,6 +34,9 @@ _MEASURES = {0.0: ("heights", "m"), 0.5: ("half-derivative", "m^1/2"), 1.0: ("sl
 _FAR = 1000.0
 """Factor to a limit from which on it is not worth a number."""
 
+_CAUTIONS = 2
+"""Reservations that stand on the first page."""
+
 _ADHESIONS = ("w_appr", "w_retr", "hysteresis")
 
 
@@ -43,7 +46,7 @@ def report_text(
     ruling: Verdict | None = None,
     prediction: Prediction | None = None,
 ) -> str:
-    """Surface, verdict and prediction, each where it is known, and what a reader must know.
+    """All of surface, verdict and prediction, each where it is known, and what a reader must know.
 
     Without a prediction, scales in SI units add the energy of full conformity.
     """
@@ -63,6 +66,43 @@ def report_text(
     return "\n\n".join("\n".join(lines) for lines in parts)
 
 
+def prediction_page(prediction: Prediction) -> str:
+    """What an experimenter wants first: numbers, how far to trust them, what to measure next."""
+    surface, e_el = prediction.surface, prediction.e_el
+    joint, smallest = surface.joint, shipped_law().size[0]
+    bound = "at least " if joint.is_lower_bound else ""
+    hysteresis = bound + _shown(_ENERGY, prediction.hysteresis)
+    if prediction.size < smallest:
+        most = prefixed(_ENERGY, prediction.hysteresis.high)
+        hysteresis = f"none expected, less than {most}: g {prediction.size:.2g} is below {smallest}"
+    smooth = prefixed("N", prediction.pull_off_force_smooth)
+    relative = e_el.value / prediction.work_of_adhesion
+    recorded = surface.conformity_energy(prediction.contact_modulus, surface.recorded)
+    waves = _span(joint.shortest, joint.longest)
+    rows = [
+        ("hysteresis", hysteresis),
+        *((name, _shown(_ENERGY, getattr(prediction, name))) for name in ("w_appr", "w_retr")),
+        ("pull-off force", f"{_shown('N', prediction.pull_off_force)}; smooth sphere {smooth}"),
+        ("e_el", f"{bound}{_shown(_ENERGY, e_el)} = {relative:.3g} w_int"),
+        ("recorded of it", f"{prefixed(_ENERGY, recorded.value)}; trusted waves from {waves}"),
+    ]
+    if math.isfinite(prediction.implied_work_of_adhesion.value):
+        implied = _shown(_ENERGY, prediction.implied_work_of_adhesion)
+        rows.insert(4, ("w_int by pull-off", implied))
+    doubts = prediction.verdict.reservations
+    trust = f"The theory applies; {len(doubts)} reservation(s)" if doubts else "The theory applies"
+    return "\n".join(
+        [
+            *(f"{name:18}{text}" for name, text in rows),
+            f"{trust}. {prediction.excess.sentence}",
+            *repelled_note(prediction),
+            *doubts[:_CAUTIONS],
+            measure_next(surface),
+            "Intervals hold 95%; --long says all.",
+        ]
+    )
+
+
 def _notes(surface: MeasuredSurface, prediction: Prediction | None) -> list[str]:
     """Notes of a surface, and of its prediction where there is one."""
     return list(surface_notes(surface) if prediction is None else prediction_notes(prediction))
@@ -72,7 +112,7 @@ def simulation_text(found: Simulated) -> str:
     """What simulations found."""
     lines = [f"Simulated on {found.realisations} synthesised surface(s)"]
     lines += [f"  {name:22}{_shown(_ENERGY, getattr(found, name))}" for name in _ADHESIONS]
-    lines.append(f"  {'k':22}{_factor(found.k)}, numerical error {found.numerical_error:.2g}")
+    lines.append(f"  {'k':22}{_shown('1', found.k)}, numerical error {found.numerical_error:.2g}")
     if found.remark:
         lines.append(f"  {found.remark}")
     lines += [f"  Without a value: {sentence}" for sentence in found.failed]
@@ -87,7 +127,6 @@ def machine_readable(
     found: Simulated | None = None,
 ) -> dict[str, Any]:
     """What the texts and notes say, for JSON; SI units, null where there is nothing."""
-    energy = None if scales is None else surface.conformity_energy(scales.contact_modulus)
     adhesions = (*_ADHESIONS, "k")
     return {
         "measurements": [
@@ -106,7 +145,7 @@ def machine_readable(
         "measures": [
             asdict(item) | {"rms": _uncertain_entry(item.rms)} for item in surface.measures
         ],
-        "e_el": None if energy is None else {**_uncertain_entry(energy), "units": "J m-2"},
+        "e_el": None if scales is None else _energy_entry(surface, scales.contact_modulus),
         "prediction": None if prediction is None else dict(_prediction_entries(prediction)),
         "factors": None if prediction is None else _factors_entry(prediction.factors),
         "verdict": None if ruling is None else _verdict_entry(ruling),
@@ -173,30 +212,13 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
 
 
 def _prediction_lines(item: Prediction) -> Iterator[str]:
-    """Lines with the predicted numbers."""
+    """Lines with all predicted numbers, as files and JSON name them."""
     yield "Prediction (95% intervals)"
-    yield from _conformity_lines(item.e_el, item.work_of_adhesion)
-    smooth = prefixed("N", item.pull_off_force_smooth)
-    named = (
-        ("correlation length", prefixed("m", item.correlation_length)),
-        ("contact radius, F = 0", prefixed("m", item.contact_radius)),
-        ("L_kappa", prefixed("m", item.l_kappa)),
-        ("Larkin length", prefixed("m", item.larkin_length)),
-        ("g, L_kappa over it", f"{item.size:.3g}"),
-        ("negative w_loc", f"{item.negative_share:.2%} of the surface"),
-        ("k of the approach", _factor(item.k_appr)),
-        ("k of the retraction", _factor(item.k_retr)),
-        *((name, _shown(_ENERGY, getattr(item, name))) for name in _ADHESIONS),
-        ("pull-off, given load", f"{_shown('N', item.pull_off_force)}; smooth {smooth}"),
-        ("pull-off, displacement", _shown("N", item.pull_off_force_held)),
-        (
-            f"with the paper's k = {item.paper_factor:g}",
-            f"w_appr {prefixed(_ENERGY, item.paper_w_appr)}, "
-            f"w_retr {prefixed(_ENERGY, item.paper_w_retr)}",
-        ),
-    )
-    for name, text in named:
-        yield f"  {name:25}{text}"
+    for one in variables(Prediction):
+        found = getattr(item, one.name)
+        number = found if isinstance(found, Estimate) else Estimate(found, *[math.nan] * 3)
+        if math.isfinite(number.value):
+            yield f"  {one.attributes['long_name']:58}{_shown(one.units, number)}"
 
 
 def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
@@ -251,15 +273,11 @@ def _verdict_entry(found: Verdict) -> dict[str, Any]:
 
 def _shown(unit: str, found: Number) -> str:
     """A number with its interval, if it has one; powers of lengths have no prefix."""
-    if unit in ("m", "N", _ENERGY):
+    unit = unit.replace("J m-2", _ENERGY)
+    if unit in ("m", "N", "Pa", _ENERGY):
         return prefixed(unit, found.value, found.low, found.high)
-    return f"{found.value:.3g} ({found.low:.3g} to {found.high:.3g}) {unit}".removesuffix(" 1")
-
-
-def _factor(found: Number) -> str:
-    """A factor k with its interval, if it has one."""
-    interval = f" ({found.low:.2f} to {found.high:.2f})" if math.isfinite(found.low) else ""
-    return f"{found.value:.2f}{interval}"
+    interval = f" ({found.low:.3g} to {found.high:.3g})" if math.isfinite(found.low) else ""
+    return f"{found.value:.3g}{interval} {unit}".removesuffix(" 1")
 
 
 def _limit_text(limit: BandLimit) -> str:
@@ -318,6 +336,20 @@ def _spectrum_entry(joint: JointSpectrum) -> dict[str, Any]:
     }
 
 
+def _energy_entry(surface: MeasuredSurface, contact_modulus: float) -> dict[str, Any]:
+    """e_el, of what is recorded and as estimated, and whether it is a lower bound."""
+    squares = {"recorded": surface.recorded, "estimated": surface.estimated}
+    return {
+        **_uncertain_entry(surface.conformity_energy(contact_modulus)),
+        **{
+            name: _uncertain_entry(surface.conformity_energy(contact_modulus, square))
+            for name, square in squares.items()
+        },
+        "is_lower_bound": surface.joint.is_lower_bound,
+        "units": "J m-2",
+    }
+
+
 def _continuation_entry(fit: Fit) -> dict[str, Any]:
     """The model that continues a density."""
     parameters = {
@@ -340,7 +372,8 @@ def _prediction_entries(prediction: Prediction) -> Iterator[tuple[str, dict[str,
     for item in variables(Prediction):
         found = getattr(prediction, item.name)
         is_number = not isinstance(found, Estimate)
-        yield item.name, {"value": found if is_number else found.value, **item.attributes}
+        value = _or_null(found if is_number else found.value)
+        yield item.name, {"value": value, **item.attributes}
         if is_number:
             continue
         low, high = ("smaller", "larger") if item.units == "N" else ("lower", "upper")

@@ -29,7 +29,7 @@ from crackfront.simulate.simulation import (
 )
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.topography.measures import MeasuredSurface
-from crackfront.topography.prediction import reduced_spectrum
+from crackfront.topography.prediction import surface_spectrum
 from crackfront.topography.tile import zero_load_radius
 
 _ERROR = 0.03
@@ -90,7 +90,7 @@ def prediction_plan(
     surface: MeasuredSurface, scales: Scales, realisations: int, seed: int
 ) -> SimulationPlan:
     """Simulations of surfaces with the fitted spectrum and its amplitude, and noise of a seed."""
-    spectrum = reduced_spectrum(surface.joint.spectrum, scales)
+    spectrum = surface_spectrum(surface, scales)
     energy = spectrum.elastic_energy
     first, correction, remark = _affordable(
         spectrum, energy, zero_load_radius(scales) / scales.lateral, seed

@@ -10,9 +10,10 @@ from typing import Literal
 from scipy.special import ndtr, ndtri
 
 from crackfront.analysis.law_spheres import SphereFactors
-from crackfront.analysis.validity import TOLERANCES, largest_energy, shipped_validity
+from crackfront.analysis.validity import shipped_validity
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
+from crackfront.topography.bands import MOST_PERIODIC
 from crackfront.topography.cautions import surface_doubts
 from crackfront.topography.measures import MeasuredSurface, RmsMeasure
 from crackfront.topography.tile import zero_load_radius
@@ -31,6 +32,9 @@ _TABOR = (5.0, 1.0)
 
 _SLOPES = (0.3, 1.0)
 """Rms slope, whose square linear elasticity leaves out."""
+
+_MOST_PERIODIC = 0.5
+"""Part of e_el in one wave from which on the law of k is that of another surface."""
 
 _MOST_NEGATIVE = 0.25
 """Part of the surface where w_loc is negative at the strongest disorder of the law."""
@@ -124,6 +128,7 @@ def verdict(
         *_contact_conditions(surface, scales),
         *_range_conditions(surface, scales, reach),
         _slope_condition(surface),
+        _random_condition(surface),
     )
     doubts = [
         f"{item.name}: {item.found}; {item.reason}."
@@ -162,10 +167,10 @@ def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Con
     yield Condition(
         "attraction nearly everywhere",
         f"w_loc negative on {share:.2%} of the surface",
-        "the linearisation of the roughness is not to be trusted where w_loc is negative, and the "
-        "hysteresis of boundary elements is smaller",
+        "the linearisation of the roughness is not to be trusted where w_loc is negative, and "
+        "boundary elements were compared up to there alone",
         share,
-        _negative_share(largest_energy(shipped_validity(), TOLERANCES[-1])),
+        _negative_share(max(row.elastic_energy for row in shipped_validity())),
         _MOST_NEGATIVE,
         "1",
         remedies=_softer(scales, e_el / w_int / largest),
@@ -254,6 +259,22 @@ def _slope_condition(surface: MeasuredSurface) -> Condition:
         *_SLOPES,
         "1",
         remedies=(f"slopes lower by a factor of {slope / _SLOPES[1]:.3g}",),
+    )
+
+
+def _random_condition(surface: MeasuredSurface) -> Condition:
+    """Condition on waves that stand out, as grooves do."""
+    part, wavelength = max(one.band.periodic for one in surface.scans)
+    found = f"the wave of {prefixed('m', wavelength)} alone has {part:.0%} of e_el"
+    return Condition(
+        "random roughness",
+        found if part else "no wave stands out",
+        "k is that of random surfaces, and grooves pin a front otherwise",
+        part,
+        MOST_PERIODIC,
+        _MOST_PERIODIC,
+        "1",
+        remedies=("another place or direction without the grooves",),
     )
 
 

@@ -11,14 +11,21 @@ from typing import Any
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate, student_estimate
+from crackfront.analysis.estimate import REACH, Estimate, student_estimate
 from crackfront.analysis.validity import ValidityRow
+from crackfront.core import jkr
+from crackfront.core.adhesion import larkin_length
+from crackfront.core.spectrum import SelfAffineSpectrum
 from studies.boundary_elements.hysteresis import Hysteresis
 
 Value = Callable[[Hysteresis], float]
 
+_DIFFERENCE = attrgetter("boundary_difference")
+
 ORDER = 3
-"""Power of the range with which the hysteresis of boundary elements nears that of no range.
+ORDERS = (2, ORDER, 4)
+"""Power of the range with which the hysteresis of boundary elements nears that of no range, between
+two whose difference is the error of the extrapolation.
 
 Measured, docs/validation.md: where a range was halved in two steps, the second changed the
 hysteresis by a third of the first. The length of the cohesive zone would suggest its square.
@@ -42,10 +49,13 @@ class Setting:
         """Mean of a quantity over the surfaces."""
         return self._estimate(lambda mean: mean, value)
 
-    def hysteresis_ratio(self) -> Estimate:
-        """Hysteresis of the front over that of the boundary elements, means over the surfaces."""
-        models = attrgetter("front_hysteresis"), attrgetter("boundary_hysteresis")
-        return self._estimate(lambda front, boundary: front / boundary, *models)
+    def excess(self, smooth: float) -> Estimate:
+        """Logarithm of the front's w_retr - w_appr over that of boundary elements.
+
+        These have lost what they lose on the smooth sphere: that is taken off. (Units: w_int)
+        """
+        models = attrgetter("front_difference"), attrgetter("boundary_difference")
+        return self._estimate(lambda front, other: math.log(front / (other - smooth)), *models)
 
     def _estimate(self, function: Callable[..., float], *values: Value) -> Estimate:
         """Function of means, with the standard error of the jackknife over the surfaces."""
@@ -74,13 +84,13 @@ def settings(rows: Iterable[Hysteresis]) -> tuple[Setting, ...]:
     return tuple(Setting(tuple(alike)) for _, alike in groupby(ordered, attrgetter("setting")))
 
 
-def limit_settings(rows: Sequence[Hysteresis]) -> tuple[Setting, ...]:
-    """The limit of no range at every spectrum and amplitude that has one.
+def limit_settings(rows: Sequence[Hysteresis], order: float = ORDER) -> tuple[Setting, ...]:
+    """The limit of no range at every spectrum and amplitude that has one, by a power of the range.
 
     The longer range that all of its surfaces have, and most others, is averaged with it.
     """
     found = []
-    for limit in settings(range_limits(rows)):
+    for limit in settings(range_limits(rows, order)):
         row, seeds = limit.rows[0], {one.seed for one in limit.rows}
         alike = settings(one for one in rows if (one.scene, one.step) == (row.scene, row.step))
         known = [one for one in alike if seeds <= {other.seed for other in one.rows}]
@@ -89,10 +99,10 @@ def limit_settings(rows: Sequence[Hysteresis]) -> tuple[Setting, ...]:
     return tuple(found)
 
 
-def range_limits(rows: Iterable[Hysteresis]) -> list[Hysteresis]:
+def range_limits(rows: Iterable[Hysteresis], order: float = ORDER) -> list[Hysteresis]:
     """Works of adhesion and hysteresis at a vanishing range, from the two shortest of a surface.
 
-    Everything else is that of the shorter range.
+    They near it with a power of the range. Everything else is that of the shorter range.
     """
 
     def surface(row: Hysteresis) -> tuple[float, ...]:
@@ -104,7 +114,7 @@ def range_limits(rows: Iterable[Hysteresis]) -> list[Hysteresis]:
         fine, *others = alike
         longer = [row for row in others if row.interaction_range > fine.interaction_range]
         if longer:
-            ratio = (longer[0].interaction_range / fine.interaction_range) ** ORDER
+            ratio = (longer[0].interaction_range / fine.interaction_range) ** order
             changes: dict[str, Any] = {"interaction_range": 0.0}
             for name in ("boundary_approach", "boundary_retraction", "boundary_hysteresis"):
                 near, far = getattr(fine, name), getattr(longer[0], name)
@@ -118,17 +128,41 @@ def rough_settings(found: Iterable[Setting]) -> list[Setting]:
     return [one for one in found if one.rows[0].asked_energy > 0]
 
 
-def validity_row(setting: Setting, short_cutoff: float) -> ValidityRow:
-    """How far the front is right at one spectrum and amplitude."""
-    ratio, row = setting.hysteresis_ratio(), setting.rows[0]
+def validity_rows(rows: Sequence[Hysteresis], short_cutoff: float) -> list[ValidityRow]:
+    """How far the front is right, at every spectrum and amplitude that has a limit of no range."""
+    by_order = [limit_settings(rows, order) for order in ORDERS]
+    smooth = [
+        [float(one.mean(_DIFFERENCE).value) for one in found if not one.rows[0].asked_energy]
+        for found in by_order
+    ]
+    logarithms = [
+        [one.excess(max(lost, default=0.0)) for one in rough_settings(found)]
+        for found, lost in zip(by_order, smooth, strict=True)
+    ]
+    low, middle, high = logarithms
+    limits = rough_settings(by_order[1])
+    return [
+        _validity_row(setting, found, abs(float(far.value - near.value)) / 2, short_cutoff)
+        for setting, near, found, far in zip(limits, low, middle, high, strict=True)
+    ]
+
+
+def _validity_row(
+    setting: Setting, logarithm: Estimate, order_error: float, short_cutoff: float
+) -> ValidityRow:
+    """Both models of a setting; its interval is that of Student's t, its error half of a normal."""
+    row, energy = setting.rows[0], float(setting.mean(attrgetter("elastic_energy")).value)
+    reach = float(logarithm.high - logarithm.value)
+    spectrum = SelfAffineSpectrum(short_cutoff, row.roll_off, row.hurst)
+    larkin = larkin_length("roughness", spectrum, 2 * math.sqrt(energy))
     return ValidityRow(
         roll_off=row.roll_off / short_cutoff,
         hurst=row.hurst,
-        elastic_energy=float(setting.mean(lambda one: one.elastic_energy).value),
-        ratio=float(ratio.value),
-        error=float(ratio.standard_error),
+        elastic_energy=energy,
+        size=jkr.spring(jkr.radius_at_force(0.0), 1 - energy) / larkin,
+        ratio=math.exp(float(logarithm.value)),
+        error=math.hypot(reach / REACH, order_error),
         surfaces=setting.surfaces,
         fine=len(setting.rows),
         n_point=row.n_point,
-        interaction_range=row.interaction_range,
     )

@@ -49,6 +49,16 @@ class Hysteresis:
     front_seconds: float = variable("processor time of the front and its field", "s")
 
     @property
+    def boundary_difference(self) -> float:
+        """w_retr - w_appr of the boundary elements (Units: w_int)."""
+        return self.boundary_retraction - self.boundary_approach
+
+    @property
+    def front_difference(self) -> float:
+        """w_retr - w_appr of the front (Units: w_int)."""
+        return self.front_retraction - self.front_approach
+
+    @property
     def setting(self) -> tuple[float, ...]:
         """What surfaces share that are averaged: grid, range, load step, spectrum, amplitude."""
         # Where there is no range no grid is told.

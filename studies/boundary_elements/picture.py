@@ -211,7 +211,7 @@ def hysteresis_figure(rows: Sequence[Hysteresis]) -> Figure:
         figure = blank_figure(PAGE, 0.42 * PAGE)
         both = figure.subplots(1, 2)
         for part, grey in ((0.25, "0.93"), (0.10, "0.85")):
-            both[1].axhspan(1 - part, 1 + part, color=grey, linewidth=0, zorder=0)
+            both[1].axhspan(-part, part, color=grey, linewidth=0, zorder=0)
         for number, shape in enumerate(sorted({one.rows[0].scene[:2] for one in limits})):
             near, far = (
                 [one for one in many if one.rows[0].scene[:2] == shape] for many in (found, limits)
@@ -220,15 +220,15 @@ def hysteresis_figure(rows: Sequence[Hysteresis]) -> Figure:
             style = {"color": COLOURS[number], "marker": MARKERS[number], "linewidth": 0.8}
             filled, hollow = {"label": name}, {"markerfacecolor": "white"}
             theirs, ours = (
-                [one.mean(attrgetter(f"{model}_hysteresis")) for one in far]
+                [one.mean(attrgetter(f"{model}_difference")) for one in far]
                 for model in ("boundary", "front")
             )
             _draw_estimates(both[0], far, theirs, **style, **filled)
             _draw_estimates(both[0], far, ours, **style, **hollow, linestyle="--")
             for many, look in ((near, hollow | {"markersize": 2.4}), (far, filled)):
-                ratios = [one.hysteresis_ratio() for one in many]
+                ratios = [one.excess(0.0) for one in many]
                 _draw_estimates(both[1], many, ratios, **style, **look, linestyle="none")
-        names = "hysteresis / $w_\\mathrm{int}$", "hysteresis, front / boundary elements"
+        names = "hysteresis / $w_\\mathrm{int}$", "$\\ln$ (hysteresis, front / boundary elements)"
         for axes, panel, name in zip(both, "ab", names, strict=True):
             axes.set(xlim=(0.0, None), xlabel=r"$e_\mathrm{el}/w_\mathrm{int}$", ylabel=name)
             axes.legend(loc="upper left")

@@ -9,7 +9,7 @@ from operator import attrgetter
 from typing import Any
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.validity import validity_sentence
+from crackfront.analysis.validity import ValidityRow, excess_coefficient
 from studies.boundary_elements import averages
 from studies.boundary_elements.differences import Differences
 from studies.boundary_elements.hysteresis import Hysteresis
@@ -24,10 +24,10 @@ def validation_report(
 ) -> str:
     """Markdown tables of the finished cases, and of those that are whole loops."""
     found, limits = averages.settings(rows), averages.limit_settings(rows)
-    told = [averages.validity_row(one, short_cutoff) for one in averages.rough_settings(limits)]
+    told = averages.validity_rows(rows, short_cutoff)
     parts = [
         ["# Crack front against boundary elements", ""],
-        [validity_sentence(told), ""] if told else [],
+        _excess_table(told),
         _hysteresis_table([*found, *limits]),
         _run_table(found),
         _difference_table(loops),
@@ -63,26 +63,38 @@ def _hysteresis_table(found: Sequence[averages.Setting]) -> list[str]:
     """Works of adhesion and hysteresis of both models."""
     models = [
         f"{model}_{name}"
-        for name in ("approach", "retraction", "hysteresis")
+        for name in ("approach", "retraction", "difference")
         for model in ("boundary", "front")
     ]
     return _table(
         "Works of adhesion of the smooth sphere with the same force at the same penetration, in "
         "w_int; boundary elements first, then the front on the same surfaces; in brackets standard "
-        "errors over surfaces. Hysteresis: the energy that either branch loses per area that it "
-        "sweeps, summed; k is half of it over e_el. Ratio: front over boundary elements. Range 0 "
+        "errors over surfaces. Hysteresis: w_retr - w_appr; k is half of it over e_el. Range 0 "
         f"is extrapolated by the range to the power {averages.ORDER} from the two shortest of a "
         "surface: the mean of the longest over all surfaces, and that of what extrapolation "
         "changes on those that have a shorter one.",
-        f"{_SETTING} | surfaces | w_appr | front | w_retr | front | hysteresis | front | ratio",
+        f"{_SETTING} | surfaces | w_appr | front | w_retr | front | hysteresis | front",
+        (" | ".join(_cells(one, *models)) for one in found),
+    )
+
+
+def _excess_table(told: Sequence[ValidityRow]) -> list[str]:
+    """Ratios of the hystereses at a vanishing range, and the law through them."""
+    if not any(math.isfinite(row.error) for row in told):
+        return []
+    slope, error = excess_coefficient(told)
+    return _table(
+        "Hysteresis of the front over that of boundary elements at a vanishing range, without what "
+        "these lose on the smooth sphere; 68% intervals by Student's t over the surfaces that have "
+        "both ranges, and half of what extrapolation by the second and by the fourth power differ "
+        f"by. The law through them is ln(ratio) = c e_el / w_int, c = {slope:.2f} ± {error:.2f}.",
+        "roll-off / cutoff | H | e_el | g | ratio | interval | law | surfaces | with both ranges",
         (
-            " | ".join(
-                [
-                    *_cells(one, *models),
-                    _shown(one.hysteresis_ratio(), 2) if one.rows[0].asked_energy else "",
-                ]
-            )
-            for one in found
+            f"{row.roll_off:g} | {row.hurst:g} | {row.elastic_energy:.4f} | {row.size:.2g} | "
+            f"{row.ratio:.2f} | {row.ratio * math.exp(-row.error):.2f} to "
+            f"{row.ratio * math.exp(row.error):.2f} | {math.exp(slope * row.elastic_energy):.2f} | "
+            f"{row.surfaces} | {row.fine}"
+            for row in told
         ),
     )
 

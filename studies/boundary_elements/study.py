@@ -12,7 +12,7 @@ from crackfront.data.optional_libraries import MissingExtraError
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import read_record, write_record, write_records
 from crackfront.plots.style import save_figure
-from studies.boundary_elements.averages import limit_settings, rough_settings, validity_row
+from studies.boundary_elements.averages import validity_rows
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import RUNNING, BoundaryCycle, boundary_cycle
 from studies.boundary_elements.differences import Differences, differences
@@ -99,15 +99,13 @@ def write_validation(
             save_figure(validation_figure(picture), folder / "validation")
             pictured = rank
         progress(
-            f"{case.label}: hysteresis {rows[-1].boundary_hysteresis:.4f} by boundary elements, "
-            f"{rows[-1].front_hysteresis:.4f} by the front"
+            f"{case.label}: hysteresis {rows[-1].boundary_difference:.4f} by boundary elements, "
+            f"{rows[-1].front_difference:.4f} by the front"
         )
     if not rows:
         raise ValueError(f"{folder} holds no finished case of this configuration; compute one")
-    limits = rough_settings(limit_settings(rows))
-    if limits:
+    if told := validity_rows(rows, parameters.short_cutoff):
         save_figure(hysteresis_figure(rows), folder / "hysteresis")
-        told = [validity_row(one, parameters.short_cutoff) for one in limits]
         write_text(folder / "validity.csv", validity_text(told))
     progress(f"tables: {folder / 'validation.md'}")
 

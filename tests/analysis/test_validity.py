@@ -1,27 +1,48 @@
-"""What the shipped table of the front's hysteresis against boundary elements is told to say."""
+"""What the shipped table of the front's hysteresis against boundary elements is made to say."""
+
+import math
+
+import pytest
 
 from crackfront.analysis.validity import (
     ValidityRow,
-    largest_energy,
+    excess_coefficient,
+    front_excess,
     validity_of,
-    validity_sentence,
     validity_text,
 )
 
 
-def test_the_range_ends_below_the_first_amplitude_that_is_outside_for_any_spectrum():
-    def row(energy, ratio, hurst=1.0):
-        return ValidityRow(1.0, hurst, energy, ratio, 0.02, 4, 4, 256, 0.2)
+def row(energy, ratio, size=1.0, error=0.05):
+    return ValidityRow(1.0, 1.0, energy, size, ratio, error, 4, 4, 256)
 
-    rows = [row(0.03, 1.02), row(0.06, 0.85), row(0.1, 1.02), row(0.03, 1.24, 0.8)]
-    assert largest_energy(rows, 0.25) == 0.1
-    assert largest_energy(rows, 0.1) == 0
-    assert largest_energy(rows[:3], 0.1) == 0.03
-    assert largest_energy([row(0.03, 1.115)], 0.1) == 0.03  # within its error of 0.02
-    assert largest_energy([row(0.03, 1.13)], 0.1) == 0
-    assert (
-        "to 10% nowhere from e_el/w_int = 0.03 on, and to 25% up to e_el/w_int = 0.1, the "
-        "strongest that was compared; at worst it is 1.2 ± 0.0 times theirs, at e_el/w_int = 0.03."
-    ) in validity_sentence(rows)
-    assert "to 25%" not in validity_sentence(rows[:1])
+
+def test_the_coefficient_weighs_amplitudes_by_their_errors():
+    rows = [row(0.1, math.exp(0.2)), row(0.2, math.exp(0.6), error=0.05)]
+    both, error = excess_coefficient(rows)
+    assert 2 < both < 3
+    assert excess_coefficient([*rows, row(0.2, 9.0, error=math.nan)]) == (both, error)
+    near, _ = excess_coefficient([row(0.1, math.exp(0.2), error=1e-4), rows[1]])
+    assert near == pytest.approx(2, rel=0.01)
+
+
+def test_a_hysteresis_is_divided_where_both_were_compared_and_else_its_interval_reaches_there():
+    rows = [row(0.05, 1.1, 0.5), row(0.18, 1.5, 1.3)]
+    inside, larger, stronger = (
+        front_excess(*scene, rows) for scene in ((0.1, 1.0), (0.1, 10.0), (0.4, 1.0))
+    )
+    assert inside.is_measured
+    assert inside.ratio.low < inside.ratio.value < inside.ratio.high
+    assert inside.ratio.value == pytest.approx(math.exp(0.1 * excess_coefficient(rows)[0]))
+    for outside in (larger, stronger):
+        assert not outside.is_measured
+        assert outside.ratio.value == 1
+    assert larger.ratio.high == pytest.approx(inside.ratio.high)
+    assert "g = 1.3" in larger.sentence
+    assert "not divided" in larger.sentence
+    assert "divided by it here" in inside.sentence
+
+
+def test_a_table_is_read_as_it_was_written():
+    rows = [row(0.05, 1.1, 0.5), row(0.18, 1.5, 1.3)]
     assert validity_of(validity_text(rows)) == tuple(rows)

@@ -30,7 +30,7 @@ def keywords(function):
 
 def test_commands_library_and_configurations_have_the_same_options():
     assert keywords(cf.read_scan) == READING == set(SurfaceSection.model_fields) - {"file"}
-    assert keywords(cf.predict) == READING | PREDICTION
+    assert keywords(cf.predict) == READING | PREDICTION | {"strict"}
     known = {name: {item.name for item in command.params} for name, command in COMMANDS.items()}
     assert known["surface"] >= READING | SPHERE
     assert known["predict"] >= READING | PREDICTION | SPHERE
@@ -96,6 +96,11 @@ def test_an_option_that_does_not_exist_is_refused():
 
 
 def test_the_range_of_attraction_reaches_the_verdict_of_the_library():
-    found = cf.predict(OVERVIEW, SCENE, range="3um")
-    assert found.verdict.outcome == "does not apply"
-    assert "attraction short against the sphere: Tabor parameter" in repr(found)
+    with pytest.raises(ValueError, match=r"does not apply; .*attraction short against the sphere"):
+        cf.predict(OVERVIEW, SCENE, range="3um")
+
+
+def test_reservations_fail_where_the_library_is_strict():
+    assert cf.predict(OVERVIEW, SCENE).verdict.reservations
+    with pytest.raises(ValueError, match=r"^the theory applies with reservations: small slopes"):
+        cf.predict(OVERVIEW, SCENE, strict=True)

@@ -1,18 +1,23 @@
 """What the law predicts for a measured surface, and what is said of it."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law import shipped_law
 from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.cautions import surface_doubts
-from crackfront.topography.prediction import predicted, prediction_notes, reduced_spectrum
+from crackfront.topography.prediction import (
+    predicted,
+    prediction_notes,
+    reduced_spectrum,
+    surface_spectrum,
+)
 from crackfront.topography.report import report_text
 from tests.topography.made import DETAIL, OVERVIEW, SCENE
 
@@ -20,13 +25,11 @@ from tests.topography.made import DETAIL, OVERVIEW, SCENE
 def test_the_law_holds_between_the_predicted_numbers(prediction):
     w_int, e_el = prediction.work_of_adhesion, prediction.e_el.value
     w_appr, w_retr = prediction.w_appr.value, prediction.w_retr.value
-    assert w_appr == pytest.approx(w_int - (1 + prediction.k_appr.value) * e_el)
-    assert w_retr == pytest.approx(w_int - (1 - prediction.k_retr.value) * e_el)
+    ratio = prediction.front_excess.value
+    assert w_appr == pytest.approx(w_int - (1 + prediction.k_appr.value / ratio) * e_el)
+    assert w_retr == pytest.approx(w_int - (1 - prediction.k_retr.value / ratio) * e_el)
     assert prediction.hysteresis.value == pytest.approx(w_retr - w_appr, rel=1e-3)
     assert prediction.w_rms == pytest.approx(2 * np.sqrt(e_el * w_int))
-    assert prediction.paper_w_retr - prediction.paper_w_appr == pytest.approx(
-        2 * PAPER_FACTOR * e_el
-    )
     force = 1.5 * np.pi * SCENE.radius
     at_load = prediction.pull_off_force.value
     assert at_load == pytest.approx(force * w_retr)
@@ -38,8 +41,9 @@ def test_intervals_hold_those_of_k_and_of_e_el(prediction):
     for name in ("k_appr", "k_retr", "w_appr", "w_retr", "hysteresis", "pull_off_force"):
         found = getattr(prediction, name)
         assert found.low < found.value < found.high
-    e_el, k = prediction.e_el, prediction.k_appr
-    by_factor = e_el.value * (k.high - k.value)
+    e_el, k, excess = prediction.e_el, prediction.k_appr, prediction.front_excess
+    more = np.hypot(np.log(k.high / k.value), np.log(excess.value / excess.low))
+    by_factor = e_el.value * k.value * np.expm1(more)
     by_energy = (1 + k.value) * (e_el.high - e_el.value)
     below = prediction.w_appr.value - prediction.w_appr.low
     assert below == pytest.approx(np.hypot(by_factor, by_energy))
@@ -72,9 +76,9 @@ def test_the_lengths_of_a_prediction_are_those_of_the_smooth_contact_and_of_the_
     stiffness = np.sqrt(8 * SCENE.contact_modulus * a * w / np.pi) / SCENE.radius - w / a
     assert prediction.l_kappa == pytest.approx(SCENE.work_of_adhesion / stiffness, rel=1e-9)
     w_rms = prediction.w_rms / SCENE.work_of_adhesion
-    larkin = larkin_length("roughness", surface.joint.spectrum, w_rms)
-    assert prediction.larkin_length == pytest.approx(larkin, rel=1e-9)
-    assert prediction.size == pytest.approx(prediction.l_kappa / larkin, rel=1e-9)
+    larkin = larkin_length("roughness", surface_spectrum(surface, SCENE), w_rms)
+    assert prediction.larkin_length == pytest.approx(larkin * SCENE.lateral, rel=1e-9)
+    assert prediction.size == pytest.approx(prediction.l_kappa / prediction.larkin_length, rel=1e-9)
 
 
 def test_every_radius_from_a_micrometre_to_a_metre_is_predicted(surface):
@@ -101,6 +105,27 @@ def test_a_fit_at_the_edge_of_its_range_is_told_where_it_continues_much(surface,
         other = replace(surface, joint=replace(surface.joint, fit=fit, shares=shares))
         found = [text for text in surface_doubts(other) if "at the edge of what is fitted" in text]
         assert [f", {hurst:g}, is" in text for text in found] == [True] * (told and continued > 0.1)
+
+
+def test_where_boundary_elements_were_compared_the_hysteresis_is_divided(surface):
+    fine = replace(SCENE, radius=10e-6)
+    found = predicted(surface, fine)
+    assert found.excess.is_measured
+    assert found.front_excess.value > 1.2
+    ratio = found.front_hysteresis.value / found.hysteresis.value
+    assert ratio == pytest.approx(found.front_excess.value)
+    assert found.excess.sentence in list(prediction_notes(found))
+
+
+def test_a_pull_off_force_gives_the_work_of_adhesion_that_it_implies(surface, prediction):
+    assert math.isnan(prediction.implied_work_of_adhesion.value)
+    measured = prediction.pull_off_force.value
+    found = predicted(surface, SCENE, pull_off=measured).implied_work_of_adhesion
+    assert found.value == pytest.approx(SCENE.work_of_adhesion, rel=1e-3)
+    assert found.low < found.value < found.high
+    low = replace(SCENE, work_of_adhesion=found.low)
+    assert predicted(surface, low).pull_off_force.high == pytest.approx(measured, rel=1e-3)
+    assert math.isnan(predicted(surface, SCENE, pull_off=1e-9).implied_work_of_adhesion.value)
 
 
 def test_scans_smaller_than_the_contact_are_told(surface, prediction):

@@ -1,12 +1,13 @@
 """Validations by the command: what they write, tell, find again and refuse."""
 
+import math
 import sys
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
-from crackfront.analysis.validity import validity_of, validity_sentence
+from crackfront.analysis.validity import validity_of
 from crackfront.data.records import read_record, read_records
 from studies.boundary_elements.averages import limit_settings
 from studies.boundary_elements.commands import commands
@@ -89,10 +90,9 @@ def test_tables_figures_and_sentence_are_those_of_the_rows(branch_results):
     limits = limit_settings(rows)
     assert [[row.n_point for row in one.rows] for one in limits] == [[64]]
     assert [row.ratio for row in told] == pytest.approx(
-        [float(one.hysteresis_ratio().value) for one in limits], rel=1e-4
+        [math.exp(float(one.excess(0.0).value)) for one in limits], rel=1e-4
     )
     assert [(row.surfaces, row.fine) for row in told] == [(2, 1)]
-    assert validity_sentence(told) in text
     for name in ("validation", "hysteresis"):
         assert (branch_results / f"{name}.png").stat().st_size > 5_000
 
