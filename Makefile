@@ -113,7 +113,7 @@ benchmark: env  ## Solvers against the reference, what requests cost, how sweeps
 	$(IN_ENV) .venv/bin/python -m studies speed scaling
 	@echo "Results: results/benchmark/"
 
-accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (16 minutes on two cores)
+accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half an hour on two cores)
 	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default accuracy
 	@echo "Results: results/accuracy/"
 
