@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import fields, is_dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.law import PinningFactor, shipped_law
-from crackfront.analysis.law_spheres import SphereFactors
+from crackfront.analysis.law import shipped_law
 from crackfront.core.units import Scales
 from crackfront.core.variables import variables
 from crackfront.data.written_units import prefixed
 from crackfront.topography.bands import BandLimit, Scan
 from crackfront.topography.cautions import measure_next, surface_doubts, surface_notes
-from crackfront.topography.densities import Density
 from crackfront.topography.fitting import Fit
 from crackfront.topography.joining import JointSpectrum
 from crackfront.topography.measures import MeasuredSurface
@@ -126,33 +127,28 @@ def machine_readable(
     prediction: Prediction | None = None,
     found: Simulated | None = None,
 ) -> dict[str, Any]:
-    """What the texts and notes say, for JSON; SI units, null where there is nothing."""
-    adhesions = (*_ADHESIONS, "k")
+    """What the texts and notes say, for JSON, by the names of records and in their SI units."""
+    measured = zip(surface.scans, surface.profiles, surface.joint.density.levels, strict=True)
     return {
         "measurements": [
             _scan_entry(one)
             | {
-                "profile_density": _density_entry(profile, "m^3"),
-                "level": _interval_entry(level),
+                "profile_density": _plain(profile),
+                "level": _plain(level),
                 "disagrees": surface.joint.density.disagrees(index),
             }
-            for index, (one, profile, level) in enumerate(
-                zip(surface.scans, surface.profiles, surface.joint.density.levels, strict=True)
-            )
+            for index, (one, profile, level) in enumerate(measured)
         ],
         "spectrum": _spectrum_entry(surface.joint),
         "continuation": _continuation_entry(surface.joint.fit),
-        "measures": [
-            asdict(item) | {"rms": _uncertain_entry(item.rms)} for item in surface.measures
-        ],
+        "measures": _plain(surface.measures),
         "e_el": None if scales is None else _energy_entry(surface, scales.contact_modulus),
         "prediction": None if prediction is None else dict(_prediction_entries(prediction)),
-        "factors": None if prediction is None else _factors_entry(prediction.factors),
+        "factors": None if prediction is None else _plain(prediction.factors),
+        "excess": None if prediction is None else _plain(prediction.excess),
         "verdict": None if ruling is None else _verdict_entry(ruling),
         "notes": _notes(surface, prediction),
-        "simulation": None
-        if found is None
-        else asdict(found) | {name: _interval_entry(getattr(found, name)) for name in adhesions},
+        "simulation": _plain(found),
     }
 
 
@@ -264,11 +260,11 @@ def _standing(item: Condition) -> str:
 def _verdict_entry(found: Verdict) -> dict[str, Any]:
     """A verdict with the standing of every condition."""
     conditions = [
-        asdict(item) | {"standing": item.standing, "margin": _or_null(item.margin)}
+        _plain(item) | {"standing": item.standing, "margin": _plain(item.margin)}
         for item in found.conditions
     ]
     more = {"conditions": conditions, "remedies": found.remedies}
-    return {"outcome": found.outcome} | asdict(found) | more
+    return {"outcome": found.outcome} | _plain(found) | more
 
 
 def _shown(unit: str, found: Number) -> str:
@@ -292,131 +288,59 @@ def _span(shortest: float, longest: float) -> str:
 
 def _scan_entry(one: Scan) -> dict[str, Any]:
     """A scan without its heights: its file, trusted wavelengths, and what its density shows."""
-    item, band, instrument = one.measurement, one.band, one.band.instrument
-    is_seen = math.isfinite(instrument.attenuation)
+    item = one.measurement
+    told = (entry.name for entry in fields(item) if entry.name != "heights")
     return {
-        "path": str(item.path),
-        "format": item.format,
-        "comment": item.comment,
-        "channel": item.channel,
-        "taken_off": item.levelling,
-        "checksum": item.checksum,
+        **{name: _plain(getattr(item, name)) for name in told},
         "points": list(item.heights.shape),
-        "size": _number(list(item.size), "m"),
-        "missing": item.missing,
-        "shortest": _number(band.shortest.wavelength, "m"),
-        "longest": _number(band.longest.wavelength, "m"),
-        "limits": [
-            asdict(limit) | {"wavelength": _number(limit.wavelength, "m")} for limit in band.limits
-        ],
-        "stripes_along": ["xy"[axis] for axis in band.stripes],
-        "anisotropy": band.anisotropy,
-        "attenuation": _number(instrument.attenuation, "1/m") if is_seen else None,
-        "noise": _number(instrument.noise, "m^4"),
-        "density": _density_entry(one.trusted, "m^3" if one.trusted.is_profile else "m^4"),
+        **_plain(one.band),
+        "density": _plain(one.trusted),
     }
 
 
 def _spectrum_entry(joint: JointSpectrum) -> dict[str, Any]:
     """The spectrum of a surface, and where its e_el comes from."""
-    table, density = joint.spectrum, joint.density
     return {
-        "wavelength": _number(list(table.wavelengths), "m"),
-        "density": _number(list(table.densities), "m^4"),
-        "measured": {
-            "wavevector": _number(density.wavevector.tolist(), "1/m"),
-            "density": _number(density.value.tolist(), "m^4"),
-            "relative_error": density.error.tolist(),
-        },
-        "scatter": density.scatter,
-        "share_of_e_el": asdict(joint.shares),
-        "shortest": _number(joint.shortest, "m"),
-        "longest": _number(joint.longest, "m"),
-        "end": _number(table.short_cutoff, "m"),
+        "wavelength": list(joint.spectrum.wavelengths),
+        "density": list(joint.spectrum.densities),
+        "measured": _plain(joint.density),
+        "share_of_e_el": _plain(joint.shares),
+        "shortest": joint.shortest,
+        "longest": joint.longest,
+        "end": joint.spectrum.short_cutoff,
+        "is_lower_bound": joint.is_lower_bound,
     }
 
 
 def _energy_entry(surface: MeasuredSurface, contact_modulus: float) -> dict[str, Any]:
-    """e_el, of what is recorded and as estimated, and whether it is a lower bound."""
-    squares = {"recorded": surface.recorded, "estimated": surface.estimated}
-    return {
-        **_uncertain_entry(surface.conformity_energy(contact_modulus)),
-        **{
-            name: _uncertain_entry(surface.conformity_energy(contact_modulus, square))
-            for name, square in squares.items()
-        },
-        "is_lower_bound": surface.joint.is_lower_bound,
-        "units": "J m-2",
+    """e_el, of what is recorded and as estimated (Units: J / m^2)."""
+    numbers = {"recorded": surface.recorded, "estimated": surface.estimated}
+    return _plain(surface.conformity_energy(contact_modulus)) | {
+        name: _plain(surface.conformity_energy(contact_modulus, square))
+        for name, square in numbers.items()
     }
 
 
 def _continuation_entry(fit: Fit) -> dict[str, Any]:
     """The model that continues a density."""
-    parameters = {
-        name: _interval_entry(found) | {"units": units} for name, found, units in _continuation(fit)
-    }
+    parameters = {name: _plain(found) for name, found, _ in _continuation(fit)}
     return parameters | {"deviance_per_freedom": fit.misfit, "has_roll_off": fit.has_roll_off}
-
-
-def _density_entry(density: Density, units: str) -> dict[str, Any]:
-    """A density in its bins."""
-    return {
-        "wavevector": _number(density.wavevector.tolist(), "1/m"),
-        "density": _number(density.value.tolist(), units),
-        "modes": density.modes.tolist(),
-    }
 
 
 def _prediction_entries(prediction: Prediction) -> Iterator[tuple[str, dict[str, Any]]]:
     """Numbers of a prediction by name, with what they have of standard errors and intervals."""
     for item in variables(Prediction):
-        found = getattr(prediction, item.name)
-        is_number = not isinstance(found, Estimate)
-        value = _or_null(found if is_number else found.value)
-        yield item.name, {"value": value, **item.attributes}
-        if is_number:
-            continue
-        low, high = ("smaller", "larger") if item.units == "N" else ("lower", "upper")
-        for ending, value, text in (
-            ("error", found.standard_error, "its standard error"),
-            ("low", found.low, f"{low} end of its interval"),
-            ("high", found.high, f"{high} end of its interval"),
-        ):
-            if math.isfinite(value):
-                entry = {"value": value, "units": item.units, "long_name": text}
-                yield f"{item.name}_{ending}", entry
+        found = _plain(getattr(prediction, item.name))
+        number = found if isinstance(found, dict) else {"value": found}
+        yield item.name, number | item.attributes
 
 
-def _factors_entry(factors: SphereFactors) -> dict[str, Any]:
-    """Factors with their intervals, the errors that these are made of, and the warning."""
-
-    def entry(branch: PinningFactor) -> dict[str, Any]:
-        errors = {name: getattr(branch, name) for name in ("statistical", "numerical", "model")}
-        return _interval_entry(branch.factor) | errors
-
-    return {
-        "approach": entry(factors.approach),
-        "retraction": entry(factors.retraction),
-        "both": _interval_entry(factors.both),
-        "warning": factors.warning,
-    }
-
-
-def _interval_entry(found: Number) -> dict[str, float | None]:
-    """A number with its interval, null where there is none, as JSON needs it."""
-    return {name: _or_null(getattr(found, name)) for name in ("value", "low", "high")}
-
-
-def _or_null(number: float) -> float | None:
-    """A number, None where it is not finite, as JSON needs it."""
-    return number if math.isfinite(number) else None
-
-
-def _uncertain_entry(found: Number) -> dict[str, Any]:
-    """A number with its standard error and its interval."""
-    return _interval_entry(found) | {"error": found.standard_error}
-
-
-def _number(value: float | list[float], units: str) -> dict[str, Any]:
-    """A number, or a list of numbers, with its units."""
-    return {"value": value, "units": units}
+def _plain(value: Any) -> Any:
+    """A value for JSON: records and arrays by their entries, null for what is not finite."""
+    if is_dataclass(value):
+        return {item.name: _plain(getattr(value, item.name)) for item in fields(value)}
+    if isinstance(value, (tuple, list, np.ndarray)):
+        return [_plain(one) for one in (value.tolist() if isinstance(value, np.ndarray) else value)]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return str(value) if isinstance(value, Path) else value

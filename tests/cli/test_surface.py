@@ -132,26 +132,21 @@ def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
 def test_json_has_units_for_everything_that_is_predicted(predict, surface):
     prediction = predicted(surface, SCENE)
     content = json.loads(predict("--json").output)
-    expected = {}
+    assert set(content["prediction"]) == {item.name for item in variables(Prediction)}
     for item in variables(Prediction):
-        found = getattr(prediction, item.name)
-        numbers = {"": None if item.name == "implied_work_of_adhesion" else found}
-        if isinstance(found, Estimate) and np.isfinite(found.value):
-            numbers = {"": found.value, "_low": found.low, "_high": found.high}
-        if item.name == "e_el":
-            numbers["_error"] = found.standard_error
-        expected |= {item.name + end: (number, item.units) for end, number in numbers.items()}
-    assert set(content["prediction"]) == set(expected)
-    for name, (number, units) in expected.items():
-        assert content["prediction"][name]["units"] == units
-        value = content["prediction"][name]["value"]
-        assert value == (None if number is None else pytest.approx(number, rel=1e-12))
+        found, entry = getattr(prediction, item.name), content["prediction"][item.name]
+        assert (entry["units"], entry["long_name"]) == (item.units, item.attributes["long_name"])
+        number = {"value": found}
+        if isinstance(found, Estimate):
+            number = {name: getattr(found, name) for name in ("value", "low", "high")}
+        for name, expected in number.items():
+            known = np.isfinite(expected)
+            assert entry[name] == (pytest.approx(expected, rel=1e-12) if known else None)
     assert [item["checksum"] for item in content["measurements"]] == [
         one.measurement.checksum for one in surface.scans
     ]
     density = content["measurements"][1]["density"]
-    assert density["density"]["units"] == "m^4"
-    assert len(density["wavevector"]["value"]) == len(density["density"]["value"]) > 10
+    assert len(density["wavevector"]) == len(density["value"]) > 10
     assert content["measurements"][1]["limits"][0]["cause"] == "pixels"
     shares = content["spectrum"]["share_of_e_el"]
     assert shares["measured"] + shares["continued"] == pytest.approx(1)
@@ -177,7 +172,7 @@ def test_simulations_find_what_is_predicted(predict):
     k = found["k"]
     own = (k["high"] - k["low"]) / 2
     assert abs(k["value"] - both["value"]) < np.hypot(own, (both["high"] - both["low"]) / 2)
-    assert law["k_appr"]["value"] == content["factors"]["approach"]["value"]
+    assert law["k_appr"]["value"] == content["factors"]["approach"]["factor"]["value"]
     assert found["hysteresis"]["value"] == pytest.approx(
         found["w_retr"]["value"] - found["w_appr"]["value"]
     )
