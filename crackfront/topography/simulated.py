@@ -11,7 +11,6 @@ from dataclasses import astuple, dataclass, replace
 import numpy as np
 
 from crackfront.analysis.estimate import Estimate, mean_estimate
-from crackfront.analysis.law import pinning_factor
 from crackfront.analysis.steady import mean_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
@@ -47,17 +46,12 @@ _MOST_SITES, _MOST_LINE_SITES, _MOST_MEMORY = 1_000_000, 2_000_000, 8e9
 _LINE = LineLoad(spring_unit="larkin_length", length=10, period=25, transient=6, step=0.5)
 """Straight fronts, as in config/line.yaml, from which the law of k is."""
 
-_SHORT_SIZE = 30.0
-"""g of the springs that stand for longer ones."""
-
 
 @dataclass(frozen=True, slots=True)
 class SimulationPlan:
     """What is simulated for a prediction."""
 
     simulations: tuple[Simulation, ...]
-    correction: float = 1.0
-    """k of the law over that for the simulated springs, which may be shorter; else 1."""
     remark: str = ""
     """What is run in place of spheres, and why; empty where spheres are."""
 
@@ -92,56 +86,38 @@ def prediction_plan(
     """Simulations of surfaces with the fitted spectrum and its amplitude, and noise of a seed."""
     spectrum = surface_spectrum(surface, scales)
     energy = spectrum.elastic_energy
-    first, correction, remark = _affordable(
-        spectrum, energy, zero_load_radius(scales) / scales.lateral, seed
-    )
+    first, remark = _affordable(spectrum, energy, zero_load_radius(scales) / scales.lateral, seed)
     name = f"measured-{surface.checksum}"
     simulations = (
         replace(first, spectrum_name=name, realisation=number) for number in range(realisations)
     )
-    return SimulationPlan(tuple(simulations), correction, remark)
+    return SimulationPlan(tuple(simulations), remark)
 
 
 def _affordable(
     spectrum: TabulatedSpectrum, energy: float, contact_radius: float, seed: int
-) -> tuple[Simulation, float, str]:
-    """First of sphere, line on its springs and line on short ones that is not too large."""
+) -> tuple[Simulation, str]:
+    """A sphere, or where it is too large a straight front on its springs, and why."""
     numerics = Numerics(_ERROR)
-
-    def simulation(schedule: Schedule) -> Simulation:
-        return simulation_of("roughness", spectrum, energy, schedule, numerics, seed=seed)
-
-    def line(size: float) -> Simulation:
-        return simulation(_LINE.for_surface("roughness", spectrum, energy, size, numerics))
-
     # Spheres go deeper where the features are large against the contact.
     largest = jkr.equilibrium_radius(_START) + _WAY * spectrum.correlation_length
     deepest = max(_DEEPEST, float(jkr.equilibrium_penetration(largest)))
-    sphere = simulation(SteadySchedule(_START, deepest, _TRAVEL, _STEADY_ERROR))
+    schedule: Schedule = SteadySchedule(_START, deepest, _TRAVEL, _STEADY_ERROR)
+    sphere = simulation_of("roughness", spectrum, energy, schedule, numerics, seed=seed)
     if _fits(sphere, _MOST_SITES):
-        return sphere, 1.0, ""
-    w_rms = 2 * math.sqrt(energy)
-    size = jkr.spring(contact_radius, 1 - energy) / larkin_length("roughness", spectrum, w_rms)
-    instead = f"In place of a sphere ({_extent(sphere)}) a straight front is simulated, "
-    front = line(size)
-    if _fits(front, _MOST_LINE_SITES):
-        remark = f"{instead}on springs of the length L_kappa: g {size:.3g}, {_extent(front)}."
-        return front, 1.0, remark
-    if size > _SHORT_SIZE:
-        short = line(_SHORT_SIZE)
-        if _fits(short, _MOST_LINE_SITES):
-            long, near = (pinning_factor(w_rms, one).factor.value for one in (size, _SHORT_SIZE))
-            return (
-                short,
-                long / near,
-                f"{instead}on springs shorter than L_kappa: g {_SHORT_SIZE:g}, not {size:.3g} "
-                f"({_extent(front)}). What is found for k is multiplied by {long / near:.3f}, the "
-                "ratio of the law.",
-            )
-        front = short
-    raise ValueError(
-        f"no simulation is small enough: a sphere has {_extent(sphere)}, a straight front "
-        f"{_extent(front)}; trust fewer short waves with --shortest, or do without --simulate"
+        return sphere, ""
+    larkin = larkin_length("roughness", spectrum, 2 * math.sqrt(energy))
+    size = jkr.spring(contact_radius, 1 - energy) / larkin
+    schedule = _LINE.for_surface("roughness", spectrum, energy, size, numerics)
+    front = simulation_of("roughness", spectrum, energy, schedule, numerics, seed=seed)
+    if not _fits(front, _MOST_LINE_SITES):
+        raise ValueError(
+            f"no simulation is small enough: a sphere has {_extent(sphere)}, a straight front "
+            f"{_extent(front)}; trust fewer short waves with --shortest, or do without --simulate"
+        )
+    return front, (
+        f"In place of a sphere ({_extent(sphere)}) a straight front is simulated, on springs of "
+        f"the length L_kappa: g {size:.3g}, {_extent(front)}."
     )
 
 
@@ -168,10 +144,8 @@ def simulated(plan: SimulationPlan, scales: Scales) -> Simulated:
         if steady.sentence:
             failed.append(f"{simulation.label}: {steady.sentence}")
             continue
-        w_appr, w_retr = (
-            mean + plan.correction * (work - mean) for work in (steady.w_appr, steady.w_retr)
-        )
-        rows.append((w_appr, w_retr, w_retr - w_appr, (w_retr - w_appr) / (2 * e_el)))
+        lost = steady.w_retr - steady.w_appr
+        rows.append((steady.w_appr, steady.w_retr, lost, lost / (2 * e_el)))
     if not rows:
         raise ValueError(f"no simulation has a value; {failed[0]}")
     means = mean_estimate(np.transpose(rows))[0]

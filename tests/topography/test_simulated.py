@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import pytest
 
-from crackfront.analysis.law import pinning_factor
 from crackfront.simulate.lines import LineSchedule
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.steady import SteadySchedule
@@ -55,36 +54,11 @@ def test_a_sphere_with_too_many_sites_is_a_straight_front_on_its_springs(coarse,
     spring = predicted(coarse, LONG_WAVES).l_kappa / LONG_WAVES.lateral
     assert schedule.spring == pytest.approx(spring)
     assert schedule.length >= 9.99 * spring
-    assert plan.correction == 1
     found = simulated(plan, LONG_WAVES)
     assert found.remark == plan.remark
     assert "a straight front is simulated, on springs of the length L_kappa" in plan.remark
     law = predicted(coarse, LONG_WAVES).factors.both
     assert found.k.value == pytest.approx(law.value, rel=0.15)
-
-
-@pytest.mark.usefixtures("_each_simulated_once")
-def test_a_line_with_too_many_sites_has_shorter_springs_and_is_corrected(coarse, small_limits):
-    small_limits(_MOST_SITES=100)
-    large = replace(SCENE, radius=5e-3)
-    line = prediction_plan(coarse, large, 1, 1)
-    assert line.correction == 1
-    sites = line.simulations[0].resolution.n_angle
-    small_limits(_MOST_LINE_SITES=sites - 1, _SHORT_SIZE=10.0)
-    plan = prediction_plan(coarse, large, 1, 1)
-    assert plan.simulations[0].schedule.spring < line.simulations[0].schedule.spring
-    prediction = predicted(coarse, large)
-    w_rms = prediction.w_rms / large.work_of_adhesion
-    long, short = (pinning_factor(w_rms, g).factor.value for g in (prediction.size, 10.0))
-    assert plan.correction == pytest.approx(long / short)
-    assert f"g 10, not {prediction.size:.3g}" in plan.remark
-    assert f"multiplied by {plan.correction:.3f}" in plan.remark
-    plain, corrected = (simulated(item, large) for item in (replace(plan, correction=1.0), plan))
-    assert corrected.k.value == pytest.approx(plan.correction * plain.k.value)
-    assert corrected.hysteresis.value == pytest.approx(
-        corrected.w_retr.value - corrected.w_appr.value
-    )
-    assert corrected.k.value == pytest.approx(prediction.factors.both.value, rel=0.1)
 
 
 def test_what_is_too_large_in_every_way_is_refused(coarse, small_limits):
