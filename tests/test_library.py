@@ -388,7 +388,7 @@ def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     assert told["levelling"].startswith("the paraboloid was taken off")
     assert told["tile"].startswith("mirrored at its edges, where a scan does not go on")
     assert told["waves"].startswith("those shorter than 400 nm were taken away")
-    assert "larger than the scan of 7.2 um" in told["contact"]
+    assert "is smaller than the contact" in told["notes"]
 
 
 WORDS = {"channel": 0, "crop": "1um:6um,1.5um:6.5um", "detrend": 3, "mask": ["2um:3um,2um:3um"]}

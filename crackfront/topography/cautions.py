@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from crackfront.data.written_units import prefixed
+from crackfront.topography.bands import Scan
 from crackfront.topography.measures import MeasuredSurface
 
 _MOST_ANISOTROPY = 1.25
@@ -18,32 +19,37 @@ _EDGE, _MATTERS = 0.05, 0.1
 def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None) -> Iterator[str]:
     """Treatments of the measurements, against the radius of a contact (Units: m)."""
     for one in surface.scans:
-        item = one.measurement
-        if item.missing > 0:
-            yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
-        if item.is_line:
-            yield (
-                f"{item.path} is a line scan: its density is that of an isotropic surface with "
-                "this projection."
-            )
-        elif max(item.pixels) > 1.001 * min(item.pixels):
-            yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
-        if item.tip_is_assumed:
-            yield (
-                f"{item.path}: the file does not say what its tip is, which is taken for one of "
-                f"{1e9 * item.tip_radius:g} nm; --tip-radius names another."
-            )
-        for axis in one.band.stripes:
-            yield (
-                f"{item.path}: waves along {'xy'[axis]} alone have another density than all "
-                "others, as of rows that are shifted or levelled one by one; they are left out."
-            )
-        if contact_radius is not None and min(item.size) < 2 * contact_radius:
-            yield (
-                f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
-                f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
-                "spectrum."
-            )
+        yield from scan_notes(one, contact_radius)
+
+
+def scan_notes(one: Scan, contact_radius: float | None = None) -> Iterator[str]:
+    """Treatments of a measurement, as of :func:`surface_notes`."""
+    item = one.measurement
+    if item.missing > 0:
+        yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
+    if item.is_line:
+        yield (
+            f"{item.path} is a line scan: its density is that of an isotropic surface with "
+            "this projection."
+        )
+    elif max(item.pixels) > 1.001 * min(item.pixels):
+        yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
+    if item.tip_is_assumed:
+        yield (
+            f"{item.path}: the file does not say what its tip is, which is taken for one of "
+            f"{1e9 * item.tip_radius:g} nm; --tip-radius names another."
+        )
+    for axis in one.band.stripes:
+        yield (
+            f"{item.path}: waves along {'xy'[axis]} alone have another density than all "
+            "others, as of rows that are shifted or levelled one by one; they are left out."
+        )
+    if contact_radius is not None and min(item.size) < 2 * contact_radius:
+        yield (
+            f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
+            f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
+            "spectrum."
+        )
 
 
 def measure_next(surface: MeasuredSurface) -> str:

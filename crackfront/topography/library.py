@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
@@ -16,6 +16,7 @@ from crackfront.data.written_units import prefixed
 from crackfront.simulate.si_units import refuse_no_scales
 from crackfront.simulate.surfaces import surface_array
 from crackfront.topography.bands import scan
+from crackfront.topography.cautions import scan_notes
 from crackfront.topography.instruments import surface_library
 from crackfront.topography.measures import read_surface
 from crackfront.topography.options import (
@@ -27,7 +28,7 @@ from crackfront.topography.options import (
     parsed_options,
 )
 from crackfront.topography.prediction import Prediction, predicted
-from crackfront.topography.reading import Measurement, read_measurements
+from crackfront.topography.reading import read_measurements
 from crackfront.topography.tile import tile_heights, zero_load_radius
 from crackfront.topography.verdict import verdict
 
@@ -75,7 +76,7 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     -------
     xarray.DataArray
         `height(x, y)` in reduced units, the apex of the sphere at the centre of the scan. The
-        attributes `source`, `levelling`, `tile`, `waves` and others say what was done and why.
+        attributes `source`, `levelling`, `tile`, `waves` and `notes` say what was done and why.
 
     Raises
     ------
@@ -92,7 +93,8 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     reading = parsed_options(ReadingOptions, options)
     surface_library()  # Whole: the program may use it too.
     [measured] = read_measurements([file], reading)
-    measurement = scan(measured, reading.shortest, reading.longest).trusted_measurement
+    one = scan(measured, reading.shortest, reading.longest)
+    measurement = one.trusted_measurement
     heights, pixel = tile_heights(measurement)
     return surface_array(
         "roughness",
@@ -100,7 +102,12 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
         pixel / sphere.lateral,
         source=f"{measurement.path}, {measurement.format}, checksum {measurement.checksum}",
         levelling=f"{measurement.levelling} was taken off: form and tilt are no roughness",
-        **dict(_treatments(measurement, 2 * zero_load_radius(sphere))),
+        tile="the scan as it stands, as its file says that it is periodic"
+        if measurement.periodic
+        else "mirrored at its edges, where a scan does not go on: twice its sides",
+        waves=f"those shorter than {prefixed('m', measurement.shortest)} were taken away, as they "
+        "are not to be trusted",
+        notes=" ".join(scan_notes(one, zero_load_radius(sphere))),
     )
 
 
@@ -108,27 +115,6 @@ def _path(scan: File) -> Path:
     """Path of a scan, refused where it is none."""
     refuse_other_type("scan", scan, (str, PathLike), "the path of a file")
     return Path(scan)
-
-
-def _treatments(measurement: Measurement, across: float) -> Iterator[tuple[str, str]]:
-    """What is done to a map beside levelling, and why, under a contact so many metres across."""
-    if measurement.periodic:
-        yield "tile", "the scan as it stands, as its file says that it is periodic"
-    else:
-        yield "tile", "mirrored at its edges, where a scan does not go on: twice its sides"
-    shortest = prefixed("m", measurement.shortest)
-    yield "waves", f"those shorter than {shortest} were taken away, as they are not to be trusted"
-    if measurement.missing > 0:
-        yield "missing", f"{measurement.missing:.2%} of the points were missing and interpolated"
-    if max(measurement.pixels) > 1.001 * min(measurement.pixels):
-        yield "pixels", "oblong in the file, hence interpolated on square ones"
-    if min(measurement.size) < across:
-        sides = prefixed("m", min(measurement.size), digits=3)
-        yield (
-            "contact",
-            f"{prefixed('m', across)} across at zero load, larger than the scan of {sides}: it "
-            "meets images of that",
-        )
 
 
 @_taking(ReadingOptions, PredictionOptions)

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-
-from scipy.special import beta
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.spectrum import TabulatedSpectrum
@@ -35,10 +32,6 @@ class RmsMeasure:
     shortest: float
     longest: float
     """Wavelengths that dominate it: a tenth lies below, a tenth above. (Units: m)"""
-    measured: tuple[float, ...]
-    """Of every scan over its trusted waves; a line as of an isotropic surface. (Units: as rms)"""
-    expected: tuple[float, ...]
-    """What the joint spectrum has over the same wavelengths."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +97,7 @@ def measured_surface(
             for one in scans
         ),
         joint=joint,
-        measures=tuple(_measure(order, joint, scans) for order in _ORDERS),
+        measures=tuple(_measure(order, joint) for order in _ORDERS),
         half_derivative=joint.estimate(square),
         recorded=recorded,
         estimated=estimated,
@@ -125,25 +118,7 @@ def read_surface(paths: Sequence[Path], options: Sequence[ReadingOptions]) -> Me
     return measured_surface(measurements, options[0].shortest, options[0].longest)
 
 
-def measured_mean_square(one: Scan, order: float) -> float:
-    """Mean square of a derivative of a scan over its trusted wavelengths, as it stands.
-
-    A line counts as one of an isotropic surface. (Units: m^(2 - 2 order))
-    """
-    found = one.waves.mean_square(order, *one.band.wavelengths)
-    # A line sees a wave by the cosine of its direction: this is the mean of its power.
-    is_line = one.measurement.is_line
-    return found / (float(beta(order + 0.5, 0.5)) / math.pi) if is_line else found
-
-
-def _measure(order: float, joint: JointSpectrum, scans: Sequence[Scan]) -> RmsMeasure:
+def _measure(order: float, joint: JointSpectrum) -> RmsMeasure:
     """Measure of one order."""
-    return RmsMeasure(
-        order,
-        joint.estimate(lambda spectrum: spectrum.mean_square(order) ** 0.5),
-        *joint.spectrum.dominant_wavelengths(order, _SHARE),
-        measured=tuple(measured_mean_square(one, order) ** 0.5 for one in scans),
-        expected=tuple(
-            joint.spectrum.mean_square_between(order, *one.band.wavelengths) ** 0.5 for one in scans
-        ),
-    )
+    rms = joint.estimate(lambda spectrum: spectrum.mean_square(order) ** 0.5)
+    return RmsMeasure(order, rms, *joint.spectrum.dominant_wavelengths(order, _SHARE))

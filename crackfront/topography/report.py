@@ -196,15 +196,11 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
         f"to e_el, longer ones {shares.missing_long:.0%}"
     )
     yield ""
-    yield "Measures: of the spectrum; scales of 80% of the mean square; scans over the spectrum"
+    yield "Measures of the spectrum, and the scales of 80% of their mean squares"
     for measure in surface.measures:
-        ratios = (
-            one / other for one, other in zip(measure.measured, measure.expected, strict=True)
-        )
         name, unit = _MEASURES[measure.order]
         rms = _shown(unit, measure.rms)
-        compared = ", ".join(map("{:.2f}".format, ratios))
-        yield f"  rms of {name:16}{rms:40}{_span(measure.shortest, measure.longest):22}{compared}"
+        yield f"  rms of {name:16}{rms:40}{_span(measure.shortest, measure.longest)}"
 
 
 def _prediction_lines(item: Prediction) -> Iterator[str]:

@@ -73,3 +73,8 @@ def write_smooth(path):
     spectrum = SelfAffineSpectrum(0.1e-6, 2.1e-6, 0.95, 1e-27)
     heights = gaussian_field(spectrum, 512, 25.6e-6, np.random.default_rng(3))
     return write_al3d(path, heights, 25.6e-6, "smooth")
+
+
+def measured_mean_square(one, order):
+    """Mean square of a derivative of a scan over its trusted wavelengths, as it stands."""
+    return one.waves.mean_square(order, *one.band.wavelengths)

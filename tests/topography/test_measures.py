@@ -10,10 +10,17 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.bands import scan as scan_of
 from crackfront.topography.instruments import surface_library
-from crackfront.topography.measures import measured_mean_square, measured_surface
+from crackfront.topography.measures import measured_surface
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import Measurement, read_measurements
-from tests.topography.made import SIDE, SPECTRUM, map_heights, write_al3d, write_line
+from tests.topography.made import (
+    SIDE,
+    SPECTRUM,
+    map_heights,
+    measured_mean_square,
+    write_al3d,
+    write_line,
+)
 
 SHIPPED = tuple(sorted((Path(__file__).parents[2] / "examples/scans").glob("*.al3d")))
 

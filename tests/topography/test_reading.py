@@ -5,11 +5,18 @@ import pytest
 
 from crackfront.topography.bands import scan as scan_of
 from crackfront.topography.instruments import surface_library
-from crackfront.topography.measures import measured_mean_square
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import read_measurements
 from studies.accuracy import scans
-from tests.topography.made import SIDE, one_cell, read, refusal, write_al3d, write_text
+from tests.topography.made import (
+    SIDE,
+    measured_mean_square,
+    one_cell,
+    read,
+    refusal,
+    write_al3d,
+    write_text,
+)
 
 N_POINT = 48
 

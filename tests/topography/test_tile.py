@@ -10,12 +10,18 @@ from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.topography.bands import scan as scan_of
-from crackfront.topography.measures import measured_mean_square
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import Measurement, read_measurements
 from crackfront.topography.tile import measured_adhesion, zero_load_radius
 from studies.accuracy import scans
-from tests.topography.made import SIDE, SPECTRUM, map_heights, write_al3d, write_line
+from tests.topography.made import (
+    SIDE,
+    SPECTRUM,
+    map_heights,
+    measured_mean_square,
+    write_al3d,
+    write_line,
+)
 
 
 def periodic_measurement(heights, side=SIDE, shortest=None):
