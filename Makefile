@@ -29,8 +29,11 @@ endif
 export PYTHONNOUSERSITE := 1
 
 RESULTS  = results/$(basename $(notdir $(SWEEP)))/
+VALIDATED = results/$(basename $(notdir $(VALIDATION)))/
 REPORT   = results/tests/junit.xml
 IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1
+SNAKE    = $(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default
+REPAIR   = $(IN_ENV) .venv/bin/crackfront repair
 PIP      = PIP_USE_PEP517=1 .venv/bin/python -m pip install --quiet --no-deps --no-build-isolation --no-compile
 # Tests on all cores, of which eight are enough; one that is done takes from another.
 PARALLEL = -n auto --maxprocesses 8 --dist worksteal
@@ -48,8 +51,9 @@ locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
   clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
-	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP)
-	$(if $(filter file,$(origin SWEEP)),$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(LINE))
+	@$(REPAIR) $(SWEEP) $(if $(filter file,$(origin SWEEP)),$(LINE))
+	$(SNAKE) --config sweep=$(SWEEP)
+	$(if $(filter file,$(origin SWEEP)),$(SNAKE) --config sweep=$(LINE))
 	@echo "Results: $(RESULTS)$(if $(filter file,$(origin SWEEP)), and results/$(basename $(notdir $(LINE)))/)"
 
 env: $(READY)  ## Create .venv from requirements.lock
@@ -114,19 +118,22 @@ benchmark: env  ## Solvers against the reference, what requests cost, how sweeps
 	@echo "Results: results/benchmark/"
 
 accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half an hour on two cores)
-	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default accuracy
+	$(if $(wildcard results/accuracy),@$(REPAIR) results/accuracy)
+	$(SNAKE) accuracy
 	@echo "Results: results/accuracy/"
 
 validate: env  ## The model against boundary elements (15 minutes); VALIDATION=config/validation-512.yaml
-	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config validation=$(VALIDATION) -- validation
-	@echo "Results: results/$(basename $(notdir $(VALIDATION)))/validation.md"
+	$(if $(wildcard $(VALIDATED)),@$(REPAIR) $(VALIDATED))
+	$(SNAKE) --config validation=$(VALIDATION) -- validation
+	@echo "Results: $(VALIDATED)validation.md"
 
 figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=paper (15)
-	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config scale=$(SCALE) -- figures
+	@$(REPAIR) $(wildcard results/figures) config/$(if $(filter paper,$(SCALE)),paper,default).yaml
+	$(SNAKE) --config scale=$(SCALE) -- figures
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
 
 report: env  ## The sweep SWEEP as one page of HTML: fit, figures, configuration, provenance
-	$(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default --config sweep=$(SWEEP) --report $(RESULTS)report.html
+	$(SNAKE) --config sweep=$(SWEEP) --report $(RESULTS)report.html
 	@echo "Report: $(RESULTS)report.html"
 
 docs: env  ## Pages in docs/_build/html, examples executed, warnings as errors (a minute)

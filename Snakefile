@@ -2,7 +2,9 @@
 #
 #   snakemake --profile workflow/profiles/default --config sweep=config/test.yaml
 #
-# Every rule calls `crackfront` or `python -m studies`, which can be called by hand as well.
+# Every rule calls `crackfront` or `python -m studies`, which can be called by hand as well. Reading
+# this changes nothing in results/: `make` calls `crackfront repair` before, which takes back what is
+# damaged or missing. Configurations are parameters of rules, by what they mean: dates decide nothing.
 import atexit
 import gc
 import os
@@ -19,10 +21,7 @@ atexit.register(gc.freeze)
 sys.path.insert(0, workflow.basedir)  # where the studies stand
 
 from crackfront.data.fingerprint import fingerprint
-from crackfront.data.files import date_back, set_aside_damaged
 from crackfront.sweep.configuration import load_configuration, results_folder
-from crackfront.sweep.store import Store
-from crackfront.sweep.sweep import shard_fingerprint
 from studies.paper.figure import (
     FIGURES,
     SCALES,
@@ -100,17 +99,3 @@ include: "workflow/rules/figures.smk"
 include: "workflow/rules/accuracy.smk"
 include: "workflow/rules/paper.smk"
 include: "workflow/rules/validation.smk"
-
-
-# Configurations are parameters of rules, by what they mean: the date of a file decides nothing. What
-# is damaged or missing is taken back here, so that the rules find it missing and make it anew.
-if workflow.is_main_process:
-    for folder in (RESULTS, "results/figures", ACCURACY, VALIDATED):
-        date_back(Path(folder))
-    renewed = list(Store(Path(RESULTS)).renewed(SWEEP, Path(CONFIGURATION)))
-    renewed += set_aside_damaged(Path("results/figures"))
-    renewed += set_aside_damaged(Path(ACCURACY))
-    if damaged := list(set_aside_damaged(Path(VALIDATED))):
-        Path(VALIDATED, "validation.md").unlink(missing_ok=True)
-    for sentence in renewed + damaged:
-        print(sentence, file=sys.stderr)

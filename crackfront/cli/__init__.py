@@ -12,7 +12,7 @@ import click
 from click.shell_completion import get_completion_class
 
 from crackfront.cli.cycle import cycle
-from crackfront.cli.integrity import compare, verify
+from crackfront.cli.integrity import compare, repair, verify
 from crackfront.cli.law import law
 from crackfront.cli.report import StoppedError, announce_compilation, examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
@@ -121,7 +121,7 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Predictions": (predict, surface, law),
     "One contact": (cycle,),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
-    "Stored results": (verify, compare),
+    "Stored results": (verify, repair, compare),
     "The machine": (compile_solvers, completion),
 }
 """All commands, by what they are for."""

@@ -1,4 +1,4 @@
-"""Whether results are as they were written, and whether two of them agree."""
+"""Whether results are as they were written, their repair, and whether two of them agree."""
 
 from __future__ import annotations
 
@@ -44,6 +44,34 @@ def verify(place: Path, as_json: bool) -> None:
             f"{place}: {len(found.damaged)} files are damaged and {len(found.missing)} missing; "
             "make computes them anew, an archive is to be packed again"
         )
+
+
+@click.command(
+    epilog=examples("crackfront repair config/default.yaml", "crackfront repair results/figures")
+)
+@click.argument("places", metavar="PLACE...", type=FILE, nargs=-1, required=True)
+@click.option(
+    "--output", type=FILE, help="Folder of the results of configurations.  [default: their own]"
+)
+def repair(places: tuple[Path, ...], output: Path | None) -> None:
+    """Set aside what is damaged, so that the workflow makes it and what is made of it anew.
+
+    A PLACE is a configuration of a sweep, or a folder of results. Lists of shards that lack
+    simulations are removed, and files that are dated in the future get the date of now. `make`
+    begins with it; nothing else of the workflow changes results before its jobs run.
+    """
+    from crackfront.data.files import date_back, set_aside_damaged
+    from crackfront.sweep.library import opened
+
+    for place in places:
+        if place.is_dir():
+            folder, sentences = place, set_aside_damaged(place)
+        else:
+            sweep, store, _ = opened(place, output)
+            folder, sentences = store.folder, store.renewed(sweep, place)
+        date_back(folder)
+        for sentence in sentences:
+            click.echo(sentence)
 
 
 @click.command(

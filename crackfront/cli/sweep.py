@@ -242,7 +242,7 @@ def simulate(
         StoppedError(str(stop)).show()
         return
     for shard in shards:
-        manifest = store.write_manifest(shard, sweep.shard(shard.item, shard.realisations))
+        manifest = store.write_manifest(sweep, shard)
     click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
 
 

@@ -77,7 +77,7 @@ def sweep(
         for _ in outcomes:
             bar.update()
     for item in found.spectra:
-        store.write_manifest(found.named_shard(item, range(found.n_realisation)), found.shard(item))
+        store.write_manifest(found, found.named_shard(item, range(found.n_realisation)))
     table, statuses = store.aggregate(found, origin)
     failed, sentence = without_value(statuses)
     if failed:

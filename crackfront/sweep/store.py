@@ -26,7 +26,7 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.journal import RowIndex, journal_paths, renew_journals, running, whole_lines
-from crackfront.sweep.sweep import Shard, Sweep, shard_fingerprint
+from crackfront.sweep.sweep import Shard, Sweep
 from crackfront.sweep.table import (
     COMPLETE,
     SWEEP_FINGERPRINT,
@@ -167,13 +167,14 @@ class Store:
         pace = statistics.median(paces) if paces else 1.0
         return [replace(one, seconds=pace * one.seconds) for one in found]
 
-    def write_manifest(self, shard: Shard, simulations: Sequence[Simulation]) -> Path:
+    def write_manifest(self, sweep: Sweep, shard: Shard) -> Path:
         """Write the file that says that all simulations of a shard are stored."""
         content = {
             "spectrum": shard.item.name,
-            "fingerprint": shard_fingerprint(simulations),
+            "fingerprint": sweep.shard_fingerprint(shard),
             "simulations": [
-                {"key": one.key, "file": f"curves/{self.path(one).name}"} for one in simulations
+                {"key": one.key, "file": f"curves/{self.path(one).name}"}
+                for one in sweep.simulations(shard.item, shard.realisations)
             ],
         }
         path = self.folder / "shards" / f"{shard.name}.json"

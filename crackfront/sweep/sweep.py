@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import hashlib
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Literal
 
@@ -126,6 +126,11 @@ class Sweep:
         """Twelve hexadecimal digits that change with what a configuration means."""
         return self._fingerprint()
 
+    def shard_fingerprint(self, shard: Shard) -> str:
+        """The same of the simulations of a shard, none of which is made but the first ones."""
+        firsts = [simulation.stem for simulation in self.firsts(shard.item)]
+        return _digits("\n".join([*firsts, repr(shard.realisations)]))
+
     @property
     def table_fingerprint(self) -> str:
         """The same without what is done with the table of the sweep."""
@@ -175,11 +180,6 @@ class Sweep:
             )
         block = f".{realisations.start}-{realisations.stop - 1}"
         return Shard(item, realisations, item.name + ("" if realisations == everything else block))
-
-
-def shard_fingerprint(shard: Sequence[Simulation]) -> str:
-    """Twelve hexadecimal digits that change with any simulation of a shard."""
-    return _digits("\n".join(simulation.stem for simulation in shard))
 
 
 def _digits(text: str) -> str:

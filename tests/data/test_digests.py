@@ -131,7 +131,7 @@ def kinds(tmp_path_factory):
     origin = provenance("text")
     [shard, *_] = SWEEP.shards()
     list(tasks.fill(store, list(SWEEP.simulations()), origin))
-    store.write_manifest(shard, SWEEP.shard(shard.item))
+    store.write_manifest(SWEEP, shard)
     store.aggregate(SWEEP, origin)
     fitted = fit_sweep(
         read_table(store.hysteresis),

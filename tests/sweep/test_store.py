@@ -199,7 +199,7 @@ def test_what_the_machine_could_not_do_is_never_stored_as_what_physics_did(
 def test_a_manifest_lists_the_files_of_a_shard(store):
     [shard, *_] = SWEEP.shards(1)
     simulations = SWEEP.shard(shard.item, shard.realisations)
-    path = store.write_manifest(shard, simulations)
+    path = store.write_manifest(SWEEP, shard)
     assert path.name == "flat.0-0.json"
     content = json.loads(path.read_text(encoding="utf-8"))
     assert [entry["key"] for entry in content["simulations"]] == [one.key for one in simulations]
@@ -221,7 +221,7 @@ def test_the_list_of_a_shard_with_a_truncated_file_is_taken_back(store, block, l
     for shard in SWEEP.shards(block):
         simulations = SWEEP.shard(shard.item, shard.realisations)
         fill(store, simulations)
-        store.write_manifest(shard, simulations)
+        store.write_manifest(SWEEP, shard)
     store.path(FLAT[0]).write_bytes(b"half")
     with pytest.raises(ValueError, match="1 of 8 simulations are missing or unreadable"):
         store.aggregate(SWEEP, provenance())
@@ -406,7 +406,7 @@ def made(tmp_path_factory):
     for shard in SWEEP.shards():
         simulations = SWEEP.shard(shard.item, shard.realisations)
         fill(store, simulations)
-        store.write_manifest(shard, simulations)
+        store.write_manifest(SWEEP, shard)
     store.aggregate(SWEEP, provenance("text"))
     return store
 

@@ -7,7 +7,7 @@ import pytest
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.sweep import NamedSpectrum, shard_fingerprint
+from crackfront.sweep.sweep import NamedSpectrum
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 
@@ -35,13 +35,14 @@ def test_the_fit_range_changes_no_simulation():
 
 
 def test_the_fingerprint_of_a_shard_changes_with_its_simulations_alone():
-    flat, rough = SWEEP.spectra
-    before = shard_fingerprint(SWEEP.shard(flat))
+    flat, rough = SWEEP.shards()
+    before = SWEEP.shard_fingerprint(flat)
     more = replace(SWEEP, n_realisation=3)
-    fewer = replace(SWEEP, spectra=(flat,))
-    assert shard_fingerprint(more.shard(flat)) != before
-    assert shard_fingerprint(SWEEP.shard(rough)) != before
-    assert shard_fingerprint(fewer.shard(flat)) == before
+    fewer = replace(SWEEP, spectra=(flat.item,))
+    assert more.shard_fingerprint(more.shards()[0]) != before
+    assert SWEEP.shard_fingerprint(rough) != before
+    assert replace(SWEEP, seed=SWEEP.seed + 1).shard_fingerprint(flat) != before
+    assert fewer.shard_fingerprint(flat) == before
 
 
 @pytest.mark.parametrize("block", [None, 1, 3, 10, 11])

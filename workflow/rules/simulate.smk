@@ -13,11 +13,6 @@ def rank_options(resources, threads):
     )
 
 
-def simulations_of(shard):
-    """Simulations that a job runs."""
-    return SWEEP.shard(shard.item, shard.realisations)
-
-
 def block_option(shard):
     """First and last realisation of a job."""
     return f"{shard.realisations.start}-{shard.realisations.stop - 1}"
@@ -32,9 +27,7 @@ rule simulate:
     threads: int(config.get("ranks", workflow.resource_settings.cores or 1))
     params:
         # Changes with everything that determines the simulations, the solver's sources included.
-        fingerprint=lambda wildcards: shard_fingerprint(
-            simulations_of(SHARDS[wildcards.shard])
-        ),
+        fingerprint=lambda wildcards: SWEEP.shard_fingerprint(SHARDS[wildcards.shard]),
         spectrum=lambda wildcards: SHARDS[wildcards.shard].item.name,
         block=lambda wildcards: block_option(SHARDS[wildcards.shard]),
         # No reason to run a job again, as a function of resources is none to Snakemake.
