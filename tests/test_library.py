@@ -32,6 +32,7 @@ from crackfront.topography.prediction import predicted
 from crackfront.topography.reading import read_measurements
 from crackfront.topography.report import prediction_page, report_text
 from crackfront.topography.tile import measured_adhesion
+from tests.commands import curves
 
 ROOT = Path(__file__).parents[1]
 TEST = ROOT / "config/test.yaml"
@@ -439,7 +440,7 @@ def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
         patched.setattr(parallel, "stop_is_requested", notice)
         with pytest.raises(KeyboardInterrupt, match="are stored; the same call continues"):
             cf.sweep(TEST, tmp_path, progress=False)
-    assert 0 < len(list((tmp_path / "curves").iterdir())) < 8
+    assert 0 < len(curves(tmp_path)) < 8
     found = cf.sweep(TEST, tmp_path, progress=False)
     assert found.w_retr.dims == ("spectrum", "amplitude", "realisation")
     assert bool((found.w_retr > found.w_appr).all())

@@ -17,7 +17,7 @@ from crackfront.cli.report import FILE, as_json, echo_answer, examples, finite, 
 def verify(place: Path, as_json: bool) -> None:
     """Check every file of a folder of results, or of its archive, against its digest.
 
-    The exit code is 1 where a file is damaged, or missing although a journal or a list names it.
+    The exit code is 1 where a file is damaged, or missing although a row or a list names it.
     """
     from crackfront.data.digests import Integrity
     from crackfront.sweep.verification import verification

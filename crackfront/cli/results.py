@@ -71,7 +71,6 @@ def figures(configuration: Path, output: Path | None) -> None:
     from crackfront.plots.style import save_figure
     from crackfront.plots.sweep import factor_figure, hysteresis_figure
     from crackfront.simulate.costs import expected_cost
-    from crackfront.simulate.files import read_simulation
     from crackfront.sweep.library import opened
 
     sweep, store, origin = opened(configuration, output)
@@ -81,7 +80,7 @@ def figures(configuration: Path, output: Path | None) -> None:
     missing = store.inventory([simulation]).missing
     announce_cost(sum(expected_cost(one).seconds for one in missing))
     fill_store(store, missing, origin)
-    result = read_simulation(store.path(simulation), simulation)
+    result = store.result(simulation)
     drawn = {
         "hysteresis": hysteresis_figure(fitted),
         "loop": simulation_figure(result),

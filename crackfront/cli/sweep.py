@@ -59,7 +59,7 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
 
     sweep, store, _ = opened(configuration, output)
     shards = sweep.shards(block)
-    inventory = store.inventory(sweep.simulations())
+    inventory = store.inventory(sweep.simulations(), checked=False)
     content = {
         "results": store.folder,
         "spectra": [item.name for item in sweep.spectra],
@@ -320,7 +320,7 @@ def status(folder: Path, as_json: bool) -> None:
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
     refuse_damaged(store.configuration)
     spectra = store.progress(load_configuration(store.configuration))
-    processes = running(store.journals)
+    processes = running(store.checkpoints)
     content = {"spectra": spectra, "processes": processes}
     echo_answer(content, _status_lines(spectra, processes), as_json=as_json)
 

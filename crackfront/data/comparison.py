@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.data.files import UnreadableFileError, read_dataset
+from crackfront.data.packs import PACK, File, members
 from crackfront.data.provenance import Provenance
 
 _COSTS = {"s", "byte"}
@@ -47,7 +48,7 @@ class Comparison:
 
     n_file: int
     differences: tuple[Difference, ...]
-    alone: tuple[Path, ...]
+    alone: tuple[File, ...]
 
     @property
     def largest(self) -> float:
@@ -96,22 +97,28 @@ def comparison(one: Path, other: Path) -> Comparison:
     return Comparison(len(pairs), tuple(item for items in found for item in items), alone)
 
 
-def _results(folder: Path) -> dict[str, Path]:
-    """Results of a folder by their names in it, without checkpoints."""
-    paths = {str(path.relative_to(folder)): path for path in folder.rglob("[!.]*.nc")}
-    return {name: path for name, path in paths.items() if "checkpoints" not in Path(name).parts}
+def _results(folder: Path) -> dict[str, File]:
+    """Results of a folder, also in packs, by their names in it, without checkpoints."""
+    found: dict[str, File] = {}
+    for path in folder.rglob("[!.]*.*"):
+        if path.suffix == PACK:
+            curves = (one for one in members(path)[0] if one.name.endswith(".nc"))
+            found |= {f"curves/{one.name}": one for one in curves}
+        elif path.suffix == ".nc" and "checkpoints" not in path.relative_to(folder).parts:
+            found[str(path.relative_to(folder))] = path
+    return found
 
 
 def _pairs(
-    ones: dict[str, Path], others: dict[str, Path]
-) -> tuple[dict[str, tuple[Path, Path]], tuple[Path, ...]]:
+    ones: dict[str, File], others: dict[str, File]
+) -> tuple[dict[str, tuple[File, File]], tuple[File, ...]]:
     """Files of equal names, or of names that are equal without a key, and those that are alone."""
     pairs = {name: (ones[name], others[name]) for name in sorted(ones.keys() & others.keys())}
-    alike: dict[str, tuple[list[Path], list[Path]]] = defaultdict(lambda: ([], []))
+    alike: dict[str, tuple[list[File], list[File]]] = defaultdict(lambda: ([], []))
     for side, paths in enumerate((ones, others)):
         for name in sorted(paths.keys() - pairs.keys()):
             alike[_KEY.sub("", name)][side].append(paths[name])
-    alone: list[Path] = []
+    alone: list[File] = []
     for name, (first, second) in sorted(alike.items()):
         if len(first) == len(second) == 1:
             pairs[name] = first[0], second[0]
@@ -120,7 +127,7 @@ def _pairs(
     return pairs, tuple(alone)
 
 
-def _differences(file: str, one: Path, other: Path) -> Iterator[Difference]:
+def _differences(file: str, one: File, other: File) -> Iterator[Difference]:
     """Differences of the variables of two files, and of their attributes."""
     first, second = read_dataset(one), read_dataset(other)
     if not first.variables.keys() & second.variables.keys():

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import enum
 import hashlib
+import io
 import os
 from pathlib import Path
+from typing import BinaryIO
 
 _MARK = b"crackfront digest sha256 "
 """What stands before the digits."""
@@ -77,20 +79,40 @@ def integrity(path: Path) -> tuple[Integrity, str]:
     Without a digest, a file that is always written with one is damaged.
     """
     with path.open("rb") as file:
-        start = max(0, file.seek(0, os.SEEK_END) - _TAIL)
-        file.seek(start)
-        tail = file.read()
-        place = tail.rfind(_MARK)
-        if place < 0:
-            sealed = any(path.match(pattern) for pattern in _ALWAYS_SEALED)
-            return Integrity.DAMAGED if sealed else Integrity.UNKNOWN, ""
-        digits = place + len(_MARK)
-        stated, left = tail[digits : digits + _DIGITS], start + digits
-        content = hashlib.sha256()
-        file.seek(0)
-        while left and (block := file.read(min(left, 2**20))):
-            content.update(block)
-            left -= len(block)
+        found, digest = _integrity(file)
+    if found is Integrity.UNKNOWN and any(path.match(pattern) for pattern in _ALWAYS_SEALED):
+        return Integrity.DAMAGED, ""
+    return found, digest
+
+
+def sealed(content: bytes, suffix: str) -> tuple[bytes, str]:
+    """Content of a file with its digest, as :func:`seal` adds it, and the digest."""
+    before, after = _COMMENT.get(suffix, (b"\n", b"\n"))
+    start = content.removesuffix(b"\n}\n" if suffix == ".json" else b"") + before + _MARK
+    digest = hashlib.sha256(start + after).hexdigest()
+    return start + digest.encode() + after, digest
+
+
+def content_digest(content: bytes) -> str:
+    """The digest that the content of a file states; empty where it is wrong or none."""
+    return _integrity(io.BytesIO(content))[1]
+
+
+def _integrity(file: BinaryIO) -> tuple[Integrity, str]:
+    """The same of an open file, of any name."""
+    start = max(0, file.seek(0, os.SEEK_END) - _TAIL)
+    file.seek(start)
+    tail = file.read()
+    place = tail.rfind(_MARK)
+    if place < 0:
+        return Integrity.UNKNOWN, ""
+    digits = place + len(_MARK)
+    stated, left = tail[digits : digits + _DIGITS], start + digits
+    content = hashlib.sha256()
+    file.seek(0)
+    while left and (block := file.read(min(left, 2**20))):
+        content.update(block)
+        left -= len(block)
     content.update(tail[digits + _DIGITS :])
     if content.hexdigest().encode() != stated:
         return Integrity.DAMAGED, ""

@@ -18,7 +18,8 @@ import xarray as xr
 
 from crackfront.core.variables import Variable, variables
 from crackfront.data.bounds import TooLargeError, refuse_beyond_memory
-from crackfront.data.digests import Integrity, integrity, seal
+from crackfront.data.digests import Integrity, integrity, seal, sealed
+from crackfront.data.packs import PACK, File
 from crackfront.data.provenance import Provenance, utc_now
 
 PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
@@ -63,12 +64,7 @@ def write_dataset(
     The folder is created. Where `fill` is given, it writes more into the file before that gets its
     name.
     """
-    stamped = dataset.assign_attrs(asdict(origin), date=utc_now())
-    encoding: dict[str, dict[str, Any]] = {
-        str(name): {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
-        for name, values in stamped.variables.items()
-        if np.issubdtype(values.dtype, np.floating)
-    }
+    stamped, encoding = _stamped(dataset, origin)
 
     def write(part: Path) -> None:
         stamped.to_netcdf(part, engine="netcdf4", encoding=encoding)
@@ -76,6 +72,29 @@ def write_dataset(
             fill(part)
 
     return replace_atomically(path, write, sealed=True)
+
+
+def dataset_content(dataset: xr.Dataset, origin: Provenance) -> tuple[bytes, str]:
+    """Content of the file that :func:`write_dataset` would write, and its digest."""
+    stamped, encoding = _stamped(dataset, origin)
+    content = bytes(stamped.to_netcdf(engine="netcdf4", encoding=encoding))
+    # Memory grows by blocks; where the file ends stands in its beginning, of which this is a kind.
+    if content[8] in (2, 3):
+        content = content[: int.from_bytes(content[28:36], "little")]
+    return sealed(content, ".nc")
+
+
+def _stamped(
+    dataset: xr.Dataset, origin: Provenance
+) -> tuple[xr.Dataset, dict[str, dict[str, Any]]]:
+    """A dataset with its origin, and how its variables are stored."""
+    stamped = dataset.assign_attrs(asdict(origin), date=utc_now())
+    encoding: dict[str, dict[str, Any]] = {
+        str(name): {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
+        for name, values in stamped.variables.items()
+        if np.issubdtype(values.dtype, np.floating)
+    }
+    return stamped, encoding
 
 
 def write_text(path: Path, text: str, *, sealed: bool = False) -> None:
@@ -158,14 +177,14 @@ def leftover_parts(folder: Path) -> Iterator[Path]:
 
 
 def read_dataset(
-    path: Path, names: Collection[str] | None = None, *, copies: float = 1.0
+    path: File, names: Collection[str] | None = None, *, copies: float = 1.0
 ) -> xr.Dataset:
     """Dataset of a netCDF file, in memory.
 
     Parameters
     ----------
-    path : Path
-        The file.
+    path : Path or Member
+        The file, or one in a pack.
     names : collection of str, optional
         Variables to read beside the coordinates, those that are there; by default all.
     copies : float, optional
@@ -178,9 +197,13 @@ def read_dataset(
     UnreadableFileError
         If there is no such file, it is damaged, or it is no complete netCDF file.
     """
-    refuse_damaged(path)
+    if isinstance(path, Path):
+        refuse_damaged(path)
+    source = path if isinstance(path, Path) else path.content()
+    if source is None:
+        raise UnreadableFileError(f"{path} {_DAMAGED}")
     try:
-        with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
+        with xr.open_dataset(source, engine="netcdf4", decode_times=False) as dataset:
             others = [] if names is None else [name for name in dataset if name not in names]
             chosen = dataset.drop_vars(others)
             refuse_beyond_memory(
@@ -203,18 +226,19 @@ def refuse_damaged(path: Path) -> None:
         what = "is no file" if path.exists() else "does not exist"
         raise UnreadableFileError(f"{path} {what}; check the name")
     if integrity(path)[0] is Integrity.DAMAGED:
-        raise UnreadableFileError(
-            f"{path} is damaged, its digest is wrong or missing; restore it or write it again"
-        )
+        raise UnreadableFileError(f"{path} {_DAMAGED}")
+
+
+_DAMAGED = "is damaged, its digest is wrong or missing; restore it or write it again"
 
 
 def integrities(folder: Path) -> Iterator[tuple[Path, Integrity]]:
     """All files of a folder, and whether they are as they were written.
 
-    Hidden ones, links, journals, and what was set aside are left out.
+    Hidden ones, links, and what was set aside are left out, and packs but for the files in them.
     """
     for path in sorted(folder.rglob("[!.]*")):
-        left_out = path.is_symlink() or path.suffix in (DAMAGED_SUFFIX, ".jsonl")
+        left_out = path.is_symlink() or path.suffix in (DAMAGED_SUFFIX, PACK)
         if path.is_file() and not left_out:
             yield path, integrity(path)[0]
 
@@ -227,13 +251,13 @@ def set_aside_damaged(folder: Path) -> Iterator[str]:
 
 
 def date_back(folder: Path) -> None:
-    """Give files of a folder that are dated in the future, but journals, the date of now.
+    """Give files of a folder that are dated in the future, but packs, the date of now.
 
     Snakemake refuses to make anything of them.
     """
     now = time.time()
     for path in folder.rglob("[!.]*"):
-        if path.is_file() and path.suffix != ".jsonl" and path.stat().st_mtime > now:
+        if path.is_file() and path.suffix != PACK and path.stat().st_mtime > now:
             os.utime(path, (now, now))
 
 

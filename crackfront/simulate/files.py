@@ -23,6 +23,7 @@ from crackfront.data.files import (
     read_dataset,
     write_dataset,
 )
+from crackfront.data.packs import File
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.run import PartialRun, SimulationResult
 from crackfront.simulate.si_units import SURFACES, as_dataset
@@ -35,8 +36,8 @@ _FRONTS = {
 """Fronts of a checkpoint, by their fields."""
 
 
-def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -> str:
-    """Write curves and costs of one simulation of a sweep; return the digest of the file."""
+def simulation_dataset(result: SimulationResult) -> xr.Dataset:
+    """Labelled curves and costs of one simulation of a sweep."""
     simulation = result.simulation
     dataset = cycle_dataset(result.record, simulation.geometry)
     dataset = dataset.assign(labelled_fields(result.measures))
@@ -51,7 +52,7 @@ def write_simulation(path: Path, result: SimulationResult, origin: Provenance) -
         **simulation.spectrum.parameters,
         **asdict(simulation.resolution),
     }
-    return write_dataset(path, dataset, origin)
+    return dataset
 
 
 def read_cycle(path: Path) -> CycleRecord:
@@ -59,7 +60,7 @@ def read_cycle(path: Path) -> CycleRecord:
     return cycle_record(read_dataset(path), path)
 
 
-def read_simulation(path: Path, simulation: Simulation) -> SimulationResult:
+def read_simulation(path: File, simulation: Simulation) -> SimulationResult:
     """Stored result of a simulation.
 
     Raises
@@ -191,7 +192,7 @@ def cycle_dataset(
     return xr.Dataset(curves, attrs=attributes)
 
 
-def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> CycleRecord:
+def cycle_record(dataset: xr.Dataset, place: File | str = "the dataset") -> CycleRecord:
     """Record that a dataset of :func:`cycle_dataset` holds, or `UnreadableFileError`."""
     states = LineState if "mean_position" in dataset else ContactState
     names = [item.name for item in variables(states)]

@@ -1,105 +1,112 @@
-"""Journals, files to which one process each appends lines, and the index of the rows in them."""
+"""The packs of a store, to which the process of each job appends, and the index of what they hold.
+
+A finished simulation is two files in a pack: its curve as netCDF, where it has one, and its row as
+JSON. What a process is at, it writes into a note of its own.
+"""
 
 from __future__ import annotations
 
+import atexit
 import contextlib
-import errno
 import fcntl
 import functools
 import json
 import os
+import re
 import secrets
 import socket
 import time
-import zlib
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import BinaryIO
 
 from crackfront.analysis.table import SweepRow
-from crackfront.data.digests import Integrity, integrity
+from crackfront.data.digests import content_digest, sealed
 from crackfront.data.files import replace_atomically, set_aside
+from crackfront.data.packs import (
+    PACK,
+    Member,
+    Pack,
+    checked,
+    finish,
+    is_finished,
+    lock,
+    members,
+    record,
+)
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.table import row_fingerprint
+
+_CURVE, _ROW, _NOTE = ".nc", ".json", ".running"
+"""Endings of the names of curves and rows in packs, and of notes."""
+
+_KEY = 16
+"""Digits of a key, which end the name of a simulation."""
+
+_NAME = re.compile(r"([A-Za-z0-9_-]+)\.(\d+)-(\d+)\.(.+)")
+"""Name of a pack: spectrum, first and last realisation, and its process."""
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """What one line says: a simulation was begun, or it ended."""
+    """What a pack says of a simulation that has ended."""
 
-    key: str
-    label: str
+    stem: str
+    """That of the :class:`crackfront.simulate.simulation.Simulation`, with its key."""
     parts: dict[str, str]
-    """Those of the :class:`crackfront.simulate.simulation.Simulation`."""
-    size: int = 0
-    """Bytes of its file, 0 where it has none."""
-    definition: str = ""
-    """:func:`crackfront.sweep.table.row_fingerprint` of its row; empty where it was only begun."""
-    row: SweepRow | None = None
-    """Its row, if it ended and rows have the same definition now."""
-    digest: str = ""
-    """Digest of its file, empty where it has none."""
+    """Those of its key."""
+    definition: str
+    """:func:`crackfront.sweep.table.row_fingerprint` of its row."""
+    row: SweepRow | None
+    """Its row, if rows have the same definition now."""
+    curve_digest: str = ""
+    """Digest of its curve, empty where it has none."""
+
+    def files(self, curve: bytes = b"") -> dict[str, bytes]:
+        """Files of a pack, by their names."""
+        text = json.dumps(asdict(self)).removesuffix("}") + "\n}\n"
+        row = {self.stem + _ROW: sealed(text.encode(), _ROW)[0]}
+        return {self.stem + _CURVE: curve} | row if curve else row
 
 
-class Journal:
-    """The journal of this process in a folder; it is created with its first line.
+def new_pack(folder: Path, spectrum: str, block: range) -> Pack:
+    """A pack of this process for a spectrum and some consecutive realisations."""
+    return Pack(folder / f"{spectrum}.{block[0]}-{block[-1]}.{_own_name()}{PACK}")
 
-    While a simulation runs the process holds a lock on the file, which ends with the process.
-    """
+
+def _own_name() -> str:
+    """Part of a name that no other process has: machine, process, and random digits."""
+    return f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(4)}"
+
+
+class Note:
+    """The file by which this process shows what it is at; it is locked while it is at something."""
 
     def __init__(self, folder: Path) -> None:
-        name = f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(4)}.jsonl"
-        self._path = folder / name
-        self._held: BinaryIO | None = None
+        self._path = folder / f"{_own_name()}{_NOTE}"
+        self._number: int | None = None
 
-    def append(self, entry: Entry) -> None:
-        """Write a line and have it on disk.
-
-        Raises
-        ------
-        OSError
-            If that is impossible; what was there before stays.
-        """
-        text = json.dumps(asdict(entry))
-        line = f"{zlib.crc32(text.encode()):08x} {text}\n".encode()
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        with self._path.open("ab", buffering=0) as file:
-            length = file.tell()
-            try:
-                written = file.write(line)
-                os.fsync(file.fileno())
-                if written != len(line):
-                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self._path))
-            except OSError:
-                file.truncate(length)
-                if not length:
-                    self._path.unlink()
-                raise
-        self._hold()
-
-    def _hold(self) -> None:
-        """Lock the file, where the file system has locks and no other process holds this one."""
-        if self._held is None:
-            with contextlib.ExitStack() as stack, contextlib.suppress(OSError):
-                file = stack.enter_context(self._path.open("rb"))
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                self._held = file
-                stack.pop_all()
-
-    def let_go(self) -> None:
-        """Unlock the file until the next line."""
-        if self._held is not None:
-            self._held.close()
-            self._held = None
-
-    def __del__(self) -> None:
-        self.let_go()
+    def begin(self, simulation: Simulation) -> None:
+        """Say that a simulation runs; an OSError where that cannot be written."""
+        if self._number is None:
+            atexit.register(self._path.unlink, missing_ok=True)
+        if self._number is None or not os.fstat(self._number).st_nlink:
+            self._number = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o666)
+        lock(self._number, fcntl.LOCK_EX)
+        text = json.dumps((simulation.key, simulation.label)) + "\n"
+        os.pwrite(self._number, text.encode(), 0)
+        os.ftruncate(self._number, len(text.encode()))
 
     def beat(self) -> None:
         """Show that this process lives."""
-        os.utime(self._path)
+        assert self._number is not None, "something runs"
+        os.utime(self._number)
+
+    def end(self) -> None:
+        """Say that nothing runs."""
+        if self._number is not None:
+            lock(self._number, fcntl.LOCK_UN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,38 +124,38 @@ class Running:
 
 
 _SECONDS_TO_LIVE = 120.0
-"""Age of a journal, against the newest, at which its process has ended if it has no lock."""
+"""Age of a file, against the newest, at which its process has ended if it has no lock."""
 
 _SECONDS_OF_CLOCKS = 600.0
-"""Age of the newest journal by this machine's clock at which all such processes have ended."""
+"""Age of the newest file by this machine's clock at which all such processes have ended."""
 
 
 def running(folder: Path) -> list[Running]:
-    """What the living processes of the journals of a folder have begun last."""
+    """What the living processes are at, by their notes in a folder."""
     found = []
-    for path in _living(folder):
-        entries = [entry for _, entry in read_journal(path, "")]
-        if entries and not entries[-1].definition:
+    for path in living(folder.glob(f"*{_NOTE}")):
+        with contextlib.suppress(ValueError):  # it is just written
+            key, label = json.loads(path.read_bytes())
             host, process, _ = path.stem.rsplit("-", 2)
             silent = max(0.0, time.time() - path.stat().st_mtime)
-            found.append(Running(entries[-1].key, entries[-1].label, host, process, silent))
+            found.append(Running(key, label, host, process, silent))
     return found
 
 
-def _living(folder: Path) -> Iterator[Path]:
-    """Journals whose processes live, by their locks or, where these say nothing, by their dates."""
-    moments = {path: path.stat().st_mtime for path in journal_paths(folder)}
-    newest, now = max(moments.values(), default=0.0), time.time()
+def living(paths: Iterable[Path]) -> list[Path]:
+    """Files whose processes live, by their locks or, where these say nothing, by their dates."""
+    moments = {path: path.stat().st_mtime for path in sorted(paths)}
+    newest, now, found = max(moments.values(), default=0.0), time.time(), []
     for path, moment in moments.items():
         alive = _is_locked(path)
         if alive is None:
             alive = newest - moment < _SECONDS_TO_LIVE and now - newest <= _SECONDS_OF_CLOCKS
-        if alive:
-            yield path
+        found += [path] if alive else []
+    return found
 
 
 def _is_locked(path: Path) -> bool | None:
-    """Whether a process holds the lock on its journal; None where that cannot be known."""
+    """Whether a process holds the lock on its file; None where that cannot be known."""
     with path.open("rb") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -157,116 +164,143 @@ def _is_locked(path: Path) -> bool | None:
         except OSError:
             return None  # a file system without locks
     # Locks of other machines may be unknown here.
-    return False if path.stem.rsplit("-", 2)[0] == socket.gethostname() else None
+    match = _NAME.fullmatch(path.stem) if path.suffix == PACK else None
+    host = (match[4] if match else path.stem).rsplit("-", 2)[0]
+    return False if host == socket.gethostname() else None
 
 
-def renew_journals(folder: Path) -> list[str]:
-    """Set damaged journals of ended processes aside but for whole lines; a sentence each."""
-    found, living = [], set(_living(folder))
-    for path in journal_paths(folder):
-        lines, n_damaged = whole_lines(path)
-        if n_damaged and path not in living:
-            # Another process may just do the same.
-            with contextlib.suppress(FileNotFoundError):
-                aside = set_aside(path).name
-                if lines:
-                    content = b"".join(lines)
-                    replace_atomically(path, functools.partial(Path.write_bytes, data=content))
-                found.append(f"{path} is damaged; its whole lines stay, the rest is in {aside}")
-    return found
+def forget_notes(folder: Path) -> None:
+    """Remove the notes of processes that have ended."""
+    notes = set(folder.glob(f"*{_NOTE}"))
+    for path in notes.difference(living(notes)):
+        path.unlink(missing_ok=True)
 
 
-def whole_lines(path: Path) -> tuple[list[bytes], int]:
-    """Whole lines of a journal, and the number of damaged ones; 1 for an empty journal."""
-    with path.open("rb") as file:
-        lines = list(file)
-    whole = [line for line in lines if _text(line) is not None]
-    return whole, len(lines) - len(whole) if lines else 1
-
-
-def journal_paths(folder: Path) -> list[Path]:
-    """Journals of a folder, always in the same order."""
-    return sorted(folder.glob("*.jsonl"))
-
-
-def read_journal(path: Path, definition: str) -> Iterator[tuple[int, Entry]]:
-    """Entries of the whole lines of a journal, each with the byte at which its line begins.
+def pack_paths(folder: Path, spectrum: str | None = None, block: range | None = None) -> list[Path]:
+    """Packs of a folder in which simulations may be, always in the same order.
 
     Parameters
     ----------
-    path : Path
-        The journal.
-    definition : str
-        Fingerprint of what a row is now; of another one, the entry comes without its row.
+    folder : Path
+        That of all packs of a store.
+    spectrum, block : str and range, optional
+        Spectrum, and consecutive realisations; by default all.
     """
-    place = 0
-    with path.open("rb") as file:
-        for line in file:
-            if (entry := _entry(line, definition)) is not None:
-                yield place, entry
-            place += len(line)
+    found = []
+    for path in sorted(folder.glob(f"*{PACK}")):
+        match = _NAME.fullmatch(path.stem)
+        if match is not None and spectrum in (None, match[1]):
+            first, last = int(match[2]), int(match[3])
+            if block is None or (first <= block[-1] and block[0] <= last):
+                found.append(path)
+    return found
 
 
-def _text(line: bytes) -> bytes | None:
-    """Text of a line behind its checksum, None where that is not the one of the text."""
-    checksum, _, text = line.rstrip(b"\n").partition(b" ")
-    whole = line.endswith(b"\n") and checksum == b"%08x" % zlib.crc32(text)
-    return text if whole else None
+def renew_packs(paths: Iterable[Path]) -> Iterator[str]:
+    """Set damaged packs of ended processes aside but for their whole files; a sentence each."""
+    damaged = [path for path in paths if checked(path)[1]]
+    for path in sorted(set(damaged).difference(living(damaged))):
+        whole, n_damaged = checked(path)
+        if n_damaged == 1 and whole and not is_finished(path):
+            finish(path)  # its process was killed between two files
+            continue
+        # Another process may just do the same.
+        with contextlib.suppress(FileNotFoundError):
+            aside = set_aside(path)
+            kept = [Member(aside, one.name, one.place, one.size) for one in whole]
+            if kept:
+                replace_atomically(path, functools.partial(_write, kept))
+            yield f"{path} is damaged; its whole files stay, the rest is in {aside.name}"
 
 
-def _entry(line: bytes, definition: str) -> Entry | None:
-    """Entry of a line, None where it is damaged."""
-    if (text := _text(line)) is None:
+def _write(kept: Iterable[Member], path: Path) -> None:
+    """Write a pack of files of another one."""
+    with path.open("wb") as file:
+        file.writelines(record(one.name, one.content() or b"") for one in kept)
+    finish(path)
+
+
+def lost_curves(folder: Path) -> list[str]:
+    """Curves that rows in the packs of a folder name and that are in none of them."""
+    names: set[str] = set()
+    wanted: list[str] = []
+    for member in (one for path in pack_paths(folder) for one in members(path)[0]):
+        names.add(member.name)
+        if member.name.endswith(_ROW):
+            entry = _entry(member)
+            wanted += [entry.stem + _CURVE] if entry is not None and entry.curve_digest else []
+    return [name for name in wanted if name not in names]
+
+
+def _entry(member: Member) -> Entry | None:
+    """Entry in the file of a row, None where it is of no use; an older row is left out of it."""
+    if (content := member.content()) is None:
         return None
-    content = json.loads(text)
-    row = content.pop("row")
-    known = row is not None and content["definition"] == definition
-    return Entry(**content, row=SweepRow(**row) if known else None)
+    values = json.loads(content)
+    if not values.keys() >= Entry.__dataclass_fields__.keys():
+        return None  # of another version
+    values = {name: values[name] for name in Entry.__dataclass_fields__}
+    known = values["definition"] == row_fingerprint()
+    return Entry(**values | {"row": SweepRow(**values["row"]) if known else None})
 
 
 class RowIndex:
-    """Rows in the journals of the store in a folder, by the labels of their simulations.
+    """Simulations in the packs of a spectrum and some consecutive realisations.
 
-    The file of a row must have the digest that was stored with it; unless `checked`, its size only.
+    A row counts if its curve has the digest that was stored with it; unless `checked`, if there is
+    a curve. Curves in files by themselves, as earlier versions stored them, count too.
     """
 
-    def __init__(self, folder: Path, *, checked: bool = True) -> None:
-        self._curves, self._checked = folder / "curves", checked
-        self._places: dict[str, list[tuple[Path, int]]] = defaultdict(list)
-        for path in journal_paths(folder / "journals"):
-            for place, entry in read_journal(path, row_fingerprint()):
-                if entry.definition:
-                    self._places[entry.label].append((path, place))
+    def __init__(self, folder: Path, spectrum: str, block: range, *, checked: bool = True) -> None:
+        self._checked = checked
+        self._members: dict[str, list[Member]] = defaultdict(list)
+        self._latest: dict[str, Member] = {}
+        self._known: set[str] = set()
+        found = [one for path in pack_paths(folder, spectrum, block) for one in members(path)[0]]
+        alone = sorted(folder.glob(f"*{_CURVE}"))
+        found += [Member(path, path.name, 0, path.stat().st_size) for path in alone]
+        for member in found:
+            name = Path(member.name).stem[: -_KEY - 1]
+            self._members[member.name].append(member)
+            self._known.add(name)
+            if member.name.endswith(_ROW):
+                self._latest[name] = member
 
     def row(self, simulation: Simulation) -> SweepRow | None:
-        """Row of a simulation, if there is one and its file is as the row says."""
-        if simulation.label not in self._places:
-            return None  # before its key is computed, which is slow
-        key = simulation.key
-        entries = (entry for entry in self._entries(simulation.label) if entry.key == key)
-        return next((entry.row for entry in entries if self._is_valid(entry)), None)
+        """Row of a simulation, if there is one and its curve is as the row says."""
+        for member in self._of(simulation, _ROW):
+            entry = _entry(member)
+            if entry is None or entry.row is None:
+                continue
+            if not entry.curve_digest or self._has_curve(simulation, entry.curve_digest):
+                return entry.row
+        return None
 
-    def parts(self, label: str) -> dict[str, str]:
-        """Parts of the key with which a simulation of a label was stored last, if it was."""
-        entries = list(self._entries(label))
-        return entries[-1].parts if entries else {}
+    def _has_curve(self, simulation: Simulation, digest: str) -> bool:
+        """Whether there is a curve of a digest, or any where digests are not to be checked."""
+        curves = self.curves(simulation)
+        if not self._checked:
+            return bool(curves)
+        return any(content_digest(one.content() or b"") == digest for one in curves)
 
-    def _entries(self, label: str) -> Iterator[Entry]:
-        """Entries of simulations of a label that have ended, in the order of the journals."""
-        for path, place in self._places.get(label, ()):
-            with path.open("rb") as file:
-                file.seek(place)
-                if (entry := _entry(file.readline(), row_fingerprint())) is not None:
-                    yield entry
+    def curves(self, simulation: Simulation) -> list[Member]:
+        """Curves that are stored of a simulation."""
+        return self._of(simulation, _CURVE)
 
-    def _is_valid(self, entry: Entry) -> bool:
-        """Whether an entry has a row, and the file that the row names, if any, is that of then."""
-        if entry.row is None or not entry.row.curve:
-            return entry.row is not None
-        path = self._curves / entry.row.curve
-        try:
-            if not self._checked:
-                return path.stat().st_size == entry.size
-            return integrity(path) == (Integrity.WHOLE, entry.digest)
-        except FileNotFoundError:
-            return False
+    def _of(self, simulation: Simulation, suffix: str) -> list[Member]:
+        """Files of one kind of a simulation."""
+        if _without_key(simulation) not in self._known:
+            return []  # before its key is computed, which is slow
+        return self._members.get(simulation.stem + suffix, [])
+
+    def parts(self, simulation: Simulation) -> dict[str, str]:
+        """Parts of the key with which a simulation was stored last, if it was with any."""
+        member = self._latest.get(_without_key(simulation))
+        entry = None if member is None else _entry(member)
+        return {} if entry is None else entry.parts
+
+
+def _without_key(simulation: Simulation) -> str:
+    """Name of a simulation without its key."""
+    one = simulation
+    return f"{one.spectrum_name}-e{one.elastic_energy:g}-r{one.realisation}"

@@ -26,6 +26,7 @@ from typing import TypeVar, cast
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
+Kept = TypeVar("Kept")
 
 _STOP_FILE = "CRACKFRONT_STOP"
 """Environment variable that names the file by which ranks are requested to stop."""
@@ -151,9 +152,9 @@ def serve_tasks(module: str) -> None:
 
 
 def run_tasks(
-    function: Callable[[Task], Result], tasks: Sequence[Task]
-) -> Generator[tuple[Task, Result]]:
-    """Tasks with their results, as they end; a free rank starts the next task of the list.
+    function: Callable[[Task], Result], tasks: Sequence[Task], keep: Callable[[Task, Result], Kept]
+) -> Generator[tuple[Task, Kept]]:
+    """Tasks with what is kept of them, as they end; a free rank starts the next of the list.
 
     Without MPI the tasks run here, one after the other. With MPI this is called by the manager
     while the other ranks are in :func:`serve_tasks`, also where there is no task.
@@ -164,10 +165,12 @@ def run_tasks(
         A module's function of one task; it and the tasks travel by pickle.
     tasks : sequence
         The longest first.
+    keep : callable
+        What takes every task and its result here, also of those that end while this is closed.
     """
     if not under_mpi():
         for task in tasks:
-            yield task, function(task)
+            yield task, keep(task, function(task))
         return
     from mpi4py import MPI
     from mpi4py.futures import MPICommExecutor
@@ -176,10 +179,14 @@ def run_tasks(
         executor = cast("Executor", entered)  # None on the other ranks, which are not here
         futures = {executor.submit(function, task): task for task in tasks}
         try:
-            for future in as_completed(futures):
-                yield futures[future], future.result()
+            for future in as_completed(list(futures)):
+                task = futures.pop(future)
+                yield task, keep(task, future.result())
         finally:
             executor.shutdown(wait=True, cancel_futures=True)
+            for future, task in futures.items():
+                if not future.cancelled() and future.exception() is None:
+                    keep(task, future.result())
 
 
 def default_launcher() -> str:

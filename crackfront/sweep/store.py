@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import itertools
 import json
 import statistics
-from collections import Counter
+from collections import Counter, defaultdict, deque
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
@@ -21,11 +24,13 @@ from crackfront.data.files import (
     set_aside_damaged,
     write_text,
 )
+from crackfront.data.packs import Pack, checked
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
+from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.journal import RowIndex, journal_paths, renew_journals, running, whole_lines
+from crackfront.sweep.journal import RowIndex, living, new_pack, pack_paths, renew_packs, running
 from crackfront.sweep.sweep import Shard, Sweep
 from crackfront.sweep.table import (
     COMPLETE,
@@ -44,11 +49,13 @@ _COMPRESSED = {".nc", ".png", ".pdf", ".gif", ".zip"}
 
 @dataclass(frozen=True, slots=True)
 class Holding:
-    """What a store has of a simulation: its row, or a sentence where its file is of no use."""
+    """What a store has of a simulation: its row, or a sentence where its curve is of no use."""
 
     simulation: Simulation
     row: SweepRow | None
     unreadable: str
+    changed: tuple[str, ...] = ()
+    """Parts of its key that changed since it was stored, where it is missing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +65,7 @@ class Inventory:
     missing: tuple[Simulation, ...]
     """What is to be computed."""
     unreadable: tuple[str, ...]
-    """A sentence for every file that is of no use."""
+    """A sentence for every curve that is of no use."""
     stale: tuple[tuple[str, ...], ...]
     """Of every missing simulation that is stored with another key the parts of it that changed."""
 
@@ -95,52 +102,69 @@ class Store:
         return self.folder / "configuration.yaml"
 
     @property
-    def journals(self) -> Path:
-        """Folder of the journals."""
-        return self.folder / "journals"
+    def curves(self) -> Path:
+        """Folder of the packs of curves and rows."""
+        return self.folder / "curves"
 
     @property
     def hysteresis(self) -> Path:
         """File of the whole sweep."""
         return self.folder / "hysteresis.nc"
 
-    def path(self, simulation: Simulation) -> Path:
-        """File of a simulation."""
-        return self.folder / "curves" / f"{simulation.stem}.nc"
+    @property
+    def checkpoints(self) -> Path:
+        """Folder of what running processes keep: checkpoints, and notes of what they are at."""
+        return self.folder / "checkpoints"
 
     def checkpoint(self, simulation: Simulation) -> Path:
         """File from which a simulation goes on."""
-        return self.folder / "checkpoints" / f"{simulation.stem}.nc"
+        return self.checkpoints / f"{simulation.stem}.nc"
 
     def holdings(
-        self, simulations: Iterable[Simulation], index: RowIndex | None = None
+        self, simulations: Iterable[Simulation], *, checked: bool = True
     ) -> Iterator[Holding]:
-        """What is stored of simulations, by the index of the rows or one that is given."""
-        curves = {path.name for path in (self.folder / "curves").glob("*.nc")}
-        index = index or RowIndex(self.folder)
-        for simulation in simulations:
-            row, unreadable = index.row(simulation), ""
-            # The path has the key in its name, which is slow to compute.
-            if row is None and curves and (path := self.path(simulation)).name in curves:
-                try:
-                    row = sweep_row(read_simulation(path, simulation))
-                except UnreadableFileError as error:
-                    unreadable = str(error)
-            yield Holding(simulation, row, unreadable)
+        """What is stored of simulations, in their order; the curves of one spectrum after another.
 
-    def inventory(self, simulations: Iterable[Simulation]) -> Inventory:
-        """Which of some simulations are missing, and why."""
-        index = RowIndex(self.folder)
-        absent = [one for one in self.holdings(simulations, index) if one.row is None]
-        stale = []
-        for simulation in (one.simulation for one in absent):
-            known = index.parts(simulation.label)
-            now = simulation.parts if known else {}
-            stale.append(tuple(name for name, part in now.items() if part != known.get(name)))
+        Unless `checked`, a curve counts without a look at its digest.
+        """
+        for spectrum, group in itertools.groupby(simulations, attrgetter("spectrum_name")):
+            alike = list(group)
+            index = RowIndex(self.curves, spectrum, _span(alike), checked=checked)
+            yield from (_holding(one, index) for one in alike)
+
+    @contextlib.contextmanager
+    def packs(self, simulations: Iterable[Simulation]) -> Iterator[dict[str, Pack]]:
+        """New packs for simulations, by the names of their spectra, until they are left.
+
+        Where ended processes left packs of the same realisations damaged, what is whole is kept.
+        """
+        alike: dict[str, list[Simulation]] = defaultdict(list)
+        for one in simulations:
+            alike[one.spectrum_name].append(one)
+        blocks = {name: _span(ones) for name, ones in alike.items()}
+        for name, block in blocks.items():
+            deque(renew_packs(pack_paths(self.curves, name, block)), maxlen=0)
+        found = {name: new_pack(self.curves, name, block) for name, block in blocks.items()}
+        try:
+            yield found
+        finally:
+            for pack in found.values():
+                pack.close()
+
+    def result(self, simulation: Simulation) -> SimulationResult:
+        """Stored result of a simulation; `UnreadableFileError` where there is none."""
+        name, block = simulation.spectrum_name, _span([simulation])
+        for member in RowIndex(self.curves, name, block).curves(simulation):
+            return read_simulation(member, simulation)
+        raise UnreadableFileError(f"{self.curves} has no curve of {simulation.label}; simulate it")
+
+    def inventory(self, simulations: Iterable[Simulation], *, checked: bool = True) -> Inventory:
+        """Which of some simulations are missing, and why; as :meth:`holdings`."""
+        absent = [one for one in self.holdings(simulations, checked=checked) if one.row is None]
         return Inventory(
             missing=tuple(one.simulation for one in absent),
             unreadable=tuple(one.unreadable for one in absent if one.unreadable),
-            stale=tuple(filter(None, stale)),
+            stale=tuple(one.changed for one in absent if one.changed),
         )
 
     def progress(self, sweep: Sweep) -> list[Progress]:
@@ -149,12 +173,11 @@ class Store:
         The expected times are those of the cost model, in proportion to what the stored simulations
         of the sweep took.
         """
-        begun = {one.key for one in running(self.journals)}
-        index = RowIndex(self.folder, checked=False)
+        begun = {one.key for one in running(self.checkpoints)}
         found, paces = [], []
         for item in sweep.spectra:
             counts, seconds = dict.fromkeys(("done", "failed", "running", "waiting"), 0), 0.0
-            for held in self.holdings(sweep.simulations(item), index):
+            for held in self.holdings(sweep.simulations(item), checked=False):
                 expected = expected_cost(held.simulation).seconds
                 if held.row is None:
                     counts["running" if held.simulation.key in begun else "waiting"] += 1
@@ -172,10 +195,7 @@ class Store:
         content = {
             "spectrum": shard.item.name,
             "fingerprint": sweep.shard_fingerprint(shard),
-            "simulations": [
-                {"key": one.key, "file": f"curves/{self.path(one).name}"}
-                for one in sweep.simulations(shard.item, shard.realisations)
-            ],
+            "realisations": [shard.realisations[0], shard.realisations[-1]],
         }
         path = self.folder / "shards" / f"{shard.name}.json"
         write_text(path, json.dumps(content, indent=1) + "\n", sealed=True)
@@ -220,7 +240,7 @@ class Store:
         if not self.folder.is_dir():
             return
         yield from set_aside_damaged(self.folder)
-        yield from renew_journals(self.journals)
+        yield from renew_packs(pack_paths(self.curves))
         if any((self.folder / "shards").glob("*.json")):
             if not self.configuration.is_file():
                 text = configuration.read_text(encoding="utf-8")
@@ -260,11 +280,14 @@ class Store:
 
     def _forget(self, missing: Sequence[Simulation]) -> int:
         """Remove lists of shards that are damaged or name missing simulations; their number."""
-        keys, count = {one.key for one in missing}, 0
+        numbers = {(one.spectrum_name, one.realisation) for one in missing}
+        count = 0
         for path in (self.folder / "shards").glob("*.json"):
             if integrity(path)[0] is Integrity.WHOLE:
                 content = json.loads(path.read_text(encoding="utf-8"))
-                if keys.isdisjoint(entry["key"] for entry in content["simulations"]):
+                first, last = content.get("realisations", (0, -1))
+                block = range(first, last + 1)
+                if block and numbers.isdisjoint((content["spectrum"], one) for one in block):
                     continue
             path.unlink()
             count += 1
@@ -324,9 +347,33 @@ class Store:
 
 
 def checked_files(folder: Path) -> Iterator[tuple[Path, Counter[Integrity]]]:
-    """Files of a folder of results, each counted by whether it, or each line of it, is whole."""
+    """Files of a folder of results, each counted by whether it, or each file in it, is whole."""
     for path, state in integrities(folder):
         yield path, Counter([state])
-    for path in journal_paths(folder / "journals"):
-        lines, n_damaged = whole_lines(path)
-        yield path, Counter({Integrity.WHOLE: len(lines), Integrity.DAMAGED: n_damaged})
+    alive = living(pack_paths(folder / "curves"))
+    for path in pack_paths(folder / "curves"):
+        whole, n_damaged = checked(path)
+        n_damaged = 0 if path in alive else n_damaged
+        yield path, Counter({Integrity.WHOLE: len(whole), Integrity.DAMAGED: n_damaged})
+
+
+def _holding(simulation: Simulation, index: RowIndex) -> Holding:
+    """What an index has of a simulation."""
+    if (row := index.row(simulation)) is not None:
+        return Holding(simulation, row, "")
+    unreadable = ""
+    for member in index.curves(simulation):
+        try:
+            return Holding(simulation, sweep_row(read_simulation(member, simulation)), "")
+        except UnreadableFileError as error:
+            unreadable = str(error)
+    known = index.parts(simulation)
+    now = simulation.parts if known else {}
+    changed = tuple(name for name, part in now.items() if part != known.get(name))
+    return Holding(simulation, None, unreadable, changed)
+
+
+def _span(simulations: Sequence[Simulation]) -> range:
+    """The least consecutive realisations among which those of simulations are."""
+    numbers = [one.realisation for one in simulations]
+    return range(min(numbers), max(numbers) + 1)

@@ -13,12 +13,12 @@ from zipfile import BadZipFile, ZipFile
 
 from crackfront.data.digests import Integrity
 from crackfront.data.files import NO_ROOM, UnreadableFileError
-from crackfront.sweep.journal import journal_paths, read_journal
+from crackfront.data.packs import PACK
+from crackfront.sweep.journal import lost_curves
 from crackfront.sweep.store import SUMS, checked_files
-from crackfront.sweep.table import row_fingerprint
 
-LINES = "lines of journals"
-"""Name under which the lines of journals are counted, each of which has a checksum."""
+FILES = "packs of curves and rows"
+"""Name under which the files in packs are counted, each of which has a checksum."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,10 +26,10 @@ class Verification:
     """What was found in a folder."""
 
     counts: dict[str, Counter[Integrity]]
-    """Numbers of whole and damaged files by their folder, and of such lines of journals."""
+    """Numbers of whole and damaged files by their folder, and of such files in packs."""
     damaged: tuple[str, ...]
     missing: tuple[str, ...]
-    """Files that are not as they were written, and absent ones that a list or a journal names."""
+    """Files that are not as they were written, and absent ones that a list or a row names."""
 
 
 def verification(place: Path) -> Verification:
@@ -45,11 +45,11 @@ def verification(place: Path) -> Verification:
     with _folder(place) as folder:
         for path, states in checked_files(folder):
             name = path.relative_to(folder)
-            counts[LINES if path.suffix == ".jsonl" else str(name.parent)] += states
+            counts[FILES if path.suffix == PACK else str(name.parent)] += states
             damaged += [str(name)] if states[Integrity.DAMAGED] else []
         listed = _listed(folder)
-        named = [*_named_curves(folder), *listed]
-        missing = [name for name in named if not (folder / name).is_file()]
+        missing = [name for name in listed if not (folder / name).is_file()]
+        missing += lost_curves(folder / "curves")
         for file in listed.keys() - set(missing):
             with (folder / file).open("rb") as opened:
                 if hashlib.file_digest(opened, "sha256").hexdigest() != listed[file]:
@@ -78,14 +78,6 @@ def _folder(place: Path) -> Iterator[Path]:
                 raise
         inner = list(Path(temporary).iterdir())
         yield inner[0] if len(inner) == 1 else Path(temporary)
-
-
-def _named_curves(folder: Path) -> Iterator[str]:
-    """Files of simulations that journals name."""
-    for path in journal_paths(folder / "journals"):
-        for _, entry in read_journal(path, row_fingerprint()):
-            if entry.row is not None and entry.row.curve:
-                yield f"curves/{entry.row.curve}"
 
 
 def _listed(folder: Path) -> dict[str, str]:

@@ -27,7 +27,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variable
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
-from crackfront.simulate.files import cycle_dataset, write_simulation
+from crackfront.simulate.files import cycle_dataset, simulation_dataset
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.run import compile_solver, run_simulation
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_field, simulation_of
@@ -141,7 +141,7 @@ def measured(scene: Scene, need: Need) -> Row:
     else:
         result = run_simulation(simulation(scene, need))
         record = result.record
-        write = functools.partial(write_simulation, result=result)
+        write = functools.partial(write_dataset, dataset=simulation_dataset(result))
     seconds, peak = time.process_time() - start, peak_memory() - before
     if not need.rays:
         field = simulation_field(simulation(scene, need))

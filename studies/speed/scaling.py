@@ -2,7 +2,7 @@
 
 Dispatch is measured with tasks that sleep, on real ranks of MPI. The million simulations are
 played through event by event, with the times of the cost model and the recorded deviations from
-it, for 1 to 4096 ranks. Aggregation reads as many rows as asked for from synthetic journals.
+it, for 1 to 4096 ranks. Aggregation reads as many rows as asked for from synthetic packs.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from crackfront.core.arrays import Array
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost, measured_runs, predicted_seconds
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import Entry, Journal
+from crackfront.sweep.journal import Entry
 from crackfront.sweep.parallel import default_launcher
 from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import Sweep
@@ -122,7 +122,7 @@ def dispatch_efficiency(n_worker: int, n_round: int, seconds: float = 0.5) -> fl
         "for given in ([0.0] * n_worker, tasks):\n"
         "    started = time.perf_counter()\n"
         "    if parallel.is_manager(n_worker):\n"
-        "        list(parallel.run_tasks(time.sleep, given))\n"
+        "        list(parallel.run_tasks(time.sleep, given, lambda task, _: task))\n"
         "    else:\n"
         "        parallel.serve_tasks('time')\n"
         "if parallel.is_manager(n_worker):\n"
@@ -139,15 +139,17 @@ def dispatch_efficiency(n_worker: int, n_round: int, seconds: float = 0.5) -> fl
 
 
 def synthetic(folder: Path, n_simulation: int) -> Sweep:
-    """A sweep whose simulations have all ended without a value, in four journals."""
+    """A sweep whose simulations have all ended without a value, a pack a spectrum."""
     sweep = load_configuration(ROOT / "config/test.yaml")
     sweep = replace(sweep, n_realisation=n_simulation // 4, failed_fraction=1.0)
-    journals = [Journal(folder / "journals") for _ in range(4)]
-    for number, one in enumerate(sweep.simulations()):
-        row = failed_row(one, "step_limit", "the solver reached its limit of sweeps")
-        row = replace(row, seconds=0.1 * number, n_step=number % 60)
-        entry = Entry(one.key, one.label, one.parts, 0, row_fingerprint(), row)
-        journals[number % 4].append(entry)
+    store = Store(folder)
+    store.curves.mkdir()
+    with store.packs(sweep.simulations()) as packs:
+        for number, one in enumerate(sweep.simulations()):
+            row = failed_row(one, "step_limit", "the solver reached its limit of sweeps")
+            row = replace(row, seconds=0.1 * number, n_step=number % 60)
+            entry = Entry(one.stem, one.parts, row_fingerprint(), row)
+            packs[one.spectrum_name].append(entry.files())
     return sweep
 
 

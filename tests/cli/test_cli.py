@@ -26,9 +26,9 @@ from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.files import write_text
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import Entry, Journal
+from crackfront.sweep.journal import Entry, Note, new_pack
 from crackfront.sweep.table import failed_row, row_fingerprint
-from tests.commands import refused, run
+from tests.commands import curves, refused, run
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
 
@@ -278,11 +278,11 @@ def test_the_status_counts_what_is_done_failed_running_and_waiting(tmp_path):
     sweep = load_configuration(TEST)
     run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
     flat = sweep.shard(sweep.spectra[0])
-    journal = Journal(tmp_path / "journals")
     refused_row = failed_row(flat[0], "refused", "too rough")
-    parts = (flat[0].key, flat[0].label, flat[0].parts)
-    journal.append(Entry(*parts, definition=row_fingerprint(), row=refused_row))
-    journal.append(Entry(flat[1].key, flat[1].label, flat[1].parts))
+    entry = Entry(flat[0].stem, flat[0].parts, row_fingerprint(), refused_row)
+    new_pack(tmp_path / "curves", "flat", range(2)).append(entry.files())
+    note = Note(tmp_path / "checkpoints")
+    note.begin(flat[1])
     result = run("status", tmp_path)
     assert result.exit_code == 0, result.output
     [_, first, second, process, sentence] = result.output.splitlines()
@@ -297,13 +297,14 @@ def test_the_status_counts_what_is_done_failed_running_and_waiting(tmp_path):
 
 @pytest.fixture
 def begun(tmp_path):
-    """Folder of a sweep, and the journal in it of a process that has begun a simulation."""
+    """Folder of a sweep, and the note in it of a process that has begun a simulation."""
     sweep = load_configuration(TEST)
     write_text(tmp_path / "configuration.yaml", TEST.read_text(), sealed=True)
     one = sweep.shard(sweep.spectra[0])[0]
-    journal = Journal(tmp_path / "journals")
-    journal.append(Entry(one.key, one.label, one.parts))
-    return tmp_path, journal
+    (tmp_path / "checkpoints").mkdir()
+    note = Note(tmp_path / "checkpoints")
+    note.begin(one)
+    return tmp_path, note
 
 
 def last_line_of_status(folder):
@@ -311,22 +312,22 @@ def last_line_of_status(folder):
     return run("status", folder).output.splitlines()[-1]
 
 
-def test_a_process_runs_as_long_as_it_lives_and_not_until_its_journal_is_old(begun):
-    folder, journal = begun
-    for path in (folder / "journals").iterdir():
+def test_a_process_runs_as_long_as_it_lives_and_not_until_its_note_is_old(begun):
+    folder, note = begun
+    for path in (folder / "checkpoints").iterdir():
         os.utime(path, (1e9, 1e9))
     assert last_line_of_status(folder).endswith("left on 1 rank(s)")
-    journal.let_go()
-    for path in (folder / "journals").iterdir():
+    note.end()
+    for path in (folder / "checkpoints").iterdir():
         os.utime(path)
     assert last_line_of_status(folder).endswith("have ended; nothing runs")
 
 
 def test_a_process_elsewhere_runs_as_long_as_it_shows_signs_of_life(begun):
-    folder, journal = begun
-    journal.let_go()
-    [path] = (folder / "journals").iterdir()
-    path = path.rename(path.with_name("another-host-12-abcd.jsonl"))
+    folder, note = begun
+    note.end()
+    [path] = (folder / "checkpoints").iterdir()
+    path = path.rename(path.with_name("another-host-12-abcd.running"))
     told = json.loads(run("status", folder, "--json").output)["processes"]
     assert [(one["host"], one["process"]) for one in told] == [("another-host", "12")]
     os.utime(path, (1e9, 1e9))
@@ -340,14 +341,14 @@ def test_the_status_of_a_folder_without_a_sweep_is_refused(tmp_path):
 def test_one_spectrum_can_be_run_alone(tmp_path):
     result = run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
     assert result.exit_code == 0
-    assert {path.name.split("-")[0] for path in (tmp_path / "curves").iterdir()} == {"rough"}
+    assert {name.split("-")[0] for name in curves(tmp_path)} == {"rough"}
     assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.json"]
 
 
 def test_a_block_of_realisations_can_be_run_alone(tmp_path):
     options = ("--spectrum", "rough", "--realisations", "1-1", "--output", tmp_path)
     assert run("simulate", TEST, *options).exit_code == 0
-    assert {"-r1-" in path.name for path in (tmp_path / "curves").iterdir()} == {True}
+    assert {"-r1-" in name for name in curves(tmp_path)} == {True}
     assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.1-1.json"]
 
 
@@ -365,10 +366,12 @@ def test_a_configuration_whose_name_is_no_name_for_results_is_refused(tmp_path, 
     assert "the results are named after" in refused("plan", bad)
 
 
-def test_a_truncated_result_is_named_and_replaced(tmp_path):
+def test_a_damaged_result_is_named_and_replaced(tmp_path):
     run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
     broken = min((tmp_path / "curves").iterdir())
-    broken.write_bytes(broken.read_bytes()[:5000])
+    content = bytearray(broken.read_bytes())
+    content[5000] ^= 1
+    broken.write_bytes(content)
     result = run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
     assert result.exit_code == 0
     [warning] = result.stderr.splitlines()
@@ -396,7 +399,7 @@ def test_a_simulation_that_cannot_be_stored_ends_the_run_with_exit_code_one(tmp_
     def full(*_):
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("crackfront.sweep.tasks.write_simulation", full)
+    monkeypatch.setattr("crackfront.sweep.tasks.dataset_content", full)
     result = run("simulate", TEST, "--output", tmp_path)
     assert result.exit_code == 1
     assert "could not compute or store it (no space left on device); free disk" in result.stderr

@@ -27,6 +27,7 @@ from crackfront.cli import main
 from crackfront.core import jkr
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL
+from tests.commands import curves
 
 SEED = 20261122
 ANSWERS = (0, 3)
@@ -308,15 +309,15 @@ def configuration_case(rng, folder):
         result = CliRunner().invoke(main, ["simulate", str(path), "--output", str(store)])
         if result.exception is not None and not isinstance(result.exception, SystemExit):
             return f"traceback: run: {type(result.exception).__name__}: {result.exception}"
-        curves = list((store / "curves").glob("*.nc")) if result.exit_code == 0 else []
-        return next((told for curve in curves if (told := wrong_curve(curve))), "")
+        found = curves(store).values() if result.exit_code == 0 else []
+        return next((told for curve in found if (told := wrong_curve(curve))), "")
 
     return Case(["plan", str(path), "--output", str(store), "--json"], wrong)
 
 
-def wrong_curve(path):
+def wrong_curve(content):
     """What cannot be true of the states in a file; empty where nothing is."""
-    with xr.open_dataset(path) as dataset:
+    with xr.open_dataset(content, engine="netcdf4") as dataset:
         curve = dataset.load()
     place = "mean_radius" if "mean_radius" in curve else "mean_position"
     if not np.all(np.isfinite(curve[place])) or not np.all(np.isfinite(curve["residual"])):

@@ -17,6 +17,7 @@ import yaml
 
 from crackfront.cli import main
 from crackfront.sweep.parallel import default_launcher
+from tests.commands import curves
 
 ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
@@ -116,11 +117,6 @@ def until(condition, seconds=120):
         time.sleep(0.1)
 
 
-def stored(folder):
-    """Names and moments of the stored simulations."""
-    return {path.name: path.stat().st_mtime_ns for path in (folder / "curves").glob("[!.]*.nc")}
-
-
 WAYS = {
     "serial": ("hysteresis.nc", {"tasks": 2}),
     "srun": ("shards/flat.json", {"mpi": SRUN}),
@@ -192,14 +188,14 @@ def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
     with subprocess.Popen(
         command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment()
     ) as process:
-        until(lambda: len(stored(results)) >= 2)
+        until(lambda: len(curves(results)) >= 2)
         os.kill(max(processes(f"-m mpi4py -m crackfront simulate {sweep}")), signal.SIGKILL)
-        before = stored(results)
+        before = curves(results)
         told = process.stderr.read()
     assert process.returncode == 0, told
     assert told.count("has been submitted with SLURM jobid") == 2
     assert 2 <= len(before) < 8
-    assert before.items() <= stored(results).items()
+    assert before.items() <= curves(results).items()
     main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
     assert dataset(results).equals(undisturbed(sweep, tmp_path / "alone"))
 
@@ -226,8 +222,8 @@ def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_pa
     checkpoint = xr.load_dataset(path)
     job = ["sbatch", "--wait", "--ntasks=3", "--wrap", command]
     assert run(job, cwd=tmp_path).returncode == 0
-    [path] = (results / "curves").glob(f"*{checkpoint.attrs['key']}.nc")
-    ended, known = xr.load_dataset(path), checkpoint["mean_radius"]
+    ended = xr.load_dataset(curves(results)[path.name], engine="netcdf4")
+    known = checkpoint["mean_radius"]
     assert 5 < known.size < ended["mean_radius"].size
     assert ended["mean_radius"].values[: known.size].tobytes() == known.values.tobytes()
     assert ended["cpu_seconds"] > checkpoint.attrs["cpu_seconds"]

@@ -32,7 +32,6 @@ from crackfront.simulate.files import (
     cycle_dataset,
     read_checkpoint,
     read_cycle,
-    read_simulation,
     write_checkpoint,
 )
 from crackfront.simulate.run import run_simulation
@@ -40,9 +39,8 @@ from crackfront.simulate.surfaces import surface_adhesion
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fit_files import write_fit
-from crackfront.sweep.journal import journal_paths, read_journal
 from crackfront.sweep.store import Store
-from crackfront.sweep.table import read_table, row_fingerprint
+from crackfront.sweep.table import read_table
 from studies.paper.figure import load_figure
 from studies.paper.main_1d import FIGURE
 
@@ -159,7 +157,6 @@ def kinds(tmp_path_factory):
     write_record(folder / "main-1d.nc", smooth, origin)
     pictures = save_figure(blank_figure(1, 1), folder / "picture")
     return {
-        "curve": (store.path(ONE), lambda path: read_simulation(path, ONE)),
         "table": (store.hysteresis, read_table),
         "list of a shard": (folder / "sweep/shards/flat.json", refuse_damaged),
         "configuration": (store.configuration, refuse_damaged),
@@ -206,17 +203,6 @@ def test_no_flipped_bit_of_any_kind_of_file_is_believed(kinds, rng, count):
         assert believed(path, read, bits.tolist()) == []
 
 
-@pytest.mark.parametrize("count", [50, pytest.param(500, marks=pytest.mark.slow)])
-def test_no_flipped_bit_of_a_journal_is_believed(kinds, rng, count):
-    folder = kinds["curve"][0].parents[1] / "journals"
-    [path] = journal_paths(folder)
-    expected = {repr(entry) for _, entry in read_journal(path, row_fingerprint())}
-    for bit in rng.integers(8 * path.stat().st_size, size=count).tolist():
-        with flipped(path, bit):
-            found = {repr(entry) for _, entry in read_journal(path, row_fingerprint())}
-        assert found < expected
-
-
 def test_a_damaged_result_that_a_person_keeps_is_refused_with_one_sentence(kinds, tmp_path):
     path, _ = kinds["surface"]
     options = ["--max-penetration", "0.1", "--output", str(tmp_path / "cycle.nc")]
@@ -229,7 +215,7 @@ def test_a_damaged_result_that_a_person_keeps_is_refused_with_one_sentence(kinds
 
 
 def test_the_digests_cost_less_than_a_millisecond_a_file(kinds):
-    path, _ = kinds["curve"]
+    path, _ = kinds["checkpoint"]
     integrity(path)
     started = time.process_time()
     for _ in range(100):

@@ -28,7 +28,7 @@ from crackfront.simulate.files import (
     cycle_dataset,
     read_cycle,
     read_simulation,
-    write_simulation,
+    simulation_dataset,
 )
 from crackfront.simulate.run import SimulationResult, run_simulation
 from crackfront.simulate.simulation import numerical_error
@@ -86,7 +86,7 @@ def test_a_cycle_without_states_is_read_back(tmp_path, result):
 
 
 def test_every_variable_says_what_it_is_and_in_which_units(tmp_path, result):
-    write_simulation(tmp_path / "one.nc", result, ORIGIN)
+    write_dataset(tmp_path / "one.nc", simulation_dataset(result), ORIGIN)
     dataset = xr.load_dataset(tmp_path / "one.nc")
     for name, values in dataset.variables.items():
         assert values.attrs["units"], name
@@ -113,7 +113,7 @@ def test_the_origin_of_this_process_is_known():
 
 def test_a_simulation_is_read_back_with_its_cost(tmp_path, result):
     path = tmp_path / "one.nc"
-    write_simulation(path, result, ORIGIN)
+    write_dataset(path, simulation_dataset(result), ORIGIN)
     again = read_simulation(path, result.simulation)
     assert_same(again.record, result.record)
     for item in fields(SimulationResult)[2:]:
@@ -122,7 +122,7 @@ def test_a_simulation_is_read_back_with_its_cost(tmp_path, result):
 
 
 def test_the_file_of_another_simulation_is_refused(tmp_path, result):
-    write_simulation(tmp_path / "one.nc", result, ORIGIN)
+    write_dataset(tmp_path / "one.nc", simulation_dataset(result), ORIGIN)
     other = replace(result.simulation, realisation=7)
     with pytest.raises(UnreadableFileError, match=r"one.nc is not the result of flat .* r=7"):
         read_simulation(tmp_path / "one.nc", other)
@@ -131,7 +131,7 @@ def test_the_file_of_another_simulation_is_refused(tmp_path, result):
 @pytest.mark.parametrize("kept", [0.0, 0.02, 0.5, 0.9, 0.999])
 def test_a_truncated_file_is_refused_with_its_name(tmp_path, result, kept):
     path = tmp_path / "one.nc"
-    write_simulation(path, result, ORIGIN)
+    write_dataset(path, simulation_dataset(result), ORIGIN)
     content = path.read_bytes()
     path.write_bytes(content[: int(kept * len(content))])
     with pytest.raises(UnreadableFileError, match=r"one.nc is (no complete netCDF|damaged)"):
@@ -165,14 +165,14 @@ def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, result, monke
 
 
 def test_files_of_the_future_get_one_date_of_now_and_others_keep_theirs(tmp_path):
-    for name, moment in (("a.nc", 4e9), ("b.nc", 4e9 + 5), ("old.nc", 1e9), ("run.jsonl", 4e9)):
+    for name, moment in (("a.nc", 4e9), ("b.nc", 4e9 + 5), ("old.nc", 1e9), ("flat.tar", 4e9)):
         (tmp_path / name).write_text("text")
         os.utime(tmp_path / name, (moment, moment))
     before = time.time()
     date_back(tmp_path)
     found = {path.name: path.stat().st_mtime for path in tmp_path.iterdir()}
     assert before <= found["a.nc"] == found["b.nc"] <= time.time()
-    assert (found["old.nc"], found["run.jsonl"]) == (1e9, 4e9)
+    assert (found["old.nc"], found["flat.tar"]) == (1e9, 4e9)
 
 
 def test_a_text_is_replaced_as_a_whole(tmp_path):

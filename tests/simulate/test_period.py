@@ -16,10 +16,10 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.files import read_simulation
 from crackfront.simulate.lines import LineSchedule
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.store import Store
 from crackfront.sweep.table import read_table
 
 CONFIG = Path(__file__).parents[2] / "config"
@@ -180,7 +180,7 @@ def test_a_sweep_of_lines_is_run_aggregated_and_fitted_as_one_of_spheres(tmp_pat
     # A longer spring holds less.
     assert np.all(factor[1].mean(axis=-1) > factor[0].mean(axis=-1))
     simulation = SWEEP.simulation(SWEEP.spectra[0], SWEEP.elastic_energies[0], 0)
-    result = read_simulation(tmp_path / f"curves/{simulation.stem}.nc", simulation)
+    result = Store(tmp_path).result(simulation)
     assert result.record.status is Status.STEADY
     assert np.isfinite(result.record.end_load)
 

@@ -1,99 +1,183 @@
-"""Journals: whole lines count, torn and changed ones do not, and two writers do not meet."""
+"""Packs: whole files count, torn and changed ones do not, and two writers do not meet."""
 
+import socket
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from crackfront.data.digests import sealed
+from crackfront.data.packs import END, LONGEST_NAME, checked, is_finished, record
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import Entry, Journal, journal_paths, read_journal
-from crackfront.sweep.table import failed_row
+from crackfront.sweep.journal import Entry, RowIndex, new_pack, pack_paths, renew_packs
+from crackfront.sweep.table import failed_row, row_fingerprint
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 ONE = SWEEP.shard(SWEEP.spectra[0])[0]
-BEGUN = Entry(ONE.key, ONE.label, ONE.parts)
-ENDED = replace(BEGUN, definition="now", row=failed_row(ONE, "refused", "too rough: 1 > 0.999"))
+ROW = failed_row(ONE, "refused", "too rough: 1 > 0.999")
+ENTRY = Entry(ONE.stem, ONE.parts, row_fingerprint(), ROW)
+OTHER = replace(ENTRY, stem="flat-e0.1-r1-0123456789abcdef")
+CURVE, _ = sealed(b"curve" * 999, ".nc")
 
 
-def entries(folder, definition="now"):
-    """Entries of all journals of a folder."""
-    paths = journal_paths(folder)
-    return [entry for path in paths for _, entry in read_journal(path, definition)]
+@pytest.fixture
+def pack(tmp_path):
+    """A pack of this process."""
+    return new_pack(tmp_path, "flat", range(2))
 
 
-def same(one, other):
-    """Whether two entries are equal, NaN included."""
-    return repr(one) == repr(other)
+def names(folder):
+    """Names of the whole files in all packs of a folder, and the number of damaged places."""
+    paths = pack_paths(folder)
+    whole = [one.name for path in paths for one in checked(path)[0]]
+    return whole, sum(checked(path)[1] - (not is_finished(path)) for path in paths)
 
 
-def test_what_is_appended_is_read_back_in_order_and_to_the_last_bit(tmp_path):
-    journal = Journal(tmp_path)
-    third = replace(ENDED, row=replace(ENDED.row, w_appr=0.1 + 0.2))
-    for entry in (BEGUN, ENDED, third):
-        journal.append(entry)
-    assert same(entries(tmp_path), [BEGUN, ENDED, third])
+def test_what_is_appended_is_read_back_in_order_and_to_the_last_bit(tmp_path, pack):
+    pack.append(OTHER.files(CURVE))
+    pack.append(replace(ENTRY, row=replace(ROW, w_appr=0.1 + 0.2)).files())
+    expected = [f"{OTHER.stem}.nc", f"{OTHER.stem}.json", f"{ONE.stem}.json"]
+    assert names(tmp_path) == (expected, 0)
+    index = RowIndex(tmp_path, "flat", range(2))
+    assert index.row(ONE).w_appr == 0.1 + 0.2
+    assert index.parts(ONE) == ONE.parts
 
 
-@pytest.mark.parametrize("left", [1, 20, 200, -1])
-def test_a_torn_last_line_does_not_count_and_the_others_do(tmp_path, left):
-    journal = Journal(tmp_path)
-    journal.append(BEGUN)
-    [path] = journal_paths(tmp_path)
+def test_any_tar_reads_a_pack(tmp_path, pack):
+    pack.append(OTHER.files(CURVE))
+    [path] = pack_paths(tmp_path)
+    subprocess.run(["tar", "xf", path.name], cwd=tmp_path, check=True)
+    assert (tmp_path / f"{OTHER.stem}.nc").read_bytes() == CURVE
+
+
+@pytest.mark.parametrize("left", [1, 300, 512, 700, 5000, -1])
+def test_a_torn_last_file_does_not_count_and_the_others_do(tmp_path, pack, left):
+    pack.append(ENTRY.files())
+    [path] = pack_paths(tmp_path)
     whole = path.stat().st_size
-    journal.append(ENDED)
+    pack.append({"x.nc": CURVE})
     content = path.read_bytes()
     path.write_bytes(content[:left] if left < 0 else content[: whole + left])
-    assert same(entries(tmp_path), [BEGUN])
+    padding = left == -1  # no byte of a file
+    assert names(tmp_path) == ([f"{ONE.stem}.json", *["x.nc"] * padding], int(not padding))
 
 
-def test_a_line_with_a_flipped_bit_does_not_count_and_the_others_do(tmp_path):
-    journal = Journal(tmp_path)
-    for entry in (BEGUN, ENDED, BEGUN):
-        journal.append(entry)
-    [path] = journal_paths(tmp_path)
-    content = bytearray(path.read_bytes())
-    content[content.index(b"refused")] ^= 1
+def test_no_flipped_bit_of_a_file_counts_and_the_others_do(tmp_path, pack, rng):
+    entries = [replace(ENTRY, stem=f"flat-e0.02-r{number}-{number:016}") for number in range(3)]
+    for one in entries:
+        pack.append(one.files(CURVE))
+    [path] = pack_paths(tmp_path)
+    content, whole = path.read_bytes(), names(tmp_path)[0]
+    for bit in rng.integers(8 * len(content), size=300).tolist():
+        changed = bytearray(content)
+        changed[bit // 8] ^= 1 << bit % 8
+        path.write_bytes(changed)
+        found, n_damaged = names(tmp_path)
+        assert found in (whole, [one for one in whole if one in found])
+        assert len(found) + n_damaged == len(whole)
+
+
+def test_a_pack_that_was_cut_between_two_files_is_damaged_and_one_of_a_killed_process_is_closed(
+    tmp_path, pack
+):
+    pack.append(ENTRY.files())
+    [path] = pack_paths(tmp_path)
+    assert list(renew_packs([path])) == []
+    assert checked(path)[1] == 1
+    pack.close()
+    assert checked(path)[1] == 0
+    path.write_bytes(path.read_bytes()[:-1024])
+    assert checked(path)[1] == 1
+    assert list(renew_packs([path])) == []
+    assert checked(path)[1] == 0
+
+
+@pytest.mark.parametrize("content", [b"", bytes(4096), b"text"])
+def test_a_pack_without_content_is_damaged(tmp_path, content):
+    path = tmp_path / f"flat.0-1.{socket.gethostname()}-1-ab.tar"
     path.write_bytes(content)
-    assert same(entries(tmp_path), [BEGUN, BEGUN])
+    assert names(tmp_path)[0] == []
+    [sentence] = renew_packs([path])
+    assert sentence.startswith(
+        f"{path} is damaged; its whole files stay, the rest is in {path.name}."
+    )
+    assert not path.exists()
 
 
-def test_zeros_that_a_crash_leaves_do_not_count(tmp_path):
-    journal = Journal(tmp_path)
-    journal.append(BEGUN)
-    [path] = journal_paths(tmp_path)
+def test_what_is_whole_in_a_damaged_pack_stays_and_the_rest_is_set_aside(tmp_path):
+    path = tmp_path / f"flat.0-1.{socket.gethostname()}-1-ab.tar"
+    path.write_bytes(
+        record("a.nc", CURVE) + record("b.nc", CURVE[1:]) + record("c.nc", CURVE) + END
+    )
+    assert len(list(renew_packs([path]))) == 1
+    assert names(tmp_path) == (["a.nc", "c.nc"], 0)
+    assert path.with_name(f"{path.name}.damaged").stat().st_size == 3 * len(
+        record("a.nc", CURVE)
+    ) + len(END)
+
+
+def test_the_pack_of_a_living_process_stays_as_it_is(tmp_path, pack):
+    pack.append(OTHER.files(CURVE))
+    [path] = pack_paths(tmp_path)
     with path.open("ab") as file:
-        file.write(bytes(4096))
-    assert same(entries(tmp_path), [BEGUN])
+        file.write(b"half")
+    assert list(renew_packs([path])) == []
+    pack.close()
+    with path.open("ab") as file:
+        file.write(b"half")
+    assert len(list(renew_packs([path]))) == 1
 
 
-def test_two_writers_have_two_files(tmp_path):
-    first, second = Journal(tmp_path), Journal(tmp_path)
-    first.append(BEGUN)
-    second.append(ENDED)
-    assert len(journal_paths(tmp_path)) == 2
-    assert len(entries(tmp_path)) == 2
+def test_two_writers_have_two_files(tmp_path, pack):
+    pack.append(ENTRY.files())
+    new_pack(tmp_path, "flat", range(2)).append(OTHER.files())
+    assert len(pack_paths(tmp_path)) == 2
+    assert len(names(tmp_path)[0]) == 2
 
 
-def test_a_row_of_another_definition_comes_without_it(tmp_path):
-    Journal(tmp_path).append(ENDED)
-    [entry] = entries(tmp_path, "later")
-    assert entry.row is None
-    assert entry.key == ONE.key
+@pytest.mark.parametrize(
+    ("spectrum", "block", "found"),
+    [
+        ("flat", range(2), 1),
+        ("flat", range(1, 9), 1),
+        ("flat", range(2, 9), 0),
+        ("fla", range(2), 0),
+    ],
+)
+def test_packs_are_found_by_spectrum_and_realisations(tmp_path, pack, spectrum, block, found):
+    pack.append(ENTRY.files())
+    assert len(pack_paths(tmp_path, spectrum, block)) == found
 
 
-def test_a_line_that_the_disk_does_not_take_leaves_nothing(tmp_path, monkeypatch):
-    journal = Journal(tmp_path)
-    journal.append(BEGUN)
-    [path] = journal_paths(tmp_path)
+def test_a_row_of_another_definition_does_not_count(tmp_path, pack):
+    pack.append(replace(ENTRY, definition="earlier").files())
+    index = RowIndex(tmp_path, "flat", range(2))
+    assert index.row(ONE) is None
+    assert index.parts(ONE) == ONE.parts
+
+
+def test_what_the_disk_does_not_take_leaves_nothing(tmp_path, monkeypatch, pack):
+    pack.append(ENTRY.files())
+    [path] = pack_paths(tmp_path)
     before = path.read_bytes()
 
     def full(_):
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patched:
-        patched.setattr("crackfront.sweep.journal.os.fsync", full)
+        patched.setattr("crackfront.data.packs.SECONDS_TO_DISK", 0.0)
+        patched.setattr("crackfront.data.packs.os.fsync", full)
         with pytest.raises(OSError, match="No space left"):
-            journal.append(ENDED)
+            pack.append(OTHER.files(CURVE))
+        with pytest.raises(OSError, match="No space left"):
+            new_pack(tmp_path, "rough", range(2)).append(OTHER.files(CURVE))
+    assert pack_paths(tmp_path) == [path]
     assert path.read_bytes() == before
-    journal.append(ENDED)
-    assert same(entries(tmp_path), [BEGUN, ENDED])
+    pack.append(OTHER.files())
+    assert len(names(tmp_path)[0]) == 2
+
+
+def test_a_name_that_no_tar_holds_is_refused():
+    with pytest.raises(ValueError, match="name is too long"):
+        record("a" * (LONGEST_NAME + 1), b"")

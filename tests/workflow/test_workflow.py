@@ -16,6 +16,7 @@ import xarray as xr
 import yaml
 
 import crackfront as cf
+from tests.commands import curves, datasets
 
 ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
@@ -68,12 +69,9 @@ def serial(tmp_path_factory):
 def test_the_workflow_gives_the_same_with_one_rank_and_with_two(tmp_path, serial):
     done = snakemake(tmp_path, "--", "results/test/shards/flat.json", ranks=2)
     assert done.returncode == 0, done.stderr
-    two = sorted((tmp_path / "results/test/curves").iterdir())
+    two, one = (datasets(folder / "results/test") for folder in (tmp_path, serial))
     assert len(two) == 4
-    for path in two:
-        one = serial / "results/test/curves" / path.name
-        found, expected = (xr.load_dataset(curve).drop_vars(COSTS) for curve in (path, one))
-        assert found.equals(expected)
+    assert all(found.equals(one[name]) for name, found in two.items())
 
 
 def test_the_workflow_draws_a_sweep(serial):
@@ -182,14 +180,12 @@ def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path, s
     more = snakemake(tmp_path, "--", "results/test/fit.md", sweep=sweep, ranks=1)
     assert more.returncode == 0, more.stderr
     after = states(results)
-    curves = {path for path in after if path.parent.name == "curves"}
-    assert len(curves) == 12
+    assert len(curves(results)) == 12
     kept = {path for path in before if before[path] == after[path]}
     # What is drawn of the table is left to do, and no more.
     drawn = {path for path in kept if path.parent.name == "figures"} | {results / "summary.html"}
     assert len(drawn) == 7
-    kept -= {path for path in kept if path.parent.name == "journals"}
-    assert kept == drawn | (curves & set(before))
+    assert kept == drawn | {path for path in before if path.parent.name == "curves"}
     left = snakemake(tmp_path, "--dry-run", sweep=sweep, ranks=1).stdout
     assert {word.strip(",") for word in left.split()} & RULES == {"all", "summary", "sweep_figures"}
     assert xr.load_dataset(results / "hysteresis.nc").sizes["realisation"] == 3
@@ -227,22 +223,26 @@ def test_the_workflow_makes_anew_what_is_damaged_or_missing_and_no_more(tmp_path
     assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
     results = tmp_path / "results/sweep"
     names = [str(path.relative_to(results)) for path in states(results)]
+    names = [name for name in names if not name.startswith("curves")]
     expected = xr.load_dataset(results / "hysteresis.nc").drop_vars(COSTS)
-    curves = sorted((results / "curves").iterdir())
+    [pack] = (results / "curves").iterdir()
 
     def flip(path):
         content = bytearray(path.read_bytes())
         content[len(content) // 2] ^= 1
         path.write_bytes(content)
 
+    def tear(path):
+        path.write_bytes(path.read_bytes()[:-9000])
+
     def remove_curves():
-        for path in (*curves, results / "figures/loop.png"):
+        for path in (*(results / "curves").iterdir(), results / "figures/loop.png"):
             path.unlink()
 
     faults = {
-        "a flipped bit in a curve": lambda: flip(curves[0]),
+        "a flipped bit in a curve": lambda: flip(pack),
         "all curves and a figure gone": remove_curves,
-        "metadata of a curve": lambda: curves[1].write_bytes(b"x" + curves[1].read_bytes()[1:]),
+        "a torn pack": lambda: tear(min((results / "curves").glob("*.tar"))),
         "a corrupt list": lambda: (results / "shards/flat.json").write_bytes(b"{"),
         "a truncated table": lambda: (results / "hysteresis.nc").write_bytes(b"CDF"),
         "a flipped bit in the table": lambda: flip(results / "hysteresis.nc"),
@@ -258,6 +258,7 @@ def test_the_workflow_makes_anew_what_is_damaged_or_missing_and_no_more(tmp_path
         assert done.returncode == 0, f"{what}: {done.stderr}"
         assert "Traceback" not in done.stderr
         missing = [name for name in names if not (results / name).is_file()]
+        assert len(curves(results)) == 4, what
         assert not missing, what
         found = xr.load_dataset(results / "hysteresis.nc").drop_vars(COSTS)
         assert found.equals(expected), what
@@ -329,22 +330,22 @@ def test_a_killed_snakemake_costs_nothing_that_is_stored(tmp_path):
     text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
     text = "".join(line for line in text.splitlines(keepends=True) if "name: rough" not in line)
     sweep.write_text(text.replace("angles: 128", "angles: 512").replace("step: 0.1", "step: 0.05"))
-    curves, table = tmp_path / "results/sweep/curves", "results/sweep/hysteresis.nc"
+    results, table = tmp_path / "results/sweep", "results/sweep/hysteresis.nc"
     with subprocess.Popen(
         command(tmp_path, sweep=sweep, ranks=1),
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     ) as process:
-        while not any(curves.glob("[!.]*.nc")):
+        while not curves(results):
             time.sleep(0.02)
             assert process.poll() is None
         process.kill()
-    before = {path: path.stat().st_mtime_ns for path in curves.glob("[!.]*.nc")}
+    before = {name: content for name, content in curves(results).items() if content}
     # The job that it leaves goes on beside the new one.
     done = snakemake(tmp_path, "--", table, sweep=sweep, ranks=1)
     assert done.returncode == 0, done.stderr
-    assert before.items() <= states(curves).items()
+    assert before.items() <= curves(results).items()
     found = xr.load_dataset(tmp_path / table).drop_vars(COSTS)
     assert found.sizes["realisation"] == 2
     undisturbed = cf.sweep(sweep, tmp_path / "undisturbed", progress=False).drop_vars(COSTS)

@@ -1,0 +1,159 @@
+"""Packs: tar archives of sealed files to which one process appends, read past any damage."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tarfile import BLOCKSIZE, USTAR_FORMAT, HeaderError, TarInfo
+
+from crackfront.data.digests import content_digest
+
+PACK = ".tar"
+"""Ending of the names of packs."""
+
+SECONDS_TO_DISK = 0.5
+"""What a machine that crashes may lose of a pack; a process that is killed loses nothing."""
+
+END = bytes(2 * BLOCKSIZE)
+"""How a pack ends that was closed."""
+
+LONGEST_NAME = 100
+"""Letters that the name of a file in a pack may have."""
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A file in a pack, which begins at a byte of that and has so many; or a file by itself."""
+
+    path: Path
+    name: str
+    place: int
+    size: int
+
+    def content(self) -> bytes | None:
+        """Its bytes, None where they are not those that were written."""
+        with contextlib.suppress(FileNotFoundError), self.path.open("rb", buffering=0) as file:
+            content = os.pread(file.fileno(), self.size, self.place)
+            return content if content_digest(content) else None
+        return None
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.name}" if self.place else str(self.path)
+
+
+File = Path | Member
+"""A file, or one in a pack."""
+
+
+def is_finished(path: Path) -> bool:
+    """Whether a pack was closed, and has not been cut since."""
+    with path.open("rb") as file:
+        file.seek(max(0, file.seek(0, os.SEEK_END) - len(END)))
+        return file.read() == END
+
+
+def finish(path: Path) -> None:
+    """Close a pack whose process has ended."""
+    with path.open("ab") as file:
+        file.write(END)
+
+
+def members(path: Path) -> tuple[list[Member], int]:
+    """Files in a pack in their order, and the number of damaged places between them."""
+    found: list[Member] = []
+    end = path.stat().st_size - (len(END) if is_finished(path) else 0)
+    with path.open("rb", buffering=0) as file:
+        place, n_damaged, known = 0, 0, True
+        while place < end:
+            with contextlib.suppress(HeaderError):
+                head = TarInfo.frombuf(os.pread(file.fileno(), BLOCKSIZE, place), "ascii", "strict")
+                place += BLOCKSIZE
+                if place + head.size <= end:
+                    found.append(Member(path, head.name, place, head.size))
+                    place += _padded(head.size)
+                    known = True
+                    continue
+                place -= BLOCKSIZE
+            # Headers begin at multiples of a block: the next one ends what is damaged.
+            n_damaged += known
+            known = False
+            place += BLOCKSIZE
+    return found, n_damaged
+
+
+def _padded(size: int) -> int:
+    """Bytes of whole blocks for so many bytes."""
+    return -(-size // BLOCKSIZE) * BLOCKSIZE
+
+
+def checked(path: Path) -> tuple[list[Member], int]:
+    """Whole files in a pack, and the number of its damaged files and places, one the lost end."""
+    found, n_damaged = members(path)
+    whole = [one for one in found if one.content() is not None]
+    return whole, n_damaged + len(found) - len(whole) + (not is_finished(path))
+
+
+def record(name: str, content: bytes) -> bytes:
+    """A file as it stands in a pack."""
+    head = TarInfo(name)
+    head.size = len(content)
+    return head.tobuf(USTAR_FORMAT, "ascii", "strict") + content.ljust(_padded(len(content)), b"\0")
+
+
+class Pack:
+    """A new pack to which this process appends; it is locked until it is closed or the end."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._number: int | None = None
+        self._on_disk = -SECONDS_TO_DISK
+
+    def append(self, files: Mapping[str, bytes]) -> None:
+        """Append files; the pack is created with the first ones, and on disk from time to time.
+
+        Raises
+        ------
+        OSError
+            If that is impossible; what was there before stays.
+        """
+        if self._number is None:
+            self._number = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o666)
+            lock(self._number, fcntl.LOCK_EX)
+        rest = memoryview(b"".join(record(*item) for item in files.items()))
+        length = os.lseek(self._number, 0, os.SEEK_END)
+        try:
+            while rest:
+                rest = rest[os.write(self._number, rest) :]
+            if time.monotonic() - self._on_disk >= SECONDS_TO_DISK:
+                os.fsync(self._number)
+                self._on_disk = time.monotonic()
+        except OSError:
+            os.ftruncate(self._number, length)
+            if not length:
+                self._path.unlink()
+                os.close(self._number)
+                self._number = None
+            raise
+
+    def close(self) -> None:
+        """Have all of it on disk, and unlock it; an OSError where that is impossible."""
+        if self._number is not None:
+            number, self._number = self._number, None
+            try:
+                os.write(number, END)
+                os.fsync(number)
+            except OSError as error:
+                raise OSError(error.errno, error.strerror, str(self._path)) from error
+            finally:
+                os.close(number)
+
+
+def lock(number: int, operation: int) -> None:
+    """Lock or unlock an open file, where the file system has locks and no other has this one."""
+    with contextlib.suppress(OSError):
+        fcntl.flock(number, operation | fcntl.LOCK_NB)
