@@ -31,6 +31,9 @@ from crackfront.core.arrays import Array
 FEWEST_BOOTSTRAP = 100
 """Bootstrap samples below which a standard error is itself mostly noise."""
 
+COUNTS_AT_ONCE = 2**23
+"""Counts of bootstrap samples in memory at once; few realisations are drawn in one go."""
+
 FIT_DEFINITION = (
     "k of one simulation is (w_retr - w_appr) / (2 e_el) with e_el measured on its tile. k of a "
     "spectrum is the mean over the amplitudes in the range, each the mean over its realisations, "
@@ -218,10 +221,19 @@ def _fit_spectra(
         values[:, index], weights[:, index] = value[:, 0], weight[:, 0]
         if freedom[index] > 0:
             rng = np.random.default_rng(stream)
-            drawn, _ = _statistics(_means(own, resample_counts(n_bootstrap, whole.size, rng)))
+            drawn, _ = _statistics(_resampled(own, n_bootstrap, rng))
             errors[:, index] = scatter(drawn)
     estimates = [student_estimate(*row, freedom) for row in zip(values, errors, strict=True)]
     return estimates, weights
+
+
+def _resampled(samples: _Samples, n_bootstrap: int, rng: np.random.Generator) -> _Samples:
+    """Means of bootstrap samples, of which a bounded number of counts is in memory at once."""
+    n_realisation = samples.factor.shape[1]
+    at_once = max(1, COUNTS_AT_ONCE // n_realisation)
+    sizes = [min(at_once, n_bootstrap - first) for first in range(0, n_bootstrap, at_once)]
+    parts = [_means(samples, resample_counts(size, n_realisation, rng)) for size in sizes]
+    return _Samples(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
 def _means(samples: _Samples, counts: Array) -> _Samples:

@@ -260,7 +260,7 @@ def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path
             "the same command continues with the others",
             err=True,
         )
-        sys.exit(code if 0 < code < 126 else 1)
+        sys.exit(2 if code == 2 else 1)  # a launcher has codes of its own
 
 
 def fill_store(

@@ -2,7 +2,8 @@
 
 This is the only importer of mpi4py. A stop is requested by SIGTERM, which a batch system sends some
 time before it kills, by Ctrl-C or by closing the terminal. Some launchers kill their ranks instead
-of passing signals on; the process that started a launcher therefore leaves its ranks a file.
+of passing signals on; the process that started a launcher therefore leaves its ranks a file, and
+they end with that process, however it ends.
 """
 
 from __future__ import annotations
@@ -33,6 +34,9 @@ _STOP_FILE = "CRACKFRONT_STOP"
 
 _ENDED = "ended"
 """What the manager writes into it before it stops."""
+
+_ALIVE = b"\n"
+"""What the process that starts a launcher writes into the input of the ranks and then holds."""
 
 _SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE")
 """Environment variables in which launchers state how many processes they start."""
@@ -127,6 +131,8 @@ def is_manager(n_worker: int) -> bool:
 
     world = MPI.COMM_WORLD
     if world.size == n_worker + 1:
+        if world.rank == 0 and _STOP_FILE in os.environ:
+            threading.Thread(target=_end_with_launcher, args=(world.Abort,), daemon=True).start()
         return world.rank == 0
     if world.rank != 0:
         # The first that exits ends them all; the manager prints its sentence before.
@@ -136,6 +142,15 @@ def is_manager(n_worker: int) -> bool:
         f"MPI started {world.size} rank(s) where {n_worker + 1} were expected ({n_worker} workers "
         "and a manager); launch workers + 1, by the launcher that belongs to mpi4py's MPI library"
     )
+
+
+def _end_with_launcher(abort: Callable[[int], object]) -> None:
+    """End all ranks when the process that started the launcher is gone, which closes this input."""
+    # Where the launcher passes no input on, it ends before the sign with which that begins.
+    if os.read(0, 1) == _ALIVE:
+        while os.read(0, 1):
+            pass
+        abort(1)
 
 
 def serve_tasks(module: str) -> None:
@@ -236,7 +251,7 @@ def launch_ranks(
         # A group of its own: Ctrl-C reaches this process alone, and not the launcher, which would
         # kill the ranks. From the background none of them may read the terminal.
         process = subprocess.Popen(
-            command, env=environment, stdin=subprocess.DEVNULL, process_group=0
+            command, bufsize=0, env=environment, stdin=subprocess.PIPE, process_group=0
         )
     except OSError as error:
         raise ValueError(
@@ -249,8 +264,11 @@ def launch_ranks(
         except OSError:  # the second time, or where nothing can be written
             process.terminate()
 
+    assert process.stdin is not None, "it is a pipe"
     try:
         with _handling_stops(leave_file):
+            with contextlib.suppress(BrokenPipeError):
+                process.stdin.write(_ALIVE)
             code = process.wait()
         ended = file.exists() and file.read_text(encoding="utf-8") == _ENDED
         return None if code == 0 and ended else code
@@ -258,4 +276,5 @@ def launch_ranks(
         if process.poll() is None:
             process.terminate()
             process.wait()
+        process.stdin.close()
         file.unlink(missing_ok=True)

@@ -134,6 +134,15 @@ def test_realisations_are_resampled_with_all_their_amplitudes(rng):
     assert np.all(fit.spectra.factor.standard_error > 2 * single.standard_error / np.sqrt(5))
 
 
+def test_a_bootstrap_that_is_drawn_in_parts_is_the_one_that_is_drawn_at_once(rng, monkeypatch):
+    table = synthetic_table(rng, constant)
+    whole = fit_all(table).spectra.factor
+    monkeypatch.setattr("crackfront.analysis.sweep.COUNTS_AT_ONCE", 100)
+    assert fit_all(table).spectra.factor.standard_error == pytest.approx(
+        whole.standard_error, rel=1e-12
+    )
+
+
 def test_the_notes_tell_the_largest_numerical_error_of_k(rng):
     table = synthetic_table(rng, constant)
     larger = table.w_retr_numerical_error.copy()
