@@ -138,6 +138,7 @@ class Store:
 
         Where ended processes left packs of the same realisations damaged, what is whole is kept.
         """
+        self.curves.mkdir(parents=True, exist_ok=True)
         alike: dict[str, list[Simulation]] = defaultdict(list)
         for one in simulations:
             alike[one.spectrum_name].append(one)

@@ -142,9 +142,7 @@ def synthetic(folder: Path, n_simulation: int) -> Sweep:
     """A sweep whose simulations have all ended without a value, a pack a spectrum."""
     sweep = load_configuration(ROOT / "config/test.yaml")
     sweep = replace(sweep, n_realisation=n_simulation // 4, failed_fraction=1.0)
-    store = Store(folder)
-    store.curves.mkdir()
-    with store.packs(sweep.simulations()) as packs:
+    with Store(folder).packs(sweep.simulations()) as packs:
         for number, one in enumerate(sweep.simulations()):
             row = failed_row(one, "step_limit", "the solver reached its limit of sweeps")
             row = replace(row, seconds=0.1 * number, n_step=number % 60)
