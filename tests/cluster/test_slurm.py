@@ -146,13 +146,12 @@ def started(tmp_path_factory):
 @pytest.mark.parametrize("way", WAYS)
 def test_the_profile_runs_a_shard_and_the_sweep_is_the_undisturbed_one(started, way):
     folder, sweep, process = started[way]
-    target, resources = WAYS[way]
+    target, _ = WAYS[way]
     results = folder / "results/sweep"
     told = process.communicate(timeout=280)[1]
     assert process.returncode == 0, told
     assert "has been submitted with SLURM jobid" in told
-    # One journal a process that has simulated.
-    assert len(list((results / "journals").iterdir())) == resources.get("tasks", 3) - 1
+    assert len(list((results / "curves").glob("*.tar"))) == 1
     if target != "hysteresis.nc":
         main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
     assert dataset(results).equals(undisturbed(sweep, folder / "alone"))
@@ -166,7 +165,6 @@ def test_ranks_on_two_nodes_find_what_one_process_finds(tmp_path):
     ranks = [*SRUN.split(), "-N2", "-n3", sys.executable, "-m", "mpi4py", "-m", "crackfront"]
     done = run([*ranks, "simulate", str(sweep), "--ranks", "2", "--output", str(results)])
     assert done.returncode == 0, done.stderr
-    assert len(list((results / "journals").iterdir())) == 2
     main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
     assert dataset(results).equals(undisturbed(sweep, tmp_path / "alone"))
 
@@ -211,7 +209,7 @@ def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_pa
     command += f"--ranks 2 --output {results}"
     job = ["sbatch", "--parsable", "--ntasks=3", "--time=60", "--signal=TERM@58", "--wrap", command]
     number = run(job, cwd=tmp_path).stdout.strip()
-    until(lambda: len(list((results / "journals").glob("*"))) == 1)
+    until(lambda: len(list((results / "checkpoints").glob("*.running"))) == 1)
     # Limits are in minutes: with notice 58 s before its end, the minute that runs is the last.
     used = run(["squeue", "--noheader", "--jobs", number, "--format=%M"]).stdout
     limit = int(used.split(":")[0]) + 1
