@@ -62,62 +62,43 @@ _BROADER = 1.25
 
 @dataclass(frozen=True, slots=True)
 class Law:
-    """The fitted law.
-
-    Attributes
-    ----------
-    coefficients : tuple of float
-        As :data:`COEFFICIENTS` names them.
-    covariance : tuple of tuple of float
-        Statistical, of the coefficients and the finite-size exponent, with that one free.
-    model_factor, model_length : float
-        Model error: standard deviation of ln k, and of ln g, between surfaces of the same s and g.
-    numerical : float
-        Standard error of ln k that the numerics leave.
-    exponent : tuple of float
-        The finite-size exponent when left free, and its standard error.
-    rms, worst : float
-        Departure of the measured k from the law, relative, for g above 1.
-    disorder, size, breadth : tuple of float
-        Measured ranges of s, g and the breadth.
-    """
+    """The fitted law."""
 
     coefficients: tuple[float, ...]
+    """As :data:`COEFFICIENTS` names them."""
     covariance: tuple[tuple[float, ...], ...]
+    """Statistical, of the coefficients and the finite-size exponent, with that one free."""
     model_factor: float
     model_length: float
+    """Model error: standard deviation of ln k, and of ln g, between surfaces of one s and g."""
     numerical: float
+    """Standard error of ln k that the numerics leave."""
     exponent: tuple[float, float]
+    """The finite-size exponent when left free, and its standard error."""
     rms: float
     worst: float
+    """Departure of the measured k from the law, relative, for g above 1."""
     disorder: tuple[float, float]
     size: tuple[float, float]
     breadth: tuple[float, float]
+    """Measured ranges of s, g and the breadth."""
 
 
 @dataclass(frozen=True, slots=True)
 class PinningFactor:
-    """Factor k of a straight front, with a sentence where it is not measured.
-
-    Attributes
-    ----------
-    factor : Estimate of a number
-        k with the 95% interval of statistical, numerical and model error together.
-    statistical, numerical, model : float
-        The three standard errors of k.
-    negative_share : float
-        Part of a Gaussian w_loc that is negative: where it is large the linearisation of the
-        roughness is not to be trusted.
-    warning : str
-        What lies outside of the measured range; empty inside.
-    """
+    """Factor k of a straight front, with a sentence where it is not measured."""
 
     factor: Estimate[float]
+    """With the 95% interval of statistical, numerical and model error together."""
     statistical: float
     numerical: float
     model: float
+    """The three standard errors of k."""
     negative_share: float
+    """Part of a Gaussian w_loc that is negative: where it is large the linearisation of the
+    roughness is not to be trusted."""
     warning: str
+    """What lies outside of the measured range; empty inside."""
 
 
 def law_value(

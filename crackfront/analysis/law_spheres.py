@@ -36,28 +36,17 @@ _LEAST_ADHESION = 0.02
 
 @dataclass(frozen=True, slots=True)
 class SphereFactors:
-    """Factors k that the law gives for a rough sphere.
-
-    Attributes
-    ----------
-    approach, retraction : PinningFactor
-        Of the two branches.
-    both : Estimate of a number
-        k, the mean of the two.
-    spring : float
-        L_kappa of the smooth contact. (Units: reduced lateral length)
-    larkin_length : float
-        (Units: reduced lateral length)
-    size : float
-        g = spring / larkin_length.
-    """
+    """Factors k that the law gives for a rough sphere."""
 
     approach: PinningFactor
     retraction: PinningFactor
     both: Estimate[float]
+    """Mean k of the two branches."""
     spring: float
     larkin_length: float
+    """L_kappa of the smooth contact, and the Larkin length. (Units: reduced lateral length)"""
     size: float
+    """Their ratio g."""
 
     @property
     def warning(self) -> str:

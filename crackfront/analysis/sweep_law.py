@@ -28,22 +28,14 @@ _UNKNOWN = Estimate(*(math.nan,) * 4)
 
 @dataclass(frozen=True, slots=True)
 class SweepLaw:
-    """How the fronts of a sweep are held, which is all that the law asks for beside the disorder.
-
-    Attributes
-    ----------
-    table : SweepTable
-        The sweep.
-    kind : {"roughness", "chemical"}
-        What its spectra describe.
-    uncorrelated : bool
-        Whether the sites of straight fronts know nothing of each other: the limit of weak disorder,
-        whatever the amplitude, which decides only how far apart they are.
-    """
+    """How the fronts of a sweep are held, which is all that the law asks for beside the disorder."""
 
     table: SweepTable
     kind: FieldKind
+    """What its spectra describe."""
     uncorrelated: bool = False
+    """Whether the sites of straight fronts know nothing of each other: the limit of weak disorder,
+    whatever the amplitude, which decides only how far apart they are."""
 
     @property
     def energy(self) -> Array:

@@ -88,28 +88,17 @@ def half_derivative_mean_square(heights: Array, pixel: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class AdhesionMap:
-    """Local work of adhesion on a periodic tile, with the measures that its fits refer to.
-
-    Attributes
-    ----------
-    work_of_adhesion : (n_x, n_y) array
-        w_loc, first axis x. (Units: reduced energy / area, w_int = 1/pi)
-    pixel : float
-        Grid spacing. (Units: reduced lateral length)
-    e_el : float
-        e_el / w_int measured on the tile; for a chemical field the equivalent
-        (w_rms / w_int)^2 / 4.
-    w_rms : float
-        w_rms / w_int measured on the tile.
-    corner : tuple of float
-        Coordinates of the first point, where they matter. (Units: reduced lateral length)
-    """
+    """Local work of adhesion on a periodic tile, with the measures that its fits refer to."""
 
     work_of_adhesion: Array
+    """Values of w_loc, first axis x. (Units: reduced energy / area, w_int = 1/pi)"""
     pixel: float
+    """Grid spacing. (Units: reduced lateral length)"""
     e_el: float
     w_rms: float
+    """Measured on the tile; for a chemical field e_el is (w_rms / w_int)^2 / 4. (Units: w_int)"""
     corner: tuple[float, float] = (0.0, 0.0)
+    """Coordinates of the first point, where they matter. (Units: reduced lateral length)"""
 
 
 def rough_adhesion(heights: Array, pixel: float) -> AdhesionMap:

@@ -41,24 +41,14 @@ class Status(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Relaxation:
-    """Outcome of one relaxation.
-
-    Attributes
-    ----------
-    front : (n_site,) array
-        Places of the sites at the end. (Units: reduced lateral length)
-    status : Status
-        What ended it.
-    sweeps : int
-        Sweeps over the front, counted in pairs of FFTs.
-    updates : int
-        Updates of single sites.
-    residual : float
-        Largest force along the motion that is left, relative to w_int per front length.
-    """
+    """Outcome of one relaxation."""
 
     front: NDArray[np.float64]
+    """Places of the sites at the end. (Units: reduced lateral length)"""
     status: Status
     sweeps: int
+    """Sweeps over the front, counted in pairs of FFTs."""
     updates: int
+    """Updates of single sites."""
     residual: float
+    """Largest force along the motion that is left, relative to w_int per front length."""

@@ -14,40 +14,25 @@ from crackfront.core.solver.relax import Solver, relax
 
 
 class Load(NamedTuple):
-    """A load and how it is reached.
-
-    Attributes
-    ----------
-    value : float
-        Penetration of a sphere. (Units: reduced vertical length)
-    direction : {1, -1}
-        Direction in which it is reached.
-    start : (n_site,) array or None
-        Front at which a branch begins with it; by default the front of the load before.
-    """
+    """A load and how it is reached."""
 
     value: float
+    """Penetration of a sphere. (Units: reduced vertical length)"""
     direction: Direction
+    """Direction in which it is reached."""
     start: Array | None = None
+    """Front at which a branch begins with it; by default the front of the load before."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step of a front.
-
-    Attributes
-    ----------
-    load : Load
-        Where it went.
-    before : (n_site,) array
-        Front that it began with.
-    found : Relaxation
-        Front that it ended with, and how.
-    """
+    """One step of a front."""
 
     load: Load
     before: Array
+    """Front that it began with. Shape (n_site,). (Units: reduced lateral length)"""
     found: Relaxation
+    """Front that it ended with, and how."""
 
     @property
     def front(self) -> Array:

@@ -20,55 +20,36 @@ from crackfront.core.variables import ENERGY, STEP, variable
 
 @dataclass(frozen=True, slots=True)
 class CycleRecord:
-    """The metastable states that a cycle visited, in order.
-
-    Attributes
-    ----------
-    status : Status
-        What ended the cycle; a full cycle of a sphere ends by losing contact.
-    end_load : float
-        Load at which it ended (where contact was lost).
-    states : dataclass of (n_step,) arrays
-        The states as the geometry records them, as
-        :class:`crackfront.core.geometry.sphere.ContactState` that of a sphere.
-    dissipated_energy : (n_step,) array or None
-        Energy lost in the jumps of each load step, if recorded; the first includes that of making
-        contact. (Units: pi w_int R times a reduced vertical length)
-    pull_off_energy : float or None
-        Energy lost when the contact vanishes after the last state; with it the dissipated energies
-        sum up to the loop integral of F db. None where energies are not recorded or contact was not
-        lost. (Units: as dissipated_energy)
-    fronts : (n_step, n_site) array or None
-        The fronts, if recorded. (Units: reduced lateral length)
-    """
+    """The metastable states that a cycle visited, in order."""
 
     status: Status
+    """What ended the cycle; a full cycle of a sphere ends by losing contact."""
     end_load: float
+    """Load at which it ended (where contact was lost)."""
     states: Any
+    """Dataclass of (n_step,) arrays, the states as the geometry records them; that of a sphere is
+    :class:`crackfront.core.geometry.sphere.ContactState`."""
     dissipated_energy: Array | None = variable(
         "energy lost in the jumps of a load step", ENERGY, STEP, default=None
     )
+    """If recorded; the first includes that of making contact. Shape (n_step,)."""
     pull_off_energy: float | None = None
+    """Energy lost when the contact vanishes after the last state; with it the dissipated energies
+    sum up to the loop integral of F db. None where energies are not recorded or contact was not
+    lost. (Units: as dissipated_energy)"""
     fronts: Array | None = None
+    """If recorded. Shape (n_step, n_site). (Units: reduced lateral length)"""
 
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """A record and the fronts with which it is continued.
-
-    Attributes
-    ----------
-    record : CycleRecord
-        All states so far.
-    front : (n_site,) array
-        Front of the last state. (Units: reduced lateral length)
-    turn : (n_site,) array
-        Front at which its branch began. (Units: reduced lateral length)
-    """
+    """A record and the fronts with which it is continued."""
 
     record: CycleRecord
     front: Array
+    """Front of the last state. (Units: reduced lateral length)"""
     turn: Array
+    """Front at which its branch began. (Units: reduced lateral length)"""
 
 
 Observer = Callable[["Recorder"], None]
@@ -86,23 +67,15 @@ class Recorder:
         Called with the recorder at every new state, for progress, checkpoints, pictures.
     resume : Checkpoint, optional
         An earlier run of the same loads to continue, to the same record bit for bit.
-
-    Attributes
-    ----------
-    states : list
-        States so far, as the geometry records them.
-    front : (n_site,) array
-        Front of the last state. (Units: reduced lateral length)
-    load : float
-        Load of the last step.
-    status : Status
-        How the last step ended.
     """
 
     states: list[Any]
+    """States so far, as the geometry records them."""
     front: Array
+    """Front of the last state. (Units: reduced lateral length)"""
     load: float
     status: Status
+    """Load of the last step, and how it ended."""
 
     def __init__(
         self,

@@ -31,28 +31,20 @@ class Schedule(ABC):
 
     A kind is a frozen dataclass, whose fields enter the keys of simulations, with these attributes
     and the methods that are abstract here.
-
-    Attributes
-    ----------
-    straight : bool
-        Whether the front is a straight one on springs.
-    full_cycle : bool
-        Whether the load goes from first contact to pull-off.
-    uncorrelated : bool
-        Whether sites are independent of each other.
-    max_penetration : float
-        Largest penetration of a sphere; else 0. (Units: reduced vertical length)
-    spring : float
-        Length of the springs of a straight front; else NaN. (Units: length)
     """
 
     __slots__ = ()
 
     straight: bool
+    """Whether the front is a straight one on springs."""
     full_cycle = False
+    """Whether the load goes from first contact to pull-off."""
     uncorrelated: bool
+    """Whether sites are independent of each other."""
     max_penetration: float
+    """Largest penetration of a sphere; else 0. (Units: reduced vertical length)"""
     spring: float
+    """Length of the springs of a straight front; else NaN. (Units: length)"""
 
     @property
     @abstractmethod
