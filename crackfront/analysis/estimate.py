@@ -97,11 +97,7 @@ def product(*factors: Estimate[float]) -> Estimate[float]:
 def student_estimate(value: ArrayLike, standard_error: ArrayLike, freedom: ArrayLike) -> Estimate:
     """Estimate with the 95% interval of Student's t, arrays of the common shape.
 
-    Parameters
-    ----------
-    value, standard_error, freedom : array_like
-        Point estimate, its standard error and the degrees of freedom of the latter; fewer than
-        one give no interval.
+    Fewer degrees of freedom of the standard error than one give no interval.
     """
     numbers = (np.asarray(number, dtype=float) for number in (value, standard_error))
     centre, error, degrees = np.broadcast_arrays(*numbers, freedom)
@@ -126,16 +122,8 @@ def resample_counts(n_sample: int, n_realisation: int, rng: np.random.Generator)
 
     A sample has n - 1 of n realisations, drawn with replacement: then the variance between
     samples of a mean is that of the mean, without the factor (n - 1) / n of samples of n, which
-    is a quarter for four realisations.
-
-    Returns
-    -------
-    (n_sample, n_realisation) array
-        Counts; each row sums to n_realisation - 1, at least 1.
-
-    References
-    ----------
-    .. [1] McCarthy, Snowden, Vital and Health Statistics 2, 95 (1985).
+    is a quarter for four realisations (McCarthy, Snowden, Vital and Health Statistics 2, 95, 1985).
+    The shape is (n_sample, n_realisation); two realisations or more are needed.
     """
     equal = np.full(n_realisation, 1 / n_realisation)
     return rng.multinomial(n_realisation - 1, equal, size=n_sample).astype(float)
@@ -161,17 +149,9 @@ def finite_mean(values: Array) -> Array:
 def combination(parts: Estimate, freedom: ArrayLike, coefficients: Array) -> Estimate:
     """Linear combination of independent estimates, arrays without dimensions.
 
-    The degrees of freedom follow Welch and Satterthwaite. NaN where no coefficient differs from
-    zero.
-
-    Parameters
-    ----------
-    parts : Estimate
-        Estimates of shape (n,).
-    freedom : (n,) array_like
-        Degrees of freedom of their standard errors.
-    coefficients : (n,) array
-        Coefficients; parts with zero are left out, NaN included.
+    All three have the shape (n,), the freedom is that of the standard errors. Parts with a
+    coefficient of zero are left out, NaN included; NaN where all are. The degrees of freedom of the
+    result follow Welch and Satterthwaite.
     """
     used = np.flatnonzero(coefficients)
     if used.size == 0:
@@ -194,13 +174,8 @@ def ratio(numerator: ArrayLike, denominator: ArrayLike) -> Array:
 def slope(abscissa: Array, ordinate: Array) -> tuple[Array, Array]:
     """Least-squares slopes of lines along the last axis, points of equal weight, NaN left out.
 
-    Returns
-    -------
-    slope : (...) array
-        NaN with fewer than two distinct abscissas.
-    spread : (...) array
-        Sum of squared deviations of the abscissas from their mean; the weight of the slope when
-        several lines share one.
+    A slope is NaN with fewer than two distinct abscissas. Beside it stands the sum of squared
+    deviations of the abscissas from their mean: its weight when several lines share one.
     """
     finite = np.isfinite(abscissa) & np.isfinite(ordinate)
     centre = finite_mean(np.where(finite, abscissa, np.nan))

@@ -134,16 +134,8 @@ def period_adhesion(
 ) -> SteadyAdhesion:
     """Mean apparent work of adhesion of a straight front over one period of its tile.
 
-    Parameters
-    ----------
-    record : CycleRecord
-        States of a line, forward and back.
-    n_period : int
-        States at the end of each branch that are one period.
-    mean : float
-        Mean work of adhesion of the tile. (Units: w_int)
-    correlation_length : float
-        That of w_loc. (Units: reduced lateral length)
+    The last `n_period` states forward and back are a period. The mean of w_loc is in w_int, its
+    correlation length in reduced lateral lengths.
     """
     states = record.states
     branches = [np.flatnonzero(sign * states.direction > 0)[-n_period:] for sign in (1, -1)]
@@ -220,23 +212,9 @@ def standard_error(
 
     States count as independent if they are at least one distance apart: the correlation length of
     w_loc or three times the rms roughness of the front, whichever is larger. A rough front
-    has to pass its own depth before it has left what pinned it (docs/model.md).
-
-    Parameters
-    ----------
-    values : (n_state,) array
-        Apparent work of adhesion. (Units: w_int)
-    radius : (n_state,) array
-        Mean radius. (Units: reduced lateral length)
-    roughness : (n_state,) array
-        Rms deviation of the front from its mean radius. (Units: reduced lateral length)
-    correlation_length : float
-        That of w_loc. (Units: reduced lateral length)
-
-    Returns
-    -------
-    float
-        Standard error, infinite for fewer than :data:`FEWEST_STATES` states. (Units: w_int)
+    has to pass its own depth before it has left what pinned it (docs/model.md). Values and their
+    error are in w_int, mean radii and rms roughness of the states in reduced lateral lengths.
+    Infinite for fewer than :data:`FEWEST_STATES` states.
     """
     if values.size < FEWEST_STATES:
         return math.inf

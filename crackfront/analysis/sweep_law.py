@@ -28,7 +28,7 @@ _UNKNOWN = Estimate(*(math.nan,) * 4)
 
 @dataclass(frozen=True, slots=True)
 class SweepLaw:
-    """How the fronts of a sweep are held, which is all that the law asks for beside the disorder."""
+    """How the fronts of a sweep are held: all that the law needs beside the disorder."""
 
     table: SweepTable
     kind: FieldKind

@@ -38,16 +38,9 @@ def draw_spectrum(
 ) -> None:
     """Isotropic density of a surface, with bars of the scales that dominate its rms measures.
 
-    Parameters
-    ----------
-    wavevector, density : (n_wave,) array
-        Magnitudes q, and C(q). (Units: 1 / reduced lateral length, (3 pi w_int R / 4E')^2)
-    rms : (3,) array
-        Rms height, half-derivative and slope. (Units: reduced)
-    shortest, longest : (3,) array
-        Wavelengths between which 80% of their squares lie. (Units: reduced lateral length)
-    ideal : (n_wave,) array, optional
-        Density of the spectrum that the surface was made from, zero where it has none.
+    Reduced are the n_wave wavevectors and densities, the three rms measures (height,
+    half-derivative, slope) and the wavelengths between which 80% of their squares lie. `ideal` is
+    the density of the spectrum that the surface was made from, zero where it has none.
     """
     axes.set(xscale="log", yscale="log")
     wave, power = wavevector / units.lateral, (units.vertical * units.lateral) ** 2
@@ -73,13 +66,8 @@ def draw_spectrum(
 def draw_dominant_scales(axes: Axes, mean_square: Array, shortest: Array, longest: Array) -> None:
     """Bars of the scales that carry 80% of the mean squares, above what is drawn.
 
-    The axes are of an isotropic density, and their wavevectors have their limits.
-
-    Parameters
-    ----------
-    mean_square, shortest, longest : (3,) array
-        Mean squares of heights, half-derivatives and slopes, and the ends of their scales.
-        (Units: m^(2 - 2 order), m)
+    The axes are of an isotropic density, and their wavevectors have their limits. Mean squares are
+    those of heights, half-derivatives and slopes (units: m^(2 - 2 order)), ends of scales in m.
     """
     _add_bars(axes, _measured_names(mean_square), 2 * np.pi / longest, 2 * np.pi / shortest)
 

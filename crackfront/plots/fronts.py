@@ -35,14 +35,8 @@ def draw_field(
 ) -> None:
     """Work of adhesion in a few shades, mean - reach to mean + reach, with a colour bar.
 
-    Parameters
-    ----------
-    x, y : (n_x,), (n_y,) arrays
-        Abscissae and ordinates. (Units: reduced lateral length)
-    adhesion : (n_x, n_y) array
-        Work of adhesion. (Units: w_int)
-    mean, reach : float
-        Middle of the shades, and how far they go to either side. (Units: w_int)
+    Values at n_x abscissae and n_y ordinates (units: reduced lateral length) have the shape
+    (n_x, n_y) (units: w_int, as of mean and reach).
     """
     ends = units.adhesion * (mean - reach), units.adhesion * (mean + reach)
     levels = MaxNLocator(_MOST_GREYS).tick_values(*ends)
@@ -80,14 +74,8 @@ def draw_fronts(
 ) -> None:
     """Fronts of both branches as closed curves, at most so many of a branch, its last among them.
 
-    Parameters
-    ----------
-    angle : (n_angle,) array
-        Angles of the sites. (Units: rad)
-    radius : (n_step, n_angle) array
-        The fronts. (Units: reduced lateral length)
-    direction : (n_step,) int array
-        +1 in approach, -1 in retraction.
+    Radii (units: reduced lateral length) at n_angle angles (units: rad) have the shape
+    (n_step, n_angle); n_step directions are +1 in approach, -1 in retraction.
     """
     for sign, colour, label in ((1, BLUE, "approach"), (-1, VERMILION, "retraction")):
         for count, front in enumerate(_few(radius[direction == sign], most)):
@@ -103,14 +91,8 @@ def draw_straight_fronts(
 ) -> None:
     """Straight fronts of both branches, at most so many of a branch, its last among them.
 
-    Parameters
-    ----------
-    y : (n_site,) array
-        Places of the sites along the front. (Units: length of the tile)
-    position : (n_step, n_site) array
-        The fronts. (Units: length of the tile)
-    direction : (n_step,) int array
-        +1 where the load advances, -1 where it recedes.
+    Positions at n_site ordinates (units: length of the tile) have the shape (n_step, n_site);
+    n_step directions are +1 where the load advances, -1 where it recedes.
     """
     for sign, colour, label in ((1, BLUE, "forward"), (-1, VERMILION, "back")):
         for count, front in enumerate(_few(position[direction == sign], most)):

@@ -29,16 +29,9 @@ def draw_instabilities(
 ) -> None:
     """The instabilities of a branch, with a colour bar.
 
-    Parameters
-    ----------
-    angle : (n_angle,) array
-        Angles of the sites. (Units: rad)
-    before, after : (n_jump, n_angle) array
-        Fronts before and after. (Units: reduced lateral length)
-    energy : (n_jump,) array
-        Dissipated energies. (Units: pi w_int R times a reduced vertical length)
-    travel : float
-        Smallest motion of a site that is drawn. (Units: reduced lateral length)
+    Fronts before and after (units: reduced lateral length) at n_angle angles (units: rad) have the
+    shape (n_jump, n_angle), dissipated energies (n_jump,) (units: pi w_int R times a reduced
+    vertical length). Motions of a site are drawn from `travel` on.
 
     Raises
     ------
@@ -75,18 +68,8 @@ def draw_patches(
 ) -> None:
     """Outlines of the contiguous parts of fronts that moved, in colours of the energies.
 
-    Parameters
-    ----------
-    angle : (n_jump, n_angle) array
-        Angles of the sites of each front. (Units: rad)
-    fronts : two (n_jump, n_angle) arrays
-        Fronts before and after. (Units: reduced lateral length)
-    energy, travel
-        As of :func:`draw_instabilities`.
-    shades : ScalarMappable
-        Colours of the energies.
-    apex : float, optional
-        Abscissa of the apex. (Units: reduced lateral length)
+    Arguments are as of :func:`draw_instabilities`, but for angles of the sites of each front, of
+    the shape of the fronts, and the abscissa of the apex (units: reduced lateral length).
     """
     patches, energies = [], []
     for around, one, other, lost in zip(angle, *fronts, energy, strict=True):

@@ -249,14 +249,8 @@ def draw_pinning(
 ) -> None:
     """Draw both branches, and their means over the last period of the tile if it is given.
 
-    Parameters
-    ----------
-    states : LineState
-        States of a straight front, forward and back.
-    n_period : int, optional
-        States at the end of each branch that are one period.
-    elastic_energy : float, optional
-        Measured e_el, with which the mean is k e_el. (Units: w_int)
+    The last `n_period` states of each branch are a period. Its mean is k times the measured e_el
+    (units: w_int).
 
     Raises
     ------
