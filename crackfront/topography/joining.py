@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.bands import NYQUIST, Scan
 from crackfront.topography.densities import Density, bin_numbers
@@ -202,13 +202,8 @@ def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float],
         excess = float(np.mean(known[:, 0] ** 2 - known[:, 1] ** 2))
         scatter = math.sqrt(max(0.0, excess) / 2)
     return scatter, tuple(
-        Estimate(
-            math.exp(level),
-            math.exp(level) * error,
-            math.exp(level - 1.96 * error),
-            math.exp(level + 1.96 * error),
-        )
-        for level, error in found
+        replace(one.each(math.exp), standard_error=math.exp(one.value) * one.standard_error)
+        for one in (normal_estimate(*pair) for pair in found)
     )
 
 
