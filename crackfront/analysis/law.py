@@ -135,14 +135,8 @@ def spectral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
               p = \frac{q^2 C_w(q)}{\int q^2 C_w\, d\ln q}
 
     Waves within a quarter of an e-fold count as of one length and pin a front together; others do
-    so each with its own part of the variance, hence as at weaker disorder.
-
-    Parameters
-    ----------
-    kind : {"roughness", "chemical"}
-        What the spectrum describes.
-    spectrum : Spectrum
-        Its shape.
+    so each with its own part of the variance, hence as at weaker disorder. The kind is what the
+    spectrum describes.
 
     Examples
     --------
@@ -277,14 +271,7 @@ def mean_adhesion(kind: FieldKind, elastic_energy: float) -> float:
 def infinite_ratio(w_rms: float, size: float, breadth: float = TYPICAL_BREADTH) -> Estimate[float]:
     """Ratio of k in the infinite contact to k at a size, by the law; it extrapolates measured k.
 
-    Parameters
-    ----------
-    w_rms : float
-        Rms of the local work of adhesion. (Units: w_int)
-    size : float
-        g; below the smallest of the law the ratio is NaN.
-    breadth : float, optional
-        That of the spectrum, as :func:`crackfront.analysis.law.spectral_breadth`.
+    Arguments are as of :func:`pinning_factor`. Below the smallest size of the law it is NaN.
 
     Examples
     --------

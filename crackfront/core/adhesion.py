@@ -65,20 +65,7 @@ def front_stress_intensity(heights: Array, pixel: float, modulus: float = CONTAC
 
 
 def half_derivative_mean_square(heights: Array, pixel: float) -> float:
-    """Mean square half-derivative [h_rms^(1/2)]^2 of a periodic map.
-
-    Parameters
-    ----------
-    heights : (n_x, n_y) array
-        Periodic roughness. (Units: length)
-    pixel : float
-        Grid spacing. (Units: length)
-
-    Returns
-    -------
-    float
-        Mean square. (Units: length)
-    """
+    """Mean square half-derivative [h_rms^(1/2)]^2 of a periodic map (Units: length)."""
     n_x, n_y = heights.shape
     power = np.abs(fft2(heights, norm="forward"))
     power **= 2
@@ -171,19 +158,9 @@ def chemical_adhesion(fluctuation: Array, pixel: float) -> AdhesionMap:
 
 
 def correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
-    """Wavelength of the mean wavevector of w_loc, weighted by its variance.
+    """Wavelength of the mean wavevector of w_loc, weighted by its variance (Units: length).
 
-    Parameters
-    ----------
-    kind : {"roughness", "chemical"}
-        What the spectrum describes.
-    spectrum : Spectrum
-        Its shape. (Units: length)
-
-    Returns
-    -------
-    float
-        Correlation length. (Units: length)
+    The kind is what the spectrum describes.
     """
     if kind == "roughness":
         return spectrum.correlation_length
@@ -199,21 +176,9 @@ def larkin_length(kind: FieldKind, spectrum: Spectrum, w_rms: float) -> float:
 
     with the correlator :math:`\Delta(u)` of w_loc integrated along the front, whose spectrum is
     :math:`C_w(q, 0)`, and the pinning force f_2 of second-order perturbation theory. For roughness
-    :math:`\xi_u` is the rms height over the rms slope. docs/law.md derives it.
-
-    Parameters
-    ----------
-    kind : {"roughness", "chemical"}
-        What the spectrum describes.
-    spectrum : Spectrum
-        Its shape. (Units: length)
-    w_rms : float
-        Rms of the local work of adhesion. (Units: w_int)
-
-    Returns
-    -------
-    float
-        Larkin length. (Units: length)
+    :math:`\xi_u` is the rms height over the rms slope. docs/law.md derives it. Arguments are as of
+    :func:`correlation_length`, and the rms of w_loc (units: w_int); the unit is that of lengths of
+    the spectrum.
     """
     return 2 * np.pi * force_correlation_length(kind, spectrum) / w_rms**2
 

@@ -95,19 +95,8 @@ def surface_displacement(distance: ArrayLike, radius: float, penetration: float)
 
     .. math:: u = \frac{1}{\pi} [(2 b - r^2) \arcsin(a / r) + a \sqrt{r^2 - a^2}] .
 
-    Parameters
-    ----------
-    distance : array_like
-        Distance r from the apex. (Units: reduced lateral length)
-    radius : float
-        Contact radius a. (Units: reduced lateral length)
-    penetration : float
-        Rigid body penetration b. (Units: reduced vertical length)
-
-    Returns
-    -------
-    array
-        u, positive into the half-space. (Units: reduced vertical length)
+    Distances r from the apex and the radius a are in reduced lateral lengths, b and u (positive
+    into the half-space) in reduced vertical ones.
     """
     r = np.maximum(np.asarray(distance, dtype=float), radius)
     outside = (2 * penetration - r**2) * np.arcsin(radius / r)

@@ -105,25 +105,9 @@ def uncorrelated_rows(
 ) -> Array:
     r"""Rows along x that are independent of each other, as a front sees weak disorder from afar.
 
-    Their spectrum is that of an isotropic field integrated across, :math:`q^{2 \alpha} C(q)`.
-
-    Parameters
-    ----------
-    spectrum : Spectrum
-        C, of shortest wavelengths of two pixels or more. (Lengths in the unit of `pixel`)
-    order : float
-        Order alpha.
-    n_point : (n_x, n_y)
-        Points of a row, and rows.
-    pixel : float
-        Distance of points. (Units: length)
-    rng : numpy.random.Generator
-        Source of the noise.
-
-    Returns
-    -------
-    (n_x, n_y) array
-        Field of unit variance in the mean over realisations, each row of zero mean.
+    Their spectrum is that of an isotropic field integrated across, :math:`q^{2 \alpha} C(q)` with
+    the order alpha, of shortest wavelengths of two pixels or more. The n_y rows of n_x points have
+    zero mean, and unit variance in the mean over realisations.
     """
     n_x, n_y = n_point
     _, kept = _modes(spectrum.short_cutoff, n_x, n_x * pixel)

@@ -10,24 +10,12 @@ from crackfront.core.field.rays import front_products, swept_adhesion
 
 
 def dissipated_energy(before: Array, after: Array, load: float, field: Field) -> float:
-    """Energy that is lost when a front moves at a fixed load.
+    """Energy that is lost when a front moves at a fixed load: the fall of the total energy.
 
-    Parameters
-    ----------
-    before, after : (n_site,) array
-        Fronts inside the field. (Units: reduced lateral length)
-    load : float
-        Penetration of a sphere. (Units: reduced vertical length)
-    field : Field
-        Work of adhesion along the rays.
-
-    Returns
-    -------
-    float
-        Fall of the total energy. A quasi-static move loses energy, except in approach where the
-        sphere closes an edge in compression over places that repel (w_loc < 0): there it may be
-        negative, by no more than the integral of -w_loc over those places.
-        (Units: pi w_int R times a reduced vertical length)
+    A quasi-static move loses energy, except in approach where the sphere closes an edge in
+    compression over places that repel (w_loc < 0): there it may be negative, by no more than the
+    integral of -w_loc over those places. Both fronts lie inside the field.
+    (Units: pi w_int R times a reduced vertical length)
     """
     elastic = field.geometry.stored_energy
     return elastic(before, load) - elastic(after, load) + swept_adhesion(before, after, field)

@@ -81,17 +81,7 @@ def follow(
 
 
 def front_at(field: Field, front: Array, load: Load, solver: Solver | None = None) -> Array:
-    """Front of one step.
-
-    Parameters
-    ----------
-    field, front, load, solver
-        As of :func:`follow`.
-
-    Returns
-    -------
-    (n_site,) array
-        The front. (Units: reduced lateral length)
+    """Front of one step (Units: reduced lateral length); arguments as of :func:`follow`.
 
     Raises
     ------

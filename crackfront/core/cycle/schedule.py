@@ -204,12 +204,7 @@ class LoadSchedule(SphereSchedule):
 def there_and_back(first: float, last: float, step: float) -> list[Load]:
     """Loads from one to a higher one, and back to the first.
 
-    Parameters
-    ----------
-    first, last : float
-        The two ends; the last is visited even where it is no whole number of steps away.
-    step : float
-        Difference of loads.
+    The last is visited even where it is no whole number of steps away.
 
     Raises
     ------
