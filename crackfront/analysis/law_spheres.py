@@ -60,18 +60,8 @@ def sphere_factors(
     """Factors k of a sphere on a random surface, from the straight front alone.
 
     The edge of radius a is held as by a spring of the length :func:`crackfront.core.jkr.spring`
-    at the work of adhesion of the branch, which k decides: the two are solved together.
-
-    Parameters
-    ----------
-    kind : {"roughness", "chemical"}
-        What the spectrum describes.
-    spectrum : Spectrum
-        Shape of the spectrum. (Units: reduced lateral length)
-    elastic_energy : float
-        e_el / w_int, in (0, 1).
-    contact_radius : float
-        Radius of the contact. (Units: reduced lateral length)
+    at the work of adhesion of the branch, which k decides: the two are solved together. The kind is
+    what the spectrum describes; lengths are reduced lateral ones, e_el is in w_int.
 
     Raises
     ------

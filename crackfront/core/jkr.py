@@ -1,7 +1,9 @@
 """The smooth adhesive sphere of Johnson, Kendall and Roberts, in reduced units.
 
-Penetration is positive into the half-space, force is positive when it pushes. All functions
-broadcast over arrays. Source: supplement, Sec. I A.
+The penetration b (units: reduced vertical length) is positive into the half-space, the force F
+(units: pi w_int R) is positive when it pushes. The contact radius a is in reduced lateral lengths,
+the apparent work of adhesion w of a smooth contact in w_int. All functions that take arrays
+broadcast. Source: supplement, Sec. I A.
 """
 
 from __future__ import annotations
@@ -16,19 +18,9 @@ from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 
 def stress_intensity(radius: ArrayLike, penetration: ArrayLike) -> Array:
-    r"""Stress intensity factor at the contact edge, K = (a^2 - b) E' / sqrt(pi a).
+    """Stress intensity factor at the contact edge, K = (a^2 - b) E' / sqrt(pi a).
 
-    Parameters
-    ----------
-    radius : array_like
-        Contact radius a > 0. (Units: reduced lateral length)
-    penetration : array_like
-        Rigid body penetration b. (Units: reduced vertical length)
-
-    Returns
-    -------
-    array
-        K; negative where the edge is in compression. (Units: reduced pressure * length**0.5)
+    It is negative where the edge is in compression. (Units: reduced pressure * length**0.5)
     """
     a = np.asarray(radius, dtype=float)
     return np.asarray((a**2 - penetration) * CONTACT_MODULUS / np.sqrt(np.pi * a))
@@ -38,14 +30,7 @@ def energy_release_rate(radius: ArrayLike, penetration: ArrayLike) -> Array:
     r"""Energy release rate of an open edge, G = K^2 / 2E' where K > 0 and 0 elsewhere.
 
     An edge in compression (a^2 < b) releases nothing when it opens; leaving K^2 there would
-    create equilibria that do not exist.
-
-    Arguments are as of :func:`stress_intensity`.
-
-    Returns
-    -------
-    array
-        G. (Units: reduced energy / area)
+    create equilibria that do not exist. (Units: reduced energy / area)
 
     Examples
     --------
@@ -57,15 +42,7 @@ def energy_release_rate(radius: ArrayLike, penetration: ArrayLike) -> Array:
 
 
 def force(radius: ArrayLike, penetration: ArrayLike) -> Array:
-    """Normal force F = 4/3 E' a^3 + 2 a E' (b - a^2).
-
-    Arguments are as of :func:`stress_intensity`.
-
-    Returns
-    -------
-    array
-        Force, negative in tension. (Units: pi w_int R)
-    """
+    """Normal force F = 4/3 E' a^3 + 2 a E' (b - a^2)."""
     a = np.asarray(radius, dtype=float)
     return np.asarray(
         4 / 3 * CONTACT_MODULUS * a**3 + 2 * a * CONTACT_MODULUS * (penetration - a**2)
@@ -75,14 +52,7 @@ def force(radius: ArrayLike, penetration: ArrayLike) -> Array:
 def stored_energy(radius: ArrayLike, penetration: ArrayLike) -> Array:
     """Elastic energy U = E' (b^2 a - 2 a^3 b / 3 + a^5 / 5).
 
-    Its derivative in b is the force, in a it is 2 pi a G.
-
-    Arguments are as of :func:`stress_intensity`.
-
-    Returns
-    -------
-    array
-        Energy. (Units: reduced force * vertical length)
+    Its derivative in b is the force, in a it is 2 pi a G. (Units: reduced force * vertical length)
     """
     a, b = np.asarray(radius, dtype=float), np.asarray(penetration, dtype=float)
     return np.asarray(CONTACT_MODULUS * (b**2 * a - 2 * a**3 * b / 3 + a**5 / 5))
@@ -95,8 +65,7 @@ def surface_displacement(distance: ArrayLike, radius: float, penetration: float)
 
     .. math:: u = \frac{1}{\pi} [(2 b - r^2) \arcsin(a / r) + a \sqrt{r^2 - a^2}] .
 
-    Distances r from the apex and the radius a are in reduced lateral lengths, b and u (positive
-    into the half-space) in reduced vertical ones.
+    It is positive into the half-space. (Units: those of b; of the distance r from the apex, of a)
     """
     r = np.maximum(np.asarray(distance, dtype=float), radius)
     outside = (2 * penetration - r**2) * np.arcsin(radius / r)
@@ -106,20 +75,7 @@ def surface_displacement(distance: ArrayLike, radius: float, penetration: float)
 
 
 def equilibrium_penetration(radius: ArrayLike, work_of_adhesion: ArrayLike = 1.0) -> Array:
-    """Penetration at which a smooth contact of this radius is in equilibrium.
-
-    Parameters
-    ----------
-    radius : array_like
-        Contact radius a. (Units: reduced lateral length)
-    work_of_adhesion : array_like, optional
-        Apparent work of adhesion, relative to w_int.
-
-    Returns
-    -------
-    array
-        b = a^2 - sqrt(8 a w / 3). (Units: reduced vertical length)
-    """
+    """Penetration b = a^2 - sqrt(8 a w / 3) at which a smooth contact is in equilibrium."""
     a = np.asarray(radius, dtype=float)
     return np.asarray(a**2 - np.sqrt(8 * a * np.asarray(work_of_adhesion) / 3))
 
@@ -131,33 +87,13 @@ def penetration_slope(penetration: float) -> float:
 
 
 def equilibrium_force(radius: ArrayLike, work_of_adhesion: ArrayLike = 1.0) -> Array:
-    """Force of a smooth contact of this radius in equilibrium, F = a^3 - sqrt(6 w a^3).
-
-    Arguments are as of :func:`equilibrium_penetration`.
-
-    Returns
-    -------
-    array
-        Force. (Units: pi w_int R)
-    """
+    """Force of a smooth contact of this radius in equilibrium, F = a^3 - sqrt(6 w a^3)."""
     a = np.asarray(radius, dtype=float)
     return np.asarray(a**3 - np.sqrt(6 * np.asarray(work_of_adhesion) * a**3))
 
 
 def equilibrium_radius(penetration: float, work_of_adhesion: float = 1.0) -> float:
     """Radius of the stable smooth contact at a penetration.
-
-    Parameters
-    ----------
-    penetration : float
-        Rigid body penetration b. (Units: reduced vertical length)
-    work_of_adhesion : float, optional
-        Apparent work of adhesion, relative to w_int.
-
-    Returns
-    -------
-    float
-        Contact radius. (Units: reduced lateral length)
 
     Raises
     ------
@@ -192,19 +128,7 @@ def equilibrium_radius(penetration: float, work_of_adhesion: float = 1.0) -> flo
 
 
 def radius_at_force(force: float, work_of_adhesion: float = 1.0) -> float:
-    """Radius of the stable smooth contact at a force, where the force is controlled.
-
-    Parameters
-    ----------
-    force : float
-        Normal force. (Units: pi w_int R)
-    work_of_adhesion : float, optional
-        Apparent work of adhesion, relative to w_int.
-
-    Returns
-    -------
-    float
-        The larger root of F = a^3 - sqrt(6 w a^3). (Units: reduced lateral length)
+    """Radius of the stable smooth contact at a force, the larger root of F = a^3 - sqrt(6 w a^3).
 
     Raises
     ------
@@ -230,18 +154,8 @@ def spring(radius: float, work_of_adhesion: float = 1.0) -> float:
 
     .. math:: L_\kappa = \frac{w_{int}}{dG/da} = \frac{a}{\sqrt{6 a^3 w} - w}
 
-    Parameters
-    ----------
-    radius : float
-        Contact radius a. (Units: reduced lateral length)
-    work_of_adhesion : float, optional
-        Apparent work of adhesion w, relative to w_int.
-
-    Returns
-    -------
-    float
-        Length over which the edge is as stiff against a wave as against the penetration, at which
-        it is fixed. (Units: reduced lateral length)
+    Over it the edge is as stiff against a wave as against the penetration, at which it is fixed.
+    (Units: reduced lateral length)
 
     Raises
     ------
@@ -280,13 +194,5 @@ def pull_off_force(work_of_adhesion: float = 1.0) -> float:
 
 
 def apparent_work_of_adhesion(radius: ArrayLike, penetration: ArrayLike) -> Array:
-    """Work of adhesion that a smooth sphere would need for this radius and penetration.
-
-    Arguments are as of :func:`stress_intensity`.
-
-    Returns
-    -------
-    array
-        G / w_int.
-    """
+    """Work of adhesion G / w_int that a smooth sphere would need for radius and penetration."""
     return np.asarray(energy_release_rate(radius, penetration) / WORK_OF_ADHESION)
