@@ -109,13 +109,8 @@ class SweepFit:
 def fit_columns(fit: SweepFit) -> Iterator[tuple[Variable, NDArray[Any]]]:
     """Arrays of a fit, an estimate as four: value, standard error and the ends of its interval.
 
-    Yields
-    ------
-    Variable
-        `exponent`, `exponent_standard_error`, `exponent_low`, `exponent_high`, the same with the
-        prefix `pooled_`, means over realisations with the prefix `cell_`, and so on.
-    array
-        Its values.
+    Names are `exponent`, `exponent_standard_error`, `exponent_low`, `exponent_high`, the same with
+    the prefix `pooled_`, means over realisations with the prefix `cell_`, and so on.
     """
     for item, values in _columns(fit.table):
         if REALISATION not in item.dims and values is not None:

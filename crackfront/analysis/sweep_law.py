@@ -25,6 +25,9 @@ LARGE = 1.0
 
 _UNKNOWN = Estimate(*(math.nan,) * 4)
 
+_CURVE = 40
+"""Points of the curve of a spectrum."""
+
 
 @dataclass(frozen=True, slots=True)
 class SweepLaw:
@@ -77,15 +80,11 @@ class SweepLaw:
             values[:, cell[0], cell[1]] = astuple(found)
         return Estimate(*values), sizes
 
-    def curve(self, index: int, n_point: int = 40) -> tuple[Array, Array]:
-        """Factors k of a spectrum between its amplitudes, where the law is measured.
+    def curve(self, index: int) -> tuple[Array, Array]:
+        """Values of e_el and factors k of a spectrum between its amplitudes; empty without two.
 
-        Between amplitudes springs and radii are interpolated, in the logarithm of both.
-
-        Returns
-        -------
-        energy, factor : (n_point,) arrays
-            e_el and k, NaN where g is too small; empty without two amplitudes.
+        Between amplitudes springs and radii are interpolated, in the logarithm of both. Where g is
+        below the sizes of the law k is NaN.
         """
         energies, holds = self.energy[index], self.holds[index]
         known = np.isfinite(energies) & np.isfinite(holds)
@@ -93,8 +92,8 @@ class SweepLaw:
             return np.empty(0), np.empty(0)
         order = np.argsort(energies[known])
         places, lengths = np.log(energies[known][order]), np.log(holds[known][order])
-        between = np.linspace(places[0], places[-1], n_point)
-        factors, least = np.full(n_point, np.nan), shipped_law().size[0]
+        between = np.linspace(places[0], places[-1], _CURVE)
+        factors, least = np.full(_CURVE, np.nan), shipped_law().size[0]
         for number, hold in enumerate(np.interp(between, places, lengths)):
             found, size = self.factor(index, math.exp(between[number]), math.exp(hold))
             if size >= least:

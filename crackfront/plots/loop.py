@@ -166,20 +166,10 @@ def draw_loop(
 ) -> None:
     """Draw the two branches, their JKR curves and the window of the averages.
 
-    Parameters
-    ----------
-    states : LoopStates
-        States of the cycle.
-    works : tuple of float
-        w_appr and w_retr; without values (NaN) no curves are drawn. (Units: w_int)
-    window : tuple of float
-        Mean radii over which they are averages. (Units: reduced lateral length)
-    elastic_energy : float, optional
-        Measured e_el, for the curves that the paper predicts; NaN for none. (Units: w_int)
-    kind : {"roughness", "chemical"}, optional
-        Whether they lie around w_int - e_el or w_int.
-    arrows : bool, optional
-        Whether an arrow beside each branch has its direction.
+    No curves are drawn where w_appr and w_retr are NaN (units: w_int). They are averages over a
+    window of mean radii (units: reduced lateral length). The measured e_el (units: w_int) and the
+    kind of field are those of the curves that the paper predicts, none with NaN. Arrows beside the
+    branches have their directions.
 
     Raises
     ------

@@ -100,10 +100,7 @@ class Recorder:
     ) -> None:
         """Record all steps of a front from load to load, as far as they converge.
 
-        Parameters
-        ----------
-        field, front, loads, solver
-            As of :func:`crackfront.core.cycle.follow.follow`.
+        Arguments are as of :func:`crackfront.core.cycle.follow.follow`.
         """
         self._field, self.front, self._turn = field, front, front
         coming = iter(loads)
@@ -161,13 +158,7 @@ class Recorder:
         return Checkpoint(self.record(), self.front, self._turn)
 
     def record(self, status: Status | None = None) -> CycleRecord:
-        """All states so far.
-
-        Parameters
-        ----------
-        status : Status, optional
-            What ended the cycle, if not the last relaxation.
-        """
+        """All states so far, with what ended the cycle if it is not the last relaxation."""
         status, energies, fronts = status or self.status, self._dissipated, self._fronts
         lost = energies is not None and status is Status.LOST_CONTACT
         return CycleRecord(
@@ -181,15 +172,7 @@ class Recorder:
 
 
 def columns(states: Sequence[Any], kind: type[Any]) -> Any:
-    """One state whose fields are the columns of many.
-
-    Parameters
-    ----------
-    states : sequence of dataclass
-        The states; there may be none.
-    kind : type
-        Their dataclass.
-    """
+    """One state of a kind whose fields are the columns of many, or of none."""
     names = [item.name for item in fields(kind)]
     return kind(*(np.array([getattr(state, name) for state in states]) for name in names))
 
