@@ -36,29 +36,16 @@ class Variable:
 def variable(long_name: str, units: str, *dims: str, default: Any = MISSING) -> Any:
     """A field of a dataclass that stands in files as a variable of these dimensions.
 
-    Parameters
-    ----------
-    long_name : str
-        What it is.
-    units : str
-        Its units.
-    *dims : str
-        Names of its dimensions; without them it is a number, a truth value or a text.
-    default : optional
-        Default of the field; with None it is left out of files.
+    Without dimensions it is a number, a truth value or a text. A field whose default is None is
+    left out of files where it has that.
     """
     return field(default=default, metadata={_KEY: (dims, units, long_name)})
 
 
 def variables(kind: type[Any], *along: str) -> tuple[Variable, ...]:
-    """What the fields of a dataclass are in a file.
+    """What the fields of a dataclass are in a file, but those that :func:`variable` did not make.
 
-    Parameters
-    ----------
-    kind : type
-        Dataclass; fields that were not made by :func:`variable` are left out.
-    *along : str
-        Dimensions that count records of the kind, before their own ones.
+    Dimensions along which records of the kind are counted come before their own ones.
 
     Examples
     --------
