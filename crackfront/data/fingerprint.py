@@ -225,8 +225,6 @@ class _Reach:
             if statement not in known:
                 known.add(statement)
                 self._waiting.append((statement, is_alias))
-                if "ABC" in statement.bases or self._searched.keys() & self._bases(statement):
-                    self._searched[statement] = set(self._naming(statement))
                 if not is_alias:
                     self._count(statement.module.acting)
 
@@ -252,6 +250,13 @@ class _Reach:
 
     def _count_subclasses(self) -> None:
         """Count the subclasses of what counts, of an abstract class wherever they are."""
+        # Not while they are counted: the order of that is another in each process.
+        while found := [
+            one
+            for one in self._counted - self._searched.keys()
+            if "ABC" in one.bases or self._searched.keys() & self._bases(one)
+        ]:
+            self._searched |= {one: set(self._naming(one)) for one in found}
         searched = [(module, self._counted) for module in {one.module for one in self._counted}]
         for abstract, modules in self._searched.items():
             searched += [(module, {abstract}) for module in modules]

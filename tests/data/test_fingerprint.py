@@ -61,6 +61,17 @@ def test_a_fingerprint_is_twelve_hexadecimal_digits():
     assert re.fullmatch("[0-9a-f]{12}", fingerprint("crackfront.core"))
 
 
+def test_a_fingerprint_is_the_same_in_every_process(tmp_path, monkeypatch):
+    code = "from crackfront.data.fingerprint import fingerprint as found; print(found(*{}))"
+    command = [sys.executable, "-c", code.format(["studies.paper.beyond_animation"])]
+    found = set()
+    for seed in ("0", "1", "2"):
+        monkeypatch.setenv("PYTHONHASHSEED", seed)
+        monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / seed))
+        found.add(subprocess.run(command, capture_output=True, check=True).stdout)
+    assert len(found) == 1
+
+
 def test_an_unknown_name_is_refused():
     with pytest.raises(ValueError, match=r"no module or definition crackfront\.core\.jkr\.none"):
         fingerprint("crackfront.core.jkr.none")
@@ -93,7 +104,7 @@ def test_a_mended_docstring_a_comment_and_an_annotation_change_nothing(sources):
     edited(
         sources / "crackfront/core/jkr.py",
         ("-> Array:", "-> ArrayLike:"),
-        ("Contact radius a", "Radius a"),
+        ("Radius of the stable smooth contact", "Radius of a stable smooth contact"),
     )
     assert parameters() == before
 
