@@ -23,7 +23,7 @@ from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL
 from crackfront.simulate.files import cycle_record
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
-from crackfront.simulate.surfaces import chosen_simulation, surface_adhesion, tile_modes
+from crackfront.simulate.surfaces import chosen_simulation, tile_modes
 from crackfront.sweep import parallel, tasks
 from crackfront.topography.bands import scan
 from crackfront.topography.measures import measured_surface
@@ -31,8 +31,8 @@ from crackfront.topography.options import ReadingOptions, parsed_options
 from crackfront.topography.prediction import predicted
 from crackfront.topography.reading import read_measurements
 from crackfront.topography.report import prediction_page, report_text
-from crackfront.topography.tile import measured_adhesion
-from tests.commands import curves
+from crackfront.topography.tile import scan_surface
+from tests.commands import curves, run
 
 ROOT = Path(__file__).parents[1]
 TEST = ROOT / "config/test.yaml"
@@ -343,9 +343,96 @@ def test_an_argument_of_another_type_is_refused_with_what_is_wanted(call, senten
         call()
 
 
+WAVE = 0.3 * np.cos(2 * np.pi * np.arange(32) / 8)[:, None] * np.cos(2 * np.pi * np.arange(32) / 16)
+LOADS = [0, 0.5, 0.2, 0.5, 0.5, -2]
+
+
+def test_an_array_is_the_same_surface_in_all_units():
+    expected = cf.surface(1 + WAVE, 4.0, kind="chemical", units="w_int")
+    for units, values, sphere in (
+        ("reduced", WORK_OF_ADHESION * (1 + WAVE), None),
+        (None, WORK_OF_ADHESION * (1 + WAVE), None),
+        ("mJ/m2", 63 * (1 + WAVE), SPHERE),
+        ("w_int", 1 + WAVE, SPHERE),
+    ):
+        side = 4.0 if sphere is None else f"{1e6 * 4 * SPHERE.lateral!r}um"
+        found = cf.surface(values, side, kind="chemical", units=units, sphere=sphere)
+        xr.testing.assert_allclose(found, expected, rtol=1e-14)
+    nanometres = cf.surface(
+        1e9 * SPHERE.vertical * WAVE / 10, 4 * SPHERE.lateral, units="nm", sphere=SPHERE
+    )
+    xr.testing.assert_allclose(nanometres, cf.surface(WAVE / 10, 4.0), rtol=1e-13)
+    plain = nanometres.drop_attrs().assign_attrs(units="reduced")
+    np.testing.assert_array_equal(
+        cf.run_loop(plain, step=0.5).force, cf.run_loop(nanometres, step=0.5).force
+    )
+
+
+@pytest.mark.parametrize(
+    ("values", "given", "sentence"),
+    [
+        (1 + WAVE, {}, r"3.142 w_int, .* in reduced; .* were they in units of w_int\? Then set"),
+        ((1 + WAVE) / np.pi, {"units": "w_int"}, "0.3183 w_int, .* were they in reduced units"),
+        (WAVE, {"units": "w_int"}, "were they deviations from it"),
+        (5 + WAVE, {"units": "w_int"}, "check the values, or take their mean for w_int"),
+        (1 + WAVE, {"units": "mJ/m2"}, "units is 'mJ/m2'; choose one of reduced, w_int, or give"),
+        ([1.0, 2.0], {}, r"the values have the shape \(2,\); a tile must be"),
+        (WAVE, {"kind": "rough"}, "kind is 'rough'; choose one of"),
+    ],
+)
+def test_an_array_that_is_no_surface_is_refused_with_the_likely_cause(values, given, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.surface(values, 4.0, **({"kind": "chemical"} | given))
+
+
+@pytest.mark.parametrize("straight", [False, True])
+def test_loads_are_visited_up_and_down_by_library_and_command_alike(straight, tmp_path):
+    patches = cf.surface(1 + WAVE, 4.0, kind="chemical", units="w_int")
+    cf.save_result(patches, tmp_path / "patches.nc")
+    (tmp_path / "loads.txt").write_text("# up, down, up, hold, off\n0 0.5 0.2\n0.5\n0.5, -2")
+    pressed = cf.straight_front(patches, spring=2.0) if straight else patches
+    found = cf.run_loop(pressed, loads=LOADS, step=0.1, energy=True)
+    up, down = 0.1 * np.arange(6), [0.4, 0.3, 0.2]
+    load = found["load" if straight else "penetration"]
+    np.testing.assert_allclose(load[:13], [*up, *down, 0.3, 0.4, 0.5, 0.5], atol=1e-12)
+    assert found.direction.values[:15].tolist() == [1] * 6 + [-1] * 3 + [1] * 4 + [-1] * 2
+    front = found["position" if straight else "radius"]
+    # By no passing, a minor loop ends at the front that it began with, and a hold changes nothing.
+    np.testing.assert_allclose(front[11:13], front[[5, 5]], atol=1e-5)
+    options = ["--geometry", "line", "--spring", "2"] if straight else []
+    given = ["--loads", tmp_path / "loads.txt", "--step", "0.1", "--output", tmp_path / "out.nc"]
+    result = run("cycle", "--field", tmp_path / "patches.nc", *options, *given)
+    assert result.exit_code == 0, result.output
+    written = xr.load_dataset(tmp_path / "out.nc")
+    for name in ("direction", load.name, "e_el", "w_rms", "correlation_length"):
+        np.testing.assert_array_equal(written[name], found[name])
+    last = "pinning_force" if straight else "force"
+    np.testing.assert_array_equal(written[last], found[last])
+
+
+@pytest.mark.parametrize(
+    ("loads", "sentence"),
+    [
+        ([-1, 0], "loads begin with -1; a sphere touches at"),
+        ([], "no loads; give one or more"),
+        ([0, np.nan], "a load is nan; it must lie"),
+        (["x"], "a load is 'x'; write numbers"),
+    ],
+)
+def test_loads_that_cannot_be_are_refused(surface, loads, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.run_loop(surface, loads=loads)
+    with pytest.raises(ValueError, match="a sphere needs max_penetration or loads; give one"):
+        cf.run_loop(surface, loads=[0, 1], max_penetration=1)
+    with pytest.raises(ValueError, match="a straight front needs loads"):
+        cf.run_loop(cf.straight_front(surface, 1.0))
+
+
 def test_scales_take_texts_with_units():
     given = cf.Scales("1.25mm", "63mJ/m2", contact_modulus="0.9333333333333333 MPa")
     assert asdict(given) == pytest.approx(asdict(SPHERE), rel=1e-12)
+    with pytest.raises(ValueError, match=r"0\.0007 Pa, where all flows; was '0.7MPa' meant"):
+        cf.Scales("1mm", "63mJ/m2", "0.7mPa")
     with pytest.raises(ValueError, match="radius is '1kg', which is no length; write a number"):
         cf.Scales("1kg", 1, 1)
     with pytest.raises(ValueError, match=r"radius is -1\.0; it must be positive and finite"):
@@ -377,11 +464,6 @@ def test_a_surface_that_is_periodic_is_never_refused_for_its_edge(seed):
 def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
     found = cf.read_scan(SCAN, small, shortest="0.4um")
-    measurement = replace(read_measurements([SCAN])[0], shortest=0.4e-6)
-    adhesion = measured_adhesion(measurement, small)
-    np.testing.assert_allclose(
-        surface_adhesion(found).work_of_adhesion, adhesion.work_of_adhesion, rtol=1e-9
-    )
     assert found.sizes == {"x": 288, "y": 288}
     assert float(found.x[144]) == 0
     told = found.attrs
@@ -400,10 +482,7 @@ def test_scans_are_read_in_the_words_of_the_commands():
     [measurement] = read_measurements([SCAN], parsed_options(ReadingOptions, WORDS))
     found = cf.read_scan(SCAN, small, **WORDS)
     assert found.attrs["levelling"].startswith(f"{measurement.levelling} was taken off")
-    adhesion = measured_adhesion(scan(measurement).trusted_measurement, small)
-    np.testing.assert_allclose(
-        surface_adhesion(found).work_of_adhesion, adhesion.work_of_adhesion, rtol=1e-9
-    )
+    assert found.identical(scan_surface(scan(measurement), small))
     expected = measured_surface([measurement]).conformity_energy(SPHERE.contact_modulus)
     assert cf.predict(SCAN, SPHERE, **WORDS).e_el == expected
 

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import click
-from click.shell_completion import get_completion_class
 
 from crackfront.cli.cycle import cycle
 from crackfront.cli.integrity import compare, repair, verify
@@ -82,23 +81,6 @@ def _sentence(error: OSError | ValueError) -> str:
     return f"{error.filename} cannot be used: {error.strerror}; check the path and its permissions"
 
 
-@click.command(
-    epilog=examples(
-        'eval "$(crackfront completion bash)"          # in ~/.bashrc',
-        'eval "$(crackfront completion zsh)"           # in ~/.zshrc',
-        "crackfront completion fish > ~/.config/fish/completions/crackfront.fish",
-    )
-)
-@click.argument("shell", type=click.Choice(("bash", "zsh", "fish")))
-@click.pass_context
-def completion(context: click.Context, shell: str) -> None:
-    """Print the script by which a shell completes commands and options."""
-    kind = get_completion_class(shell)
-    assert kind is not None, "click knows these shells"
-    root = context.find_root().command
-    click.echo(kind(root, {}, "crackfront", "_CRACKFRONT_COMPLETE").source())
-
-
 @click.command("compile", epilog=examples("crackfront compile"))
 def compile_solvers() -> None:
     """Compile the solver of sweeps, so that no run waits for it.
@@ -122,7 +104,7 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "One contact": (cycle,),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
     "Stored results": (verify, repair, compare),
-    "The machine": (compile_solvers, completion),
+    "The machine": (compile_solvers,),
 }
 """All commands, by what they are for."""
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import re
+import sys
 import time
-from collections.abc import Callable
-from dataclasses import MISSING, Field, fields
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,51 +26,50 @@ from crackfront.cli.report import (
     refuse_unwritable,
     whole,
 )
-from crackfront.cli.watch import Progress
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE
-from crackfront.data.bounds import COUNT, DENSITY, TOLERANCE, Range
-from crackfront.simulate.cases import CASES, Resolution
+from crackfront.data.bounds import COUNT, DENSITY, NUMBER, TOLERANCE, Range, regular_file
+from crackfront.simulate.cases import PLACE, LineCase, Resolution, SphereCase, load_values
 from crackfront.sweep.parallel import deferring_stops, stop_is_requested
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from crackfront.core.cycle.record import Checkpoint, Recorder
+    from crackfront.core.cycle.record import Checkpoint, Observer, Recorder
     from crackfront.core.geometry.base import Geometry
 
 _SECONDS_BETWEEN_CHECKPOINTS = 60.0
 
-
-def _flag(item: Field[Any]) -> str:
-    """Option of the command line that fills a field of a case."""
-    return item.metadata["flag"] or f"--{item.name.replace('_', '-')}"
+_MOST_BYTES = 1e8
+"""Size of a file of loads."""
 
 
-def _case_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options of all cases."""
-    known: dict[str, tuple[Field[Any], list[str]]] = {}
-    for name, case in CASES.items():
-        for item in fields(case):
-            known.setdefault(_flag(item), (item, []))[1].append(name)
-    for flag, (item, names) in reversed(known.items()):
-        owner = "" if len(names) == len(CASES) else f"({', '.join(names)}) "
-        bounds, text = Number(item.metadata["bounds"]), owner + item.metadata["text"]
-        command = click.option(flag, type=bounds, help=text)(command)
-    return command
+def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[float, ...] | None:
+    """Loads of a text with commas, or of a file, in which what stands behind # is none."""
+    if given is None:
+        return None
+    if re.fullmatch(r"[-+.\de]+(,[-+.\de]+)*", given):
+        return load_values(given.split(","))
+    text = regular_file(Path(given), _MOST_BYTES).read_text(encoding="utf-8")
+    try:
+        return load_values(re.sub("#.*", "", text).replace(",", " ").split())
+    except ValueError as error:
+        raise ValueError(f"{given}: {error}") from error
 
 
-def _case(geometry: str, given: dict[str, float | None]) -> Any:
-    """The case that the options name."""
-    own, known = {_flag(item): item for item in fields(CASES[geometry])}, {}
-    for name, value in given.items():
-        flag = f"--{name.replace('_', '-')}"
-        if value is None and flag in own and own[flag].default is MISSING:
-            raise ValueError(f"{flag} is missing; --geometry {geometry} needs it")
-        if value is not None:
-            if flag not in own:
-                raise ValueError(f"{flag} is no option of --geometry {geometry}; leave it out")
-            known[own[flag].name] = value
-    return CASES[geometry](**known)
+def _case(
+    geometry: str, max_penetration: float | None, spring: float | None, **way: Any
+) -> SphereCase | LineCase:
+    """The contact and the loads that the options name."""
+    if geometry == "sphere":
+        if spring is not None:
+            raise ValueError("--spring is no option of --geometry sphere; leave it out")
+        return SphereCase(max_penetration, **way)
+    if max_penetration is not None:
+        raise ValueError("--max-penetration is no option of --geometry line; give --loads")
+    if spring is None or way["loads"] is None:
+        missing = "--spring" if spring is None else "--loads"
+        raise ValueError(f"{missing} is missing; --geometry line needs it")
+    return LineCase(spring, **way)
 
 
 @click.command(
@@ -78,15 +79,36 @@ def _case(geometry: str, given: dict[str, float | None]) -> Any:
         "  --figure cycle",
         "crackfront cycle --field tile.nc --max-penetration 1 --step 0.05 --record fronts \\",
         "  --record energy --output cycle.nc",
-        "crackfront cycle --geometry line --spring 32 --field tile.nc --from 300 --to 1100 \\",
+        "crackfront cycle --geometry line --spring 32 --field tile.nc --loads 300,1100,300 \\",
         "  --step 10 --record fronts --output line.nc",
+        "crackfront cycle --field tile.nc --loads loads.txt --step 0.02 --output minor.nc",
     )
 )
 @click.option("--field", "field_file", type=FILE, required=True, help="netCDF file of the field.")
 @click.option(
-    "--geometry", type=click.Choice(list(CASES)), default="sphere", help="What touches the surface."
+    "--geometry",
+    type=click.Choice(["sphere", "line"]),
+    default="sphere",
+    help="What touches the surface.",
 )
-@_case_options
+@click.option(
+    "--max-penetration", type=Number(PLACE), help="Largest penetration of a sphere, without loads."
+)
+@click.option(
+    "--loads",
+    callback=_loads,
+    help="Loads to visit, up and down in any order: a text as 0,1,0.2,1, or a file of numbers.",
+)
+@click.option(
+    "--step",
+    type=Number(PLACE),
+    help="Largest difference of loads.  [default: 0.004 without loads, dissipated energies to 1%]",
+)
+@click.option(
+    "--spring",
+    type=Number(NUMBER),
+    help="Length of the springs of a line, w_int / kappa, in the unit of the tile.",
+)
 @click.option(
     "--tolerance",
     type=Number(TOLERANCE),
@@ -127,9 +149,7 @@ def _case(geometry: str, given: dict[str, float | None]) -> Any:
 )
 @click.option("--output", type=FILE, required=True, help="netCDF file of the cycle.")
 @click.option("--figure", type=FILE, help="Figure of the loop, without suffix; PDF and PNG.")
-@click.option(
-    "--watch", is_flag=True, help="Print a line for every state; a terminal shows the last one."
-)
+@click.option("--watch", is_flag=True, help="Print a line for every state.")
 @as_json
 def cycle(
     field_file: Path,
@@ -146,11 +166,11 @@ def cycle(
     The field is a periodic tile work_of_adhesion(x, y), whose centre is the apex of the sphere,
     or samples work_of_adhesion(radius, angle), whose angles are the sites of the front. On rings,
     work_of_adhesion(radius), the front is a circle and the problem scalar. All quantities are in
-    reduced units: R = 1, w_int = 1/pi, E' = 3/4. Surfaces of the Python library, saved by
-    surface.to_netcdf, are fields as well.
+    reduced units: R = 1, w_int = 1/pi, E' = 3/4; works of adhesion whose attribute units is w_int
+    are relative to it. What crackfront.surface of the Python library makes is a field, too.
 
     With --geometry line the front is straight, along y, one site for every y of the tile. Springs
-    of the length --spring pull it along x, from --from to --to and back; lengths are those of the
+    of the length --spring pull it along x, their other end at the loads; lengths are those of the
     tile, and the springs do not pull where the front feels the mean of the tile.
 
     The exit code is 0 where the cycle came to its end (on a sphere, by losing contact) and 1 where
@@ -168,7 +188,7 @@ def cycle(
 
     solver = [given.pop(name) for name in ("solver", "tolerance", "max_sweeps")]
     sizes = (given.pop(name) for name in ("angles", "samples_per_pixel", "interpolation"))
-    resolution, case = Resolution(*sizes), _case(geometry, given)
+    resolution, case = Resolution(*sizes), _case(geometry, **given)
     refuse_no_file(output)
     for path in (output, figure or output):
         refuse_unwritable(path.parent)
@@ -181,18 +201,16 @@ def cycle(
         )
     key = _key(field_file, geometry, given, solver, record, resolution)
     keeper = _Keeper(output, key, problem.field.geometry)
-    shown = Progress(problem.expected, every_state=watch)
-    recorder = Recorder(
-        fronts="fronts" in record,
-        energy="energy" in record,
-        observers=[shown, keeper],
-        resume=keeper.found(),
-    )
     announce_compilation(err=as_json)
     announce_cost(problem.seconds)
-    with deferring_stops():
+    with deferring_stops(), _progress(problem.expected, every_state=watch) as shown:
+        recorder = Recorder(
+            fronts="fronts" in record,
+            energy="energy" in record,
+            observers=[shown, keeper],
+            resume=keeper.found(),
+        )
         recorder.run(problem.field, problem.front, problem.loads, solution)
-    shown.finish()
     found = loop_dataset(recorder.record(), problem.measures, problem.field.geometry, problem.sites)
     write_dataset(output, found, provenance())
     keeper.path.unlink(missing_ok=True)
@@ -222,6 +240,24 @@ def _content(recorder: Recorder, found: Dataset, output: Path) -> dict[str, obje
             for name in ("w_appr", "w_retr", "hysteresis")
         },
     }
+
+
+@contextmanager
+def _progress(expected: int, *, every_state: bool) -> Iterator[Observer]:
+    """What shows every new state: on a terminal a bar, and on request a line for each."""
+    from tqdm import tqdm
+
+    with tqdm(total=expected, unit="state", disable=not sys.stderr.isatty()) as bar:
+
+        def shown(recorder: Recorder) -> None:
+            count, last = len(recorder.states), recorder.states[-1]
+            bar.set_postfix_str(last.told, refresh=False)
+            bar.update(count - bar.n)
+            if every_state:
+                branch = "approach" if last.direction > 0 else "retraction"
+                bar.write(f"state {count}, {branch}: {last.told}", file=sys.stderr)
+
+        yield shown
 
 
 class _Keeper:

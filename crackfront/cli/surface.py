@@ -35,7 +35,6 @@ from crackfront.topography.options import (
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
     from crackfront.topography.measures import MeasuredSurface
-    from crackfront.topography.tile import Placement
 
 Command = Callable[..., None]
 
@@ -194,15 +193,7 @@ def predict(
 @_options_of(SphereOptions)
 @as_json
 @click.option("--field", type=FILE, help="Write the very map as a field for crackfront cycle.")
-@click.option(
-    "--place",
-    type=click.Choice(["tiled", "within"]),
-    default="tiled",
-    help="Field: let the contact go on to mirror images of the scan, or refuse that.",
-)
-def surface(
-    scans: tuple[Path, ...], as_json: bool, field: Path | None, place: Placement, **options: Any
-) -> None:
+def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **options: Any) -> None:
     """Analyse one measurement of a surface or several: spectrum, rms measures, their scales.
 
     SCANS are files of instruments in any format that SurfaceTopography reads. With the sphere,
@@ -219,22 +210,15 @@ def surface(
     echo_answer(content, [report_text(found, scales)], as_json=as_json)
     if field is None or scales is None:
         return
-    from crackfront.data.provenance import provenance
-    from crackfront.simulate.fields import write_field
-    from crackfront.topography.tile import measured_adhesion
+    from crackfront.simulate.files import save_result
+    from crackfront.simulate.given import surface_adhesion
+    from crackfront.topography.tile import scan_surface
 
-    measurement = found.scans[0].trusted_measurement
-    adhesion = measured_adhesion(measurement, scales, place)
-    write_field(
-        field,
-        adhesion,
-        provenance(),
-        source=f"{measurement.path}, checksum {measurement.checksum}",
-        placement=place,
-        **{name: getattr(scales, name) for name in scales.__slots__},
-    )
+    pressed = scan_surface(found.scans[0], scales)
+    energy = surface_adhesion(pressed).e_el
+    save_result(pressed, field)
     if not as_json:
-        click.echo(f"field: {field}, e_el {adhesion.e_el:.4g} w_int on the tile")
+        click.echo(f"field: {field}, e_el {energy:.4g} w_int on the tile")
 
 
 def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSurface:

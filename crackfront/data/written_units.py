@@ -59,6 +59,9 @@ def si_value(text: str, unit: str, *, what: str) -> float:
         raise ValueError(f"{what} is {text!r}, {wrong}; {example}") from error
     if not (math.isfinite(value) and value > 0):
         raise ValueError(f"{what} is {text!r}; it must be positive and finite")
+    if found[2].startswith("mPa"):
+        meant = text.replace("mPa", "MPa")
+        raise ValueError(f"{what} is {text!r}, {value:g} Pa, where all flows; was {meant!r} meant?")
     refuse_outside(what, value, SI[unit], unit)
     return value
 
@@ -72,7 +75,7 @@ def unit_value(given: str, unit: str) -> float:
     0.001
     """
     try:
-        return _converted(1.0, given, unit)
+        return _converted(1.0, _POWER.sub(r"\1^\2", given), unit)
     except ValueError as error:
         raise ValueError(f"a {given} is not to be had in {unit}") from error
 

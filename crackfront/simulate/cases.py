@@ -1,20 +1,22 @@
 """Loads and field of one cycle on a given field, geometry by geometry.
 
-The fields of a case are options of `crackfront cycle`. What computes is imported where it is used:
-the command's help does not wait for it.
+What computes is imported where it is used: the help of `crackfront cycle` does not wait for it.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
-from dataclasses import MISSING, dataclass
-from dataclasses import field as dataclass_field
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from itertools import chain, pairwise
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
-from crackfront.data.bounds import NUMBER, PENETRATION, Range
+from crackfront.data.arguments import refuse_no_numbers
+from crackfront.data.bounds import NUMBER, Range, refuse_outside
 
 if TYPE_CHECKING:
+    from xarray import DataArray
+
     from crackfront.core.adhesion import AdhesionMap
     from crackfront.core.arrays import Array
     from crackfront.core.cycle.follow import Load
@@ -22,16 +24,8 @@ if TYPE_CHECKING:
     from crackfront.simulate.fields import PolarSamples
     from crackfront.simulate.surfaces import TileMeasures
 
-_PLACE, _DEPTH = (Range(-bounds.most, bounds.most) for bounds in (NUMBER, PENETRATION))
-"""What the parser accepts; loads refuse negative steps and penetrations themselves."""
-
-
-def option(text: str, bounds: Range, *, flag: str | None = None, default: Any = MISSING) -> Any:
-    """A field of a case, which an option of the command line fills; needed without a default.
-
-    `text` is its help, `bounds` what it may be, `flag` how it is written, if not as the field.
-    """
-    return dataclass_field(default=default, metadata={"text": text, "flag": flag, "bounds": bounds})
+PLACE = Range(-NUMBER.most, NUMBER.most)
+"""Loads and their steps; what is negative is refused where it cannot be."""
 
 
 class Problem(NamedTuple):
@@ -48,16 +42,81 @@ class Problem(NamedTuple):
     sites: Array | None = None
     """Coordinates that are not those of the geometry, (n_site,)."""
     measures: TileMeasures | None = None
-    """Those of the tile of a sphere."""
+    """Those of the tile."""
 
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
     """How a given field is resolved; None leaves the choice to the case."""
 
-    angles: int | None
-    samples_per_pixel: float | None
-    interpolation: Interpolation | None
+    angles: int | None = None
+    samples_per_pixel: float | None = None
+    interpolation: Interpolation | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class StraightFront:
+    """A straight front on a surface, its contact at smaller x, pulled by springs along x."""
+
+    surface: DataArray
+    """The periodic surface, in reduced units."""
+    spring: float
+    """Length of the springs, w_int / kappa. (Units: that of the surface)"""
+
+
+def straight_front(surface: DataArray, spring: float) -> StraightFront:
+    """A straight front for :func:`crackfront.run_loop`, whose loads are places of its springs.
+
+    Parameters
+    ----------
+    surface : xarray.DataArray
+        Surface, as of :func:`crackfront.surface`.
+    spring : float
+        Length of the springs, w_int over their stiffness per area. (Units: lateral unit of the
+        surface)
+
+    Raises
+    ------
+    ValueError
+        If the spring has no such length, or the surface another name than that of one.
+    TypeError
+        If an argument is of another type.
+    """
+    from crackfront.simulate.given import surface_kind
+
+    surface_kind(surface)
+    refuse_no_numbers(spring=spring)
+    refuse_outside("spring", spring, NUMBER)
+    return StraightFront(surface, float(spring))
+
+
+def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
+    """Loads of a protocol as numbers.
+
+    Raises
+    ------
+    ValueError
+        If there is none, or one is no number within bounds.
+    """
+    found = []
+    for given in loads:
+        try:
+            found.append(float(given))
+        except (TypeError, ValueError):
+            raise ValueError(f"a load is {given!r}; write numbers alone") from None
+        refuse_outside("a load", found[-1], PLACE)
+    if not found:
+        raise ValueError("there are no loads; give one or more")
+    return tuple(found)
+
+
+def _protocol(loads: tuple[float, ...], step: float | None) -> tuple[Iterator[Load], float]:
+    """Loads of a protocol, made when they are taken, and how many there are."""
+    from crackfront.core.cycle.schedule import protocol
+
+    step = math.inf if step is None else step
+    way = protocol(loads, step)
+    return way, len(loads) + sum(abs(one - other) for one, other in pairwise(loads)) / step
 
 
 @dataclass(frozen=True)
@@ -66,33 +125,52 @@ class SphereCase:
 
     ends_by: ClassVar[str] = "LOST_CONTACT"
 
-    max_penetration: float = option("Largest penetration.", _DEPTH)
-    step: float | None = option(
-        "Difference of loads.  [default on a sphere: 0.004, dissipated energies to 1%]",
-        _PLACE,
-        default=None,
-    )
+    max_penetration: float | None = None
+    step: float | None = None
+    loads: tuple[float, ...] | None = None
+
+    @property
+    def deepest(self) -> float:
+        """Largest penetration; ValueError if the loads make no contact, or are given twice."""
+        if (self.loads is None) == (self.max_penetration is None):
+            raise ValueError("a sphere needs max_penetration or loads; give one of the two")
+        if self.loads is None:
+            return float(self.max_penetration or 0.0)
+        if self.loads[0] < 0:
+            raise ValueError(
+                f"loads begin with {self.loads[0]:g}; a sphere touches at penetration 0, so begin "
+                "there or deeper"
+            )
+        return max(self.loads)
+
+    def way(self) -> tuple[Iterator[Load], float]:
+        """Loads in their order, and how many there are, about."""
+        from crackfront.core import jkr
+        from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
+
+        if self.loads is not None:
+            return _protocol(self.loads, self.step)
+        step = DEFAULT_STEP if self.step is None else self.step
+        loads = LoadSchedule(self.deepest, step).loads()
+        # A smooth sphere comes off there; a rough one goes somewhat further.
+        return loads, 3 + (2 * self.deepest - jkr.pull_off_penetration()) / step
 
     def problem(self, read: Callable[[], AdhesionMap | PolarSamples], sizes: Resolution) -> Problem:
         """Field of a tile, which is kept as its splines alone, or of samples on rays.
 
-        The load goes from first contact to the largest penetration, and back to pull-off.
+        Without loads, they go from first contact to the largest penetration and to pull-off.
         """
         from crackfront.core import jkr
         from crackfront.core.adhesion import AdhesionMap
         from crackfront.core.contact import contact_field
-        from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
         from crackfront.core.cycle.touch import checked_touch
         from crackfront.simulate.costs import affordable_seconds
         from crackfront.simulate.surfaces import tile_measures
 
-        step = DEFAULT_STEP if self.step is None else self.step
-        way = LoadSchedule(self.max_penetration, step).loads()
-        # A smooth sphere comes off there; a rough one goes somewhat further.
-        n_state = 3 + (2 * self.max_penetration - jkr.pull_off_penetration()) / step
+        deepest, (way, n_state) = self.deepest, self.way()
         given, angles, density = read(), sizes.angles, sizes.samples_per_pixel
         if isinstance(given, AdhesionMap):
-            radius = jkr.equilibrium_radius(self.max_penetration)
+            radius = jkr.equilibrium_radius(deepest)
             seconds = affordable_seconds(
                 n_angle=angles or 2 * math.pi * radius / given.pixel,
                 n_point=given.work_of_adhesion.size,
@@ -100,9 +178,7 @@ class SphereCase:
                 n_sample=2 * radius / given.pixel * (density or 4.0),
             )
             spacing, pieces = given.pixel / density if density else None, sizes.interpolation
-            field: Field = contact_field(
-                given, self.max_penetration, angles, spacing, pieces or "cubic"
-            )
+            field: Field = contact_field(given, deepest, angles, spacing, pieces or "cubic")
             sites, measures = None, tile_measures(given)
         elif angles is not None or density is not None:
             raise ValueError(
@@ -117,32 +193,32 @@ class SphereCase:
                 n_state=n_state,
                 n_sample=2 * given.field.places.size,
             )
-        front = checked_touch(field, self.max_penetration)
+        front = checked_touch(field, deepest)
         return Problem(field, front, way, int(n_state), seconds, sites, measures)
 
 
 @dataclass(frozen=True)
 class LineCase:
-    """A straight front along y on a periodic tile, which springs pull along x and back."""
+    """A straight front along y on a periodic tile, which springs pull along x."""
 
     ends_by: ClassVar[str] = "CONVERGED"
 
-    spring: float = option("Length of the springs, w_int / kappa, in the unit of the tile.", NUMBER)
-    first: float = option("First load, and the last.", _PLACE, flag="--from")
-    last: float = option("Load at which the motion turns.", _PLACE, flag="--to")
-    step: float | None = option("Difference of loads.", _PLACE)
+    spring: float
+    step: float | None
+    loads: tuple[float, ...]
 
     def problem(self, read: Callable[[], AdhesionMap | PolarSamples], sizes: Resolution) -> Problem:
         """Field on the points of a tile, one site for every y unless the resolution says more."""
         import numpy as np
 
         from crackfront.core.adhesion import AdhesionMap
-        from crackfront.core.cycle.schedule import there_and_back
         from crackfront.core.geometry.line import line_field, straight_front
         from crackfront.core.units import WORK_OF_ADHESION
         from crackfront.simulate.costs import affordable_seconds
+        from crackfront.simulate.surfaces import tile_measures
 
-        step, travel = self.step or 0.0, self.last - self.first
+        loads = self.loads
+        way, n_state = _protocol(loads, self.step)
         given, density = read(), sizes.samples_per_pixel or 1.0
         if not isinstance(given, AdhesionMap):
             raise ValueError("a line needs a tile work_of_adhesion(x, y), not samples on rays")
@@ -152,21 +228,18 @@ class LineCase:
         seconds = affordable_seconds(
             n_angle=sizes.angles or values.shape[1],
             n_point=values.size,
-            n_state=3 + max(2 * travel / step, 0.0) if step > 0 else 0.0,
-            n_sample=2 * (abs(travel) + behind) / given.pixel * density,
+            n_state=n_state,
+            n_sample=2 * (float(np.ptp(loads)) + behind) / given.pixel * density,
         )
-        way = there_and_back(self.first, self.last, step)
         field = line_field(
             given,
             self.spring,
-            (self.first, self.last),
+            (min(loads), max(loads)),
             n_site=sizes.angles,
             spacing=given.pixel / density,
             interpolation=sizes.interpolation or "cubic",
         )
-        front = straight_front(field, given, self.first)
-        return Problem(field, front, [way[0]._replace(start=front), *way[1:]], len(way), seconds)
-
-
-CASES: dict[str, type[Any]] = {"sphere": SphereCase, "line": LineCase}
-"""Cases by the name of their geometry."""
+        front, measures = straight_front(field, given, loads[0]), tile_measures(given)
+        # A branch begins with a front of its own: making contact has no energy here.
+        started = chain([next(way)._replace(start=front)], way)
+        return Problem(field, front, started, int(n_state), seconds, measures=measures)

@@ -12,13 +12,11 @@ from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Interpolation, RayField, polar_field
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.core.variables import ADHESION, LATERAL
 from crackfront.data.bounds import LENGTH, refuse_outside
-from crackfront.data.files import UnreadableFileError, labelled, read_dataset, write_dataset
-from crackfront.data.provenance import Provenance
-from crackfront.data.tiles import TOLERANCE, refuse_extreme, tile_samples
-from crackfront.simulate.si_units import SURFACES
-from crackfront.simulate.surfaces import surface_adhesion
+from crackfront.data.files import UnreadableFileError, read_dataset
+from crackfront.data.tiles import TOLERANCE, refuse_extreme
+from crackfront.simulate.given import reduced_adhesion, surface_adhesion
+from crackfront.simulate.si_units import SURFACES, refuse_other_units
 
 NAME = SURFACES["chemical"].name
 _HEIGHT = SURFACES["roughness"].name
@@ -41,12 +39,11 @@ class PolarSamples:
 def read_field(path: Path, interpolation: Interpolation = "linear") -> AdhesionMap | PolarSamples:
     """Work of adhesion of a file: a periodic tile, or samples on rays.
 
-    The variable `work_of_adhesion` is in reduced units, in which w_int is 1/pi, or relative to
-    w_int where its attribute `units` says so, as that of the library does. Its dimensions
-    are x and y (equal and uniform spacing, coordinates needed; the sphere's apex is the tile's
-    centre, half a side from the first point) or radius and angle (radius as a coordinate; angles
-    equally spaced in rad), in any order. On rings it is the radius alone. A variable `height`
-    instead is a rough surface as the library makes it.
+    A tile is a surface of the library, `height(x, y)` or `work_of_adhesion(x, y)`, as of
+    :func:`crackfront.simulate.surfaces.surface_adhesion`, the sphere's apex at its centre, half a
+    side from the first point. Works of adhesion whose attribute `units` is missing are in reduced
+    units. Those on rays have the dimensions radius and angle (radius as a coordinate; angles
+    equally spaced in rad), in any order, on rings the radius alone.
 
     Parameters
     ----------
@@ -86,34 +83,12 @@ def _field(dataset: xr.Dataset, interpolation: Interpolation) -> AdhesionMap | P
     for name, places in values.coords.items():
         if places.dtype.kind not in _REAL:
             raise ValueError(f"{name} is {places.dtype}; places must be real numbers")
-    _refuse_other_units(values)
-    if values.attrs.get("units") == ADHESION:
-        values = values * WORK_OF_ADHESION
-    values = values.transpose("x", "y", "radius", "angle", missing_dims="ignore").astype(float)
+    if "x" in values.dims:
+        return surface_adhesion(values)
+    refuse_other_units(values.coords.to_dataset().drop_vars("angle", errors="ignore"))
+    values = reduced_adhesion(values.transpose("radius", "angle", missing_dims="ignore"))
     refuse_extreme(f"{NAME} / w_int", values.to_numpy(), WORK_OF_ADHESION)
-    return _tile(values) if "x" in values.dims else _rays(values, interpolation)
-
-
-def _refuse_other_units(values: xr.DataArray) -> None:
-    """Raise if the field or a length says that it is in units other than reduced ones."""
-    lengths = [values[name] for name in ("x", "y", "radius") if name in values.coords]
-    for part in (values, *lengths):
-        units = str(part.attrs.get("units", ""))
-        if units not in ("", "1", ADHESION) and not units.startswith("reduced"):
-            raise ValueError(
-                f"{part.name} is in {units}; convert it to reduced units, as "
-                "crackfront.in_reduced_units does, and remove or renew its attribute units"
-            )
-
-
-def _tile(values: xr.DataArray) -> AdhesionMap:
-    """Map of a periodic tile."""
-    samples, pixel = tile_samples(values)
-    # The refusal of values that are not finite, with their place, is that of the field.
-    with np.errstate(invalid="ignore"):
-        rms = float(np.std(samples) / WORK_OF_ADHESION)
-    corner = float(values["x"][0]), float(values["y"][0])
-    return AdhesionMap(samples, pixel, e_el=rms**2 / 4, w_rms=rms, corner=corner)
+    return _rays(values, interpolation)
 
 
 def _rays(values: xr.DataArray, interpolation: Interpolation) -> PolarSamples:
@@ -140,18 +115,3 @@ def _rays(values: xr.DataArray, interpolation: Interpolation) -> PolarSamples:
                 refuse_outside("a radius or the distance of two", float(distance), LENGTH)
     samples = values.transpose("radius", "angle").to_numpy()
     return PolarSamples(polar_field(radii, samples, interpolation), angles)
-
-
-def write_field(
-    path: Path, adhesion: AdhesionMap, origin: Provenance, **attributes: str | float
-) -> None:
-    """Write a periodic tile as :func:`read_field` reads it, with what else it says of itself."""
-    values = adhesion.work_of_adhesion / WORK_OF_ADHESION
-    axis = {"units": LATERAL}
-    coordinates = {
-        name: ((name,), adhesion.pixel * np.arange(count), axis)
-        for name, count in zip(("x", "y"), values.shape, strict=True)
-    }
-    about = {"e_el": adhesion.e_el, "w_rms": adhesion.w_rms, **attributes}
-    dataset = xr.Dataset({NAME: labelled(SURFACES["chemical"], values)}, coordinates, about)
-    write_dataset(path, dataset, origin)

@@ -1,9 +1,9 @@
-"""One approach and retraction on a surface, and the single instabilities of a branch."""
+"""Loops on a surface under any loads, and the single instabilities of a branch."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import get_args
 
@@ -17,9 +17,8 @@ from crackfront.core.arrays import Array
 from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.touch import first_touch
+from crackfront.core.cycle.touch import checked_touch, first_touch
 from crackfront.core.field.fields import TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import LineState
@@ -32,7 +31,15 @@ from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.provenance import __version__
+from crackfront.simulate.cases import (
+    LineCase,
+    Resolution,
+    SphereCase,
+    StraightFront,
+    load_values,
+)
 from crackfront.simulate.files import cycle_dataset
+from crackfront.simulate.given import surface_adhesion
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import Simulation, missed_error, simulation_field, stated_error
@@ -41,8 +48,6 @@ from crackfront.simulate.surfaces import (
     chosen_simulation,
     refuse_no_fraction,
     stated_spectrum,
-    surface_adhesion,
-    surface_kind,
     tile_measures,
 )
 
@@ -62,33 +67,40 @@ _MEASURES = (
 
 
 def run_loop(
-    surface: DataArray,
+    surface: DataArray | StraightFront,
     *,
-    max_penetration: float = 1.0,
-    step: float = 0.02,
+    loads: Iterable[float] | None = None,
+    max_penetration: float | None = None,
+    step: float | None = None,
     error: float = 0.03,
     solver: str = "newton",
     fronts: bool = True,
     energy: bool = False,
     progress: Callable[[ContactState[float]], None] | None = None,
 ) -> Dataset:
-    """Approach from first contact, and retraction to pull-off, of a sphere on a surface.
+    """States of a sphere on a surface, or of a straight front, under any loads.
 
     Parameters
     ----------
-    surface : xarray.DataArray
-        `height(x, y)` or `work_of_adhesion(x, y)` on a periodic tile in reduced units, the apex
-        of the sphere at the centre of the tile.
+    surface : xarray.DataArray or StraightFront
+        Surface of :func:`crackfront.surface`, `random_surface` or `read_scan`, the apex of the
+        sphere at the centre of the tile; or what :func:`crackfront.straight_front` makes of one.
+    loads : iterable of float, optional
+        Loads to visit in their order, down and up as often as they say; one that stands twice is
+        a hold. The loop ends where contact is lost. By default, for a sphere, from first contact
+        to the largest penetration, and to pull-off. (Units: reduced vertical length; of a straight
+        front that of its tile)
     max_penetration : float, optional
-        Largest penetration. (Units: reduced vertical length)
+        Largest penetration in place of loads, by default 1. (Units: reduced vertical length)
     step : float, optional
-        Difference of penetrations. The fronts at a penetration do not depend on it.
-        (Units: reduced vertical length)
+        Largest difference of loads: equal steps lead from one to the next. By default 0.02 in place
+        of loads; those that are given are visited as they are. The fronts do not depend on it.
+        (Units: that of loads)
     error : float, optional
         Standard error of the factor k of either branch that the numerics may leave; measured
-        laws choose sites, samples and tolerance. They need the attributes `short_cutoff`,
-        `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them. Without these
-        the front has a site a pixel or more, and two samples a pixel along a ray.
+        laws choose sites, samples and tolerance. They need a sphere and the attributes
+        `short_cutoff`, `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them.
+        Without these the front has a site a pixel or more, and two samples a pixel along a ray.
     solver : {"newton", "reference"}, optional
         Solver; both find the same fronts.
     fronts, energy : bool, optional
@@ -99,10 +111,11 @@ def run_loop(
     Returns
     -------
     xarray.Dataset
-        The curves over `step`, the fronts `radius(step, angle)`, and measures of the whole:
-        `e_el`, `w_rms`, `correlation_length`, `w_appr`, `w_retr`, their errors and `hysteresis`.
-        The last four are NaN where the loop has no steady part. The attribute `result` states
-        them and the forces of jump-in and pull-off, `steady_sentence` why they are NaN.
+        The curves over `step`, the fronts `radius(step, angle)` or `position(step, y)`, and
+        measures of the whole: `e_el`, `w_rms`, `correlation_length`, of a sphere `w_appr`,
+        `w_retr`, their errors and `hysteresis`. The last four are NaN where the loop has no steady
+        part. The attribute `result` states them and the forces of jump-in and pull-off,
+        `steady_sentence` why they are NaN.
 
     Raises
     ------
@@ -114,29 +127,51 @@ def run_loop(
 
     Examples
     --------
-    >>> from crackfront import random_surface
+    >>> from crackfront import random_surface, straight_front
     >>> surface = random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, seed=1)
     >>> loop = run_loop(surface, step=0.25)
     >>> loop.attrs["status"], loop.radius.dims
     ('lost_contact', ('step', 'angle'))
+    >>> minor = run_loop(surface, loads=[0, 0.5, 0.2, 0.5], step=0.1)
+    >>> bool(abs(minor.force[5] - minor.force[11]) < 1e-6)
+    True
+    >>> pulled = run_loop(straight_front(surface, spring=2), loads=[0, 2, 0], step=0.5)
+    >>> pulled.position.dims
+    ('step', 'y')
     """
-    refuse_no_numbers(max_penetration=max_penetration, step=step)
+    straight = isinstance(surface, StraightFront)
+    numbers = {"max_penetration": max_penetration, "step": step}
+    refuse_no_numbers(**{name: one for name, one in numbers.items() if one is not None})
     for name, value in (("fronts", fronts), ("energy", energy)):
         refuse_other_type(name, value, bool, "True or False")
     if not callable(progress):
         refuse_other_type("progress", progress, type(None), "a function of a state")
-    solution = named_solver(solver, DEFAULT_TOLERANCE)
-    schedule = LoadSchedule(max_penetration, step)
-    contact = surface_contact(surface, schedule, error)
-    compile_solver(solver)
+    solution, simulation = named_solver(solver, DEFAULT_TOLERANCE), None
+    visited = None if loads is None else load_values(loads)
+    if isinstance(surface, StraightFront):
+        if visited is None or max_penetration is not None:
+            raise ValueError("a straight front needs loads, and no max_penetration; give loads")
+        adhesion = surface_adhesion(surface.surface)
+        problem = LineCase(surface.spring, step, visited).problem(lambda: adhesion, Resolution())
+        field, front, way, measures = problem.field, problem.front, problem.loads, problem.measures
+    else:
+        if visited is None:
+            step = 0.02 if step is None else step
+            max_penetration = 1.0 if max_penetration is None else max_penetration
+        case = SphereCase(max_penetration, step, visited)
+        way, deepest = case.way()[0], case.deepest
+        contact = surface_contact(surface, LoadSchedule(deepest, 1.0), error)
+        field, measures, simulation = contact.field, contact.measures, contact.simulation
+        front = checked_touch(field, deepest)
+        solution = replace(solution, tolerance=contact.tolerance)
+    compile_solver(solver, straight)
     observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
-    solution = replace(solution, tolerance=contact.tolerance)
-    record = run_cycle(contact.field, schedule, solution, recorder)
-    loop = loop_dataset(record, contact.measures, simulation=contact.simulation)
+    recorder.run(field, front, way, solution)
+    loop = loop_dataset(recorder.record(), measures, field.geometry, simulation=simulation)
     return loop.assign_attrs(
         solver=solver,
-        tolerance=contact.tolerance,
+        tolerance=solution.tolerance,
         crackfront_version=__version__,
         solver_fingerprint=solver_fingerprint(),
     )
@@ -165,19 +200,16 @@ def loop_dataset(
     curves = cycle_dataset(record, geometry, sites)
     if measures is None:
         return curves.assign_attrs({"result": result_sentence(record)} | curves.attrs)
-    steady = steady_adhesion(record, measures.correlation_length)
-    numerical = (math.nan, math.nan)
-    if simulation is not None and not steady.sentence:
-        numerical = stated_error(simulation, steady, measures.correlation_length)
-    values = {
-        "e_el": measures.e_el,
-        "w_rms": measures.w_rms,
-        "correlation_length": measures.correlation_length,
-        "w_appr_numerical_error": numerical[0],
-        "w_retr_numerical_error": numerical[1],
-        **{name: getattr(steady, name) for name in _MEASURES},
-    }
-    sentences = {"result": result_sentence(record, steady), "steady_sentence": steady.sentence}
+    values = {name: getattr(measures, name) for name in ("e_el", "w_rms", "correlation_length")}
+    sentences = {"result": result_sentence(record)}
+    if isinstance(record.states, ContactState):
+        steady = steady_adhesion(record, measures.correlation_length)
+        numerical = (math.nan, math.nan)
+        if simulation is not None and not steady.sentence:
+            numerical = stated_error(simulation, steady, measures.correlation_length)
+        values["w_appr_numerical_error"], values["w_retr_numerical_error"] = numerical
+        values |= {name: getattr(steady, name) for name in _MEASURES}
+        sentences = {"result": result_sentence(record, steady), "steady_sentence": steady.sentence}
     labels = sentences | curves.attrs | {"kind": measures.kind}
     whole = curves.assign(
         {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
@@ -287,12 +319,12 @@ def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) ->
     Arguments and errors are as of :func:`run_loop`.
     """
     refuse_no_fraction("error", error)
-    kind, adhesion = surface_kind(surface), surface_adhesion(surface)
-    measures = tile_measures(adhesion, kind)
+    adhesion = surface_adhesion(surface)
+    measures = tile_measures(adhesion)
     spectrum, deepest = stated_spectrum(surface), schedule.max_penetration
     if spectrum is None or adhesion.e_el == 0:
         return SurfaceContact(contact_field(adhesion, deepest), DEFAULT_TOLERANCE, measures, None)
-    chosen = chosen_simulation(kind, spectrum, adhesion.e_el, schedule, error=error)
+    chosen = chosen_simulation(measures.kind, spectrum, adhesion.e_el, schedule, error=error)
     n_point = min(adhesion.work_of_adhesion.shape)
     sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
     simulation = replace(chosen, resolution=sizes)

@@ -64,14 +64,14 @@ class Scales(units.Scales):
         self, radius: float | str, work_of_adhesion: float | str, contact_modulus: float | str
     ) -> None:
         super().__init__(
-            _in_si("radius", radius, "m"),
-            _in_si("work_of_adhesion", work_of_adhesion, "J/m^2"),
-            _in_si("contact_modulus", contact_modulus, "Pa"),
+            in_si("radius", radius, "m"),
+            in_si("work_of_adhesion", work_of_adhesion, "J/m^2"),
+            in_si("contact_modulus", contact_modulus, "Pa"),
         )
 
 
-def _in_si(name: str, given: float | str, unit: str) -> float:
-    """Value of a parameter of :class:`Scales` in SI."""
+def in_si(name: str, given: float | str, unit: str) -> float:
+    """Value in SI of an argument that is a number or a text with a unit."""
     if isinstance(given, str):
         return si_value(given, unit, what=name)
     refuse_other_type(name, given, Real, f"a number of {unit}, or a text with a unit")
@@ -100,6 +100,9 @@ _REDUCED = {
     )
 } | {"x": LATERAL, "y": LATERAL}
 """Reduced units of everything that may be converted."""
+
+_PLACES = "x", "y", "radius"
+"""Coordinates of fields, which are in reduced units where they state none."""
 
 _ATTRIBUTES = dict.fromkeys((*Spectrum.length_names(), "travel"), LATERAL)
 _ATTRIBUTES |= {"end_penetration": VERTICAL, "pull_off_energy": ENERGY}
@@ -179,12 +182,13 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
 
 
 def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
-    """Raise ValueError if a variable is unknown or not in reduced units."""
+    """Raise ValueError if a variable is unknown or not in reduced units; places need no units."""
     for name, part in as_dataset(data).variables.items():
         given, needed = part.attrs.get("units"), _reduced_unit(str(name))
-        if given != needed:
+        plain = "reduced" if needed in (LATERAL, VERTICAL) else needed
+        if given not in (needed, plain) and not (name in _PLACES and given in (None, "", "1")):
             raise ValueError(
-                f"{name} has the units {given!r}; the attribute units must be {needed!r}: set it, "
+                f"{name} has the units {given!r}; the attribute units must be {plain!r}: set it, "
                 "or convert other units by in_reduced_units"
             )
 

@@ -1,29 +1,24 @@
-"""Surfaces on a periodic tile: random ones, what given ones mean, and measures of any tile."""
+"""Random surfaces on a periodic tile, and measures of any tile."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from numbers import Integral
-from typing import get_args
 
 import numpy as np
-import xarray as xr
 from scipy.fft import fftfreq, rfft2, rfftfreq
 from xarray import DataArray
 
-from crackfront.core.adhesion import AdhesionMap, FieldKind, chemical_adhesion, rough_adhesion
+from crackfront.core.adhesion import AdhesionMap, FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.core.variables import LATERAL, Variable
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import SEED, refuse_beyond_memory
-from crackfront.data.files import labelled
-from crackfront.data.tiles import refuse_extreme, tile_samples
 from crackfront.simulate.costs import expected_cost, refuse_oversized
-from crackfront.simulate.si_units import SURFACES, refuse_other_units
+from crackfront.simulate.given import refuse_unknown_kind, surface_array
 from crackfront.simulate.simulation import (
     Numerics,
     Simulation,
@@ -133,8 +128,7 @@ def chosen_simulation(
     realisation: int = 0,
 ) -> Simulation:
     """Simulation of a surface under some loads; arguments as of :func:`random_surface`."""
-    if kind not in get_args(FieldKind):
-        raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
+    refuse_unknown_kind(kind)
     refuse_no_fraction("error", error)
     refuse_no_fraction("elastic_energy", elastic_energy)
     for name, number in (("seed", seed), ("realisation", realisation)):
@@ -163,110 +157,6 @@ def refuse_no_fraction(name: str, value: float) -> None:
     refuse_no_numbers(**{name: value})
     if not 0 < value < 1:
         raise ValueError(f"{name} is {value}; it must lie between 0 and 1")
-
-
-_AXES = tuple(
-    Variable(name, (name,), LATERAL, f"{name}, the apex of the sphere at 0") for name in "xy"
-)
-
-
-def surface_array(
-    kind: FieldKind, values: Array, pixel: float, **attributes: str | float | Array
-) -> xr.DataArray:
-    """Surface of a periodic tile, the apex of the sphere at its centre.
-
-    Parameters
-    ----------
-    kind : {"roughness", "chemical"}
-        Whether the values are heights or works of adhesion.
-    values : (n_x, n_y) array
-        Heights (Units: reduced vertical length) or works of adhesion. (Units: w_int)
-    pixel : float
-        Grid spacing. (Units: reduced lateral length)
-    **attributes : str, float or array
-        What else the array says of itself.
-    """
-    item = SURFACES[kind]
-    axes = {
-        axis.name: labelled(axis, pixel * (np.arange(count) - count / 2))
-        for axis, count in zip(_AXES, values.shape, strict=True)
-    }
-    return xr.DataArray(values, axes, item.dims, name=item.name, attrs=item.attributes | attributes)
-
-
-def surface_kind(surface: xr.DataArray) -> FieldKind:
-    """Kind of the values of a surface, by its name; ValueError if no surface has that name.
-
-    Raises
-    ------
-    TypeError
-        If it is no array with labels at all.
-    """
-    wanted = "an xarray.DataArray height(x, y), as random_surface and read_scan make it"
-    refuse_other_type("surface", surface, xr.DataArray, wanted)
-    kinds = {item.name: kind for kind, item in SURFACES.items()}
-    if surface.name not in kinds:
-        raise ValueError(
-            f"the surface is named {surface.name!r}; say what its values are by the name "
-            f"{' or '.join(kinds)}, as in surface.rename('height')"
-        )
-    return kinds[str(surface.name)]
-
-
-def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
-    """Work of adhesion of a surface in reduced units.
-
-    Parameters
-    ----------
-    surface : xarray.DataArray
-        `height(x, y)` or `work_of_adhesion(x, y)` on a periodic tile.
-
-    Raises
-    ------
-    ValueError
-        If name, dimensions, units or values are not those of a surface in reduced units, heights
-        jump from one edge of the tile to the other, or the energy of full conformity is not below
-        w_int.
-    """
-    kind = surface_kind(surface)
-    if {*surface.dims} != {"x", "y"}:
-        raise ValueError(
-            f"{surface.name} has the dimensions ({', '.join(map(str, surface.dims))}); a tile must "
-            "have x and y"
-        )
-    refuse_other_units(surface)
-    samples, pixel = tile_samples(surface)
-    bad = np.argwhere(~np.isfinite(samples))
-    if bad.size:
-        raise ValueError(
-            f"{surface.name} is {samples[tuple(bad[0])]} at x index {bad[0, 0]}, y index "
-            f"{bad[0, 1]} ({len(bad)} such values); replace them by finite values"
-        )
-    refuse_extreme(SURFACES[kind].name, samples)
-    if kind == "roughness":
-        if not surface.attrs.get("periodic"):
-            _refuse_seam(samples)
-        return rough_adhesion(samples, pixel)
-    return chemical_adhesion(samples - 1.0, pixel)
-
-
-_SEAM = 2.0
-"""Rms step of heights from one edge of a tile to the other over the largest one inside, from which
-on the tile is not periodic: on one that is, the edges are lines like all others."""
-
-
-def _refuse_seam(heights: Array) -> None:
-    """Raise if heights do not go on from one edge of a tile to the other."""
-    for axis, name in enumerate("xy"):
-        steps = np.diff(heights, axis=axis, append=np.take(heights, [0], axis=axis))
-        *inside, seam = np.sqrt(np.mean(steps**2, axis=1 - axis))
-        if seam > _SEAM * max(inside):
-            raise ValueError(
-                f"the heights jump by {seam:.3g} from one end of {name} to the other, where those "
-                f"of neighbouring points differ by up to {max(inside):.3g}: the tile is not "
-                "periodic. Level the map and mirror or window it, as read_scan does; an edge that "
-                "is meant is said by the attribute periodic=1"
-            )
 
 
 _ROUND_OFF = 1e-28
@@ -369,12 +259,11 @@ class TileMeasures:
     (Units: reduced lateral length)"""
 
 
-def tile_measures(adhesion: AdhesionMap, kind: FieldKind | None = None) -> TileMeasures:
-    """Measures of a tile; without its kind the mean work of adhesion decides."""
+def tile_measures(adhesion: AdhesionMap) -> TileMeasures:
+    """Measures of a tile, whose mean work of adhesion decides of what kind it is."""
     values, energy = adhesion.work_of_adhesion, adhesion.e_el
-    if kind is None:
-        lacking = 1 - float(np.mean(values)) / WORK_OF_ADHESION
-        kind = "chemical" if abs(lacking) < abs(lacking - energy) else "roughness"
+    lacking = 1 - float(np.mean(values)) / WORK_OF_ADHESION
+    kind: FieldKind = "chemical" if abs(lacking) < abs(lacking - energy) else "roughness"
     modes = tile_modes(values, adhesion.pixel)
     length = modes.mean_wavelength if modes.power.size else adhesion.pixel
     return TileMeasures(kind, energy, adhesion.w_rms, length)

@@ -12,11 +12,8 @@ from xarray import DataArray
 
 from crackfront.core.units import Scales
 from crackfront.data.arguments import refuse_other_type
-from crackfront.data.written_units import prefixed
 from crackfront.simulate.si_units import refuse_no_scales
-from crackfront.simulate.surfaces import surface_array
 from crackfront.topography.bands import scan
-from crackfront.topography.cautions import scan_notes
 from crackfront.topography.instruments import surface_library
 from crackfront.topography.measures import read_surface
 from crackfront.topography.options import (
@@ -29,7 +26,7 @@ from crackfront.topography.options import (
 )
 from crackfront.topography.prediction import Prediction, predicted
 from crackfront.topography.reading import read_measurements
-from crackfront.topography.tile import tile_heights, zero_load_radius
+from crackfront.topography.tile import scan_surface
 from crackfront.topography.verdict import verdict
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -93,22 +90,7 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     reading = parsed_options(ReadingOptions, options)
     surface_library()  # Whole: the program may use it too.
     [measured] = read_measurements([file], reading)
-    one = scan(measured, reading.shortest, reading.longest)
-    measurement = one.trusted_measurement
-    heights, pixel = tile_heights(measurement)
-    return surface_array(
-        "roughness",
-        heights / sphere.vertical,
-        pixel / sphere.lateral,
-        source=f"{measurement.path}, {measurement.format}, checksum {measurement.checksum}",
-        levelling=f"{measurement.levelling} was taken off: form and tilt are no roughness",
-        tile="the scan as it stands, as its file says that it is periodic"
-        if measurement.periodic
-        else "mirrored at its edges, where a scan does not go on: twice its sides",
-        waves=f"those shorter than {prefixed('m', measurement.shortest)} were taken away, as they "
-        "are not to be trusted",
-        notes=" ".join(scan_notes(one, zero_load_radius(sphere))),
-    )
+    return scan_surface(scan(measured, reading.shortest, reading.longest), sphere)
 
 
 def _path(scan: File) -> Path:

@@ -1,33 +1,29 @@
-"""A measured map as the field of a simulation: mirrored to a periodic tile."""
+"""A measured map as a surface to press on: mirrored to a periodic tile."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 from scipy.fft import fftfreq, irfft2, rfft2
+from xarray import DataArray
 
 from crackfront.core import jkr
-from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
-from crackfront.topography.instruments import shown_sides
+from crackfront.simulate.given import surface_array
+from crackfront.topography.bands import Scan
+from crackfront.topography.cautions import scan_notes
 from crackfront.topography.levelling import Array
 from crackfront.topography.reading import Measurement
-
-Placement = Literal["tiled", "within"]
-"""Whether the contact may go on to mirror images of the scan, or must fit in the scan itself."""
 
 _EQUAL = 1e-6
 """Relative difference up to which pixels count as square."""
 
 
-def measured_adhesion(
-    measurement: Measurement, scales: Scales, placement: Placement = "tiled"
-) -> AdhesionMap:
-    """Reduced field of the very map, on a periodic tile with the scan in its middle.
+def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
+    """The very map as a surface to press on, on a periodic tile with the scan in its middle.
 
     The scan is mirrored at its edges, which leaves no steps there, on a tile of twice its sides;
     waves shorter than can be trusted are taken away. The apex of the sphere is the centre of the
@@ -36,31 +32,40 @@ def measured_adhesion(
 
     Parameters
     ----------
-    measurement : Measurement
-        A map.
-    scales : Scales
-        The scene, in SI units.
-    placement : {"tiled", "within"}, optional
-        Whether a contact larger than the scan meets its mirror images, or is refused.
+    scan : Scan
+        A map, and the waves of it that are trusted.
+    sphere : Scales
+        What is pressed on it.
+
+    Returns
+    -------
+    xarray.DataArray
+        `height(x, y)` in reduced units; its attributes say what was done and why.
 
     Raises
     ------
     ValueError
-        If the measurement is a line, the contact must fit in the scan and does not, or the surface
-        is too rough for full conformity.
+        If the measurement is a line.
     """
-    across = 2 * zero_load_radius(scales)
-    if placement == "within" and min(measurement.size) < across:
-        raise ValueError(
-            f"{measurement.path}: the scan of {shown_sides(measurement.size)} is smaller than the "
-            f"contact at zero load, {prefixed('m', across)} across; tile it, or use its spectrum"
-        )
+    measurement = scan.trusted_measurement
     heights, pixel = tile_heights(measurement)
-    return rough_adhesion(heights / scales.vertical, pixel / scales.lateral)
+    return surface_array(
+        "roughness",
+        heights / sphere.vertical,
+        pixel / sphere.lateral,
+        source=f"{measurement.path}, {measurement.format}, checksum {measurement.checksum}",
+        levelling=f"{measurement.levelling} was taken off: form and tilt are no roughness",
+        tile="the scan as it stands, as its file says that it is periodic"
+        if measurement.periodic
+        else "mirrored at its edges, where a scan does not go on: twice its sides",
+        waves=f"those shorter than {prefixed('m', measurement.shortest)} were taken away, as they "
+        "are not to be trusted",
+        notes=" ".join(scan_notes(scan, zero_load_radius(sphere))),
+    )
 
 
 def tile_heights(measurement: Measurement) -> tuple[Array, float]:
-    """Heights of the tile of :func:`measured_adhesion`, and its pixel (Units: m).
+    """Heights of the tile of :func:`scan_surface`, and its pixel (Units: m).
 
     Raises
     ------

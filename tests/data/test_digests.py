@@ -27,15 +27,15 @@ from crackfront.data.files import (
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import blank_figure, save_figure
-from crackfront.simulate.fields import read_field, write_field
+from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import (
     cycle_dataset,
     read_checkpoint,
     read_cycle,
     write_checkpoint,
 )
+from crackfront.simulate.given import surface_adhesion
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.surfaces import surface_adhesion
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fit_files import write_fit
@@ -147,7 +147,6 @@ def kinds(tmp_path_factory):
     cf.save_result(surface, folder / "surface.nc")
     cf.save_result(cf.run_loop(surface, step=0.25), folder / "loop.nc")
     adhesion = surface_adhesion(surface)
-    write_field(folder / "field.nc", adhesion, origin)
     record = run_cycle(
         contact_field(adhesion, 0.2), LoadSchedule(0.2, 0.1), SOLVERS["newton"](1e-6)
     )
@@ -166,7 +165,7 @@ def kinds(tmp_path_factory):
         "checkpoint": (folder / "checkpoint.nc", lambda path: read_checkpoint(path, ONE)),
         "surface": (folder / "surface.nc", cf.load_result),
         "loop": (folder / "loop.nc", cf.load_result),
-        "field": (folder / "field.nc", read_field),
+        "field": (folder / "surface.nc", read_field),
         "cycle": (folder / "cycle.nc", read_cycle),
         "figure": (folder / "main-1d.nc", lambda path: read_record(path, FIGURE.record)),
         "provenance": (folder / "main-1d.nc", read_attributes),

@@ -23,7 +23,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
 from crackfront.data.files import UnreadableFileError, date_back, write_dataset, write_text
 from crackfront.data.provenance import Provenance, provenance
-from crackfront.simulate.fields import PolarSamples, read_field, write_field
+from crackfront.simulate.fields import PolarSamples, read_field
 from crackfront.simulate.files import (
     cycle_dataset,
     read_cycle,
@@ -189,7 +189,7 @@ def tile(n_x=4, n_y=6, spacing=0.5):
     """A tile whose values tell their place."""
     values = 10.0 * np.arange(n_x)[:, None] + np.arange(n_y)[None, :] + 1
     return xr.DataArray(
-        values,
+        WORK_OF_ADHESION * values / max(values.mean(), 1.0),
         dims=("x", "y"),
         coords={"x": 2.0 + spacing * np.arange(n_x), "y": spacing * np.arange(n_y)},
         name="work_of_adhesion",
@@ -198,8 +198,9 @@ def tile(n_x=4, n_y=6, spacing=0.5):
 
 def rays(n_radius=3, n_angle=8, start=0.0):
     """Samples on rays whose values tell their place."""
+    values = 10.0 * np.arange(1, n_radius + 1)[:, None] + np.arange(n_angle)[None, :]
     return xr.DataArray(
-        10.0 * np.arange(1, n_radius + 1)[:, None] + np.arange(n_angle)[None, :],
+        WORK_OF_ADHESION * values / values.mean(),
         dims=("radius", "angle"),
         coords={
             "radius": 0.5 * np.arange(1, n_radius + 1),
@@ -222,17 +223,6 @@ def test_a_tile_is_read_by_the_names_of_its_dimensions(tmp_path, order):
     assert np.array_equal(field.work_of_adhesion, tile().values)
     assert field.pixel == 0.5
     assert field.w_rms == pytest.approx(np.std(tile().values) / WORK_OF_ADHESION)
-
-
-def test_a_tile_that_was_written_is_read_back(tmp_path, rng):
-    adhesion = AdhesionMap(rng.uniform(0.1, 0.5, (6, 8)), 0.3, e_el=0.1, w_rms=0.6)
-    write_field(tmp_path / "F.nc", adhesion, ORIGIN, source="scan.x3p")
-    field = read_field(tmp_path / "F.nc")
-    np.testing.assert_allclose(field.work_of_adhesion, adhesion.work_of_adhesion, rtol=4e-16)
-    assert field.pixel == pytest.approx(0.3)
-    attributes = xr.load_dataset(tmp_path / "F.nc").attrs
-    assert (attributes["e_el"], attributes["source"]) == (0.1, "scan.x3p")
-    assert attributes["git_commit"] == ORIGIN.git_commit
 
 
 @pytest.mark.parametrize("order", [("radius", "angle"), ("angle", "radius")])
@@ -285,7 +275,7 @@ UNUSABLE = {
         "they must be equally spaced over the whole circle, in rad",
     ),
     "radii fall": (rays()[::-1], "radii must be finite, not negative and strictly increasing"),
-    "not a number": (rays().where(rays() < 12), "work of adhesion is nan at radius index"),
+    "not a number": (rays().where(rays() < 0.2), "work of adhesion is nan at radius index"),
 }
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,10 +10,11 @@ import pytest
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
+from crackfront.simulate.given import surface_adhesion
 from crackfront.topography.bands import scan as scan_of
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import Measurement, read_measurements
-from crackfront.topography.tile import measured_adhesion, zero_load_radius
+from crackfront.topography.tile import scan_surface
 from studies.accuracy import scans
 from tests.topography.made import (
     SIDE,
@@ -36,7 +38,12 @@ def periodic_measurement(heights, side=SIDE, shortest=None):
 SOFT = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
 
 
-SMALL = Scales(radius=2e-5, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
+def measured_adhesion(measurement, scales):
+    """Work of adhesion of the surface of a map whose waves are all trusted."""
+    band = SimpleNamespace(stripes=())
+    parts = {"measurement": measurement, "trusted_measurement": measurement, "band": band}
+    trusted = SimpleNamespace(**parts)
+    return surface_adhesion(scan_surface(trusted, scales))
 
 
 def test_a_line_scan_is_no_field(rng, tmp_path):
@@ -108,15 +115,6 @@ def test_a_map_of_odd_and_unequal_sides_has_a_tile(tmp_path, rng):
     found = adhesion.e_el * SOFT.work_of_adhesion
     measured = SOFT.contact_modulus / 4 * measured_mean_square(scan_of(measurement), 0.5)
     assert found == pytest.approx(measured, rel=0.4)
-
-
-def test_a_scan_smaller_than_the_contact_is_tiled_or_refused(scan):
-    [measurement] = read_measurements([scan])
-    assert 2 * zero_load_radius(SOFT) > SIDE > 2 * zero_load_radius(SMALL)
-    with pytest.raises(ValueError, match="is smaller than the contact at zero load"):
-        measured_adhesion(measurement, SOFT, "within")
-    tiled, within = (measured_adhesion(measurement, SMALL, place) for place in ("tiled", "within"))
-    assert np.array_equal(tiled.work_of_adhesion, within.work_of_adhesion)
 
 
 def test_a_map_too_rough_for_full_conformity_is_no_field(tmp_path, heights):

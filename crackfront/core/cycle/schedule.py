@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from crackfront.core import jkr
@@ -17,6 +18,7 @@ from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.field.fields import Field, Interpolation, TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.sphere import sphere
+from crackfront.core.outcome import Direction
 from crackfront.core.solver.relax import Solver
 
 DEFAULT_STEP = 0.004
@@ -201,24 +203,35 @@ class LoadSchedule(SphereSchedule):
         return recorder.record()
 
 
-def there_and_back(first: float, last: float, step: float) -> list[Load]:
-    """Loads from one to a higher one, and back to the first.
+def protocol(loads: Sequence[float], step: float = math.inf) -> Iterator[Load]:
+    """Loads in their order, each with its direction; one that stands twice is a hold.
 
-    The last is visited even where it is no whole number of steps away.
+    Where two are further apart than a step, equal steps lead from one to the next.
 
     Raises
     ------
     ValueError
-        If the step is not positive, or the ends are not in order.
+        If there is no load, or the step is not positive.
 
     Examples
     --------
-    >>> [load.value for load in there_and_back(1.0, 3.5, 1.0)]
-    [1.0, 2.0, 3.0, 3.5, 3.0, 2.0, 1.0]
+    >>> [load.value for load in protocol([1.0, 2.0, 0.5], 1.0)]
+    [1.0, 2.0, 1.25, 0.5]
     """
-    if not -math.inf < first < last < math.inf:
-        raise ValueError(
-            f"loads go from {first} to {last}; the second must be above the first, both finite"
-        )
-    way = [first + load for load in LoadSchedule(last - first, step).approach()]
-    return [*(Load(load, 1) for load in way), *(Load(load, -1) for load in way[-2::-1])]
+    if not step > 0:
+        raise ValueError(f"load step is {step}; it must be positive")
+    if not len(loads):
+        raise ValueError("there are no loads; give one or more")
+    return _way(loads, step)
+
+
+def _way(loads: Sequence[float], step: float) -> Iterator[Load]:
+    """Loads of a protocol, one after the other."""
+    direction: Direction = 1
+    yield Load(float(loads[0]), direction)
+    for before, after in pairwise(map(float, loads)):
+        direction = direction if after == before else 1 if after > before else -1
+        count = max(1, math.ceil(abs(after - before) / step * (1 - 1e-12)))
+        for k in range(1, count):
+            yield Load(before + (after - before) * (k / count), direction)
+        yield Load(after, direction)

@@ -12,7 +12,7 @@ from crackfront.cli import main
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.follow import Load, follow
 from crackfront.core.cycle.record import Recorder
-from crackfront.core.cycle.schedule import there_and_back
+from crackfront.core.cycle.schedule import protocol
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.line import line_field, straight_front
 from crackfront.core.solver.forces import line_force
@@ -50,7 +50,7 @@ def run(adhesion, spring, way, solver, interpolation="linear"):
 @every_solver
 @pytest.mark.parametrize("interpolation", ["linear", "cubic"])
 def test_without_disorder_the_front_is_where_the_load_is(solver, interpolation):
-    way = there_and_back(0.3, 20.1, 2.2)
+    way = [*protocol([0.3, 20.1, 0.3], 2.2)]
     record, _ = run(tile(np.ones((8, 16))), 5.0, way, SOLVERS[solver](1e-12), interpolation)
     assert np.allclose(record.states.mean_position, record.states.load, rtol=0, atol=1e-10)
     assert np.allclose(record.states.pinning_force, 0.0, atol=1e-11)
@@ -85,7 +85,7 @@ def first_stops(wave, spring, loads, start):
 def test_a_sinusoid_along_the_motion_is_the_scalar_problem(solver, spring):
     wave = 1 + 0.2 * np.sin(2 * np.pi * np.arange(12) / 12)
     adhesion = tile(np.repeat(wave[:, None], 16, axis=1))
-    way = there_and_back(30.0, 95.0, 0.7131)  # no tie with a fold
+    way = [*protocol([30.0, 95.0, 30.0], 0.7131)]  # no tie with a fold
     record, _ = run(adhesion, spring, way, SOLVERS[solver](1e-12))
     expected = first_stops(wave, spring, way, record.fronts[0].mean() - 12)
     assert np.allclose(record.states.mean_position, expected, rtol=0, atol=1e-8)
@@ -100,7 +100,7 @@ def test_a_sinusoid_along_the_motion_is_the_scalar_problem(solver, spring):
     spring=st.sampled_from([2.0, 20.0, 200.0]),
 )
 def test_the_fast_solver_finds_the_fronts_of_the_reference(interpolation, seed, rms, spring):
-    way = there_and_back(100.0, 160.0, 15.0)
+    way = [*protocol([100.0, 160.0, 100.0], 15.0)]
     adhesion = noisy(seed, rms=rms)
     fast, slow = (
         run(adhesion, spring, way, solver, interpolation)[0]
@@ -113,7 +113,7 @@ def test_the_fast_solver_finds_the_fronts_of_the_reference(interpolation, seed, 
 
 def test_a_front_solves_the_equation_of_a_line_on_springs():
     adhesion, spring = noisy(5), 16.0
-    way = there_and_back(60.0, 120.0, 6.0)
+    way = [*protocol([60.0, 120.0, 60.0], 6.0)]
     record, field = run(adhesion, spring, way, Newton(1e-10))
     values, (n_x, n_y) = adhesion.work_of_adhesion, adhesion.work_of_adhesion.shape
     numbers = np.abs(np.fft.fftfreq(n_y)) * 2 * np.pi
@@ -140,7 +140,7 @@ def test_one_period_on_the_state_is_the_same_but_shifted():
 
 def test_the_pinning_force_is_the_mean_adhesion_that_the_front_feels():
     adhesion = noisy(2, rms=0.8)
-    record, field = run(adhesion, 60.0, there_and_back(60.0, 260.0, 5.0), Newton(1e-12))
+    record, field = run(adhesion, 60.0, [*protocol([60.0, 260.0, 60.0], 5.0)], Newton(1e-12))
     felt = [front_adhesion(front, field).mean() / WORK_OF_ADHESION for front in record.fronts]
     assert record.states.pinning_force == pytest.approx(1.0 - np.array(felt), abs=1e-10)
     up = record.states.direction > 0
@@ -163,7 +163,7 @@ def test_places_are_those_of_the_tile_wherever_it_lies():
     values = noisy(4).work_of_adhesion
     corners = (-3.25, 7.0), (0.0, 0.0)
     moved, plain = (AdhesionMap(values, 0.5, 0.0, 0.0, corner) for corner in corners)
-    way = there_and_back(30.0, 40.0, 2.5)
+    way = [*protocol([30.0, 40.0, 30.0], 2.5)]
     shifted = [Load(load.value - 3.25, load.direction) for load in way]
     found, field = run(moved, 4.0, shifted, Newton(1e-11))
     expected, _ = run(plain, 4.0, way, Newton(1e-11))
@@ -194,14 +194,13 @@ def command(tmp_path):
             "--geometry": "line",
             "--spring": 32,
             "--field": tmp_path / "F.nc",
-            "--from": 300,
-            "--to": 360,
+            "--loads": "300,360,300",
             "--step": 10,
             "--interpolation": "linear",
             "--tolerance": 1e-8,
             "--record": "fronts",
             "--output": tmp_path / "out.nc",
-        } | {f"--{name.strip('_').replace('_', '-')}": value for name, value in changes.items()}
+        } | {f"--{name.replace('_', '-')}": value for name, value in changes.items()}
         words = [str(word) for one in options.items() if one[1] is not None for word in one]
         return CliRunner().invoke(main, ["cycle", *words])
 
@@ -224,7 +223,7 @@ def test_the_command_writes_a_cycle_of_the_line(command):
     assert found.pinning_force.values == pytest.approx(((found["load"] - mean) / 32).values)
     assert np.all(found.residual <= 1e-8)
     assert np.all(found.iterations > 0)
-    expected, _ = run(noisy(3), 32.0, there_and_back(300.0, 360.0, 10.0), Newton(1e-8))
+    expected, _ = run(noisy(3), 32.0, [*protocol([300.0, 360.0, 300.0], 10.0)], Newton(1e-8))
     assert np.array_equal(found.position, expected.fronts)
     most, least = float(found.pinning_force.max()), float(found.pinning_force.min())
     told = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
@@ -242,12 +241,12 @@ def test_the_command_writes_a_cycle_of_the_line(command):
         ({"spring": 0}, "Invalid value for '--spring': 0.0 is not in the range"),
         ({"spring": -2}, "Invalid value for '--spring': -2.0 is not in the range"),
         ({"spring": None}, "--spring is missing; --geometry line needs it"),
-        ({"from_": None}, "--from is missing; --geometry line needs it"),
-        ({"to": 200}, "loads go from 300.0 to 200.0; the second must be above the first"),
+        ({"loads": None}, "--loads is missing; --geometry line needs it"),
+        ({"loads": "3,x"}, "3,x cannot be used: No such file"),
         ({"step": 0}, "load step is 0.0; it must be positive"),
         ({"max_penetration": 1}, "--max-penetration is no option of --geometry line"),
         (
-            {"geometry": "sphere", "max_penetration": 1},
+            {"geometry": "sphere", "max_penetration": 1, "loads": None},
             "--spring is no option of --geometry sphere",
         ),
     ],

@@ -1,0 +1,257 @@
+"""Surfaces that are given: what their values mean, and whether they can be."""
+
+from __future__ import annotations
+
+import math
+from typing import get_args
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from crackfront.core.adhesion import AdhesionMap, FieldKind, rough_adhesion
+from crackfront.core.arrays import Array
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.variables import ADHESION, LATERAL, Variable
+from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.data.files import labelled
+from crackfront.data.tiles import refuse_extreme, tile_samples
+from crackfront.data.written_units import unit_value
+from crackfront.simulate.si_units import (
+    SURFACES,
+    Scales,
+    in_si,
+    refuse_no_scales,
+    refuse_other_units,
+)
+
+
+def surface(
+    values: ArrayLike,
+    side: float | str,
+    *,
+    kind: FieldKind = "roughness",
+    units: str | None = None,
+    sphere: Scales | None = None,
+) -> xr.DataArray:
+    """A surface of one's own, from an array of heights or of works of adhesion.
+
+    Parameters
+    ----------
+    values : (n_x, n_y) array
+        Heights, positive at peaks, or works of adhesion on a periodic tile of square pixels.
+    side : float or str
+        Side of the tile along x: a number (Units: reduced lateral length; with a sphere m), or with
+        a sphere a text with a unit, as '120um'.
+    kind : {"roughness", "chemical"}, optional
+        Whether the values are heights or works of adhesion.
+    units : str, optional
+        Units of the values: 'reduced', which is the default; for works of adhesion 'w_int', where
+        they are relative to that; with a sphere a unit of SI as 'nm' or 'mJ/m2', by default m or
+        J/m^2.
+    sphere : Scales, optional
+        What a reduced unit is.
+
+    Returns
+    -------
+    xarray.DataArray
+        `height(x, y)` or `work_of_adhesion(x, y)` as of :func:`random_surface`, which
+        :func:`run_loop` takes, and saved by :func:`save_result` `crackfront cycle`.
+
+    Raises
+    ------
+    ValueError
+        If a unit or side cannot be used, the tile is not periodic, or its mean work of adhesion is
+        below half of w_int or above twice that.
+    TypeError
+        If an argument is of another type.
+
+    Examples
+    --------
+    >>> wave = np.cos(2 * np.pi * np.arange(64) / 8)[:, None].repeat(64, axis=1)
+    >>> surface(0.01 * wave, side=4.0).name
+    'height'
+    >>> pdms = Scales(radius="1mm", work_of_adhesion="50mJ/m2", contact_modulus="1MPa")
+    >>> ripples = surface(20 * wave, side="100um", units="nm", sphere=pdms)
+    >>> patches = surface(1 + 0.2 * wave, side=4.0, kind="chemical", units="w_int")
+    """
+    refuse_unknown_kind(kind)
+    try:
+        samples = np.array(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"the values are no array of numbers: {error}") from error
+    if samples.ndim != 2 or min(samples.shape) < 2:
+        raise ValueError(f"the values have the shape {samples.shape}; a tile must be (x, y)")
+    scale = 1.0
+    if sphere is None:
+        refuse_no_numbers(side=side)
+    else:
+        refuse_no_scales(sphere)
+        side, scale = in_si("side", side, "m") / sphere.lateral, sphere.vertical
+    unit, known = "m", {"reduced": 1.0}
+    if kind == "chemical":
+        unit, known = "J/m^2", {"reduced": 1 / WORK_OF_ADHESION, "w_int": 1.0}
+        scale = 1.0 if sphere is None else sphere.work_of_adhesion
+    given = units or ("reduced" if sphere is None else unit)
+    if given not in known and sphere is None:
+        raise ValueError(
+            f"units is {units!r}; choose one of {', '.join(known)}, or give the sphere as well"
+        )
+    factor = known[given] if given in known else unit_value(given, unit) / scale
+    found = surface_array(kind, factor * samples, float(side) / len(samples))
+    if kind == "chemical":
+        refuse_strange_mean(found, given)
+    surface_adhesion(found)
+    return found
+
+
+def refuse_strange_mean(values: xr.DataArray, units: str) -> None:
+    """Raise if works of adhesion (Units: w_int) have no mean around w_int; `units` are as given."""
+    mean = float(values.mean())
+    if not math.isfinite(mean) or 0.5 <= mean <= 2:
+        return
+    cause = "check the values, or take their mean for w_int"
+    if units != "w_int" and 0.5 <= mean * WORK_OF_ADHESION <= 2:
+        cause = "were they in units of w_int? Then set units to 'w_int'"
+    elif units == "w_int" and 0.5 <= mean / WORK_OF_ADHESION <= 2:
+        cause = "were they in reduced units, in which w_int is 1/pi? Then set units to 'reduced'"
+    elif abs(mean) < 0.1:
+        cause = "were they deviations from it? Then add w_int"
+    raise ValueError(
+        f"the mean work of adhesion is {mean:.4g} w_int, with values in {units}; it must lie "
+        f"between 0.5 and 2: {cause}"
+    )
+
+
+def surface_kind(surface: xr.DataArray) -> FieldKind:
+    """Kind of the values of a surface, by its name; ValueError if no surface has that name.
+
+    Raises
+    ------
+    TypeError
+        If it is no array with labels at all.
+    """
+    wanted = "an xarray.DataArray height(x, y), as surface, random_surface and read_scan make it"
+    refuse_other_type("surface", surface, xr.DataArray, wanted)
+    kinds = {item.name: kind for kind, item in SURFACES.items()}
+    if surface.name not in kinds:
+        raise ValueError(
+            f"the surface is named {surface.name!r}; say what its values are by the name "
+            f"{' or '.join(kinds)}, as in surface.rename('height')"
+        )
+    return kinds[str(surface.name)]
+
+
+def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
+    """Work of adhesion of a surface in reduced units.
+
+    Parameters
+    ----------
+    surface : xarray.DataArray
+        `height(x, y)` or `work_of_adhesion(x, y)` on a periodic tile.
+
+    Raises
+    ------
+    ValueError
+        If name, dimensions, units or values are not those of a surface in reduced units, heights
+        jump from one edge of the tile to the other, or the energy of full conformity is not below
+        w_int.
+    """
+    kind = surface_kind(surface)
+    if {*surface.dims} != {"x", "y"}:
+        raise ValueError(
+            f"{surface.name} has the dimensions ({', '.join(map(str, surface.dims))}); a tile must "
+            "have x and y"
+        )
+    refuse_other_units(surface if kind == "roughness" else surface.coords.to_dataset())
+    unit, values = 1.0, surface
+    if kind == "chemical":
+        unit, values = WORK_OF_ADHESION, reduced_adhesion(surface)
+    samples, pixel = tile_samples(values)
+    bad = np.argwhere(~np.isfinite(samples))
+    if bad.size:
+        raise ValueError(
+            f"{surface.name} is {samples[tuple(bad[0])]} at x index {bad[0, 0]}, y index "
+            f"{bad[0, 1]} ({len(bad)} such values); replace them by finite values"
+        )
+    refuse_extreme(SURFACES[kind].name, samples, unit)
+    if kind == "roughness":
+        if not surface.attrs.get("periodic"):
+            _refuse_seam(samples)
+        return rough_adhesion(samples, pixel)
+    rms, corner = float(np.std(samples)) / unit, (float(surface["x"][0]), float(surface["y"][0]))
+    return AdhesionMap(samples, pixel, rms**2 / 4, rms, corner)
+
+
+def reduced_adhesion(values: xr.DataArray) -> xr.DataArray:
+    """Works of adhesion in reduced units, of a tile or on rays; without units they are reduced.
+
+    Raises
+    ------
+    ValueError
+        If their units are others, or their mean is not around w_int.
+    """
+    given = str(values.attrs.get("units") or "reduced")
+    known = {"reduced": 1.0, "1": 1.0, ADHESION: WORK_OF_ADHESION}
+    if given not in known:
+        raise ValueError(
+            f"{values.name} has the units {given!r}; they must be 'reduced' or {ADHESION!r}: set "
+            "them, or convert other units by in_reduced_units"
+        )
+    found = values * known[given]
+    refuse_strange_mean(found / WORK_OF_ADHESION, "w_int" if given == ADHESION else "reduced")
+    return found.rename(values.name)
+
+
+_AXES = tuple(
+    Variable(name, (name,), LATERAL, f"{name}, the apex of the sphere at 0") for name in "xy"
+)
+
+
+def surface_array(
+    kind: FieldKind, values: Array, pixel: float, **attributes: str | float | Array
+) -> xr.DataArray:
+    """Surface of a periodic tile, the apex of the sphere at its centre.
+
+    Parameters
+    ----------
+    kind : {"roughness", "chemical"}
+        Whether the values are heights or works of adhesion.
+    values : (n_x, n_y) array
+        Heights (Units: reduced vertical length) or works of adhesion. (Units: w_int)
+    pixel : float
+        Grid spacing. (Units: reduced lateral length)
+    **attributes : str, float or array
+        What else the array says of itself.
+    """
+    item = SURFACES[kind]
+    axes = {
+        axis.name: labelled(axis, pixel * (np.arange(count) - count / 2))
+        for axis, count in zip(_AXES, values.shape, strict=True)
+    }
+    return xr.DataArray(values, axes, item.dims, name=item.name, attrs=item.attributes | attributes)
+
+
+def refuse_unknown_kind(kind: str) -> None:
+    """Raise if there is no such kind of fields."""
+    if kind not in get_args(FieldKind):
+        raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
+
+
+_SEAM = 2.0
+"""Rms step of heights from one edge of a tile to the other over the largest one inside, from which
+on the tile is not periodic: on one that is, the edges are lines like all others."""
+
+
+def _refuse_seam(heights: Array) -> None:
+    """Raise if heights do not go on from one edge of a tile to the other."""
+    for axis, name in enumerate("xy"):
+        steps = np.diff(heights, axis=axis, append=np.take(heights, [0], axis=axis))
+        *inside, seam = np.sqrt(np.mean(steps**2, axis=1 - axis))
+        if seam > _SEAM * max(inside):
+            raise ValueError(
+                f"the heights jump by {seam:.3g} from one end of {name} to the other, where those "
+                f"of neighbouring points differ by up to {max(inside):.3g}: the tile is not "
+                "periodic. Level the map and mirror or window it, as read_scan does; an edge that "
+                "is meant is said by the attribute periodic=1"
+            )
