@@ -8,7 +8,6 @@ experiments in the paper, of soft PDMS on rough nanocrystalline diamond.
 """
 
 import numpy as np
-import xarray as xr
 
 import crackfront as cf
 
@@ -16,16 +15,13 @@ sphere = cf.Scales(radius="1.25mm", work_of_adhesion="63mJ/m2", contact_modulus=
 f"{1e6 * sphere.lateral:.1f} um, {1e6 * sphere.vertical:.2f} um, {1e3 * sphere.force:.3f} mN"
 
 # %%
-# A surface of one's own: heights on a periodic grid with coordinates, each of which states its
-# units. Here it is a sum of waves; a measured map would stand here as well.
+# A surface of one's own: an array of heights on a periodic tile, its side, its units. Here it is a
+# sum of waves; a measured map would stand here as well. Loads are penetrations in reduced units.
 
-pixel = 0.8  # micrometres
-x = xr.DataArray(pixel * np.arange(150), dims="x", attrs={"units": "um"})
-y = xr.DataArray(pixel * np.arange(150), dims="y", attrs={"units": "um"})
-turns = 2 * np.pi / 120
-waves = np.cos(24 * turns * x) * np.cos(7 * turns * y) + np.sin(5 * turns * x - 31 * turns * y)
-heights = (120.0 * waves).assign_coords(x=x, y=y).rename("height").assign_attrs(units="nm")
-loop = cf.in_si_units(cf.run_loop(cf.in_reduced_units(heights, sphere)), sphere)
+x, y = 2 * np.pi * np.mgrid[:150, :150] / 150
+waves = np.cos(24 * x) * np.cos(7 * y) + np.sin(5 * x - 31 * y)
+surface = cf.surface(120 * waves, side="120um", units="nm", sphere=sphere)
+loop = cf.in_si_units(cf.run_loop(surface, loads=[0, 1, 0.4, 1, -2], step=0.02), sphere)
 loop[["penetration", "mean_radius", "force"]]
 
 # %%

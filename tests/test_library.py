@@ -344,7 +344,7 @@ def test_an_argument_of_another_type_is_refused_with_what_is_wanted(call, senten
 
 
 WAVE = 0.3 * np.cos(2 * np.pi * np.arange(32) / 8)[:, None] * np.cos(2 * np.pi * np.arange(32) / 16)
-LOADS = [0, 0.5, 0.2, 0.5, 0.5, -2]
+LOADS = [0, 0.5, 0.2, 0.5, 0.5, 0]
 
 
 def test_an_array_is_the_same_surface_in_all_units():
@@ -389,7 +389,7 @@ def test_an_array_that_is_no_surface_is_refused_with_the_likely_cause(values, gi
 def test_loads_are_visited_up_and_down_by_library_and_command_alike(straight, tmp_path):
     patches = cf.surface(1 + WAVE, 4.0, kind="chemical", units="w_int")
     cf.save_result(patches, tmp_path / "patches.nc")
-    (tmp_path / "loads.txt").write_text("# up, down, up, hold, off\n0 0.5 0.2\n0.5\n0.5, -2")
+    (tmp_path / "loads.txt").write_text("# up, down, up, hold, down\n0 0.5 0.2\n0.5\n0.5, 0")
     pressed = cf.straight_front(patches, spring=2.0) if straight else patches
     found = cf.run_loop(pressed, loads=LOADS, step=0.1, energy=True)
     up, down = 0.1 * np.arange(6), [0.4, 0.3, 0.2]

@@ -173,10 +173,10 @@ def cycle(
     of the length --spring pull it along x, their other end at the loads; lengths are those of the
     tile, and the springs do not pull where the front feels the mean of the tile.
 
-    The exit code is 0 where the cycle came to its end (on a sphere, by losing contact) and 1 where
-    it ended early; the output is written in both cases. It is 2 where the input cannot be used, and
-    75 after Ctrl-C or SIGTERM: the states so far are then kept beside the output, and the same
-    command goes on from there.
+    The exit code is 0 where the cycle came to its end (on a sphere without --loads, by losing
+    contact) and 1 where it ended early; the output is written in both cases. It is 2 where the
+    input cannot be used, and 75 after Ctrl-C or SIGTERM: the states so far are then kept beside the
+    output, and the same command goes on from there.
     """
     from crackfront.core.cycle.record import Recorder
     from crackfront.core.outcome import Status
@@ -221,7 +221,7 @@ def cycle(
     if recorder.status is Status.LOST_CONTACT:
         lines.append(f"contact was lost at {end}")
     echo_answer(_content(recorder, found, output), lines, as_json=as_json)
-    if recorder.status.name != case.ends_by:
+    if recorder.status.name not in case.ends_by:
         raise click.ClickException(f"at {end} {recorder.status.value}")
 
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from crackfront.core.cycle.record import Recorder as Recorder
     from crackfront.core.cycle.run import run_cycle as run_cycle
     from crackfront.core.cycle.schedule import LoadSchedule as LoadSchedule
+    from crackfront.core.cycle.schedule import protocol as protocol
     from crackfront.core.cycle.touch import first_touch as first_touch
     from crackfront.core.geometry.line import line_field as line_field
     from crackfront.core.solver.relax import SOLVERS as SOLVERS

@@ -123,11 +123,14 @@ def _protocol(loads: tuple[float, ...], step: float | None) -> tuple[Iterator[Lo
 class SphereCase:
     """A sphere that is pressed on a surface and pulled off, about the centre of a tile."""
 
-    ends_by: ClassVar[str] = "LOST_CONTACT"
-
     max_penetration: float | None = None
     step: float | None = None
     loads: tuple[float, ...] | None = None
+
+    @property
+    def ends_by(self) -> tuple[str, ...]:
+        """Names of the statuses that are an end of its loads."""
+        return ("LOST_CONTACT",) if self.loads is None else ("LOST_CONTACT", "CONVERGED")
 
     @property
     def deepest(self) -> float:
@@ -201,7 +204,7 @@ class SphereCase:
 class LineCase:
     """A straight front along y on a periodic tile, which springs pull along x."""
 
-    ends_by: ClassVar[str] = "CONVERGED"
+    ends_by: ClassVar[tuple[str, ...]] = ("CONVERGED",)
 
     spring: float
     step: float | None
