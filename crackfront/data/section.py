@@ -9,7 +9,14 @@ from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
 import yaml
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+)
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from crackfront.data.bounds import COUNT, DENSITY, NUMBER, PLATEAU, SEED, Range, regular_file
@@ -48,8 +55,25 @@ _DEEPEST = 30
 _MOST_SENTENCES = 20
 """Refusals of one file that are printed."""
 
-InputFile = Annotated[Path, Field(strict=False)]
-"""A file that a configuration names, from the folder in which the command runs."""
+
+def beside(path: Path, info: ValidationInfo) -> Path:
+    """A path that a configuration names, relative to the folder of that."""
+    return Path(info.context or "") / path
+
+
+InputFile = Annotated[Path, Field(strict=False), AfterValidator(beside)]
+"""A file that a configuration names; a relative path begins in the folder of the configuration."""
+
+_HOME = "# Relative paths begin in "
+"""First line of a configuration that is stored in another folder than it was in."""
+
+
+def movable_text(path: Path) -> str:
+    """Text of a configuration that means the same wherever it is stored."""
+    text = path.read_text(encoding="utf-8")
+    if text.startswith(_HOME) or not re.search(r"\bsurface\s*:", text):
+        return text
+    return f"{_HOME}{path.resolve().parent}\n{text}"
 
 
 class ConfigurationError(ValueError):
@@ -83,7 +107,9 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
         If anything is unknown, missing or out of range; one sentence for each.
     """
     try:
-        return schema.model_validate(content)
+        first, *_ = path.read_text(encoding="utf-8").splitlines() or [""]
+        folder = first.removeprefix(_HOME) if first.startswith(_HOME) else path.resolve().parent
+        return schema.model_validate(content, context=Path(folder))
     except ValidationError as error:
         found = error.errors(include_url=False, include_context=False)
         around = {item["loc"][:depth] for item in found for depth in range(len(item["loc"]))}

@@ -69,13 +69,10 @@ class Configuration(Section):
             )
         if measured and self.field == "chemical":
             raise refusal(f"spectrum {measured[0]!r} is that of heights; field must be roughness")
-        energies, fit = self.amplitudes.elastic_energies, self.fit
-        if not any(
-            fit.lowest_elastic_energy <= energy <= fit.highest_elastic_energy for energy in energies
-        ):
+        if self.amplitudes.measured and not len(measured) == len(self.spectra) == 1:
             raise refusal(
-                f"no amplitude lies in the range of the fit, e_el from "
-                f"{fit.lowest_elastic_energy:g} to {fit.highest_elastic_energy:g}; widen the range"
+                "amplitudes.measured are multiples of the heights of one surface; give one "
+                "spectrum with a section surface"
             )
         return self
 
@@ -83,12 +80,25 @@ class Configuration(Section):
         """The sweep, in reduced units."""
         scales = None if self.scales is None else Scales(**dict(self.scales))
         lateral, vertical = (scales.lateral, scales.vertical) if scales else (1.0, 1.0)
+        spectra, measured = tuple(self._spectra(lateral)), math.nan
+        surface = self.spectra[0].surface
+        if self.amplitudes.measured and surface and scales:
+            energy = surface.measured.conformity_energy(scales.contact_modulus).value
+            measured = energy / scales.work_of_adhesion
+        energies, fit = self.amplitudes.elastic_energies(measured), self.fit
+        if not any(
+            fit.lowest_elastic_energy <= energy <= fit.highest_elastic_energy for energy in energies
+        ):
+            raise ConfigurationError(
+                f"no amplitude lies in the range of the fit, e_el from "
+                f"{fit.lowest_elastic_energy:g} to {fit.highest_elastic_energy:g}; widen the range"
+            )
         return Sweep(
             seed=self.seed,
             kind=self.field,
             scales=scales,
-            spectra=tuple(self._spectra(lateral)),
-            elastic_energies=self.amplitudes.elastic_energies,
+            spectra=spectra,
+            elastic_energies=energies,
             n_realisation=self.realisations,
             numerics=self.numerics.numerics(),
             schedule=self.load.schedule(vertical),

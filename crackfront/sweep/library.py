@@ -15,6 +15,7 @@ from xarray import Dataset
 from crackfront.data.arguments import refuse_other_type
 from crackfront.data.files import read_dataset
 from crackfront.data.provenance import Provenance, provenance
+from crackfront.data.section import movable_text
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.store import Store
@@ -27,7 +28,7 @@ def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Prov
     """Sweep of a configuration file, its store, and the origin of what is computed for it."""
     sweep = load_configuration(configuration)
     store = Store(results_folder(configuration) if output is None else output)
-    return sweep, store, provenance(configuration.read_text(encoding="utf-8"))
+    return sweep, store, provenance(movable_text(configuration))
 
 
 def sweep(

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
 from dataclasses import fields
+from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, create_model, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    ValidationInfo,
+    create_model,
+    field_validator,
+    model_validator,
+)
 
 from crackfront.analysis.sweep import FEWEST_BOOTSTRAP
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -22,6 +31,7 @@ from crackfront.data.section import (
     InputFile,
     Positive,
     Section,
+    beside,
     refusal,
     within,
 )
@@ -30,7 +40,7 @@ from crackfront.simulate.lines import LineLoad, SpringUnit
 from crackfront.simulate.simulation import Numerics
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.sweep import NamedSpectrum
-from crackfront.topography.measures import read_surface
+from crackfront.topography.measures import MeasuredSurface, read_surface
 from crackfront.topography.options import ReadingOptions, declared, options_for_each
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
@@ -59,23 +69,38 @@ class SurfaceSection(_ReadingSection):
 
     file: Annotated[tuple[InputFile, ...], BeforeValidator(_listed), Field(min_length=1)]
 
-    def shape(self) -> tuple[TabulatedSpectrum, str]:
-        """Spectrum in metres, and eight digits that change with any of the files.
+    @field_validator("mask")
+    @classmethod
+    def _beside(cls, given: Any, info: ValidationInfo) -> Any:
+        """Parts of a scan as they are, and files relative to the configuration."""
+        masks = given if isinstance(given, tuple) else (given,)
+        is_file = [isinstance(one, str) and ":" not in one for one in masks]
+        return tuple(
+            str(beside(Path(one), info)) if file else one
+            for one, file in zip(masks, is_file, strict=True)
+        )
 
-        Five digits of each number, so that simulations keep their names whatever the round-off.
-        """
+    @functools.cached_property
+    def measured(self) -> MeasuredSurface:
+        """What the files hold."""
         given = self.model_dump(exclude={"file"})
         try:
             options = options_for_each(ReadingOptions, given, len(self.file))
         except TypeError as error:
             raise ValueError(str(error)) from error
-        surface = read_surface(self.file, options)
-        table = surface.joint.spectrum
+        return read_surface(self.file, options)
+
+    def shape(self) -> tuple[TabulatedSpectrum, str]:
+        """Spectrum in metres, and eight digits that change with any of the files.
+
+        Five digits of each number, so that simulations keep their names whatever the round-off.
+        """
+        table = self.measured.joint.spectrum
         lengths, densities = (
             tuple(float(f"{value:.5g}") for value in values)
             for values in (table.wavelengths, table.identity[1])
         )
-        return TabulatedSpectrum(lengths, densities), surface.checksum
+        return TabulatedSpectrum(lengths, densities), self.measured.checksum
 
 
 class TableSection(Section):
@@ -139,26 +164,39 @@ class SpectrumSection(Section):
 
 
 class AmplitudesSection(Section):
-    """Amplitudes relative to w_int, in one of two measures."""
+    """Amplitudes relative to w_int, or to the heights of a measured surface, in one measure."""
 
     elastic_energy: Annotated[tuple[Energy, ...], Field(min_length=1)] | None = None
     work_of_adhesion_rms: Annotated[tuple[Rms, ...], Field(min_length=1)] | None = None
+    measured: Annotated[tuple[Positive, ...], Field(min_length=1)] | None = None
 
     @model_validator(mode="after")
     def _one_measure(self) -> AmplitudesSection:
-        _refuse_unless_one(
-            "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms",
-            (self.elastic_energy, self.work_of_adhesion_rms),
-        )
-        refuse_repeated("amplitude", self.elastic_energy or self.work_of_adhesion_rms or ())
+        given = [value for _, value in self if value is not None]
+        if len(given) != 1:
+            raise refusal(
+                "amplitudes need exactly one of elastic_energy, work_of_adhesion_rms and measured; "
+                + ("remove one" if given else "give one")
+            )
+        refuse_repeated("amplitude", given[0])
         return self
 
-    @property
-    def elastic_energies(self) -> tuple[float, ...]:
-        """e_el / w_int, from w_rms^2 = 4 e_el w_int where the rms is given."""
+    def elastic_energies(self, measured: float) -> tuple[float, ...]:
+        """e_el / w_int, from w_rms^2 = 4 e_el w_int where the rms is given.
+
+        Multiples of measured heights are those of its root; four digits, which names state.
+        """
         if self.elastic_energy is not None:
             return self.elastic_energy
-        return tuple(rms**2 / 4 for rms in self.work_of_adhesion_rms or ())
+        if self.work_of_adhesion_rms is not None:
+            return tuple(rms**2 / 4 for rms in self.work_of_adhesion_rms)
+        found = tuple(float(f"{factor**2 * measured:.4g}") for factor in self.measured or ())
+        if max(found) >= 1:
+            raise ConfigurationError(
+                f"amplitudes.measured: {max(self.measured or ()):g} times the heights have an "
+                f"energy of full conformity of {max(found):g} w_int; it must be below w_int"
+            )
+        return found
 
 
 class TileSection(Section):

@@ -26,6 +26,7 @@ from crackfront.data.files import (
 )
 from crackfront.data.packs import Pack, checked
 from crackfront.data.provenance import Provenance
+from crackfront.data.section import movable_text
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
@@ -244,8 +245,7 @@ class Store:
         yield from renew_packs(pack_paths(self.curves))
         if any((self.folder / "shards").glob("*.json")):
             if not self.configuration.is_file():
-                text = configuration.read_text(encoding="utf-8")
-                write_text(self.configuration, text, sealed=True)
+                write_text(self.configuration, movable_text(configuration), sealed=True)
             lacking = self.inventory(sweep.simulations())
             yield from (f"{sentence}; it is computed anew" for sentence in lacking.unreadable)
             if count := self._forget(lacking.missing):

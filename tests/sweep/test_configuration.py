@@ -1,5 +1,6 @@
 """Configurations: what is accepted, and one clear sentence for everything that is not."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from crackfront.analysis.law import spectral_breadth
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.data.provenance import provenance
-from crackfront.data.section import ConfigurationError
+from crackfront.data.section import ConfigurationError, movable_text
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
@@ -274,11 +275,11 @@ BAD = {
     "amplitude twice": (("[0.02, 0.1]", "[0.1, 0.1]"), "amplitude 0.1 stands twice"),
     "no measure of amplitude": (
         ("amplitudes: {elastic_energy: [0.02, 0.1]}", "amplitudes: {}"),
-        "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms; give one",
+        "amplitudes need exactly one of elastic_energy, work_of_adhesion_rms and measured; give",
     ),
     "two measures of amplitude": (
         ("[0.02, 0.1]", "[0.02, 0.1], work_of_adhesion_rms: [0.2]"),
-        "amplitudes need exactly one of elastic_energy and work_of_adhesion_rms; remove one",
+        "amplitudes need exactly one of elastic_energy, work_of_adhesion_rms and measured; remove",
     ),
     "energy of a chemical field": (
         ("field: roughness", "field: chemical"),
@@ -456,6 +457,30 @@ def test_a_spectrum_may_be_that_of_measurements(tmp_path):
     assert first.key == replace(first, spectrum=item.spectrum.amplified(2.0)).key
 
 
+def test_files_are_relative_to_the_configuration_and_amplitudes_to_what_they_hold(
+    tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    home = tmp_path / "elsewhere"
+    home.mkdir()
+    shutil.copy(SCANS / "nanodiamond-detail.al3d", home / "scan.al3d")
+    np.savetxt(home / "mask.txt", np.eye(144, dtype=int), fmt="%d")
+    spectra = "spectra: [{name: film, surface: {file: scan.al3d, mask: mask.txt}}]\n"
+    text = with_surface(spectra, **{"elastic_energy: [0.02, 0.1]": "measured: [0.5, 1]"})
+    path = written(home, text)
+    sweep = load_configuration(Path("elsewhere", path.name))
+    options = ReadingOptions(mask=(home / "mask.txt",))
+    surface = measured_surface(read_measurements([home / "scan.al3d"], options))
+    energy = surface.conformity_energy(sweep.scales.contact_modulus).value
+    energy /= sweep.scales.work_of_adhesion
+    assert sweep.elastic_energies == pytest.approx((energy / 4, energy), rel=1e-3)
+    # The copy that stands with the results means the same.
+    (tmp_path / "copy.yaml").write_text(movable_text(path))
+    assert load_configuration(tmp_path / "copy.yaml") == sweep
+    with pytest.raises(ConfigurationError, match=r"measured: 9 times the heights have an energy"):
+        load_configuration(written(home, text.replace("[0.5, 1]", "[1, 9]")))
+
+
 def test_a_spectrum_may_be_a_table_of_densities(tmp_path):
     table = "{name: ring, table: {wavelengths: [0.12, 0.1], densities: [1.0, 2.0]}}"
     text = changed("{name: flat, short_cutoff: 0.1, hurst: 1.0}", table)
@@ -545,8 +570,8 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
             "spectra[0]: surface already decides hurst; remove one or the other",
         ),
         (
-            with_surface("spectra:\n  - {name: film, surface: {file: nowhere.al3d}}\n"),
-            "spectra[0].surface: nowhere.al3d cannot be read: No such file or directory",
+            with_surface("spectra:\n  - {name: film, surface: {file: /nowhere.al3d}}\n"),
+            "spectra[0].surface: /nowhere.al3d cannot be read: No such file or directory",
         ),
         (
             with_surface(f"spectra:\n  - {{name: film, surface: {{file: {ROOT}/README.md}}}}\n"),
