@@ -27,11 +27,10 @@ def aggregate(configuration: Path, output: Path | None) -> None:
 
     sweep, store, origin = opened(configuration, output)
     path, statuses = store.aggregate(sweep, origin)
-    failed, sentence = without_value(statuses)
+    failed, sentence = without_value(path, statuses)
     if failed > sweep.failed_fraction * sweep.n_simulation:
         raise click.ClickException(
-            f"{sentence}; failed_fraction of the configuration allows {sweep.failed_fraction:g}. "
-            f"What they ended by stands in status_sentence of {path}"
+            f"{sentence}; failed_fraction of the configuration allows {sweep.failed_fraction:g}"
         )
     if failed:
         click.echo(f"Warning: {sentence}", err=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import astuple
 from pathlib import Path
@@ -31,6 +31,7 @@ from crackfront.data.bounds import COUNT, Range, in_bytes, refuse_beyond_memory
 if TYPE_CHECKING:
     from crackfront.data.provenance import Provenance
     from crackfront.simulate.simulation import Simulation
+    from crackfront.sweep.expectation import Expectation
     from crackfront.sweep.journal import Running
     from crackfront.sweep.store import Inventory, Progress, Store
     from crackfront.sweep.sweep import Shard, Sweep
@@ -55,10 +56,12 @@ output_option = click.option(
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
+    from crackfront.sweep.expectation import doubts, expectation
     from crackfront.sweep.library import opened
 
     sweep, store, _ = opened(configuration, output)
     shards = sweep.shards(block)
+    expected = {item.name: [*map(expectation, sweep.firsts(item))] for item in sweep.spectra}
     inventory = store.inventory(sweep.simulations(), checked=False)
     content = {
         "results": store.folder,
@@ -68,13 +71,20 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "simulations": sweep.n_simulation,
         "missing": len(inventory.missing),
         "shards": [shard.name for shard in shards],
+        "expected": expected,
+        "doubts": (doubtful := [*doubts(sweep)]),
         **_costs(inventory.missing),
     }
-    echo_answer(content, _plan_lines(sweep, store, shards, inventory), as_json=as_json)
+    lines = _plan_lines(sweep, store, shards, inventory, expected)
+    echo_answer(content, [*lines, *doubtful], as_json=as_json)
 
 
 def _plan_lines(
-    sweep: Sweep, store: Store, shards: Sequence[Shard], inventory: Inventory
+    sweep: Sweep,
+    store: Store,
+    shards: Sequence[Shard],
+    inventory: Inventory,
+    expected: Mapping[str, Sequence[Expectation]],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
     total = sweep.n_simulation // len(sweep.spectra)
@@ -88,6 +98,10 @@ def _plan_lines(
                 f"{shape.short_cutoff:.4g}",
                 f"{shape.longest_feature:.4g}",
                 f"{shape.hurst:.2f}" if hasattr(shape, "hurst") else "-",
+                *(
+                    _span([getattr(one, name) for one in expected[item.name]], "{:.2g}")
+                    for name in ("disorder", "size", "factor")
+                ),
                 _span([size.n_angle for size in sizes]),
                 _span([size.n_point for size in sizes]),
                 f"{total - len(missing)}/{total}",
@@ -95,8 +109,10 @@ def _plan_lines(
         )
         left.append(_left(item.name, sum(shard.item is item for shard in shards), missing))
     yield from table(
-        ("spectrum", "lambda_s", "lambda_r", "H", "angles", "points", "stored"), spectra
+        ("spectrum", "lambda_s", "lambda_r", "H", "s", "g", "k", "angles", "points", "stored"),
+        spectra,
     )
+    yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
     if sentence := inventory.stale_sentence():
         yield sentence
     yield ""
@@ -135,9 +151,12 @@ def _left(name: str, n_shard: int, missing: Sequence[Simulation]) -> tuple[str, 
     )
 
 
-def _span(values: Sequence[float]) -> str:
+def _span(values: Sequence[float | None], form: str = "{:.0f}") -> str:
     """Range of values over the amplitudes, or the one that all have."""
-    low, high = f"{min(values):.0f}", f"{max(values):.0f}"
+    known = [value for value in values if value is not None]
+    if not known:
+        return "-"
+    low, high = form.format(min(known)), form.format(max(known))
     return low if low == high else f"{low}-{high}"
 
 
@@ -204,6 +223,7 @@ def simulate(
             parallel.serve_tasks("crackfront.sweep.tasks")
         return
     # MPI has to begin before what reads a sweep is imported.
+    from crackfront.sweep.expectation import doubts
     from crackfront.sweep.library import opened
 
     sweep, store, origin = opened(configuration, output)
@@ -220,6 +240,8 @@ def simulate(
             "use fewer ranks, coarser numerics or a smaller tile",
         )
         announce_cost(costs["core_seconds"])
+        for sentence in doubts(sweep):
+            click.echo(f"Warning: {sentence}", err=True)
         if busy > 1:
             arguments = ["simulate", str(configuration), "--ranks", str(busy)]
             arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]

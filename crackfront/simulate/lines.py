@@ -186,8 +186,7 @@ class LineLoad:
         knobs = numerics.knobs_of(kind, spectrum, elastic_energy, straight=True)
         pixel = spectrum.short_cutoff / knobs.pixels_per_cutoff
         least = numerics.tile_side(spectrum)
-        size = max(spring / larkin, 0.1)
-        rms = _DEPTH * force_correlation_length(kind, spectrum) * size**_ROUGHNESS
+        rms = front_rms(force_correlation_length(kind, spectrum), spring / larkin)
         return LineSchedule(
             spring=spring,
             length=pixel * _points(max(self.length * spring, least) / pixel),
@@ -196,6 +195,11 @@ class LineLoad:
             step=self.step * length,
             uncorrelated=self.uncorrelated,
         )
+
+
+def front_rms(force_correlation_length: float, size: float) -> float:
+    """Rms deviation of a front from its mean on springs of a size g (Units: length)."""
+    return _DEPTH * force_correlation_length * max(size, 0.1) ** _ROUGHNESS
 
 
 def _points(least: float) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import sys
 import warnings
+from collections import Counter
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -80,15 +81,24 @@ def sweep(
     for item in found.spectra:
         store.write_manifest(found, found.named_shard(item, range(found.n_realisation)))
     table, statuses = store.aggregate(found, origin)
-    failed, sentence = without_value(statuses)
+    failed, sentence = without_value(table, statuses)
     if failed:
         warnings.warn(sentence, stacklevel=2)
     return read_dataset(table)
 
 
-def without_value(statuses: Mapping[str, int]) -> tuple[int, str]:
-    """How many simulations have no value, and a sentence that says how they ended."""
+def without_value(table: Path, statuses: Mapping[str, int]) -> tuple[int, str]:
+    """How many simulations of a table have no value, and how most of them ended, with a remedy."""
     others = {status: count for status, count in statuses.items() if status not in COMPLETE}
     listed = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
     failed, total = sum(others.values()), sum(statuses.values())
-    return failed, f"{failed} of {total} simulations have no value: {listed}"
+    found = read_dataset(table, ("status", "status_sentence"))
+    ended = Counter(
+        str(sentence)
+        for status, sentence in zip(
+            found.status.values.flat, found.status_sentence.values.flat, strict=True
+        )
+        if str(status) not in COMPLETE
+    )
+    said = "; ".join(f"{count}: {sentence}" for sentence, count in ended.most_common(3))
+    return failed, f"{failed} of {total} simulations have no value: {listed} ({said})"
