@@ -1,6 +1,7 @@
 """What `import crackfront` offers: surfaces, loops, units and plots, all of them xarray."""
 
 import ast
+import pydoc
 import subprocess
 import sys
 from dataclasses import asdict, replace
@@ -93,6 +94,13 @@ def test_the_package_offers_the_library_and_its_version():
     assert set(cf.__all__) <= set(dir(cf))
     for name in cf.__all__:
         assert getattr(cf, name) is not None
+
+
+def test_the_help_of_a_sweep_shows_the_function_whatever_was_imported_before():
+    assert tasks is cf.sweep.tasks
+    shown = pydoc.plain(pydoc.render_doc(cf.sweep))
+    assert "sweep(configuration: 'str | PathLike[str]', output: " in shown
+    assert "Table of a sweep; what is not stored yet is run here" in shown
 
 
 def test_a_name_that_the_package_has_not_is_an_attribute_error():

@@ -148,7 +148,7 @@ def _case(
     help="Pieces between samples of a ray.  [default: cubic on a tile, linear on polar samples]",
 )
 @click.option("--output", type=FILE, required=True, help="netCDF file of the cycle.")
-@click.option("--figure", type=FILE, help="Figure of the loop, without suffix; PDF and PNG.")
+@click.option("--figure", type=FILE, help="Figure: talk.svg, or without suffix PDF and PNG.")
 @click.option("--watch", is_flag=True, help="Print a line for every state.")
 @as_json
 def cycle(

@@ -101,7 +101,7 @@ _scans = click.argument("scans", type=FILE, nargs=-1, required=True)
 @click.option(
     "--figure",
     type=FILE,
-    help="Figure, without suffix; PDF and PNG.  [default: results/predict/<first scan>]",
+    help="Figure: talk.svg, or without suffix PDF and PNG.  [default: results/predict/<scan>]",
 )
 @click.option("--no-figure", is_flag=True, help="Draw none: most of the time goes into it.")
 @click.option("--long", "is_long", is_flag=True, help="Print all that is known, not one page.")

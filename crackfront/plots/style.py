@@ -64,6 +64,7 @@ STYLE: dict[Any, Any] = {
     "lines.markeredgewidth": 0.8,
     "errorbar.capsize": 1.5,
     "figure.constrained_layout.use": True,
+    "svg.hashsalt": "crackfront",
     "pdf.fonttype": 42,
     "savefig.dpi": 300,
 }
@@ -111,20 +112,30 @@ def shown_axes() -> Iterator[Axes]:
             raise
 
 
-def save_figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
-    """Write a figure as PDF and PNG (300 dpi), its folder too; equal figures give equal bytes."""
-    pdf, png = (stem.with_name(stem.name + suffix) for suffix in (".pdf", ".png"))
+_DATES = {".pdf": "CreationDate", ".png": "Software", ".svg": "Date"}
+"""What a figure of a format says of when or by what it was made; it is left out."""
+
+
+def save_figure(figure: Figure, stem: Path) -> tuple[Path, ...]:
+    """Write a figure as PDF and PNG (300 dpi), its folder too; equal figures give equal bytes.
+
+    A name that ends in .pdf, .png or .svg is that of the one file to write.
+    """
+    paths = [stem.with_name(stem.name + suffix) for suffix in (".pdf", ".png")]
+    if stem.suffix in _DATES:
+        paths = [stem]
     # It warns, once a font, that the fonts of matplotlib carry no date.
     logger = logging.getLogger("fontTools.ttLib.tables._h_e_a_d")
     disabled, logger.disabled = logger.disabled, True
     try:
-        for path, undated in ((pdf, "CreationDate"), (png, "Software")):
-            look: dict[str, Any] = {"format": path.suffix[1:], "metadata": {undated: None}}
+        for path in paths:
+            metadata = {_DATES[path.suffix]: None}
+            look: dict[str, Any] = {"format": path.suffix[1:], "metadata": metadata}
             with house_style():
                 replace_atomically(path, functools.partial(figure.savefig, **look), sealed=True)
     finally:
         logger.disabled = disabled
-    return pdf, png
+    return tuple(paths)
 
 
 def save_picture(figure: Figure, path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from dataclasses import fields, replace
 from itertools import pairwise
+from xml.etree import ElementTree
 
 import matplotlib
 import numpy as np
@@ -13,6 +14,7 @@ from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.data.digests import Integrity, integrity
 from crackfront.plots.style import COLOURS, MARKERS, save_figure
 from crackfront.plots.sweep import factor_figure, hysteresis_figure
 
@@ -234,6 +236,13 @@ def test_a_figure_is_the_same_file_again_whatever_the_user_settings(table, fit, 
     for one, two in zip(first, second, strict=True):
         assert one.read_bytes() == two.read_bytes()
         assert one.stat().st_size > 1000
+
+
+def test_a_figure_with_an_ending_is_that_file_alone(fit, tmp_path):
+    [path] = save_figure(hysteresis_figure(fit), tmp_path / "talk.svg")
+    assert [path] == [*tmp_path.iterdir()]
+    assert ElementTree.parse(path).getroot().tag.endswith("svg")
+    assert integrity(path)[0] is Integrity.WHOLE
 
 
 def test_k_is_shown_against_disorder_and_size(table, fit):
