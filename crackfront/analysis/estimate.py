@@ -97,13 +97,14 @@ def product(*factors: Estimate[float]) -> Estimate[float]:
 def student_estimate(value: ArrayLike, standard_error: ArrayLike, freedom: ArrayLike) -> Estimate:
     """Estimate with the 95% interval of Student's t, arrays of the common shape.
 
-    Fewer degrees of freedom of the standard error than one give no interval.
+    No degree of freedom of the standard error gives no error, and one no interval, which would be
+    13 errors to both sides.
     """
     numbers = (np.asarray(number, dtype=float) for number in (value, standard_error))
     centre, error, degrees = np.broadcast_arrays(*numbers, freedom)
     known = np.isfinite(error) & (degrees >= 1)
     error, degrees = np.where(known, error, np.nan), np.where(known, degrees, 1)
-    reach = error * stdtrit(degrees, (1 + _CONFIDENCE) / 2)
+    reach = np.where(degrees > 1, error * stdtrit(degrees, (1 + _CONFIDENCE) / 2), np.nan)
     return Estimate(*map(np.array, (centre, error, centre - reach, centre + reach)))
 
 

@@ -35,8 +35,8 @@ def fit_table(fit: SweepFit) -> str:
     pooled = _pooled_entry(fit, "factor")
     blocks = [
         f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el",
-        finding(_departure(fit)),
         f"This sweep, {n_simulation} simulations: k = {pooled}.",
+        finding(_departure(fit)),
         "## The fit",
         f"Range: e_el/w_int from {fit.lowest_elastic_energy:g} to "
         f"{fit.highest_elastic_energy:g} ({in_range} of {fit.in_range.size} amplitudes); "
