@@ -145,7 +145,7 @@ def _case(
 @click.option(
     "--interpolation",
     type=click.Choice(["cubic", "linear"]),
-    help="Pieces between samples of a ray.  [default: cubic on a tile, linear on polar samples]",
+    help="Pieces between samples of a ray.  [default: cubic]",
 )
 @click.option("--output", type=FILE, required=True, help="netCDF file of the cycle.")
 @click.option("--figure", type=FILE, help="Figure: talk.svg, or without suffix PDF and PNG.")
@@ -163,11 +163,10 @@ def cycle(
 ) -> None:
     """Run one approach and retraction on a field from a file.
 
-    The field is a periodic tile work_of_adhesion(x, y), whose centre is the apex of the sphere,
-    or samples work_of_adhesion(radius, angle), whose angles are the sites of the front. On rings,
-    work_of_adhesion(radius), the front is a circle and the problem scalar. All quantities are in
-    reduced units: R = 1, w_int = 1/pi, E' = 3/4; works of adhesion whose attribute units is w_int
-    are relative to it. What crackfront.surface of the Python library makes is a field, too.
+    The field is a surface on a periodic tile, work_of_adhesion(x, y) or height(x, y), whose centre
+    is the apex of the sphere, as crackfront.surface of the Python library makes one of an array.
+    All quantities are in reduced units: R = 1, w_int = 1/pi, E' = 3/4; works of adhesion whose
+    attribute units is w_int are relative to it.
 
     With --geometry line the front is straight, along y, one site for every y of the tile. Springs
     of the length --spring pull it along x, their other end at the loads; lengths are those of the
@@ -192,13 +191,8 @@ def cycle(
     refuse_no_file(output)
     for path in (output, figure or output):
         refuse_unwritable(path.parent)
-    solution, pieces = named_solver(*solver), resolution.interpolation or "linear"
-    problem = case.problem(lambda: read_field(field_file, pieces), resolution)
-    if "fronts" in record and problem.front.size == 1:
-        raise ValueError(
-            "--record fronts: on rings the front is a circle, whose radius every record holds as "
-            "mean_radius; leave it out"
-        )
+    solution = named_solver(*solver)
+    problem = case.problem(lambda: read_field(field_file), resolution)
     key = _key(field_file, geometry, given, solver, record, resolution)
     keeper = _Keeper(output, key, problem.field.geometry)
     announce_compilation(err=as_json)
@@ -211,7 +205,7 @@ def cycle(
             resume=keeper.found(),
         )
         recorder.run(problem.field, problem.front, problem.loads, solution)
-    found = loop_dataset(recorder.record(), problem.measures, problem.field.geometry, problem.sites)
+    found = loop_dataset(recorder.record(), problem.measures, problem.field.geometry)
     write_dataset(output, found, provenance())
     keeper.path.unlink(missing_ok=True)
     drawn = () if figure is None else _draw(found, figure)

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from crackfront.core.adhesion import AdhesionMap
     from crackfront.core.arrays import Array
     from crackfront.core.cycle.follow import Load
-    from crackfront.core.field.fields import Field, Interpolation
-    from crackfront.simulate.fields import PolarSamples
+    from crackfront.core.field.fields import Interpolation, TileField
     from crackfront.simulate.surfaces import TileMeasures
 
 PLACE = Range(-NUMBER.most, NUMBER.most)
@@ -31,7 +30,7 @@ PLACE = Range(-NUMBER.most, NUMBER.most)
 class Problem(NamedTuple):
     """Field, first front and loads of a cycle."""
 
-    field: Field
+    field: TileField
     front: Array
     loads: Iterable[Load]
     """As of :func:`crackfront.core.cycle.follow.follow`."""
@@ -39,9 +38,7 @@ class Problem(NamedTuple):
     """States that it will have, roughly."""
     seconds: float
     """Processor time that they will take, roughly."""
-    sites: Array | None = None
-    """Coordinates that are not those of the geometry, (n_site,)."""
-    measures: TileMeasures | None = None
+    measures: TileMeasures
     """Those of the tile."""
 
 
@@ -158,13 +155,12 @@ class SphereCase:
         # A smooth sphere comes off there; a rough one goes somewhat further.
         return loads, 3 + (2 * self.deepest - jkr.pull_off_penetration()) / step
 
-    def problem(self, read: Callable[[], AdhesionMap | PolarSamples], sizes: Resolution) -> Problem:
-        """Field of a tile, which is kept as its splines alone, or of samples on rays.
+    def problem(self, read: Callable[[], AdhesionMap], sizes: Resolution) -> Problem:
+        """Field of a tile, which is kept as its splines alone.
 
         Without loads, they go from first contact to the largest penetration and to pull-off.
         """
         from crackfront.core import jkr
-        from crackfront.core.adhesion import AdhesionMap
         from crackfront.core.contact import contact_field
         from crackfront.core.cycle.touch import checked_touch
         from crackfront.simulate.costs import affordable_seconds
@@ -172,32 +168,17 @@ class SphereCase:
 
         deepest, (way, n_state) = self.deepest, self.way()
         given, angles, density = read(), sizes.angles, sizes.samples_per_pixel
-        if isinstance(given, AdhesionMap):
-            radius = jkr.equilibrium_radius(deepest)
-            seconds = affordable_seconds(
-                n_angle=angles or 2 * math.pi * radius / given.pixel,
-                n_point=given.work_of_adhesion.size,
-                n_state=n_state,
-                n_sample=2 * radius / given.pixel * (density or 4.0),
-            )
-            spacing, pieces = given.pixel / density if density else None, sizes.interpolation
-            field: Field = contact_field(given, deepest, angles, spacing, pieces or "cubic")
-            sites, measures = None, tile_measures(given)
-        elif angles is not None or density is not None:
-            raise ValueError(
-                "--angles and --samples-per-pixel are for tiles; a polar field brings its own "
-                "samples"
-            )
-        else:
-            field, sites, measures = given.field, given.angles, None
-            seconds = affordable_seconds(
-                n_angle=sites.size,
-                n_point=given.field.products.size,
-                n_state=n_state,
-                n_sample=2 * given.field.places.size,
-            )
+        radius = jkr.equilibrium_radius(deepest)
+        seconds = affordable_seconds(
+            n_angle=angles or 2 * math.pi * radius / given.pixel,
+            n_point=given.work_of_adhesion.size,
+            n_state=n_state,
+            n_sample=2 * radius / given.pixel * (density or 4.0),
+        )
+        spacing, pieces = given.pixel / density if density else None, sizes.interpolation
+        field = contact_field(given, deepest, angles, spacing, pieces or "cubic")
         front = checked_touch(field, deepest)
-        return Problem(field, front, way, int(n_state), seconds, sites, measures)
+        return Problem(field, front, way, int(n_state), seconds, tile_measures(given))
 
 
 @dataclass(frozen=True)
@@ -210,11 +191,10 @@ class LineCase:
     step: float | None
     loads: tuple[float, ...]
 
-    def problem(self, read: Callable[[], AdhesionMap | PolarSamples], sizes: Resolution) -> Problem:
+    def problem(self, read: Callable[[], AdhesionMap], sizes: Resolution) -> Problem:
         """Field on the points of a tile, one site for every y unless the resolution says more."""
         import numpy as np
 
-        from crackfront.core.adhesion import AdhesionMap
         from crackfront.core.geometry.line import line_field, straight_front
         from crackfront.core.units import WORK_OF_ADHESION
         from crackfront.simulate.costs import affordable_seconds
@@ -223,8 +203,6 @@ class LineCase:
         loads = self.loads
         way, n_state = _protocol(loads, self.step)
         given, density = read(), sizes.samples_per_pixel or 1.0
-        if not isinstance(given, AdhesionMap):
-            raise ValueError("a line needs a tile work_of_adhesion(x, y), not samples on rays")
         # The first front lies as far behind its load as pinning may pull the springs.
         values = given.work_of_adhesion / WORK_OF_ADHESION
         behind = 1.25 * self.spring * float(np.ptp(values))
@@ -245,4 +223,4 @@ class LineCase:
         front, measures = straight_front(field, given, loads[0]), tile_measures(given)
         # A branch begins with a front of its own: making contact has no energy here.
         started = chain([next(way)._replace(start=front)], way)
-        return Problem(field, front, started, int(n_state), seconds, measures=measures)
+        return Problem(field, front, started, int(n_state), seconds, measures)

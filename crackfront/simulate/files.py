@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from crackfront.analysis.table import RunMeasures
-from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import LineState
@@ -161,9 +160,7 @@ def known_checkpoint(dataset: xr.Dataset, key: str, place: Path) -> Checkpoint |
     return Checkpoint(cycle_record(dataset, place), **fronts)
 
 
-def cycle_dataset(
-    record: CycleRecord, geometry: Geometry | None = None, sites: Array | None = None
-) -> xr.Dataset:
+def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.Dataset:
     """Labelled curves of a record.
 
     Parameters
@@ -172,15 +169,13 @@ def cycle_dataset(
         The states of a cycle.
     geometry : Geometry, optional
         The contact; by default a sphere.
-    sites : (n_site,) array, optional
-        Coordinates of the sites, if not those of the geometry.
     """
     curves = labelled_fields(record.states, STEP) | labelled_fields(record)
     if record.fronts is not None:
         contact = geometry or sphere(record.fronts.shape[1])
         front, site = contact.variables
         curves[front.name] = labelled(replace(front, dims=(STEP, *front.dims)), record.fronts)
-        curves[site.name] = labelled(site, contact.sites if sites is None else sites)
+        curves[site.name] = labelled(site, contact.sites)
     load = variables(type(record.states))[0].name
     attributes: dict[str, str | float] = {
         "status": record.status.name.lower(),

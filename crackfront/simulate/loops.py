@@ -13,7 +13,6 @@ from xarray import DataArray, Dataset
 from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady import SteadyAdhesion, steady_adhesion
 from crackfront.analysis.table import SweepAxes, SweepRow
-from crackfront.core.arrays import Array
 from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -179,9 +178,8 @@ def run_loop(
 
 def loop_dataset(
     record: CycleRecord,
-    measures: TileMeasures | None = None,
-    geometry: Geometry | None = None,
-    sites: Array | None = None,
+    measures: TileMeasures,
+    geometry: Geometry,
     simulation: Simulation | None = None,
 ) -> Dataset:
     """Labelled curves of a cycle, and measures of the whole.
@@ -190,16 +188,14 @@ def loop_dataset(
     ----------
     record : CycleRecord
         The states of a cycle.
-    measures : TileMeasures, optional
-        Those of the tile; without them the curves stand alone.
-    geometry, sites
-        As of :func:`crackfront.simulate.files.cycle_dataset`.
+    measures : TileMeasures
+        Those of the tile.
+    geometry : Geometry
+        The contact.
     simulation : Simulation, optional
         Whose numerical errors are known.
     """
-    curves = cycle_dataset(record, geometry, sites)
-    if measures is None:
-        return curves.assign_attrs({"result": result_sentence(record)} | curves.attrs)
+    curves = cycle_dataset(record, geometry)
     values = {name: getattr(measures, name) for name in ("e_el", "w_rms", "correlation_length")}
     sentences = {"result": result_sentence(record)}
     if isinstance(record.states, ContactState):

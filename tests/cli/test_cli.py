@@ -45,18 +45,6 @@ def smooth_tile(tmp_path):
     return tmp_path / "F.nc"
 
 
-@pytest.fixture
-def rough_rays(tmp_path, rng):
-    """File of random samples on eight rays, angles first."""
-    radii = 0.05 * np.arange(1, 61)
-    values = WORK_OF_ADHESION * (1 + 0.3 * rng.uniform(-1, 1, (8, 60)))
-    xr.Dataset(
-        {"work_of_adhesion": (("angle", "radius"), values)},
-        coords={"radius": radii, "angle": -np.pi + 2 * np.pi * np.arange(8) / 8},
-    ).to_netcdf(tmp_path / "F.nc")
-    return tmp_path / "F.nc"
-
-
 @pytest.fixture(scope="module")
 def rough_surface(tmp_path_factory):
     """File of a coarse rough surface of the library."""
@@ -91,64 +79,12 @@ def test_a_cycle_on_a_smooth_tile_is_that_of_jkr(smooth_tile, tmp_path):
     assert "radius" not in dataset
 
 
-def test_a_cycle_on_rays_has_one_site_an_angle_and_records_what_is_asked_for(rough_rays, tmp_path):
-    result = cycle(rough_rays, tmp_path, "--record", "fronts", "--record", "energy")
-    assert result.exit_code == 0, result.output
-    dataset = xr.load_dataset(tmp_path / "out.nc")
-    assert dataset["radius"].dims == ("step", "angle")
-    assert dataset.sizes["angle"] == 8
-    assert dataset["angle"].values[0] == pytest.approx(-np.pi)
-    assert np.array_equal(dataset["radius"].mean("angle"), dataset["mean_radius"])
-    assert np.all(dataset["dissipated_energy"] > -1e-12)
-
-
-@pytest.fixture
-def ring_file(tmp_path):
-    """File of rings, without an angle."""
-    radii = 0.01 * np.arange(1, 220)
-    values = WORK_OF_ADHESION * (1 + 0.2 * np.sin(2 * np.pi * radii / 0.1))
-    xr.Dataset({"work_of_adhesion": ("radius", values)}, coords={"radius": radii}).to_netcdf(
-        tmp_path / "F.nc"
-    )
-    return tmp_path / "F.nc"
-
-
-def test_a_cycle_on_rings_is_a_scalar_one_without_angles(ring_file, tmp_path):
-    result = cycle(ring_file, tmp_path, "--record", "energy")
-    assert result.exit_code == 0, result.output
-    dataset = xr.load_dataset(tmp_path / "out.nc")
-    assert set(dataset.dims) == {"step"}
-    assert np.all(dataset["rms_radius"] == 0)
-    assert dataset["dissipated_energy"].max() > 0.01
-    up, down = (dataset.isel(step=dataset["penetration"] == 0.5)["mean_radius"].values[:2]).tolist()
-    assert down > up + 0.01
-
-
-def test_fronts_of_rings_are_refused_as_they_are_circles(ring_file, tmp_path):
-    result = cycle(ring_file, tmp_path, "--record", "fronts")
-    assert result.exit_code == 2
-    assert "whose radius every record holds as mean_radius; leave it out" in result.stderr
-    assert not (tmp_path / "out.nc").exists()
-
-
-def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(rough_rays, tmp_path):
-    result = cycle(rough_rays, tmp_path, "--max-sweeps", 3)
+def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(rough_surface, tmp_path):
+    result = cycle(rough_surface, tmp_path, "--max-sweeps", 3)
     assert result.exit_code == 1
     assert "the solver reached its limit of sweeps" in result.stderr
     assert len(result.stderr.splitlines()) == 1
     assert xr.load_dataset(tmp_path / "out.nc").attrs["status"] == "step_limit"
-
-
-def test_a_front_that_leaves_its_field_is_told_with_exit_code_one(tmp_path):
-    radii = np.linspace(0.1, 1.9, 40)
-    sticky = np.where(radii > 1.5, 3.0, 1.0)[:, None] * np.full((1, 8), WORK_OF_ADHESION)
-    xr.Dataset(
-        {"work_of_adhesion": (("radius", "angle"), sticky)}, coords={"radius": radii}
-    ).to_netcdf(tmp_path / "F.nc")
-    result = cycle(tmp_path / "F.nc", tmp_path)
-    assert result.exit_code == 1
-    assert "left the sampled field outward; enlarge the field" in result.stderr
-    assert xr.load_dataset(tmp_path / "out.nc").attrs["status"] == "left_field_outward"
 
 
 @pytest.mark.parametrize(
@@ -159,12 +95,11 @@ def test_a_front_that_leaves_its_field_is_told_with_exit_code_one(tmp_path):
         (("--step", "nan"), "'--step': nan is no number"),
         (("--solver", "none"), "solver"),
         (("--field", "none.nc"), "none.nc does not exist"),
-        (("--angles", 16), "--angles and --samples-per-pixel are for tiles"),
     ],
     ids=lambda value: str(value[0]) if isinstance(value, tuple) else "",
 )
-def test_bad_options_of_a_cycle_are_refused(rough_rays, tmp_path, options, sentence):
-    result = cycle(rough_rays, tmp_path, *options)
+def test_bad_options_of_a_cycle_are_refused(rough_surface, tmp_path, options, sentence):
+    result = cycle(rough_surface, tmp_path, *options)
     assert result.exit_code == 2
     assert sentence in result.stderr
     assert not (tmp_path / "out.nc").exists()
@@ -561,10 +496,8 @@ def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_p
     assert float(found.e_el) == pytest.approx(0.05, rel=0.3)
 
 
-def test_the_plots_draw_what_a_cycle_wrote_on_a_tile_and_on_rays(
-    rough_surface, rough_rays, tmp_path
-):
-    for field, step in ((rough_surface, 0.1), (rough_rays, 0.25)):
+def test_the_plots_draw_what_a_cycle_wrote(rough_surface, smooth_tile, tmp_path):
+    for field, step in ((rough_surface, 0.1), (smooth_tile, 0.25)):
         assert cycle(field, tmp_path, "--record", "fronts", step=step).exit_code == 0
         found = xr.load_dataset(tmp_path / "out.nc")
         loop, fronts = (

@@ -331,19 +331,14 @@ def wrong_curve(content):
     return ""
 
 
-FIELDS = ("tile", "rays", "rings", "height", "library", "line")
+FIELDS = ("tile", "height", "library", "line")
 
 
 def good_field(rng, kind):
     """A small field, as the file would have it, and the options of its cycle."""
     n = 2 * int(rng.integers(2, 8))
-    radii = 0.1 * np.arange(1, 30)
     shape, dims = (n, n), ("x", "y")
     coordinates = {"x": np.linspace(0, 2, n, endpoint=False), "y": np.linspace(0, 2, n, False)}
-    if kind == "rays":
-        shape, dims, coordinates = (29, n), ("radius", "angle"), {"radius": radii}
-    if kind == "rings":
-        shape, dims, coordinates = (29,), ("radius",), {"radius": radii}
     values = rng.uniform(-1, 1, shape) * chosen(rng, (0.0, 0.1, 0.5))
     name, attributes = "work_of_adhesion", {}
     if kind in ("height", "library"):
@@ -460,14 +455,10 @@ def good_commands(folder):
     n = 8
     axis = np.linspace(0, 2, n, endpoint=False)
     values = WORK_OF_ADHESION * (1 + 0.2 * np.cos(np.pi * axis)[:, None] * np.ones(n))
-    tile, rays = folder / "tile.nc", folder / "rays.nc"
+    tile = folder / "tile.nc"
     xr.Dataset({"work_of_adhesion": (("x", "y"), values)}, coords={"x": axis, "y": axis}).to_netcdf(
         tile
     )
-    xr.Dataset(
-        {"work_of_adhesion": (("radius", "angle"), np.full((30, n), WORK_OF_ADHESION))},
-        coords={"radius": 0.1 * np.arange(1, 31)},
-    ).to_netcdf(rays)
     scan = folder / "scan.npy"
     np.save(scan, 1e-8 * np.random.default_rng(1).standard_normal((36, 36)))
     sweep = folder / "sweep.yaml"
@@ -483,7 +474,6 @@ def good_commands(folder):
         "law --spectrum 0.005,0.1,0.3 --elastic-energy 0.05 --contact-radius 1.9 --json",
         f"{cycle} {tile} --max-penetration 0.3 --step 0.1 {tuned}",
         f"{cycle} {tile} --max-penetration 0.3 --step 0.1 {tuned}",
-        f"{cycle} {rays} --max-penetration 0.3 --step 0.1 --tolerance 1e-6",
         f"{cycle} {tile} {line} {tuned}",
         f"{surface} --shortest 3um",
         f"{surface} {sphere}",

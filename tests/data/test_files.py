@@ -23,7 +23,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
 from crackfront.data.files import UnreadableFileError, date_back, write_dataset, write_text
 from crackfront.data.provenance import Provenance, provenance
-from crackfront.simulate.fields import PolarSamples, read_field
+from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import (
     cycle_dataset,
     read_cycle,
@@ -196,20 +196,6 @@ def tile(n_x=4, n_y=6, spacing=0.5):
     )
 
 
-def rays(n_radius=3, n_angle=8, start=0.0):
-    """Samples on rays whose values tell their place."""
-    values = 10.0 * np.arange(1, n_radius + 1)[:, None] + np.arange(n_angle)[None, :]
-    return xr.DataArray(
-        WORK_OF_ADHESION * values / values.mean(),
-        dims=("radius", "angle"),
-        coords={
-            "radius": 0.5 * np.arange(1, n_radius + 1),
-            "angle": start + 2 * np.pi * np.arange(n_angle) / n_angle,
-        },
-        name="work_of_adhesion",
-    )
-
-
 def read_back(tmp_path, array):
     """Field that is read from the file of an array."""
     array.to_dataset().to_netcdf(tmp_path / "F.nc")
@@ -225,38 +211,11 @@ def test_a_tile_is_read_by_the_names_of_its_dimensions(tmp_path, order):
     assert field.w_rms == pytest.approx(np.std(tile().values) / WORK_OF_ADHESION)
 
 
-@pytest.mark.parametrize("order", [("radius", "angle"), ("angle", "radius")])
-@pytest.mark.parametrize("start", [0.0, -np.pi, 0.3])
-def test_rays_are_read_by_the_names_of_their_dimensions(tmp_path, order, start):
-    samples = read_back(tmp_path, rays(start=start).transpose(*order))
-    assert isinstance(samples, PolarSamples)
-    expected = (rays().radius.values[:, None] * rays().values).T
-    assert np.array_equal(samples.field.products, expected)
-    assert samples.angles == pytest.approx(start + 2 * np.pi * np.arange(8) / 8)
-
-
-def test_rays_without_angles_are_taken_as_equally_spaced(tmp_path):
-    samples = read_back(tmp_path, rays().drop_vars("angle"))
-    assert samples.angles == pytest.approx(2 * np.pi * np.arange(8) / 8)
-
-
-@pytest.mark.parametrize("angles", ["none", "a position", "one"])
-def test_rings_are_read_as_one_ray(tmp_path, angles):
-    one = rays().isel(angle=slice(1) if angles == "one" else 0)
-    samples = read_back(tmp_path, one.drop_vars("angle") if angles == "none" else one)
-    assert np.array_equal(samples.field.places, rays().radius)
-    assert np.array_equal(samples.field.products, (rays().radius * rays()[:, :1]).values.T)
-    assert np.array_equal(samples.angles, [0.0])
-
-
 UNUSABLE = {
-    "other name": (tile().rename("w"), "has no variable work_of_adhesion (it has: w); name"),
-    "other dims": (
-        tile().rename(y="z"),
-        "of (x, z); it must be real numbers of (x, y) or of",
-    ),
-    "one dim": (tile()[0], "float64 of (y); it must be"),
-    "text": (tile().astype(str), "it must be real numbers of (x, y)"),
+    "other name": (tile().rename("w"), "the file has no surface (it has: w); name its variable"),
+    "other dims": (tile().rename(y="z"), "has the dimensions (x, z); a tile must have x and y"),
+    "one dim": (tile()[0], "has the dimensions (y); a tile must have x and y"),
+    "text": (tile().astype(str), "work_of_adhesion is <U"),
     "no positions": (tile().drop_vars("x"), "4 point(s) along x and no coordinate x"),
     "one row": (tile(n_x=1), "1 point(s) along x and a coordinate x"),
     "oblong pixels": (
@@ -265,17 +224,6 @@ UNUSABLE = {
     ),
     "uneven": (tile().assign_coords(x=[0, 1, 2, 4.0]), "x advances by 1 to 2; it must increase"),
     "falling": (tile()[::-1], "x advances by -0.5 to -0.5; it must increase in equal steps"),
-    "no radii": (rays().drop_vars("radius"), "has no coordinate radius; give the radii"),
-    "degrees": (
-        rays().assign_coords(angle=45.0 * np.arange(8)),
-        "8 angles lie between 0 and 315; they must be equally spaced over the whole circle",
-    ),
-    "closed circle": (
-        rays().assign_coords(angle=np.linspace(0, 2 * np.pi, 8)),
-        "they must be equally spaced over the whole circle, in rad",
-    ),
-    "radii fall": (rays()[::-1], "radii must be finite, not negative and strictly increasing"),
-    "not a number": (rays().where(rays() < 0.2), "work of adhesion is nan at radius index"),
 }
 
 
