@@ -407,7 +407,7 @@ def test_loads_are_visited_up_and_down_by_library_and_command_alike(straight, tm
     front = found["position" if straight else "radius"]
     # By no passing, a minor loop ends at the front that it began with, and a hold changes nothing.
     np.testing.assert_allclose(front[11:13], front[[5, 5]], atol=1e-5)
-    options = ["--geometry", "line", "--spring", "2"] if straight else []
+    options = ["--spring", "2"] if straight else []
     given = ["--loads", tmp_path / "loads.txt", "--step", "0.1", "--output", tmp_path / "out.nc"]
     result = run("cycle", "--field", tmp_path / "patches.nc", *options, *given)
     assert result.exit_code == 0, result.output

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -24,11 +26,9 @@ from crackfront.cli.report import (
     examples,
     finite,
     refuse_unwritable,
-    whole,
 )
-from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE
-from crackfront.data.bounds import COUNT, DENSITY, NUMBER, TOLERANCE, Range, regular_file
-from crackfront.simulate.cases import PLACE, LineCase, Resolution, SphereCase, load_values
+from crackfront.core.solver import DEFAULT_TOLERANCE
+from crackfront.data.bounds import NUMBER, Range, regular_file
 from crackfront.sweep.parallel import deferring_stops, stop_is_requested
 
 if TYPE_CHECKING:
@@ -39,12 +39,17 @@ if TYPE_CHECKING:
 
 _SECONDS_BETWEEN_CHECKPOINTS = 60.0
 
+_PLACE = Range(-NUMBER.most, NUMBER.most)
+"""Loads and their steps; what is negative is refused where it cannot be."""
+
 _MOST_BYTES = 1e8
 """Size of a file of loads."""
 
 
 def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[float, ...] | None:
     """Loads of a text with commas, or of a file, in which what stands behind # is none."""
+    from crackfront.simulate.cases import load_values
+
     if given is None:
         return None
     if re.fullmatch(r"[-+.\de]+(,[-+.\de]+)*", given):
@@ -56,22 +61,6 @@ def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[fl
         raise ValueError(f"{given}: {error}") from error
 
 
-def _case(
-    geometry: str, max_penetration: float | None, spring: float | None, **way: Any
-) -> SphereCase | LineCase:
-    """The contact and the loads that the options name."""
-    if geometry == "sphere":
-        if spring is not None:
-            raise ValueError("--spring is no option of --geometry sphere; leave it out")
-        return SphereCase(max_penetration, **way)
-    if max_penetration is not None:
-        raise ValueError("--max-penetration is no option of --geometry line; give --loads")
-    if spring is None or way["loads"] is None:
-        missing = "--spring" if spring is None else "--loads"
-        raise ValueError(f"{missing} is missing; --geometry line needs it")
-    return LineCase(spring, **way)
-
-
 @click.command(
     epilog=examples(
         "crackfront cycle --field tile.nc --max-penetration 1 --output cycle.nc --watch",
@@ -79,20 +68,14 @@ def _case(
         "  --figure cycle",
         "crackfront cycle --field tile.nc --max-penetration 1 --step 0.05 --record fronts \\",
         "  --record energy --output cycle.nc",
-        "crackfront cycle --geometry line --spring 32 --field tile.nc --loads 300,1100,300 \\",
+        "crackfront cycle --spring 32 --field tile.nc --loads 300,1100,300 \\",
         "  --step 10 --record fronts --output line.nc",
         "crackfront cycle --field tile.nc --loads loads.txt --step 0.02 --output minor.nc",
     )
 )
 @click.option("--field", "field_file", type=FILE, required=True, help="netCDF file of the field.")
 @click.option(
-    "--geometry",
-    type=click.Choice(["sphere", "line"]),
-    default="sphere",
-    help="What touches the surface.",
-)
-@click.option(
-    "--max-penetration", type=Number(PLACE), help="Largest penetration of a sphere, without loads."
+    "--max-penetration", type=Number(_PLACE), help="Largest penetration of a sphere, without loads."
 )
 @click.option(
     "--loads",
@@ -101,19 +84,19 @@ def _case(
 )
 @click.option(
     "--step",
-    type=Number(PLACE),
+    type=Number(_PLACE),
     help="Largest difference of loads.  [default: 0.004 without loads, dissipated energies to 1%]",
 )
 @click.option(
     "--spring",
     type=Number(NUMBER),
-    help="Length of the springs of a line, w_int / kappa, in the unit of the tile.",
+    help="A straight front instead of a sphere, on springs of this length, w_int / kappa.",
 )
 @click.option(
-    "--tolerance",
-    type=Number(TOLERANCE),
-    default=DEFAULT_TOLERANCE,
-    help="Force that may be left, relative to w_int per front length.",
+    "--error",
+    type=Number(Range(0, 1)),
+    default=0.03,
+    help="Error of k that the numerics may leave, where the field states its spectrum.",
 )
 @click.option(
     "--solver",
@@ -121,31 +104,10 @@ def _case(
     help="newton, or reference (the paper's algorithm); both find the same states.",
 )
 @click.option(
-    "--max-sweeps",
-    type=whole(COUNT),
-    default=DEFAULT_MAX_SWEEPS,
-    help="Limit on the sweeps of one load step.",
-)
-@click.option(
     "--record",
     type=click.Choice(["fronts", "energy"]),
     multiple=True,
     help="Record the fronts, the dissipated energy too; may be repeated.",
-)
-@click.option(
-    "--angles",
-    type=whole(Range(4, COUNT.most)),
-    help="Sites of the front on a tile.  [default: one or more a pixel on the largest circle]",
-)
-@click.option(
-    "--samples-per-pixel",
-    type=Number(DENSITY),
-    help="Samples along a ray on a tile, per pixel.  [default: 2, or 4 where linear]",
-)
-@click.option(
-    "--interpolation",
-    type=click.Choice(["cubic", "linear"]),
-    help="Pieces between samples of a ray.  [default: cubic]",
 )
 @click.option("--output", type=FILE, required=True, help="netCDF file of the cycle.")
 @click.option("--figure", type=FILE, help="Figure: talk.svg, or without suffix PDF and PNG.")
@@ -153,13 +115,17 @@ def _case(
 @as_json
 def cycle(
     field_file: Path,
-    geometry: str,
+    max_penetration: float | None,
+    loads: tuple[float, ...] | None,
+    step: float | None,
+    spring: float | None,
+    error: float,
+    solver: str,
     record: tuple[str, ...],
     output: Path,
     figure: Path | None,
     watch: bool,
     as_json: bool,
-    **given: Any,
 ) -> None:
     """Run one approach and retraction on a field from a file.
 
@@ -168,9 +134,9 @@ def cycle(
     All quantities are in reduced units: R = 1, w_int = 1/pi, E' = 3/4; works of adhesion whose
     attribute units is w_int are relative to it.
 
-    With --geometry line the front is straight, along y, one site for every y of the tile. Springs
-    of the length --spring pull it along x, their other end at the loads; lengths are those of the
-    tile, and the springs do not pull where the front feels the mean of the tile.
+    With --spring the front is straight, along y, one site for every y of the tile. Springs pull it
+    along x, their other end at the loads; lengths are those of the tile, and the springs do not
+    pull where the front feels the mean of the tile.
 
     The exit code is 0 where the cycle came to its end (on a sphere without --loads, by losing
     contact) and 1 where it ended early; the output is written in both cases. It is 2 where the
@@ -178,22 +144,25 @@ def cycle(
     output, and the same command goes on from there.
     """
     from crackfront.core.cycle.record import Recorder
+    from crackfront.core.cycle.schedule import DEFAULT_STEP
     from crackfront.core.outcome import Status
     from crackfront.core.solver.relax import named_solver
     from crackfront.data.files import refuse_no_file, write_dataset
     from crackfront.data.provenance import provenance
-    from crackfront.simulate.fields import read_field
+    from crackfront.simulate.cases import problem_of, straight_front
+    from crackfront.simulate.given import read_field
     from crackfront.simulate.loops import loop_dataset
 
-    solver = [given.pop(name) for name in ("solver", "tolerance", "max_sweeps")]
-    sizes = (given.pop(name) for name in ("angles", "samples_per_pixel", "interpolation"))
-    resolution, case = Resolution(*sizes), _case(geometry, **given)
     refuse_no_file(output)
     for path in (output, figure or output):
         refuse_unwritable(path.parent)
-    solution = named_solver(*solver)
-    problem = case.problem(lambda: read_field(field_file), resolution)
-    key = _key(field_file, geometry, given, solver, record, resolution)
+    solution = named_solver(solver, DEFAULT_TOLERANCE)
+    surface = read_field(field_file)
+    pressed = surface if spring is None else straight_front(surface, spring)
+    step = (DEFAULT_STEP if loads is None else math.inf) if step is None else step
+    problem = problem_of(pressed, loads, max_penetration, step, error)
+    solution = replace(solution, tolerance=problem.tolerance)
+    key = _key(field_file, spring, loads, max_penetration, step, error, solver, record)
     keeper = _Keeper(output, key, problem.field.geometry)
     announce_compilation(err=as_json)
     announce_cost(problem.seconds)
@@ -205,7 +174,7 @@ def cycle(
             resume=keeper.found(),
         )
         recorder.run(problem.field, problem.front, problem.loads, solution)
-    found = loop_dataset(recorder.record(), problem.measures, problem.field.geometry)
+    found = loop_dataset(recorder.record(), problem)
     write_dataset(output, found, provenance())
     keeper.path.unlink(missing_ok=True)
     drawn = () if figure is None else _draw(found, figure)
@@ -215,7 +184,7 @@ def cycle(
     if recorder.status is Status.LOST_CONTACT:
         lines.append(f"contact was lost at {end}")
     echo_answer(_content(recorder, found, output), lines, as_json=as_json)
-    if recorder.status.name not in case.ends_by:
+    if recorder.status not in (Status.LOST_CONTACT, None if loads is None else Status.CONVERGED):
         raise click.ClickException(f"at {end} {recorder.status.value}")
 
 

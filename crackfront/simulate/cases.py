@@ -1,54 +1,38 @@
-"""Loads and field of one cycle on a given field, geometry by geometry.
-
-What computes is imported where it is used: the help of `crackfront cycle` does not wait for it.
-"""
+"""What a run on a given surface begins with: of a sphere, and of a straight front."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from itertools import chain, pairwise
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import NamedTuple
 
+import numpy as np
+from xarray import DataArray
+
+from crackfront.core import jkr
+from crackfront.core.arrays import Array
+from crackfront.core.contact import contact_field
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.schedule import LoadSchedule, protocol
+from crackfront.core.cycle.touch import checked_touch
+from crackfront.core.field.fields import TileField
+from crackfront.core.geometry import line
+from crackfront.core.solver import DEFAULT_TOLERANCE
+from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.arguments import refuse_no_numbers
 from crackfront.data.bounds import NUMBER, Range, refuse_outside
-
-if TYPE_CHECKING:
-    from xarray import DataArray
-
-    from crackfront.core.adhesion import AdhesionMap
-    from crackfront.core.arrays import Array
-    from crackfront.core.cycle.follow import Load
-    from crackfront.core.field.fields import Interpolation, TileField
-    from crackfront.simulate.surfaces import TileMeasures
-
-PLACE = Range(-NUMBER.most, NUMBER.most)
-"""Loads and their steps; what is negative is refused where it cannot be."""
-
-
-class Problem(NamedTuple):
-    """Field, first front and loads of a cycle."""
-
-    field: TileField
-    front: Array
-    loads: Iterable[Load]
-    """As of :func:`crackfront.core.cycle.follow.follow`."""
-    expected: int
-    """States that it will have, roughly."""
-    seconds: float
-    """Processor time that they will take, roughly."""
-    measures: TileMeasures
-    """Those of the tile."""
-
-
-@dataclass(frozen=True, slots=True)
-class Resolution:
-    """How a given field is resolved; None leaves the choice to the case."""
-
-    angles: int | None = None
-    samples_per_pixel: float | None = None
-    interpolation: Interpolation | None = None
+from crackfront.simulate.costs import affordable_seconds
+from crackfront.simulate.given import surface_adhesion, surface_kind
+from crackfront.simulate.simulation import Simulation, missed_error, simulation_field
+from crackfront.simulate.surfaces import (
+    TileMeasures,
+    chosen_simulation,
+    refuse_no_fraction,
+    stated_spectrum,
+    tile_measures,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +63,6 @@ def straight_front(surface: DataArray, spring: float) -> StraightFront:
     TypeError
         If an argument is of another type.
     """
-    from crackfront.simulate.given import surface_kind
-
     surface_kind(surface)
     refuse_no_numbers(spring=spring)
     refuse_outside("spring", spring, NUMBER)
@@ -88,139 +70,130 @@ def straight_front(surface: DataArray, spring: float) -> StraightFront:
 
 
 def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
-    """Loads of a protocol as numbers.
-
-    Raises
-    ------
-    ValueError
-        If there is none, or one is no number within bounds.
-    """
+    """Loads of a protocol as numbers; a ValueError where there is none, or one is no number."""
     found = []
     for given in loads:
         try:
             found.append(float(given))
         except (TypeError, ValueError):
             raise ValueError(f"a load is {given!r}; write numbers alone") from None
-        refuse_outside("a load", found[-1], PLACE)
+        refuse_outside("a load", found[-1], Range(-NUMBER.most, NUMBER.most))
     if not found:
         raise ValueError("there are no loads; give one or more")
     return tuple(found)
 
 
-def _protocol(loads: tuple[float, ...], step: float | None) -> tuple[Iterator[Load], float]:
-    """Loads of a protocol, made when they are taken, and how many there are."""
-    from crackfront.core.cycle.schedule import protocol
+class Problem(NamedTuple):
+    """Field, first front and loads of a run."""
 
-    step = math.inf if step is None else step
-    way = protocol(loads, step)
-    return way, len(loads) + sum(abs(one - other) for one, other in pairwise(loads)) / step
+    field: TileField
+    front: Array
+    loads: Iterable[Load]
+    """As of :func:`crackfront.core.cycle.follow.follow`."""
+    expected: int
+    """States that it will have, roughly."""
+    seconds: float
+    """Processor time that they will take, roughly."""
+    tolerance: float
+    """That of the solver."""
+    measures: TileMeasures
+    """Those of the tile."""
+    simulation: Simulation | None = None
+    """One of the same sizes, whose numerical errors are known; where the spectrum is stated."""
 
 
-@dataclass(frozen=True)
-class SphereCase:
-    """A sphere that is pressed on a surface and pulled off, about the centre of a tile."""
+def problem_of(
+    surface: DataArray | StraightFront,
+    loads: tuple[float, ...] | None,
+    max_penetration: float | None,
+    step: float,
+    error: float,
+) -> Problem:
+    """What a run begins with.
 
-    max_penetration: float | None = None
-    step: float | None = None
-    loads: tuple[float, ...] | None = None
-
-    @property
-    def ends_by(self) -> tuple[str, ...]:
-        """Names of the statuses that are an end of its loads."""
-        return ("LOST_CONTACT",) if self.loads is None else ("LOST_CONTACT", "CONVERGED")
-
-    @property
-    def deepest(self) -> float:
-        """Largest penetration; ValueError if the loads make no contact, or are given twice."""
-        if (self.loads is None) == (self.max_penetration is None):
-            raise ValueError("a sphere needs max_penetration or loads; give one of the two")
-        if self.loads is None:
-            return float(self.max_penetration or 0.0)
-        if self.loads[0] < 0:
-            raise ValueError(
-                f"loads begin with {self.loads[0]:g}; a sphere touches at penetration 0, so begin "
-                "there or deeper"
-            )
-        return max(self.loads)
-
-    def way(self) -> tuple[Iterator[Load], float]:
-        """Loads in their order, and how many there are, about."""
-        from crackfront.core import jkr
-        from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
-
-        if self.loads is not None:
-            return _protocol(self.loads, self.step)
-        step = DEFAULT_STEP if self.step is None else self.step
-        loads = LoadSchedule(self.deepest, step).loads()
+    Parameters
+    ----------
+    surface, max_penetration, error
+        As of :func:`crackfront.run_loop`.
+    loads : tuple of float or None
+        Loads to visit, or up to the largest penetration and to pull-off.
+    step : float
+        Largest difference of loads; infinity leaves them as they are.
+    """
+    if isinstance(surface, StraightFront):
+        if loads is None or max_penetration is not None:
+            raise ValueError("a straight front needs loads, and no max_penetration; give loads")
+        return _line_problem(surface, loads, step)
+    if (loads is None) == (max_penetration is None):
+        raise ValueError("a sphere needs max_penetration or loads; give one of the two")
+    if max_penetration is not None:
+        way = LoadSchedule(max_penetration, step).loads()
         # A smooth sphere comes off there; a rough one goes somewhat further.
-        return loads, 3 + (2 * self.deepest - jkr.pull_off_penetration()) / step
-
-    def problem(self, read: Callable[[], AdhesionMap], sizes: Resolution) -> Problem:
-        """Field of a tile, which is kept as its splines alone.
-
-        Without loads, they go from first contact to the largest penetration and to pull-off.
-        """
-        from crackfront.core import jkr
-        from crackfront.core.contact import contact_field
-        from crackfront.core.cycle.touch import checked_touch
-        from crackfront.simulate.costs import affordable_seconds
-        from crackfront.simulate.surfaces import tile_measures
-
-        deepest, (way, n_state) = self.deepest, self.way()
-        given, angles, density = read(), sizes.angles, sizes.samples_per_pixel
-        radius = jkr.equilibrium_radius(deepest)
-        seconds = affordable_seconds(
-            n_angle=angles or 2 * math.pi * radius / given.pixel,
-            n_point=given.work_of_adhesion.size,
-            n_state=n_state,
-            n_sample=2 * radius / given.pixel * (density or 4.0),
+        n_state = 3 + (2 * max_penetration - jkr.pull_off_penetration()) / step
+        return _sphere_problem(surface, max_penetration, way, n_state, error)
+    if loads is None or loads[0] < 0:
+        raise ValueError(
+            f"loads begin with {(loads or (0.0,))[0]:g}; a sphere touches at penetration 0, so "
+            "begin there or deeper"
         )
-        spacing, pieces = given.pixel / density if density else None, sizes.interpolation
-        field = contact_field(given, deepest, angles, spacing, pieces or "cubic")
+    way, n_state = protocol(loads, step), _n_state(loads, step)
+    return _sphere_problem(surface, max(loads), way, n_state, error)
+
+
+def _n_state(loads: tuple[float, ...], step: float) -> float:
+    """Loads of a protocol, about."""
+    return len(loads) + sum(abs(one - other) for one, other in pairwise(loads)) / step
+
+
+def _sphere_problem(
+    surface: DataArray, deepest: float, way: Iterator[Load], n_state: float, error: float
+) -> Problem:
+    """A sphere about the centre of a tile, resolved by the measured laws or else by its pixels."""
+    refuse_no_fraction("error", error)
+    adhesion = surface_adhesion(surface)
+    measures, radius = tile_measures(adhesion), jkr.equilibrium_radius(deepest)
+    seconds = affordable_seconds(
+        n_angle=2 * math.pi * radius / adhesion.pixel,
+        n_point=adhesion.work_of_adhesion.size,
+        n_state=n_state,
+        n_sample=8 * radius / adhesion.pixel,
+    )
+    spectrum = stated_spectrum(surface)
+    if spectrum is None or adhesion.e_el == 0:
+        field, tolerance = contact_field(adhesion, deepest), DEFAULT_TOLERANCE
         front = checked_touch(field, deepest)
-        return Problem(field, front, way, int(n_state), seconds, tile_measures(given))
-
-
-@dataclass(frozen=True)
-class LineCase:
-    """A straight front along y on a periodic tile, which springs pull along x."""
-
-    ends_by: ClassVar[tuple[str, ...]] = ("CONVERGED",)
-
-    spring: float
-    step: float | None
-    loads: tuple[float, ...]
-
-    def problem(self, read: Callable[[], AdhesionMap], sizes: Resolution) -> Problem:
-        """Field on the points of a tile, one site for every y unless the resolution says more."""
-        import numpy as np
-
-        from crackfront.core.geometry.line import line_field, straight_front
-        from crackfront.core.units import WORK_OF_ADHESION
-        from crackfront.simulate.costs import affordable_seconds
-        from crackfront.simulate.surfaces import tile_measures
-
-        loads = self.loads
-        way, n_state = _protocol(loads, self.step)
-        given, density = read(), sizes.samples_per_pixel or 1.0
-        # The first front lies as far behind its load as pinning may pull the springs.
-        values = given.work_of_adhesion / WORK_OF_ADHESION
-        behind = 1.25 * self.spring * float(np.ptp(values))
-        seconds = affordable_seconds(
-            n_angle=sizes.angles or values.shape[1],
-            n_point=values.size,
-            n_state=n_state,
-            n_sample=2 * (float(np.ptp(loads)) + behind) / given.pixel * density,
+        return Problem(field, front, way, int(n_state), seconds, tolerance, measures)
+    schedule = LoadSchedule(deepest, 1.0)  # whose step has no effect on sizes
+    chosen = chosen_simulation(measures.kind, spectrum, adhesion.e_el, schedule, error=error)
+    n_point = min(adhesion.work_of_adhesion.shape)
+    sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
+    simulation = replace(chosen, resolution=sizes)
+    if left := missed_error(simulation, error):
+        pixels = spectrum.short_cutoff / adhesion.pixel
+        raise ValueError(
+            f"error is {error:g}, but the finest numerics on {pixels:.3g} pixels per short cutoff "
+            f"leave {left:.2g}; ask for that, or make the surface with this error"
         )
-        field = line_field(
-            given,
-            self.spring,
-            (min(loads), max(loads)),
-            n_site=sizes.angles,
-            spacing=given.pixel / density,
-            interpolation=sizes.interpolation or "cubic",
-        )
-        front, measures = straight_front(field, given, loads[0]), tile_measures(given)
-        # A branch begins with a front of its own: making contact has no energy here.
-        started = chain([next(way)._replace(start=front)], way)
-        return Problem(field, front, started, int(n_state), seconds, measures)
+    field, tolerance = simulation_field(simulation, adhesion), chosen.solver.tolerance
+    front = checked_touch(field, deepest)
+    return Problem(field, front, way, int(n_state), seconds, tolerance, measures, simulation)
+
+
+def _line_problem(given: StraightFront, loads: tuple[float, ...], step: float) -> Problem:
+    """A straight front along y on a periodic tile, one site for every y."""
+    adhesion, way, n_state = surface_adhesion(given.surface), protocol(loads, step), 0.0
+    # The first front lies as far behind its load as pinning may pull the springs.
+    values, n_state = adhesion.work_of_adhesion, _n_state(loads, step)
+    behind = 1.25 * given.spring * float(np.ptp(values)) / WORK_OF_ADHESION
+    seconds = affordable_seconds(
+        n_angle=values.shape[1],
+        n_point=values.size,
+        n_state=n_state,
+        n_sample=2 * (float(np.ptp(loads)) + behind) / adhesion.pixel,
+    )
+    field = line.line_field(adhesion, given.spring, (min(loads), max(loads)))
+    front = line.straight_front(field, adhesion, loads[0])
+    # A branch begins with a front of its own: making contact has no energy here.
+    started = chain([next(way)._replace(start=front)], way)
+    measures = tile_measures(adhesion)
+    return Problem(field, front, started, int(n_state), seconds, DEFAULT_TOLERANCE, measures)

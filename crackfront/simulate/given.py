@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import get_args
 
 import numpy as np
@@ -14,8 +15,9 @@ from crackfront.core.arrays import Array
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, Variable
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
-from crackfront.data.files import labelled
-from crackfront.data.tiles import refuse_extreme, tile_samples
+from crackfront.data.bounds import ADHESION as VALUES
+from crackfront.data.bounds import NUMBER, refuse_outside
+from crackfront.data.files import UnreadableFileError, labelled, read_dataset
 from crackfront.data.written_units import unit_value
 from crackfront.simulate.si_units import (
     SURFACES,
@@ -100,14 +102,14 @@ def surface(
     factor = known[given] if given in known else unit_value(given, unit) / scale
     found = surface_array(kind, factor * samples, float(side) / len(samples))
     if kind == "chemical":
-        refuse_strange_mean(found, given)
+        _refuse_strange_mean(found.values, given)
     surface_adhesion(found)
     return found
 
 
-def refuse_strange_mean(values: xr.DataArray, units: str) -> None:
+def _refuse_strange_mean(values: Array, units: str) -> None:
     """Raise if works of adhesion (Units: w_int) have no mean around w_int; `units` are as given."""
-    mean = float(values.mean())
+    mean = float(np.mean(values))
     if not math.isfinite(mean) or 0.5 <= mean <= 2:
         return
     cause = "check the values, or take their mean for w_int"
@@ -164,43 +166,30 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
             "have x and y"
         )
     refuse_other_units(surface if kind == "roughness" else surface.coords.to_dataset())
-    unit, values = 1.0, surface
+    samples, pixel = _samples(surface)
+    known = {"reduced": 1.0, "1": 1.0, ADHESION: WORK_OF_ADHESION}
+    unit, units = 1.0, str(surface.attrs.get("units") or "reduced")
     if kind == "chemical":
-        unit, values = WORK_OF_ADHESION, reduced_adhesion(surface)
-    samples, pixel = tile_samples(values)
+        if units not in known:
+            raise ValueError(
+                f"{surface.name} has the units {units!r}; they must be 'reduced' or {ADHESION!r}: "
+                "set them, or convert other units by in_reduced_units"
+            )
+        unit, samples = WORK_OF_ADHESION, known[units] * samples
     bad = np.argwhere(~np.isfinite(samples))
     if bad.size:
         raise ValueError(
             f"{surface.name} is {samples[tuple(bad[0])]} at x index {bad[0, 0]}, y index "
             f"{bad[0, 1]} ({len(bad)} such values); replace them by finite values"
         )
-    refuse_extreme(SURFACES[kind].name, samples, unit)
+    _refuse_extreme(SURFACES[kind].name, samples, unit)
     if kind == "roughness":
         if not surface.attrs.get("periodic"):
             _refuse_seam(samples)
         return rough_adhesion(samples, pixel)
+    _refuse_strange_mean(samples / unit, "w_int" if units == ADHESION else "reduced")
     rms, corner = float(np.std(samples)) / unit, (float(surface["x"][0]), float(surface["y"][0]))
     return AdhesionMap(samples, pixel, rms**2 / 4, rms, corner)
-
-
-def reduced_adhesion(values: xr.DataArray) -> xr.DataArray:
-    """Works of adhesion in reduced units, of a tile or on rays; without units they are reduced.
-
-    Raises
-    ------
-    ValueError
-        If their units are others, or their mean is not around w_int.
-    """
-    given = str(values.attrs.get("units") or "reduced")
-    known = {"reduced": 1.0, "1": 1.0, ADHESION: WORK_OF_ADHESION}
-    if given not in known:
-        raise ValueError(
-            f"{values.name} has the units {given!r}; they must be 'reduced' or {ADHESION!r}: set "
-            "them, or convert other units by in_reduced_units"
-        )
-    found = values * known[given]
-    refuse_strange_mean(found / WORK_OF_ADHESION, "w_int" if given == ADHESION else "reduced")
-    return found.rename(values.name)
 
 
 _AXES = tuple(
@@ -255,3 +244,96 @@ def _refuse_seam(heights: Array) -> None:
                 "periodic. Level the map and mirror or window it, as read_scan does; an edge that "
                 "is meant is said by the attribute periodic=1"
             )
+
+
+_REAL = "fiu"
+"""Kinds of types of numpy that are real numbers."""
+
+_COPIES = 6
+"""Memory of a field in use over that of its values: as numbers of double precision, as splines."""
+
+
+def read_field(path: Path) -> xr.DataArray:
+    """Surface in a file, `height(x, y)` or `work_of_adhesion(x, y)`.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file.
+
+    Raises
+    ------
+    ValueError
+        If the file is missing or truncated, or holds no surface of real numbers.
+    """
+    dataset = read_dataset(path, copies=_COPIES)
+    names = [item.name for item in SURFACES.values() if item.name in dataset]
+    if not names:
+        raise UnreadableFileError(
+            f"{path} has no surface (it has: {', '.join(map(str, dataset.data_vars))}); name its "
+            f"variable {' or '.join(item.name for item in SURFACES.values())}"
+        )
+    values = dataset[names[-1]]
+    for name, part in {values.name: values, **values.coords}.items():
+        if part.dtype.kind not in _REAL:
+            raise UnreadableFileError(f"{path}: {name} is {part.dtype}; it must be real numbers")
+    return values
+
+
+_UNEQUAL = 1e-6
+"""Largest deviation from equal spacing, relative to it."""
+
+
+def _samples(values: xr.DataArray) -> tuple[Array, float]:
+    """Values of a tile, first axis x, and their spacing.
+
+    Parameters
+    ----------
+    values : xarray.DataArray
+        Values of the dimensions x and y, in any order, with their coordinates.
+
+    Raises
+    ------
+    ValueError
+        If a coordinate is missing or not uniform, or the two spacings differ.
+    """
+    pixels = [_spacing(values, name) for name in ("x", "y")]
+    if abs(pixels[1] / pixels[0] - 1) > _UNEQUAL:
+        raise ValueError(
+            f"the spacing is {pixels[0]:.6g} in x and {pixels[1]:.6g} in y; they must be equal"
+        )
+    return np.ascontiguousarray(values.transpose("x", "y"), dtype=float), pixels[0]
+
+
+def _spacing(values: xr.DataArray, name: str) -> float:
+    """Uniform spacing of a coordinate."""
+    if name not in values.coords or values.sizes[name] < 2:
+        raise ValueError(
+            f"{values.name} has {values.sizes[name]} point(s) along {name} and "
+            f"{'a' if name in values.coords else 'no'} coordinate {name}; give 2 or more with "
+            "their positions"
+        )
+    # Places of 1e308 are infinitely far from each other.
+    with np.errstate(over="ignore", invalid="ignore"):
+        steps = np.diff(np.asarray(values[name], dtype=float))
+        mean = float(np.mean(steps))
+    if not (0 < mean < np.inf and np.max(np.abs(steps - mean)) <= _UNEQUAL * mean):
+        raise ValueError(
+            f"{name} advances by {np.min(steps):.6g} to {np.max(steps):.6g}; it must "
+            "increase in equal steps"
+        )
+    refuse_outside(f"spacing of {name}", mean, NUMBER)
+    return mean
+
+
+def _refuse_extreme(name: str, values: Array, unit: float = 1.0) -> None:
+    """Raise if a value is finite, but so large that no surface has it; NaN is left to others."""
+    beyond = (values < VALUES.least * unit) | (values > VALUES.most * unit)
+    beyond &= np.isfinite(values)
+    if np.any(beyond):
+        place = tuple(map(int, np.unravel_index(np.argmax(beyond), beyond.shape)))
+        bounds = f"{VALUES.least:g} and {VALUES.most:g}"
+        raise ValueError(
+            f"{name} is {float(values[place]) / unit:g} at index {', '.join(map(str, place))} "
+            f"({np.count_nonzero(beyond)} such values); it must lie between {bounds}"
+        )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import get_args
 
 import numpy as np
@@ -13,13 +13,10 @@ from xarray import DataArray, Dataset
 from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady import SteadyAdhesion, steady_adhesion
 from crackfront.analysis.table import SweepAxes, SweepRow
-from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.cycle.touch import checked_touch, first_touch
-from crackfront.core.field.fields import TileField
-from crackfront.core.geometry.base import Geometry
+from crackfront.core.cycle.touch import first_touch
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction, Status
@@ -31,24 +28,15 @@ from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.provenance import __version__
 from crackfront.simulate.cases import (
-    LineCase,
-    Resolution,
-    SphereCase,
+    Problem,
     StraightFront,
     load_values,
+    problem_of,
 )
 from crackfront.simulate.files import cycle_dataset
-from crackfront.simulate.given import surface_adhesion
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
 from crackfront.simulate.run import compile_solver
-from crackfront.simulate.simulation import Simulation, missed_error, simulation_field, stated_error
-from crackfront.simulate.surfaces import (
-    TileMeasures,
-    chosen_simulation,
-    refuse_no_fraction,
-    stated_spectrum,
-    tile_measures,
-)
+from crackfront.simulate.simulation import stated_error
 
 _KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
 
@@ -138,64 +126,38 @@ def run_loop(
     >>> pulled.position.dims
     ('step', 'y')
     """
-    straight = isinstance(surface, StraightFront)
     numbers = {"max_penetration": max_penetration, "step": step}
     refuse_no_numbers(**{name: one for name, one in numbers.items() if one is not None})
     for name, value in (("fronts", fronts), ("energy", energy)):
         refuse_other_type(name, value, bool, "True or False")
     if not callable(progress):
         refuse_other_type("progress", progress, type(None), "a function of a state")
-    solution, simulation = named_solver(solver, DEFAULT_TOLERANCE), None
-    visited = None if loads is None else load_values(loads)
+    visited, straight = None if loads is None else load_values(loads), False
     if isinstance(surface, StraightFront):
-        if visited is None or max_penetration is not None:
-            raise ValueError("a straight front needs loads, and no max_penetration; give loads")
-        adhesion = surface_adhesion(surface.surface)
-        problem = LineCase(surface.spring, step, visited).problem(lambda: adhesion, Resolution())
-        field, front, way, measures = problem.field, problem.front, problem.loads, problem.measures
-    else:
-        if visited is None:
-            step = 0.02 if step is None else step
-            max_penetration = 1.0 if max_penetration is None else max_penetration
-        case = SphereCase(max_penetration, step, visited)
-        way, deepest = case.way()[0], case.deepest
-        contact = surface_contact(surface, LoadSchedule(deepest, 1.0), error)
-        field, measures, simulation = contact.field, contact.measures, contact.simulation
-        front = checked_touch(field, deepest)
-        solution = replace(solution, tolerance=contact.tolerance)
+        straight = True
+    elif visited is None and max_penetration is None:
+        max_penetration = 1.0
+    if step is None:
+        step = 0.02 if visited is None else math.inf
+    solution = named_solver(solver, DEFAULT_TOLERANCE)
+    problem = problem_of(surface, visited, max_penetration, step, error)
     compile_solver(solver, straight)
     observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
-    recorder.run(field, front, way, solution)
-    loop = loop_dataset(recorder.record(), measures, field.geometry, simulation=simulation)
-    return loop.assign_attrs(
+    solution = replace(solution, tolerance=problem.tolerance)
+    recorder.run(problem.field, problem.front, problem.loads, solution)
+    return loop_dataset(recorder.record(), problem).assign_attrs(
         solver=solver,
-        tolerance=solution.tolerance,
+        tolerance=problem.tolerance,
         crackfront_version=__version__,
         solver_fingerprint=solver_fingerprint(),
     )
 
 
-def loop_dataset(
-    record: CycleRecord,
-    measures: TileMeasures,
-    geometry: Geometry,
-    simulation: Simulation | None = None,
-) -> Dataset:
-    """Labelled curves of a cycle, and measures of the whole.
-
-    Parameters
-    ----------
-    record : CycleRecord
-        The states of a cycle.
-    measures : TileMeasures
-        Those of the tile.
-    geometry : Geometry
-        The contact.
-    simulation : Simulation, optional
-        Whose numerical errors are known.
-    """
-    curves = cycle_dataset(record, geometry)
+def loop_dataset(record: CycleRecord, problem: Problem) -> Dataset:
+    """Labelled curves of a run, and measures of the whole."""
+    measures, simulation = problem.measures, problem.simulation
+    curves = cycle_dataset(record, problem.field.geometry)
     values = {name: getattr(measures, name) for name in ("e_el", "w_rms", "correlation_length")}
     sentences = {"result": result_sentence(record)}
     if isinstance(record.states, ContactState):
@@ -283,7 +245,7 @@ def find_instabilities(
         max_penetration=max_penetration, step=step, travel=travel, precision=precision
     )
     schedule = LoadSchedule(max_penetration, step)
-    contact = surface_contact(surface, schedule, error)
+    contact = problem_of(surface, None, max_penetration, step, error)
     compile_solver("newton")
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
     reach = travel * contact.measures.correlation_length
@@ -297,38 +259,3 @@ def find_instabilities(
     found = labelled_fields(measured_instabilities(jumps, field, reach))
     angle = field.geometry.variables[1]
     return Dataset(found, {angle.name: labelled(angle, field.geometry.sites)}, {"travel": reach})
-
-
-@dataclass(frozen=True, slots=True)
-class SurfaceContact:
-    """A sphere on a surface; where the spectrum is known, the simulation has expected errors."""
-
-    field: TileField
-    tolerance: float
-    measures: TileMeasures
-    simulation: Simulation | None
-
-
-def surface_contact(surface: DataArray, schedule: LoadSchedule, error: float) -> SurfaceContact:
-    """Contact of a surface, resolved by the measured laws or else by its pixels.
-
-    Arguments and errors are as of :func:`run_loop`.
-    """
-    refuse_no_fraction("error", error)
-    adhesion = surface_adhesion(surface)
-    measures = tile_measures(adhesion)
-    spectrum, deepest = stated_spectrum(surface), schedule.max_penetration
-    if spectrum is None or adhesion.e_el == 0:
-        return SurfaceContact(contact_field(adhesion, deepest), DEFAULT_TOLERANCE, measures, None)
-    chosen = chosen_simulation(measures.kind, spectrum, adhesion.e_el, schedule, error=error)
-    n_point = min(adhesion.work_of_adhesion.shape)
-    sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
-    simulation = replace(chosen, resolution=sizes)
-    if left := missed_error(simulation, error):
-        pixels = spectrum.short_cutoff / adhesion.pixel
-        raise ValueError(
-            f"error is {error:g}, but the finest numerics on {pixels:.3g} pixels per short cutoff "
-            f"leave {left:.2g}; ask for that, or make the surface with this error"
-        )
-    field = simulation_field(simulation, adhesion)
-    return SurfaceContact(field, chosen.solver.tolerance, measures, simulation)

@@ -101,9 +101,6 @@ _REDUCED = {
 } | {"x": LATERAL, "y": LATERAL}
 """Reduced units of everything that may be converted."""
 
-_PLACES = "x", "y", "radius"
-"""Coordinates of fields, which are in reduced units where they state none."""
-
 _ATTRIBUTES = dict.fromkeys((*Spectrum.length_names(), "travel"), LATERAL)
 _ATTRIBUTES |= {"end_penetration": VERTICAL, "pull_off_energy": ENERGY}
 """Reduced units of attributes; those of an array in SI units are in SI units, too."""
@@ -186,7 +183,7 @@ def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
     for name, part in as_dataset(data).variables.items():
         given, needed = part.attrs.get("units"), _reduced_unit(str(name))
         plain = "reduced" if needed in (LATERAL, VERTICAL) else needed
-        if given not in (needed, plain) and not (name in _PLACES and given in (None, "", "1")):
+        if given not in (needed, plain) and not (name in ("x", "y") and given in (None, "", "1")):
             raise ValueError(
                 f"{name} has the units {given!r}; the attribute units must be {plain!r}: set it, "
                 "or convert other units by in_reduced_units"

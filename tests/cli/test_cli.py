@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from crackfront.cli import main
 from crackfront.cli.report import StoppedError
 from crackfront.core import jkr
 from crackfront.core.outcome import Status
+from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.files import write_text
 from crackfront.sweep.configuration import load_configuration
@@ -62,7 +64,7 @@ def cycle(field, tmp_path, *more, penetration=1, step=0.25):
 
 
 def test_a_cycle_on_a_smooth_tile_is_that_of_jkr(smooth_tile, tmp_path):
-    result = cycle(smooth_tile, tmp_path, "--tolerance", "1e-10")
+    result = cycle(smooth_tile, tmp_path)
     assert result.exit_code == 0, result.output
     dataset = xr.load_dataset(tmp_path / "out.nc")
     expected = [0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0, -0.25, -0.5, -0.75]
@@ -71,16 +73,20 @@ def test_a_cycle_on_a_smooth_tile_is_that_of_jkr(smooth_tile, tmp_path):
     assert dataset["penetration"].dims == ("step",)
     assert dataset.attrs["status"] == "lost_contact"
     radii = [jkr.equilibrium_radius(penetration) for penetration in expected]
-    assert dataset["mean_radius"].values == pytest.approx(radii, rel=1e-8)
+    assert dataset["mean_radius"].values == pytest.approx(radii, rel=1e-7)
     assert dataset["force"].values == pytest.approx(
-        jkr.equilibrium_force(np.array(radii)), abs=1e-8
+        jkr.equilibrium_force(np.array(radii)), abs=1e-7
     )
-    assert np.all(dataset["residual"] <= 1e-10)
+    assert np.all(dataset["residual"] <= 1e-8)
     assert "radius" not in dataset
 
 
-def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(rough_surface, tmp_path):
-    result = cycle(rough_surface, tmp_path, "--max-sweeps", 3)
+def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(
+    rough_surface, tmp_path, monkeypatch
+):
+    impatient = partial(named_solver, max_sweeps=3)
+    monkeypatch.setattr("crackfront.core.solver.relax.named_solver", impatient)
+    result = cycle(rough_surface, tmp_path)
     assert result.exit_code == 1
     assert "the solver reached its limit of sweeps" in result.stderr
     assert len(result.stderr.splitlines()) == 1
@@ -117,12 +123,6 @@ def test_a_tile_with_a_value_that_is_not_finite_is_refused_with_its_place(
         "--output", tmp_path / "out.nc",
     )  # fmt: skip
     assert f"work_of_adhesion is {value} at x index 3, y index 5 (1 such values)" in sentence
-
-
-def test_the_resolution_of_a_tile_can_be_chosen(smooth_tile, tmp_path):
-    options = ("--angles", 12, "--samples-per-pixel", 2, "--record", "fronts")
-    assert cycle(smooth_tile, tmp_path, *options).exit_code == 0
-    assert xr.load_dataset(tmp_path / "out.nc").sizes["angle"] == 12
 
 
 def test_a_sweep_runs_from_its_plan_to_its_figures_and_tells_what_a_missing_loop_costs(
@@ -374,16 +374,15 @@ def test_a_surface_of_the_library_is_a_field_of_a_cycle(kind, tmp_path):
     surface = cf.random_surface(0.4, 0.05, kind=kind, side=4, error=0.05, seed=3)
     surface.to_netcdf(tmp_path / "surface.nc")
     assert cycle(tmp_path / "surface.nc", tmp_path, "--record", "fronts").exit_code == 0
-    bare = surface.drop_attrs(deep=False).assign_attrs(units=surface.attrs["units"])
-    found = cf.run_loop(bare, step=0.25)
-    np.testing.assert_allclose(xr.load_dataset(tmp_path / "out.nc").radius, found.radius, rtol=1e-6)
+    found = cf.run_loop(surface, step=0.25)
+    np.testing.assert_array_equal(xr.load_dataset(tmp_path / "out.nc").radius, found.radius)
 
 
 @pytest.mark.parametrize(
     ("kind", "words"),
     [
-        ("roughness", "surface.nc: x has the units 'm'; the attribute units must be"),
-        ("chemical", "surface.nc: x has the units 'm'; the attribute units must be"),
+        ("roughness", "x has the units 'm'; the attribute units must be"),
+        ("chemical", "x has the units 'm'; the attribute units must be"),
     ],
 )
 def test_a_surface_in_si_units_is_refused_as_a_field(kind, words, tmp_path):
@@ -667,7 +666,7 @@ def test_an_output_that_cannot_be_written_is_refused_with_its_path(tmp_path):
 def test_a_cycle_that_could_not_be_written_is_not_computed(
     smooth_tile, monkeypatch, output, reason
 ):
-    monkeypatch.setattr("crackfront.simulate.fields.read_field", None)
+    monkeypatch.setattr("crackfront.simulate.given.read_field", None)
     options = ("--field", smooth_tile, "--max-penetration", "0.5")
     assert f"cannot be used: {reason}" in refused("cycle", *options, "--output", output)
 
@@ -712,7 +711,7 @@ def test_an_archive_has_the_whole_name_of_its_folder_and_an_empty_one_is_refused
 def test_once_the_solver_is_compiled_ahead_no_run_compiles_it(smooth_tile, tmp_path):
     assert run("compile").exit_code == 0
     sphere = "--max-penetration 0.1 --step 0.1"
-    line = "--geometry line --spring 4 --loads 0,1,0 --step 1"
+    line = "--spring 4 --loads 0,1,0 --step 1"
     for loads in (sphere, line):
         words = ("cycle", "--field", smooth_tile, "--output", tmp_path / "out.nc", *loads.split())
         command = [sys.executable, "-m", "crackfront", *map(str, words)]

@@ -353,7 +353,7 @@ def good_field(rng, kind):
         values = WORK_OF_ADHESION * (1 + values)
     dataset = xr.Dataset({name: (dims, values, attributes)}, coords=coordinates)
     sphere = ["--max-penetration", "0.3", "--step", "0.15"]
-    line = ["--geometry", "line", "--spring", "1", "--loads", "0,1,0", "--step", "0.5"]
+    line = ["--spring", "1", "--loads", "0,1,0", "--step", "0.5"]
     return dataset, line if kind == "line" else sphere
 
 
@@ -465,8 +465,8 @@ def good_commands(folder):
     sweep.write_text(yaml.safe_dump(good_configuration(np.random.default_rng(3))))
     output, store = folder / "out.nc", folder / "store"
     cycle = f"cycle --output {output} --field"
-    tuned = "--tolerance 1e-6 --angles 16 --samples-per-pixel 2 --max-sweeps 10000"
-    line = "--geometry line --spring 1 --loads 0,1,0 --step 0.5"
+    tuned = "--error 0.1"
+    line = "--spring 1 --loads 0,1,0 --step 0.5"
     surface = f"surface {scan} --unit m --size 2e-5,2e-5 --json"
     sphere = "--modulus 0.7MPa --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2"
     lines = (

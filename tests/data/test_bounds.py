@@ -127,17 +127,15 @@ def tile(tmp_path):
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        ({"--tolerance": "inf"}, "'--tolerance': inf is not in the range"),
-        ({"--tolerance": "nan"}, "'--tolerance': nan is no number"),
+        ({"--error": "inf"}, "'--error': inf is not in the range"),
+        ({"--error": "nan"}, "'--error': nan is no number"),
         ({"--step": 1e-300}, "load steps with 44.8 sites"),
         (
             {"--step": 1e-15},
             "load steps with 44.8 sites and 57.1 samples a ray would need",
         ),
-        ({"--angles": 10**11}, "would need 51.2 TB of memory; here are"),
-        ({"--samples-per-pixel": 1e5}, "'--samples-per-pixel': 100000.0 is not in the range"),
+        ({"--max-penetration": 1e15}, "of memory; here are"),
         ({"--max-penetration": 1e308}, "'--max-penetration': 1e+308 is not in the range"),
-        ({"--max-sweeps": 2**64}, "'--max-sweeps': 18446744073709551616 is not in the range"),
     ],
 )
 def test_absurd_options_of_a_cycle_are_refused(tile, tmp_path, options, sentence):
@@ -166,9 +164,9 @@ def test_many_sites_are_announced_with_their_price(tile, tmp_path, monkeypatch):
         raise ValueError("enough")
 
     monkeypatch.setattr(sys.modules["crackfront.cli.cycle"], "announce_cost", announced)
-    given = ("--max-penetration", 1, "--step", 0.25, "--angles", 10**6)
+    given = ("--max-penetration", 1, "--step", 2e-7)
     assert "enough" in refused(*("cycle", "--field", tile, *given, "--output", tmp_path / "out.nc"))
-    assert 3600 < told[0] < MOST_SECONDS
+    assert 2000 < told[0] < MOST_SECONDS
 
 
 @pytest.mark.parametrize("text", ["1e300MPa", "1e-300Pa", "1e16Pa"])

@@ -27,14 +27,13 @@ from crackfront.data.files import (
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import blank_figure, save_figure
-from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import (
     cycle_dataset,
     read_checkpoint,
     read_cycle,
     write_checkpoint,
 )
-from crackfront.simulate.given import surface_adhesion
+from crackfront.simulate.given import read_field, surface_adhesion
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration

@@ -23,13 +23,13 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
 from crackfront.data.files import UnreadableFileError, date_back, write_dataset, write_text
 from crackfront.data.provenance import Provenance, provenance
-from crackfront.simulate.fields import read_field
 from crackfront.simulate.files import (
     cycle_dataset,
     read_cycle,
     read_simulation,
     simulation_dataset,
 )
+from crackfront.simulate.given import read_field, surface_adhesion
 from crackfront.simulate.run import SimulationResult, run_simulation
 from crackfront.simulate.simulation import numerical_error
 from crackfront.sweep.configuration import load_configuration
@@ -199,7 +199,7 @@ def tile(n_x=4, n_y=6, spacing=0.5):
 def read_back(tmp_path, array):
     """Field that is read from the file of an array."""
     array.to_dataset().to_netcdf(tmp_path / "F.nc")
-    return read_field(tmp_path / "F.nc")
+    return surface_adhesion(read_field(tmp_path / "F.nc"))
 
 
 @pytest.mark.parametrize("order", [("x", "y"), ("y", "x")])
@@ -212,7 +212,7 @@ def test_a_tile_is_read_by_the_names_of_its_dimensions(tmp_path, order):
 
 
 UNUSABLE = {
-    "other name": (tile().rename("w"), "the file has no surface (it has: w); name its variable"),
+    "other name": (tile().rename("w"), "F.nc has no surface (it has: w); name its variable"),
     "other dims": (tile().rename(y="z"), "has the dimensions (x, z); a tile must have x and y"),
     "one dim": (tile()[0], "has the dimensions (y); a tile must have x and y"),
     "text": (tile().astype(str), "work_of_adhesion is <U"),
