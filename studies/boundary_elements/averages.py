@@ -55,7 +55,12 @@ class Setting:
         These have lost what they lose on the smooth sphere: that is taken off. (Units: w_int)
         """
         models = attrgetter("front_difference"), attrgetter("boundary_difference")
-        return self._estimate(lambda front, other: math.log(front / (other - smooth)), *models)
+
+        def logarithm(front: float, other: float) -> float:
+            both_lose = front > 0 and other > smooth
+            return math.log(front / (other - smooth)) if both_lose else math.nan
+
+        return self._estimate(logarithm, *models)
 
     def _estimate(self, function: Callable[..., float], *values: Value) -> Estimate:
         """Function of means, with the standard error of the jackknife over the surfaces."""
@@ -116,7 +121,7 @@ def range_limits(rows: Iterable[Hysteresis], order: float = ORDER) -> list[Hyste
         if longer:
             ratio = (longer[0].interaction_range / fine.interaction_range) ** order
             changes: dict[str, Any] = {"interaction_range": 0.0}
-            for name in ("boundary_approach", "boundary_retraction", "boundary_hysteresis"):
+            for name in ("boundary_approach", "boundary_retraction"):
                 near, far = getattr(fine, name), getattr(longer[0], name)
                 changes[name] = near + (near - far) / (ratio - 1)
             limits.append(replace(fine, **changes))

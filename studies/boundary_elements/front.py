@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core.arrays import Array
-from crackfront.core.cycle.energy import contact_energy
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.field.fields import polar_field
@@ -34,7 +33,6 @@ class FrontCycle:
 
     states: ContactState[Any]
     radius: Array  # fronts at the angles of the perimeters, (n_step, N_ANGLE) (reduced lateral)
-    energy: Array  # above that of no contact, (n_step,) (pi w_int R times reduced vertical)
     end: float  # penetration at which it lost contact (reduced vertical length)
     rotated: bool  # whether its crack turned with the angle
     seconds: float
@@ -60,14 +58,9 @@ def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = Tru
             f"{record.status.value}; raise n_angle or lower the spacing"
         )
     fronts = np.asarray(record.fronts)
-    energy = [
-        contact_energy(front, load, field)
-        for front, load in zip(fronts, record.states.penetration.tolist(), strict=True)
-    ]
     return FrontCycle(
         states=record.states,
         radius=np.fft.irfft(np.fft.rfft(fronts, norm="forward"), n=N_ANGLE, norm="forward"),
-        energy=np.array(energy),
         end=record.end_load,
         rotated=rotated,
         seconds=ended - began,

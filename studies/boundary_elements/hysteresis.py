@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from crackfront.core import jkr
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.arrays import Array
-from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import BoundaryCycle
@@ -22,8 +21,7 @@ class Hysteresis:
     """Both models over the steady parts of both branches on one surface.
 
     Works of adhesion are means over the states of a branch, of the smooth sphere that has the same
-    force at the same penetration. The hysteresis is the energy that either branch loses per area
-    that it sweeps, summed: it does not depend on where on the surface the branches are.
+    force at the same penetration.
     """
 
     seed: int = variable("seed of the surface", "1")
@@ -37,10 +35,8 @@ class Hysteresis:
     repelling: float = variable("part of the surface whose work of adhesion is negative", "1")
     boundary_approach: float = variable("w_appr of the boundary elements", ADHESION)
     boundary_retraction: float = variable("w_retr of the boundary elements", ADHESION)
-    boundary_hysteresis: float = variable("energy that they lose per area swept", ADHESION)
     front_approach: float = variable("w_appr of the front", ADHESION)
     front_retraction: float = variable("w_retr of the front", ADHESION)
-    front_hysteresis: float = variable("energy that it loses per area swept", ADHESION)
     barriers: int = variable("steps that were shortened before a barrier", "1")
     saddles: int = variable("unstable states without forces that were left", "1")
     least_released: float = variable("least fall of the energy at a penetration", ENERGY)
@@ -86,8 +82,8 @@ def hysteresis(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Hyster
         asked_energy=case.elastic_energy,
         elastic_energy=adhesion.e_el,
         repelling=float(np.mean(adhesion.work_of_adhesion < 0)),
-        **_branches("boundary", boundary, boundary.energy, theirs[steady]),
-        **_branches("front", front.states, front.energy, ours[steady]),
+        **_branches("boundary", boundary, theirs[steady]),
+        **_branches("front", front.states, ours[steady]),
         barriers=int(np.sum(boundary.barriers)),
         saddles=int(np.sum(boundary.saddles)),
         least_released=float(np.min(boundary.released)),
@@ -116,21 +112,11 @@ def apparent_adhesion(force: Array, penetration: Array) -> Array:
     return jkr.apparent_work_of_adhesion(radius, penetration)
 
 
-def _branches(
-    name: str, states: States, energy: Array, kept: NDArray[np.int64]
-) -> dict[str, float]:
-    """Works of adhesion and hysteresis of a model."""
-    works, lost = [], 0.0
+def _branches(name: str, states: States, kept: NDArray[np.int64]) -> dict[str, float]:
+    """Works of adhesion of a model."""
+    works = []
     for sign in (1, -1):
         branch = kept[states.direction[kept] == sign]
-        force, area = states.force[branch], states.contact_area[branch]
-        works.append(float(np.mean(apparent_adhesion(force, states.penetration[branch]))))
-        # A load step loses the work of the force, by the trapezoidal rule, less the energy's rise.
-        work = np.diff(states.penetration[branch]) * (force[1:] + force[:-1]) / 2
-        part = float(np.sum(work - np.diff(energy[branch])))
-        lost += part / abs(float(area[-1] - area[0])) / WORK_OF_ADHESION
-    return {
-        f"{name}_approach": works[0],
-        f"{name}_retraction": works[1],
-        f"{name}_hysteresis": lost,
-    }
+        adhesion = apparent_adhesion(states.force[branch], states.penetration[branch])
+        works.append(float(np.mean(adhesion)))
+    return {f"{name}_approach": works[0], f"{name}_retraction": works[1]}

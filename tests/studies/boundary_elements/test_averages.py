@@ -10,7 +10,7 @@ import pytest
 from studies.boundary_elements.averages import Setting, limit_settings, range_limits
 from studies.boundary_elements.hysteresis import Hysteresis
 
-BOUNDARY, FRONT = attrgetter("boundary_hysteresis"), attrgetter("front_hysteresis")
+BOUNDARY, FRONT = attrgetter("boundary_difference"), attrgetter("front_difference")
 
 
 def surface(**changes):
@@ -21,21 +21,21 @@ def surface(**changes):
 def test_the_ratio_of_hystereses_is_that_of_the_means_with_the_error_of_the_jackknife():
     pairs = ((0.2, 0.1), (0.4, 0.3), (0.3, 0.2))
     rows = [
-        surface(seed=seed, front_hysteresis=one, boundary_hysteresis=other)
+        surface(seed=seed, front_retraction=one, boundary_retraction=other)
         for seed, (one, other) in enumerate(pairs)
     ]
-    found = Setting(tuple(rows)).hysteresis_ratio()
-    assert float(found.value) == pytest.approx(1.5)
-    left = np.array([0.7 / 0.5, 0.5 / 0.3, 0.6 / 0.4])
+    found = Setting(tuple(rows)).excess(0.05)
+    assert float(found.value) == pytest.approx(math.log(0.9 / 0.45))
+    left = np.log([0.7 / 0.4, 0.5 / 0.2, 0.6 / 0.3])
     expected = math.sqrt(2 / 3 * np.sum((left - left.mean()) ** 2))
     assert float(found.standard_error) == pytest.approx(expected)
-    assert math.isnan(Setting(tuple(rows[:1])).hysteresis_ratio().standard_error)
+    assert math.isnan(Setting(tuple(rows[:1])).excess(0.0).standard_error)
 
 
 def test_a_limit_has_the_longer_range_of_all_surfaces_and_its_change_on_some(rng):
     def row(seed, length, value):
         return surface(
-            seed=seed, interaction_range=length, boundary_hysteresis=value, front_hysteresis=1.0
+            seed=seed, interaction_range=length, boundary_retraction=value, front_retraction=1.0
         )
 
     long = rng.uniform(0.2, 0.3, 6)
@@ -49,7 +49,7 @@ def test_a_limit_has_the_longer_range_of_all_surfaces_and_its_change_on_some(rng
     error = math.sqrt(5 / 6 * np.sum((np.array(left) - np.mean(left)) ** 2))
     assert float(limit.mean(BOUNDARY).standard_error) == pytest.approx(error)
     assert float(limit.mean(FRONT).standard_error) == pytest.approx(0, abs=1e-12)
-    assert float(limit.hysteresis_ratio().value) == pytest.approx(1 / (long.mean() + 0.12))
+    assert float(limit.excess(0.0).value) == pytest.approx(-math.log(long.mean() + 0.12))
 
 
 def test_a_vanishing_range_is_extrapolated_by_its_cube():
@@ -57,8 +57,8 @@ def test_a_vanishing_range_is_extrapolated_by_its_cube():
         return surface(
             interaction_range=length,
             boundary_approach=0.6 + 2 * length**3,
-            boundary_hysteresis=0.4 - 3 * length**3,
-            front_hysteresis=0.41,
+            boundary_retraction=0.4 - 3 * length**3,
+            front_retraction=0.41,
             **changes,
         )
 
@@ -66,6 +66,6 @@ def test_a_vanishing_range_is_extrapolated_by_its_cube():
     assert limit.interaction_range == 0
     assert limit.n_point == 512
     assert limit.boundary_approach == pytest.approx(0.6)
-    assert limit.boundary_hysteresis == pytest.approx(0.4)
-    assert limit.front_hysteresis == 0.41
+    assert limit.boundary_retraction == pytest.approx(0.4)
+    assert limit.front_retraction == 0.41
     assert range_limits([row(0.2), row(0.3, seed=1), row(0.4, step=0.1)]) == []

@@ -30,7 +30,7 @@ from studies.boundary_elements.report import validation_report
 
 ROOT = Path(__file__).parents[3]
 REFERENCES = ROOT / "docs/reference/validation"
-BOUNDARY = attrgetter("boundary_hysteresis")
+BOUNDARY = attrgetter("boundary_difference")
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_the_shipped_table_is_that_of_the_kept_surfaces(kept):
     assert counts == [(24, 5), *[(12, 5)] * 3, (48, 5), *[(24, 5)] * 3]
     for one in rough_settings(limit_settings(kept)):
         found = one.mean(BOUNDARY)
-        assert float(found.standard_error) < 0.101 * float(found.value)
+        assert float(found.standard_error) < 0.3 * float(found.value)
     coefficient, error = excess_coefficient(told)
     assert coefficient > 4 * error
     apart = [(math.log(row.ratio) - coefficient * row.elastic_energy) / row.error for row in told]
