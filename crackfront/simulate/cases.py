@@ -109,16 +109,9 @@ def problem_of(
     step: float,
     error: float,
 ) -> Problem:
-    """What a run begins with.
+    """What a run begins with, by arguments as of :func:`crackfront.run_loop`.
 
-    Parameters
-    ----------
-    surface, max_penetration, error
-        As of :func:`crackfront.run_loop`.
-    loads : tuple of float or None
-        Loads to visit, or up to the largest penetration and to pull-off.
-    step : float
-        Largest difference of loads; infinity leaves them as they are.
+    Loads are visited as they are where the step is infinite; a ValueError says if there are none.
     """
     if isinstance(surface, StraightFront):
         if loads is None or max_penetration is not None:
