@@ -57,8 +57,8 @@ def surface(
     Returns
     -------
     xarray.DataArray
-        `height(x, y)` or `work_of_adhesion(x, y)` as of :func:`random_surface`, which
-        :func:`run_loop` takes, and saved by :func:`save_result` `crackfront cycle`.
+        `height(x, y)` or `work_of_adhesion(x, y)` as of `crackfront.random_surface`, which
+        `crackfront.run_loop` takes, and saved by `crackfront.save_result`, `crackfront cycle`.
 
     Raises
     ------
