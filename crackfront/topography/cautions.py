@@ -12,6 +12,9 @@ _MOST_ANISOTROPY = 1.25
 _MOST_UNMEASURED = 0.1
 """Ratio of slopes and parts of e_el from which on they are doubts."""
 
+_MOST_UNSURE = 0.5
+"""How far the interval of e_el may reach above it before another scan is asked for, relative."""
+
 _EDGE, _MATTERS = 0.05, 0.1
 """Distance of a Hurst exponent from 0 and 1, and continued part of e_el, that make it a doubt."""
 
@@ -57,12 +60,14 @@ def measure_next(surface: MeasuredSurface) -> str:
     shares, joint = surface.joint.shares, surface.joint
     short, long = prefixed("m", joint.shortest), prefixed("m", joint.longest)
     shorter = max(shares.missing_short, shares.continued)
-    if max(shorter, shares.missing_long) < _MATTERS:
+    unsure = surface.half_derivative.high / surface.half_derivative.value - 1
+    if max(shorter, shares.missing_long) < _MATTERS and unsure < _MOST_UNSURE:
         return f"A finer or larger scan changes e_el by less than {_MATTERS:.0%}: not needed."
-    if shorter >= shares.missing_long:
+    # What is neither continued nor missing is unsure for its few long waves.
+    if shorter >= max(shares.missing_long, _MATTERS):
         factor, waves = 1 + shorter, f"shorter than {short}"
     else:
-        factor, waves = 1 + shares.missing_long, f"longer than {long}"
+        factor, waves = 1 + max(unsure, shares.missing_long), f"longer than {long}"
     return f"Measure next: waves {waves}, by which e_el may be up to {factor:.3g} times as large."
 
 

@@ -558,7 +558,7 @@ def scan_case(rng, folder):
 
     def wrong(told):
         content = json.loads(told)
-        [scan], rms = content["measurements"], content["measures"][0]["measured"][0]
+        [scan], rms = content["measurements"], content["measures"][0]["rms"]["value"]
         if not finite(content):
             return "wrong: a number that is not finite"
         # Flipped bytes may be another map.
