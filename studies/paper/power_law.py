@@ -46,24 +46,8 @@ class PowerLaw:
 def truncated_power_law(values: Array, smallest: float, rng: np.random.Generator) -> PowerLaw:
     """Power law with exponential cut-off that makes values from a smallest one on most likely.
 
-    Parameters
-    ----------
-    values : (n,) array
-        Values; those below the smallest are left out.
-    smallest : float
-        Where the law begins, in the unit of the values.
-    rng : numpy.random.Generator
-        Draws the values of the bootstrap, which takes them as independent.
-
-    Returns
-    -------
-    PowerLaw
-        The law.
-
-    Raises
-    ------
-    ValueError
-        If fewer than 20 values lie above the smallest.
+    The bootstrap takes the values as independent. A ValueError says if fewer than 20 lie above the
+    smallest.
 
     References
     ----------
@@ -174,24 +158,8 @@ def joint_power_law(
 ) -> JointPowerLaw:
     """Power law with the same exponent and shape of the cut-off that makes all samples most likely.
 
-    Parameters
-    ----------
-    samples : sequence of (n,) arrays
-        Values; those below the smallest decide the scale alone.
-    smallest : float
-        Where the law begins, in the unit of the values.
-    rng : numpy.random.Generator
-        Draws the values of the bootstrap, which takes them as independent.
-
-    Returns
-    -------
-    JointPowerLaw
-        The law.
-
-    Raises
-    ------
-    ValueError
-        If fewer than 20 values of a sample lie above the smallest.
+    Values below the smallest decide the scale alone, and the bootstrap takes values as independent.
+    A ValueError says if fewer than 20 of a sample lie above the smallest.
     """
     n_value = np.array([np.sum(sample >= smallest) for sample in samples])
     if n_value.min() < _FEWEST:

@@ -97,21 +97,9 @@ class Rings(NamedTuple):
 def circle_steps(
     field: RayField, loads: Iterable[Load], start: float = INNERMOST
 ) -> Iterator[Step]:
-    """Steps of a circular front from a radius until contact is lost.
+    """Steps of a circular front on one ray, from a radius until contact is lost.
 
-    Parameters
-    ----------
-    field : RayField
-        Work of adhesion on one ray.
-    loads : iterable of Load
-        Penetrations to visit.
-    start : float, optional
-        Radius at which the front begins. (Units: reduced lateral length)
-
-    Raises
-    ------
-    RuntimeError
-        If a step ends otherwise.
+    A RuntimeError says if a step ends otherwise. (Units: reduced lateral length)
     """
     for step in follow(field, np.array([start]), loads, Newton(_TOLERANCE)):
         if step.status is Status.LOST_CONTACT:
@@ -127,21 +115,7 @@ def first_stops(rings: Rings, penetration: Array, direction: int, start: float) 
     In approach that is where the running maximum of b_eq from the start reaches each penetration,
     in retraction its running minimum: its folds are found first, then the root between two of them.
 
-    Parameters
-    ----------
-    rings : Rings
-        Work of adhesion.
-    penetration : (n_load,) array
-        Penetrations. (Units: reduced vertical length)
-    direction : {1, -1}
-        Approach or retraction.
-    start : float
-        Radius from which the front moves. (Units: reduced lateral length)
-
-    Returns
-    -------
-    (n_load,) array
-        Radii; NaN where no rest is left. (Units: reduced lateral length)
+    They are (n_load,) as the penetrations, NaN where no rest is left. (Units: reduced lengths)
     """
     largest = max(float(np.max(penetration)), 0.0)
     end = rings.outermost(largest) if direction > 0 else INNERMOST
