@@ -109,9 +109,10 @@ def problem_of(
     step: float,
     error: float,
 ) -> Problem:
-    """What a run begins with, by arguments as of :func:`crackfront.run_loop`.
+    """What a run begins with; arguments as of :func:`crackfront.run_loop`.
 
-    Loads are visited as they are where the step is infinite; a ValueError says if there are none.
+    Loads that are None lead up to the largest penetration and to pull-off. The step is the largest
+    difference of loads; infinity leaves them as they are.
     """
     if isinstance(surface, StraightFront):
         if loads is None or max_penetration is not None:

@@ -130,21 +130,8 @@ def featured_cost(item: Features, *, fronts: bool) -> Cost:
 def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_sample: float) -> float:
     """Rough processor time of a cycle on a given field, in seconds.
 
-    Parameters
-    ----------
-    n_angle : float
-        Sites of the front.
-    n_point : float
-        Points of the field.
-    n_state : float
-        Load steps.
-    n_sample : float
-        Samples that each site passes.
-
-    Raises
-    ------
-    TooLargeError
-        If time or memory are more than there is.
+    The numbers are those of the sites of the front, the points of the field, the load steps, and
+    the samples that each site passes. TooLargeError if time or memory are more than there is.
     """
     usual = Features(n_angle, math.sqrt(n_point), _USUAL, DEFAULT_TOLERANCE, 1.0, 1.0, 1.0, n_state)
     cost = featured_cost(usual, fronts=False)

@@ -60,13 +60,7 @@ def read_cycle(path: Path) -> CycleRecord:
 
 
 def read_simulation(path: File, simulation: Simulation) -> SimulationResult:
-    """Stored result of a simulation.
-
-    Raises
-    ------
-    UnreadableFileError
-        If the file is missing, damaged or that of another simulation.
-    """
+    """Stored result of a simulation; UnreadableFileError if missing, damaged or of another one."""
     dataset = read_dataset(path)
     if dataset.attrs.get("key") != simulation.key:
         raise UnreadableFileError(f"{path} is not the result of {simulation.label}; move it away")
@@ -161,15 +155,7 @@ def known_checkpoint(dataset: xr.Dataset, key: str, place: Path) -> Checkpoint |
 
 
 def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.Dataset:
-    """Labelled curves of a record.
-
-    Parameters
-    ----------
-    record : CycleRecord
-        The states of a cycle.
-    geometry : Geometry, optional
-        The contact; by default a sphere.
-    """
+    """Labelled curves of a record, of the contact of a sphere by default."""
     curves = labelled_fields(record.states, STEP) | labelled_fields(record)
     if record.fronts is not None:
         contact = geometry or sphere(record.fronts.shape[1])

@@ -128,10 +128,7 @@ def _refuse_strange_mean(values: Array, units: str) -> None:
 def surface_kind(surface: xr.DataArray) -> FieldKind:
     """Kind of the values of a surface, by its name; ValueError if no surface has that name.
 
-    Raises
-    ------
-    TypeError
-        If it is no array with labels at all.
+    TypeError if it is no array with labels at all.
     """
     wanted = "an xarray.DataArray height(x, y), as surface, random_surface and read_scan make it"
     refuse_other_type("surface", surface, xr.DataArray, wanted)
@@ -145,19 +142,11 @@ def surface_kind(surface: xr.DataArray) -> FieldKind:
 
 
 def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
-    """Work of adhesion of a surface in reduced units.
+    """Work of adhesion, in reduced units, of `height(x, y)` or `work_of_adhesion(x, y)` of a tile.
 
-    Parameters
-    ----------
-    surface : xarray.DataArray
-        `height(x, y)` or `work_of_adhesion(x, y)` on a periodic tile.
-
-    Raises
-    ------
-    ValueError
-        If name, dimensions, units or values are not those of a surface in reduced units, heights
-        jump from one edge of the tile to the other, or the energy of full conformity is not below
-        w_int.
+    ValueError if name, dimensions, units or values are not those of a surface in reduced units,
+    heights jump from one edge of the tile to the other, or the energy of full conformity is not
+    below w_int.
     """
     kind = surface_kind(surface)
     if {*surface.dims} != {"x", "y"}:
@@ -202,16 +191,9 @@ def surface_array(
 ) -> xr.DataArray:
     """Surface of a periodic tile, the apex of the sphere at its centre.
 
-    Parameters
-    ----------
-    kind : {"roughness", "chemical"}
-        Whether the values are heights or works of adhesion.
-    values : (n_x, n_y) array
-        Heights (Units: reduced vertical length) or works of adhesion. (Units: w_int)
-    pixel : float
-        Grid spacing. (Units: reduced lateral length)
-    **attributes : str, float or array
-        What else the array says of itself.
+    The values (n_x, n_y) are heights (Units: reduced vertical length) or works of adhesion (Units:
+    w_int), the pixel is the grid spacing (Units: reduced lateral length). The attributes are what
+    else the array says of itself.
     """
     item = SURFACES[kind]
     axes = {
@@ -254,17 +236,9 @@ _COPIES = 6
 
 
 def read_field(path: Path) -> xr.DataArray:
-    """Surface in a file, `height(x, y)` or `work_of_adhesion(x, y)`.
+    """Surface in a netCDF file, `height(x, y)` or `work_of_adhesion(x, y)`.
 
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-
-    Raises
-    ------
-    ValueError
-        If the file is missing or truncated, or holds no surface of real numbers.
+    ValueError if the file is missing or truncated, or holds no surface of real numbers.
     """
     dataset = read_dataset(path, copies=_COPIES)
     names = [item.name for item in SURFACES.values() if item.name in dataset]
@@ -285,17 +259,9 @@ _UNEQUAL = 1e-6
 
 
 def _samples(values: xr.DataArray) -> tuple[Array, float]:
-    """Values of a tile, first axis x, and their spacing.
+    """Values of a tile with dimensions x and y in any order, first axis x, and their spacing.
 
-    Parameters
-    ----------
-    values : xarray.DataArray
-        Values of the dimensions x and y, in any order, with their coordinates.
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is missing or not uniform, or the two spacings differ.
+    ValueError if a coordinate is missing or not uniform, or the two spacings differ.
     """
     pixels = [_spacing(values, name) for name in ("x", "y")]
     if abs(pixels[1] / pixels[0] - 1) > _UNEQUAL:

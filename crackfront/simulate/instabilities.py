@@ -52,37 +52,12 @@ def resolved_motion(
 ) -> Iterator[Motion]:
     """Motion of a front from load to load, resolved into smooth steps and single instabilities.
 
-    Instabilities that are closer in load than the precision come out as one; those that
-    move no site further than `travel` count as smooth.
-
-    Parameters
-    ----------
-    field : Field
-        Work of adhesion along the rays.
-    front : (n_site,) array
-        Metastable front. (Units: reduced lateral length)
-    start : float
-        Its load, the penetration of a sphere. (Units: reduced vertical length)
-    loads : iterable of float
-        Loads to visit, in the direction of motion. (Units: reduced vertical length)
-    direction : {1, -1}
-        +1 in approach, -1 in retraction.
-    travel : float
-        Largest motion of a site in a smooth step. (Units: reduced lateral length)
-    precision : float
-        Step in which a larger motion is an instability. (Units: reduced vertical length)
-    solver : Solver, optional
-        How each front is found; a tolerance above the precision delays the instabilities.
-
-    Yields
-    ------
-    Motion
-        Steps that follow each other; they end where contact is lost.
-
-    Raises
-    ------
-    ValueError
-        If travel or precision are not positive, or a relaxation fails.
+    The steps follow each other from a metastable front (n_site,) at the load start, in direction +1
+    (approach) or -1 (retraction), and end where contact is lost. A smooth step moves no site
+    further than `travel` (Units: reduced lateral length). A larger motion within a step of
+    `precision` (Units: that of the loads, reduced vertical length) is an instability: those closer
+    in load come out as one. A tolerance of the solver above the precision delays them. ValueError
+    if travel or precision are not positive, or a relaxation fails.
     """
     for name, value in (("travel", travel), ("precision", precision)):
         if not 0 < value < math.inf:
@@ -129,15 +104,7 @@ class Instabilities:
 
 
 def measured_instabilities(jumps: Sequence[Motion], field: Field, travel: float) -> Instabilities:
-    """What jumps have swept and dissipated.
-
-    Parameters
-    ----------
-    jumps : sequence of Motion
-        Unstable motions of one branch.
-    field, travel
-        As of :func:`resolved_motion`.
-    """
+    """What the jumps of one branch swept and dissipated; travel as of :func:`resolved_motion`."""
     geometry = field.geometry
     clusters = [swept_clusters(jump.before, jump.after, travel, geometry) for jump in jumps]
     fronts = [np.array([getattr(jump, name) for jump in jumps]) for name in ("before", "after")]
@@ -178,20 +145,9 @@ def swept_clusters(
 ) -> list[Cluster]:
     """Contiguous parts of the perimeter that moved by more than a threshold, the largest first.
 
-    The front is elastic over long distances: an instability may move several of them.
-
-    Parameters
-    ----------
-    before, after : (n_site,) array
-        Fronts before and after. (Units: reduced lateral length)
-    threshold : float
-        Smallest motion that counts. (Units: reduced lateral length)
-    geometry : Geometry
-        That of the front.
-
-    References
-    ----------
-    .. [1] Laurson, Santucci, Zapperi, Phys. Rev. E 81, 046116 (2010).
+    The front is elastic over long distances: an instability may move several of them (Laurson,
+    Santucci, Zapperi, Phys. Rev. E 81, 046116, 2010). Fronts (n_site,) and threshold are in reduced
+    lateral lengths.
 
     Examples
     --------
@@ -225,21 +181,9 @@ def shortest_instability(correlation_length: float, rms: float) -> float:
     .. math:: \ell^{-1} = w_{int}^{-2} \int \frac{dq}{2\pi}\, q^2 C_w(q, 0)
               = \frac{4\pi}{\xi} \left(\frac{w_{rms}}{w_{int}}\right)^2
 
-    for an isotropic spectrum C_w of correlation length xi. The paper calls it Larkin length; that
-    of the law of k, :func:`crackfront.core.adhesion.larkin_length`, is 13 times as long for a flat
-    spectrum.
-
-    Parameters
-    ----------
-    correlation_length : float
-        That of w_loc. (Units: length)
-    rms : float
-        w_rms / w_int.
-
-    Returns
-    -------
-    float
-        The length; its factor is a convention. (Units: length)
+    for an isotropic spectrum C_w of correlation length xi, in the units of xi; the rms is in w_int.
+    The factor is a convention. The paper calls it Larkin length; that of the law of k,
+    :func:`crackfront.core.adhesion.larkin_length`, is 13 times as long for a flat spectrum.
 
     Examples
     --------

@@ -74,57 +74,39 @@ _RANGES: dict[Knob, tuple[float, float]] = {
 
 @dataclass(frozen=True, slots=True)
 class Knobs:
-    """What an error decides: the resolution relative to the short cutoff, and the tolerance.
-
-    Attributes
-    ----------
-    angles : int or None
-        Number of sites of the front; where None, `angles_per_cutoff` decides.
-    angles_per_cutoff : float
-        Sites per short cutoff on the smooth contact's largest circle, rounded up to an even
-        product of 2, 3 and 5.
-    samples_per_cutoff : float
-        Samples per short cutoff along a ray.
-    interpolation : {"cubic", "linear"}
-        Pieces between samples.
-    pixels_per_cutoff : float
-        Points of the tile per short cutoff, 2 or more.
-    tolerance : float
-        Largest force along the motion that may be left, relative to w_int per front length.
-    """
+    """What an error decides: the resolution relative to the short cutoff, and the tolerance."""
 
     angles: int | None
+    """Number of sites of the front; where None, `angles_per_cutoff` decides."""
     angles_per_cutoff: float
+    """Sites per short cutoff on the smooth contact's largest circle, rounded up to an even product
+    of 2, 3 and 5."""
     samples_per_cutoff: float
+    """Samples per short cutoff along a ray."""
     interpolation: Interpolation
+    """Pieces between samples."""
     pixels_per_cutoff: float
+    """Points of the tile per short cutoff, 2 or more."""
     tolerance: float
+    """Largest force along the motion that may be left, relative to w_int per front length."""
 
 
 @dataclass(frozen=True, slots=True)
 class Law:
-    """Error of one knob for one shape of spectrum, one amplitude and one branch.
-
-    Attributes
-    ----------
-    shape : str
-        Shape of the spectrum, a name in :data:`MEASURED`.
-    direction : {1, -1}
-        +1 for w_appr, -1 for w_retr.
-    bias, scatter : tuple of float
-        Coefficients (c_0, c_1) of the logarithm of both. (Units: e_el)
-    avalanche : float
-        What one avalanche changes, on fronts of :data:`LAW_SIZE`; equal for all knobs of a shape
-        and an amplitude. (Units: e_el)
-    """
+    """Error of one knob for one shape of spectrum, one amplitude and one branch."""
 
     shape: str
+    """Shape of the spectrum, a name in :data:`MEASURED`."""
     elastic_energy: float
     knob: Knob
     direction: int
+    """+1 for w_appr, -1 for w_retr."""
     bias: tuple[float, float]
     scatter: tuple[float, float]
+    """Coefficients (c_0, c_1) of the logarithm, as of that of the bias. (Units: e_el)"""
     avalanche: float
+    """What one avalanche changes, on fronts of :data:`LAW_SIZE`; equal for all knobs of a shape and
+    an amplitude. (Units: e_el)"""
 
     def parts(self, values: ArrayLike) -> Array:
         """Bias and scatter at values of the knob, of fronts of :data:`LAW_SIZE` (Units: e_el)."""
@@ -144,22 +126,15 @@ def abscissa(knob: Knob, values: ArrayLike) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where a spectrum and an amplitude lie among those that were measured.
-
-    Attributes
-    ----------
-    shapes : tuple of (str, float)
-        Measured shapes, and the parts that they have in the error.
-    lowest, highest : float
-        Amplitudes e_el / w_int of which the largest error counts.
-    independent : float
-        Part of the cutoffs along a front that are so, relative to the fronts of the laws.
-    """
+    """Where a spectrum and an amplitude lie among those that were measured."""
 
     shapes: tuple[tuple[str, float], ...]
+    """Measured shapes, and the parts that they have in the error."""
     lowest: float
     highest: float
+    """End, with `lowest`, of the amplitudes e_el / w_int of which the largest error counts."""
     independent: float
+    """Part of the cutoffs along a front that are so, relative to the fronts of the laws."""
 
 
 @functools.cache
@@ -209,24 +184,9 @@ def chosen_knobs(
 ) -> Knobs:
     """Knobs that leave an asked error in w_appr and w_retr: the coarsest that the laws allow.
 
-    Parameters
-    ----------
-    error : float
-        Standard error of the factor k of either branch that the numerics may leave, on fronts of
-        :func:`usual_size`.
-    kind : {"roughness", "chemical"}
-        What the spectrum describes.
-    spectrum : Spectrum
-        Its shape.
-    elastic_energy : float
-        e_el / w_int.
-    straight : bool, optional
-        Whether the front is straight, not that of a sphere.
-
-    Raises
-    ------
-    ValueError
-        If errors were not measured at such an e_el, or for spectra as narrow.
+    The error is the standard error of the factor k of either branch that the numerics may leave, on
+    fronts of :func:`usual_size`; the elastic energy is e_el / w_int. ValueError if errors were not
+    measured at such an e_el, or for spectra as narrow.
     """
     if refusal := _beyond(kind, spectrum, elastic_energy):
         raise ValueError(f"error is {error:g}, but {refusal}")
@@ -333,18 +293,9 @@ def combined_error(
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that values of all knobs leave (Units: w_int).
 
-    They are NaN where errors were not measured.
-
-    Parameters
-    ----------
-    kind, spectrum, elastic_energy
-        As of :func:`chosen_knobs`.
-    values : mapping
-        Values of the knobs; of interpolations the one that is used.
-    size : float
-        Number of states times circumference of the front over the short cutoff.
-    straight : bool, optional
-        As of :func:`chosen_knobs`.
+    They are NaN where errors were not measured. Of interpolations, the value is the one that is
+    used; `size` is the number of states times circumference of the front over the short cutoff. The
+    other arguments are as of :func:`chosen_knobs`.
     """
     if _beyond(kind, spectrum, elastic_energy):
         return math.nan, math.nan

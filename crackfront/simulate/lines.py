@@ -51,10 +51,7 @@ _LEAD_IN = 3.0
 class LineSchedule(Schedule):
     """Loads of a straight front on a tile, first forward, then back over the same places.
 
-    Raises
-    ------
-    ValueError
-        If a length is not positive and finite.
+    ValueError if a length is not positive and finite.
     """
 
     spring: float

@@ -48,19 +48,9 @@ def run_simulation(
 ) -> SimulationResult:
     """Synthesise the surface of a simulation and run its cycle.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        What to simulate.
-    resume : PartialRun, optional
-        An earlier run of it to go on from, to the same record bit for bit.
-    keep : callable, optional
-        Called at every new state with a function that makes what a later run goes on from.
-
-    Raises
-    ------
-    ValueError
-        If the realised surface does not allow full conformity, e_el >= w_int.
+    With `resume`, an earlier run goes on, to the same record bit for bit. `keep` is called at every
+    new state with a function that makes what a later run goes on from. ValueError if the realised
+    surface does not allow full conformity, e_el >= w_int.
     """
     compile_solver(simulation.solver.name, simulation.schedule.straight)
     before = (0.0, 0.0) if resume is None else (resume.seconds, resume.cpu_seconds)

@@ -124,10 +124,7 @@ def in_si_units(data: Labelled, scales: units.Scales) -> Labelled:
 def stated_scales(data: xr.DataArray | xr.Dataset) -> units.Scales | None:
     """The sphere for which data were converted to SI units; None where they are in reduced ones.
 
-    Raises
-    ------
-    ValueError
-        If they are neither in reduced units, nor say for which sphere they were converted.
+    ValueError if they are in other units and do not say for which sphere they were converted.
     """
     names = [item.name for item in fields(units.Scales)]
     if not all(_SPHERE + name in data.attrs for name in names):

@@ -293,15 +293,9 @@ def numerical_error(
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
 
-    Parameters
-    ----------
-    simulation : Simulation
-        A simulation.
-    size : float, optional
-        Number of states times length of the front over the short cutoff; by default the usual one.
-    front_length : float, optional
-        Length of the longest front; by default that of a smooth contact.
-        (Units: reduced lateral length)
+    The size is the number of states times length of the front over the short cutoff, by default the
+    usual one; the front length that of the longest front, by default that of a smooth contact.
+    (Units: reduced lateral length)
     """
     sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
     if front_length is None:

@@ -48,10 +48,8 @@ on fine spectra the drive above needs hundreds; fronts deviate by 7 at most."""
 class SteadySchedule(SphereSchedule):
     """Approach from a penetration until w_appr is known well enough, and back over the same radii.
 
-    Raises
-    ------
-    ValueError
-        If a number is not positive, or there is no way from the start to the largest penetration.
+    ValueError if a number is not positive, or the start negative or not below the largest
+    penetration.
     """
 
     start: float
@@ -88,20 +86,12 @@ class SteadySchedule(SphereSchedule):
 
         Each branch begins at the circle of `forward_circle`. The approach goes on until k has the
         requested standard error or the largest penetration is reached; the retraction from about
-        its largest radius until it has left the radii over which the approach was steady, which
-        a branch is once every site has travelled a correlation length. Parameters are those of
-        :meth:`crackfront.core.cycle.schedule.Schedule.run`.
-
-        Returns
-        -------
-        CycleRecord
-            The states; its status is `STEADY` where both branches were measured. The energy that
-            the first step of a branch dissipates has no meaning and is NaN.
-
-        Raises
-        ------
-        ValueError
-            If a smooth sphere would outgrow the field.
+        its largest radius until it has left the radii over which the approach was steady, which a
+        branch is once every site has travelled a correlation length. The status is `STEADY` where
+        both branches were measured. The energy that the first step of a branch dissipates has no
+        meaning and is NaN. Parameters are those of
+        :meth:`crackfront.core.cycle.schedule.Schedule.run`. ValueError if a smooth sphere would
+        outgrow the field.
         """
         refuse_outgrown(field, self.max_penetration)
         loads = self._loads(field, recorder, correlation_length, elastic_energy)
@@ -160,19 +150,9 @@ def own_part(values: Array, shared: Array) -> Array:
     """Apparent work of adhesion without what both branches share over the same radii.
 
     The mean of w_loc on the circles raises and lowers both branches alike and adds noise to each,
-    but not to the hysteresis.
-
-    Parameters
-    ----------
-    values : (n_state,) array
-        Apparent work of adhesion of steady states. (Units: w_int)
-    shared : (n_state,) array
-        Mean of w_loc on the circles of their mean radii. (Units: w_int)
-
-    Returns
-    -------
-    (n_state,) array
-        The values without what follows the circles, by least squares. (Units: w_int)
+    but not to the hysteresis. `shared` is that mean on the circles of the mean radii of the steady
+    states; what follows it, by least squares, is taken away. All have the shape (n_state,). (Units:
+    w_int)
     """
     deviation = shared - np.mean(shared)
     variance = np.mean(deviation**2)
@@ -187,27 +167,11 @@ def forward_circle(
     """The first circle behind a radius that moves forward even against 1.5 times the rms of w_loc.
 
     Nearer, where that is 20 correlation lengths behind a front that is pinned by k = 2.6: its drive
-    is k e_el, and the rms of w_loc 2 (e_el w_int)^(1/2).
-
-    Parameters
-    ----------
-    field : Field
-        Work of adhesion along the rays.
-    penetration : float
-        Rigid body penetration. (Units: reduced vertical length)
-    direction : {1, -1}
-        +1 in approach, where behind is inside, -1 in retraction.
-    near : float
-        Radius of the first circle that is tried. (Units: reduced lateral length)
-    correlation_length : float
-        That of w_loc. (Units: reduced lateral length)
-
-    Returns
-    -------
-    (n_angle,) array
-        Front. Where no such circle is found it is, in approach, that within which the edge is in
-        compression, so that no front can rest inside; in retraction the end of the field.
-        (Units: reduced lateral length)
+    is k e_el, and the rms of w_loc 2 (e_el w_int)^(1/2). Behind is inside in approach (direction
+    +1), outside in retraction (-1); `near` is the radius of the first circle that is tried. Where
+    none is found, the front (n_angle,) is, in approach, that within which the edge is in
+    compression, so that no front can rest inside; in retraction the end of the field. (Units:
+    reduced lateral length, the penetration reduced vertical length)
     """
     furthest = last_place(field)
     if direction > 0:

@@ -166,15 +166,7 @@ _ROUND_OFF = 1e-28
 def stated_spectrum(surface: DataArray) -> Spectrum | None:
     """Shape of the spectrum that the attributes of a surface state, if they do.
 
-    Parameters
-    ----------
-    surface : xarray.DataArray
-        A surface.
-
-    Raises
-    ------
-    ValueError
-        If the surface holds waves below its stated short cutoff.
+    ValueError if the surface holds waves below its stated short cutoff.
     """
     spectrum = Spectrum.stated({str(name): value for name, value in surface.attrs.items()})
     if spectrum is None:
@@ -217,12 +209,8 @@ class Modes:
     def isotropic_density(self, bins_a_decade: int, area: float) -> tuple[Array, Array]:
         """Means of the spectral density over bins that hold modes, and their wavevectors.
 
-        Parameters
-        ----------
-        bins_a_decade : int
-            Bins of equal width on a logarithmic scale.
-        area : float
-            Area of the tile. (Units: length**2)
+        The bins have equal width on a logarithmic scale, the area is that of the tile (Units:
+        length**2).
         """
         place = np.floor(bins_a_decade * np.log10(self.wavevector)).astype(int)
         _, place = np.unique(place, return_inverse=True)
