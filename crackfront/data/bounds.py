@@ -87,23 +87,10 @@ def refuse_outside(what: str, value: float, bounds: Range, unit: str = "") -> No
 
 
 def refuse_beyond_memory(what: str, needed: float, remedy: str, *, anywhere: bool = False) -> None:
-    """Raise if something needs more memory than there is for this process.
+    """Raise TooLargeError if something needs more memory than there is for this process.
 
-    Parameters
-    ----------
-    what : str
-        What needs it.
-    needed : float
-        How much. (Units: bytes)
-    remedy : str
-        What to do.
-    anywhere : bool, optional
-        Refuse only what no machine holds: it is not this one on which it will be needed.
-
-    Raises
-    ------
-    TooLargeError
-        That states what is needed and what there is.
+    The error states what is needed (Units: bytes), what there is, and the remedy. With `anywhere`,
+    refuse only what no machine holds: it is not this one on which it will be needed.
     """
     at_hand = memory_at_hand()
     if needed > (max(at_hand, MOST_MEMORY) if anywhere else at_hand):
@@ -180,12 +167,8 @@ def in_time(seconds: float) -> str:
 def regular_file(path: Path, most_bytes: float = math.inf) -> Path:
     """A path that names a file with an end, and not more than so many bytes.
 
-    Raises
-    ------
-    ValueError
-        If it names a folder, a pipe or a device, or a file that is larger.
-    OSError
-        If there is nothing of that name.
+    ValueError if it names a folder, a pipe or a device, or a file that is larger; OSError if there
+    is nothing of that name.
     """
     about = path.stat()
     if not stat.S_ISREG(about.st_mode):

@@ -73,20 +73,11 @@ class Comparison:
 
 
 def comparison(one: Path, other: Path) -> Comparison:
-    """Two files of results, or the files of that kind in two folders.
+    """Two netCDF files of results, or the files of that kind in two folders.
 
     What a run cost and where it comes from is left out. Files of simulations are paired by their
-    names without the key, which changes with the sources.
-
-    Parameters
-    ----------
-    one, other : Path
-        Two netCDF files, or two folders.
-
-    Raises
-    ------
-    UnreadableFileError
-        If a file is missing or damaged, two files are not of one kind, or the folders hold none.
+    names without the key, which changes with the sources. UnreadableFileError if a file is missing
+    or damaged, two files are not of one kind, or the folders hold none.
     """
     if not one.is_dir() or not other.is_dir():
         return Comparison(1, tuple(_differences("", one, other)), ())

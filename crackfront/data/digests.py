@@ -54,12 +54,8 @@ class Integrity(enum.Enum):
 def seal(path: Path, suffix: str) -> str:
     """Add the digest to a file that is finished otherwise, and return it.
 
-    Parameters
-    ----------
-    path : Path
-        The file; JSON must be a mapping that ends in a brace and a new line.
-    suffix : str
-        Ending of the name that it will have, from which its format follows.
+    The suffix is the ending of the name that it will have, from which its format follows. JSON must
+    be a mapping that ends in a brace and a new line.
     """
     before, after = _COMMENT.get(suffix, (b"\n", b"\n"))
     with path.open("rb+") as file:

@@ -105,24 +105,9 @@ def write_text(path: Path, text: str, *, sealed: bool = False) -> None:
 def replace_atomically(path: Path, write: Callable[[Path], Any], *, sealed: bool = False) -> str:
     """Let a function write a file beside the final one, and rename it once it is on disk.
 
-    Parameters
-    ----------
-    path : Path
-        The final file; its folder is created.
-    write : callable
-        What writes the file beside it.
-    sealed : bool, optional
-        Whether the file gets a digest, as :func:`crackfront.data.digests.seal` adds it.
-
-    Returns
-    -------
-    str
-        The digest, or nothing.
-
-    Raises
-    ------
-    OSError
-        If the place is none for a file, or the disk is full; what was there before stays.
+    The folder of the final file is created. Returns the digest, which a sealed file gets as
+    :func:`crackfront.data.digests.seal` adds it, or nothing. OSError if the place is none for a
+    file, or the disk is full; what was there before stays.
     """
     refuse_no_file(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -179,23 +164,12 @@ def leftover_parts(folder: Path) -> Iterator[Path]:
 def read_dataset(
     path: File, names: Collection[str] | None = None, *, copies: float = 1.0
 ) -> xr.Dataset:
-    """Dataset of a netCDF file, in memory.
+    """Dataset of a netCDF file, or of one in a pack, in memory.
 
-    Parameters
-    ----------
-    path : Path or Member
-        The file, or one in a pack.
-    names : collection of str, optional
-        Variables to read beside the coordinates, those that are there; by default all.
-    copies : float, optional
-        Memory that is needed at once, relative to that of the variables.
-
-    Raises
-    ------
-    TooLargeError
-        If they need more than there is, whatever the file holds of them.
-    UnreadableFileError
-        If there is no such file, it is damaged, or it is no complete netCDF file.
+    Variables to read beside the coordinates are those of the names that are there; by default all.
+    `copies` is the memory that is needed at once, relative to that of the variables. TooLargeError
+    if they need more than there is, whatever the file holds of them; UnreadableFileError if there
+    is no such file, it is damaged, or it is no complete netCDF file.
     """
     if isinstance(path, Path):
         refuse_damaged(path)

@@ -33,18 +33,10 @@ _NO_PART = ("crackfront.data.fingerprint", "crackfront.core.private_cache")
 def fingerprint(*names: str) -> str:
     """Twelve hexadecimal digits that change with the sources that some names reach.
 
-    Of a class that is reached, the subclasses in modules that are reached count as well, of an
-    abstract one all in its package. Files of data count byte by byte where they are named.
-
-    Parameters
-    ----------
-    *names : str
-        Modules, "crackfront.core.units", or definitions, "crackfront.core.jkr.force".
-
-    Raises
-    ------
-    ValueError
-        If there is no such module or definition.
+    The names are modules, "crackfront.core.units", or definitions, "crackfront.core.jkr.force";
+    ValueError if there is no such one. Of a class that is reached, the subclasses in modules that
+    are reached count as well, of an abstract one all in its package. Files of data count byte by
+    byte where they are named.
 
     Examples
     --------

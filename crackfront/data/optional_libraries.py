@@ -6,14 +6,8 @@ from __future__ import annotations
 class MissingExtraError(ValueError):
     """An optional library that is needed and not installed.
 
-    Parameters
-    ----------
-    purpose : str
-        What needs it, with a plural verb's subject: "boundary elements".
-    error : ModuleNotFoundError
-        What the import said.
-    extra : str
-        Name of the extra of this package that brings it.
+    The purpose is what needs it, the subject of a plural verb: "boundary elements". The error is
+    what the import said. The extra of this package brings the library.
     """
 
     def __init__(self, purpose: str, error: ModuleNotFoundError, extra: str) -> None:

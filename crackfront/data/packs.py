@@ -116,10 +116,7 @@ class Pack:
     def append(self, files: Mapping[str, bytes]) -> None:
         """Append files; the pack is created with the first ones, and on disk from time to time.
 
-        Raises
-        ------
-        OSError
-            If that is impossible; what was there before stays.
+        OSError if that is impossible; what was there before stays.
         """
         if self._number is None:
             self._number = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o666)

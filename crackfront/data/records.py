@@ -30,18 +30,9 @@ Block = tuple[tuple[int | slice, ...], Sequence[Any]]
 
 
 def write_record(path: Path, record: Any, origin: Provenance, **attributes: str | float) -> None:
-    """Write a record, one variable a field.
+    """Write a record to a netCDF file, one variable a field, and attributes of the file.
 
-    Parameters
-    ----------
-    path : Path
-        netCDF file.
-    record : dataclass
-        A record whose fields were made by :func:`crackfront.core.variables.variable`.
-    origin : Provenance
-        Where it comes from.
-    **attributes : str or float
-        What else the file says of itself.
+    Its fields were made by :func:`crackfront.core.variables.variable`.
     """
     write_dataset(path, xr.Dataset(labelled_fields(record), attrs=attributes), origin)
 
@@ -62,18 +53,8 @@ def write_records_in_blocks(
 ) -> None:
     """Write records block by block, atomically, holding one block at a time.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    dataset : xarray.Dataset
-        Coordinates of the dimensions that count the records, and attributes.
-    known : sequence of Variable
-        Variables of the records, all of these dimensions alone.
-    blocks : iterable of Block
-        All records.
-    origin : Provenance
-        Where they come from.
+    The dataset has the attributes, and coordinates of the dimensions that count the records; the
+    known variables are those of the records, all of these dimensions alone.
     """
 
     def fill(part: Path) -> None:
@@ -118,10 +99,7 @@ def _column(variable: Variable, rows: Sequence[Any]) -> NDArray[Any]:
 def read_record(path: Path, kind: type[Record]) -> Record:
     """Record of a kind that :func:`write_record` wrote; fields left out of it are None.
 
-    Raises
-    ------
-    UnreadableFileError
-        If the file is missing, truncated, or holds no such record.
+    UnreadableFileError if the file is missing, truncated, or holds no such record.
     """
     columns = _columns(path, read_dataset(path), kind)
     return kind(**{name: values if values.ndim else values.item() for name, values in columns})

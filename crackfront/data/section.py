@@ -90,21 +90,10 @@ Kind = TypeVar("Kind", bound=Section)
 
 
 def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
-    """Section that the content of a file fills.
+    """Section of a schema that the content of a file, as of :func:`content_of`, fills.
 
-    Parameters
-    ----------
-    path : Path
-        The file, which refusals name.
-    content : object
-        What stands in it, as of :func:`content_of`.
-    schema : type
-        The section.
-
-    Raises
-    ------
-    ConfigurationError
-        If anything is unknown, missing or out of range; one sentence for each.
+    Refusals name the file: ConfigurationError if anything is unknown, missing or out of range; one
+    sentence for each.
     """
     try:
         first, *_ = path.read_text(encoding="utf-8").splitlines() or [""]
@@ -147,11 +136,8 @@ _Loader.add_implicit_resolver(
 def content_of(path: Path) -> dict[str, Any]:
     """Mapping that a YAML file holds, with tuples for lists.
 
-    Raises
-    ------
-    ConfigurationError
-        If the file cannot be read, holds no mapping, or is too large or deep for what a person
-        writes.
+    ConfigurationError if the file cannot be read, holds no mapping, or is too large or deep for
+    what a person writes.
     """
     try:
         text = regular_file(path, _MOST_BYTES).read_text(encoding="utf-8")

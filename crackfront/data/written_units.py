@@ -22,22 +22,11 @@ _POWER = re.compile(r"([A-Za-zµ]+)([2-9])(?!\w)")
 
 
 def si_value(text: str, unit: str, *, what: str) -> float:
-    """Value of a quantity in an SI unit.
+    """Value, in an SI unit, of a positive number and its unit, as in 0.7MPa or 63 mJ/m2.
 
-    Parameters
-    ----------
-    text : str
-        A positive number and its unit, as in 0.7MPa or 63 mJ/m2.
-    unit : str
-        Unit to convert to; the text may be in any of the same dimension.
-    what : str
-        What the quantity is, for the refusal.
-
-    Raises
-    ------
-    ValueError
-        If there is no unit, an unknown one or one of another dimension, or the number is not
-        positive and finite.
+    Its unit may be any of the same dimension; a refusal says what the quantity is. ValueError if
+    there is no unit, an unknown one or one of another dimension, or the number is not positive and
+    finite.
 
     Examples
     --------
@@ -111,14 +100,8 @@ _PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 def prefixed(unit: str, *values: float, digits: int = 3) -> str:
     """Values in a unit with the prefix that the first of them calls for.
 
-    Parameters
-    ----------
-    unit : str
-        SI unit without a prefix.
-    *values : float
-        A number, or a number and the ends of its interval. (Units: `unit`)
-    digits : int, optional
-        Significant digits.
+    They are a number, or a number and the ends of its interval, in an SI unit without a prefix, and
+    are written with so many significant digits.
 
     Examples
     --------

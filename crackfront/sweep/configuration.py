@@ -123,11 +123,8 @@ class Configuration(Section):
 def load_configuration(path: Path) -> Sweep:
     """Sweep of a configuration file.
 
-    Raises
-    ------
-    ConfigurationError
-        If the file cannot be read, is no YAML mapping, or anything in it is unknown, missing or
-        out of range; one sentence for each.
+    ConfigurationError if the file cannot be read, is no YAML mapping, or anything in it is unknown,
+    missing or out of range; one sentence for each.
     """
     configuration = validated(path, content_of(path), Configuration)
     try:
@@ -194,10 +191,7 @@ def _refuse_too_coarse(simulation: Simulation, requested: Knobs | float) -> None
 def results_folder(path: Path) -> Path:
     """Folder for the results of a configuration file, named after it.
 
-    Raises
-    ------
-    ConfigurationError
-        If the name is not one for a folder and a command line.
+    ConfigurationError if the name is not one for a folder and a command line.
     """
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", path.stem):
         raise ConfigurationError(

@@ -177,14 +177,9 @@ def forget_notes(folder: Path) -> None:
 
 
 def pack_paths(folder: Path, spectrum: str | None = None, block: range | None = None) -> list[Path]:
-    """Packs of a folder in which simulations may be, always in the same order.
+    """Packs of a store's folder in which simulations may be, always in the same order.
 
-    Parameters
-    ----------
-    folder : Path
-        That of all packs of a store.
-    spectrum, block : str and range, optional
-        Spectrum, and consecutive realisations; by default all.
+    They are those of a spectrum and of a block of consecutive realisations, by default of all.
     """
     found = []
     for path in sorted(folder.glob(f"*{PACK}")):

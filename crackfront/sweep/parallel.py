@@ -109,14 +109,10 @@ def under_mpi() -> bool:
 def is_manager(n_worker: int) -> bool:
     """Whether this process plans and reports, beside so many that compute; always without MPI.
 
-    Raises
-    ------
-    ValueError
-        On the manager, if the number of ranks is another one, as by a launcher of another MPI
-        library, which starts processes of one rank each. Without MPI, if a launcher has started
-        several of these processes, each of which would do the whole work.
-    SystemExit
-        On the other ranks in that case.
+    On the manager ValueError, and on the other ranks SystemExit, if the number of ranks is another
+    one, as by a launcher of another MPI library, which starts processes of one rank each. Without
+    MPI ValueError if a launcher has started several of these processes, each of which would do the
+    whole work.
     """
     if not under_mpi():
         count = max(int(os.environ.get(name, "1")) for name in _SIZES)
@@ -172,16 +168,9 @@ def run_tasks(
     """Tasks with what is kept of them, as they end; a free rank starts the next of the list.
 
     Without MPI the tasks run here, one after the other. With MPI this is called by the manager
-    while the other ranks are in :func:`serve_tasks`, also where there is no task.
-
-    Parameters
-    ----------
-    function : callable
-        A module's function of one task; it and the tasks travel by pickle.
-    tasks : sequence
-        The longest first.
-    keep : callable
-        What takes every task and its result here, also of those that end while this is closed.
+    while the other ranks are in :func:`serve_tasks`, also where there is no task. The longest tasks
+    stand first. The function is a module's, of one task; it and the tasks travel by pickle. `keep`
+    takes every task and its result here, also of those that end while this is closed.
     """
     if not under_mpi():
         for task in tasks:
@@ -222,21 +211,9 @@ def launch_ranks(
     """Exit code of a crackfront command that is run on a manager and a number of workers.
 
     It is None if the manager stopped on request. The first signal that requests a stop leaves the
-    ranks a file, the second ends the launcher.
-
-    Parameters
-    ----------
-    arguments, n_worker
-        Arguments of `crackfront`, and number of ranks that compute.
-    launcher : str or None
-        Command that takes `-n` and a number, as in "srun -K1 --mpi=pmi2".
-    folder : Path
-        Folder for that file, which all ranks see.
-
-    Raises
-    ------
-    ValueError
-        If there is no launcher, or it cannot be started.
+    ranks a file in the folder, which all ranks see; the second ends the launcher. The launcher
+    takes `-n` and a number, as "srun -K1 --mpi=pmi2" does. ValueError if there is none, or it
+    cannot be started.
     """
     # Under -m mpi4py a rank that fails ends the job, where it would else hang.
     command = [

@@ -206,10 +206,7 @@ class Store:
     def table(self, sweep: Sweep) -> SweepTable:
         """Arrays of the file of the whole sweep.
 
-        Raises
-        ------
-        ValueError
-            If the file is missing or damaged, or the table of another configuration.
+        ValueError if the file is missing or damaged, or the table of another configuration.
         """
         self.about(sweep)
         return read_table(self.hysteresis)
@@ -227,17 +224,7 @@ class Store:
     def renewed(self, sweep: Sweep, configuration: Path) -> Iterator[str]:
         """Set aside what is damaged, and remove lists of what is missing; the workflow renews it.
 
-        Parameters
-        ----------
-        sweep : Sweep
-            What the folder is about.
-        configuration : Path
-            Its configuration.
-
-        Yields
-        ------
-        str
-            A sentence for every damaged file, and one for all simulations that run again.
+        Yields a sentence for every damaged file, and one for all simulations that run again.
         """
         if not self.folder.is_dir():
             return
@@ -254,11 +241,8 @@ class Store:
     def aggregate(self, sweep: Sweep, origin: Provenance) -> tuple[Path, dict[str, int]]:
         """Write the file of the whole sweep; it, and the number of simulations of every status.
 
-        Raises
-        ------
-        ValueError
-            If simulations are missing or unreadable. The lists of their shards are removed, so
-            that the workflow runs them again.
+        ValueError if simulations are missing or unreadable. The lists of their shards are removed,
+        so that the workflow runs them again.
         """
         statuses = write_hysteresis(self.hysteresis, sweep, self._rows(sweep), origin)
         return self.hysteresis, dict(statuses)
@@ -297,22 +281,10 @@ class Store:
     def archive(self, path: Path, *, curves: bool) -> int:
         """Write the files of the sweep and their checksums into a ZIP file; the number of files.
 
-        Checkpoints and what is only half written are left out. Names in the archive begin with that
-        of the folder, and the list stands in it too: unpack, go there, `sha256sum --check
-        SHA256SUMS`.
-
-        Parameters
-        ----------
-        path : Path
-            The archive.
-        curves : bool
-            Whether the files of the single simulations belong to it.
-
-        Raises
-        ------
-        ValueError
-            If the folder holds no file of a sweep, or a file that belongs to the archive is
-            damaged.
+        Checkpoints and what is only half written are left out; the files of the single simulations
+        belong to it with `curves`. Names in the archive begin with that of the folder, and the list
+        stands in it too: unpack, go there, `sha256sum --check SHA256SUMS`. ValueError if the folder
+        holds no file of a sweep, or a file that belongs to the archive is damaged.
         """
         if not self.hysteresis.is_file():
             raise ValueError(

@@ -28,18 +28,8 @@ def summary_page(
 ) -> str:
     """A page of HTML that needs no other file and opens on the result, in an element `section`.
 
-    Parameters
-    ----------
-    title : str
-        Title of the page.
-    fit : str
-        Tables of the fit, in Markdown; the text before its second heading is the result.
-    figures : mapping of str to Path
-        Captions, and PNG files.
-    statuses : mapping of str to int
-        Number of simulations of every status.
-    configuration, origin
-        Text of the configuration, and what the results say of their origin.
+    The fit is its tables in Markdown; the text before their second heading is the result. Figures
+    are PNG files under their captions, statuses the number of simulations of each.
     """
     # Raw HTML in the text stays text.
     markdown = MarkdownIt("commonmark", {"html": False}).enable("table")

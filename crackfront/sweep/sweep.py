@@ -149,10 +149,7 @@ class Sweep:
     def shards(self, block: int | str | None = None) -> tuple[Shard, ...]:
         """Shards of a number of realisations each, by default of all.
 
-        Raises
-        ------
-        ValueError
-            If the block is no positive number, or there are more than :data:`MOST_SHARDS` shards.
+        ValueError if it is no positive number, or there are more than :data:`MOST_SHARDS` shards.
         """
         size = self.n_realisation if block is None else block
         if not isinstance(size, int) or size < 1:

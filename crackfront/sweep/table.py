@@ -66,19 +66,9 @@ def write_hysteresis(
 ) -> Counter[str]:
     """Write the file of a sweep, in the memory of a few thousand rows.
 
-    Parameters
-    ----------
-    path, sweep
-        The file and what it is about.
-    rows : iterable of SweepRow
-        One for each simulation, in the order of :meth:`crackfront.sweep.sweep.Sweep.simulations`.
-    origin : Provenance
-        Where they come from.
-
-    Returns
-    -------
-    Counter
-        Number of simulations of every status.
+    There is one row for each simulation, in the order of
+    :meth:`crackfront.sweep.sweep.Sweep.simulations`. Returns the number of simulations of every
+    status.
     """
     known = variables(SweepRow, SPECTRUM, AMPLITUDE, REALISATION)
     dataset = xr.Dataset(coords=labelled_fields(_axes(sweep)), attrs=_attributes(sweep))
@@ -100,10 +90,7 @@ def write_hysteresis(
 def read_table(path: Path) -> SweepTable:
     """Arrays of a sweep that a fit needs, from a file that :func:`write_hysteresis` wrote.
 
-    Raises
-    ------
-    UnreadableFileError
-        If the file is missing, truncated or that of something else.
+    UnreadableFileError if the file is missing, truncated or that of something else.
     """
     names = set(SweepTable.__dataclass_fields__) - {"contact_radius", *_OPTIONAL}
     sources = {name: name for name in sorted(names)}

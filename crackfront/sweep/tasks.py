@@ -52,17 +52,10 @@ def fill(
 ) -> Generator[tuple[Simulation, Finished], None, None]:
     """Run simulations, the longest first, and store each as soon as it is finished.
 
-    Yields each simulation with how it ended, in the order in which they end. Close the generator
-    to leave it earlier: it waits for the ranks.
-
-    Raises
-    ------
-    OSError
-        If nothing can be written in the folder, before anything is run.
-    NotStoredError
-        If the machine could not compute a simulation or store it.
-    KeyboardInterrupt
-        If a stop was requested.
+    Yields each simulation with how it ended, in the order in which they end. Close the generator to
+    leave it earlier: it waits for the ranks. OSError if nothing can be written in the folder,
+    before anything is run; NotStoredError if the machine could not compute a simulation or store
+    it; KeyboardInterrupt if a stop was requested.
     """
     for folder in (store.curves, store.checkpoints):
         folder.mkdir(parents=True, exist_ok=True)

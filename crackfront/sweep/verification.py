@@ -35,10 +35,7 @@ class Verification:
 def verification(place: Path) -> Verification:
     """Check all files of a folder, or of an archive of it.
 
-    Raises
-    ------
-    UnreadableFileError
-        If there is no such folder or archive, or the folder is empty.
+    UnreadableFileError if there is no such folder or archive, or the folder is empty.
     """
     counts: dict[str, Counter[Integrity]] = defaultdict(Counter)
     damaged = []
