@@ -36,11 +36,8 @@ def stated_breadths() -> dict[str, float]:
 def finding(departure: str) -> str:
     """The five sentences, with the numbers of the shipped law.
 
-    Parameters
-    ----------
-    departure : str
-        How far whose k are from the law: what follows "The law was measured on straight fronts
-        held by springs".
+    The departure says how far whose k are from the law. It follows "The law was measured on
+    straight fronts held by springs".
 
     Examples
     --------

@@ -59,14 +59,10 @@ def sphere_factors(
 ) -> SphereFactors:
     """Factors k of a sphere on a random surface, from the straight front alone.
 
-    The edge of radius a is held as by a spring of the length :func:`crackfront.core.jkr.spring`
-    at the work of adhesion of the branch, which k decides: the two are solved together. The kind is
-    what the spectrum describes; lengths are reduced lateral ones, e_el is in w_int.
-
-    Raises
-    ------
-    ValueError
-        If e_el is not between 0 and w_int, or the contact has no radius.
+    The edge of radius a is held as by a spring of the length :func:`crackfront.core.jkr.spring` at
+    the work of adhesion of the branch, which k decides: the two are solved together. The kind is
+    what the spectrum describes; lengths are reduced lateral ones, e_el is in w_int. ValueError if
+    e_el is not between 0 and w_int, or the contact has no radius.
 
     Examples
     --------

@@ -86,18 +86,8 @@ def mean_adhesion(
 def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdhesion:
     """Mean apparent work of adhesion over the steady part of each branch, or why there is none.
 
-    Parameters
-    ----------
-    record : CycleRecord
-        States of an approach and a retraction.
-    correlation_length : float
-        Distance that every site must travel before a branch counts as steady; that of w_loc.
-        (Units: reduced lateral length)
-
-    Raises
-    ------
-    ValueError
-        If the correlation length is not positive and finite.
+    A branch counts as steady once every site has travelled the correlation length, that of w_loc
+    (Units: reduced lateral length). ValueError if it is not positive and finite.
     """
     if not (math.isfinite(correlation_length) and correlation_length > 0):
         raise ValueError(

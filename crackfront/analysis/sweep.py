@@ -84,34 +84,14 @@ def fit_sweep(
 ) -> SweepFit:
     """Fit k, the exponent, the midpoint and the trends of k, with intervals.
 
-    Parameters
-    ----------
-    table : SweepTable
-        The sweep.
-    lowest_elastic_energy, highest_elastic_energy : float
-        Range of requested e_el that the fit uses, ends included. (Units: w_int)
-    n_bootstrap : int, optional
-        Bootstrap samples.
-    seed : int, optional
-        Seed of their draws; the point estimates do not depend on it.
-    kind : {"roughness", "chemical"}, optional
-        What the fields are: the midpoint should be w_int - e_el for roughness, w_int for a
-        chemical field.
-    uncorrelated : bool, optional
-        Whether the sites of straight fronts know nothing of each other: the law's limit of weak
-        disorder, whatever the amplitude.
+    The fit uses the amplitudes between two requested e_el, ends included (Units: w_int). The point
+    estimates do not depend on the seed of the bootstrap. The midpoint should be w_int - e_el for
+    roughness, w_int for a chemical field. With `uncorrelated`, the sites of straight fronts know
+    nothing of each other: the law's limit of weak disorder, whatever the amplitude.
 
-    Returns
-    -------
-    SweepFit
-        Estimates as :data:`FIT_DEFINITION` says. What the data do not give is NaN and has a
-        sentence in :func:`crackfront.analysis.report.fit_notes`.
-
-    Raises
-    ------
-    ValueError
-        If the range is empty, holds no amplitude or no simulation with a value, or there are too
-        few bootstrap samples.
+    Estimates are as :data:`FIT_DEFINITION` says. What the data do not give is NaN and has a
+    sentence in :func:`crackfront.analysis.report.fit_notes`. ValueError if the range is empty,
+    holds no amplitude or no simulation with a value, or there are too few bootstrap samples.
     """
     in_range = _amplitudes_in_range(table, lowest_elastic_energy, highest_elastic_energy)
     if n_bootstrap < FEWEST_BOOTSTRAP:

@@ -82,10 +82,7 @@ class SweepAxes:
 class SweepTable:
     """What a fit reads of a sweep: the apparent works of adhesion, NaN where a simulation failed.
 
-    Raises
-    ------
-    ValueError
-        If the shapes disagree, or a measured e_el or w_rms is not positive.
+    ValueError if the shapes disagree, or a measured e_el or w_rms is not positive.
     """
 
     spectrum: NDArray[np.str_] = variable("name of the spectrum", "", SPECTRUM)

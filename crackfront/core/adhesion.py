@@ -18,29 +18,15 @@ FieldKind = Literal["roughness", "chemical"]
 
 
 def front_stress_intensity(heights: Array, pixel: float, modulus: float = CONTACT_MODULUS) -> Array:
-    r"""Stress intensity that roughness causes at a straight crack front.
+    r"""Stress intensity K that roughness causes at a straight crack front, of zero mean.
 
-    The front is parallel to `y` and the contact lies at smaller `x`:
+    The front is parallel to `y` and the contact lies at smaller `x` (Sanner et al., Sci. Adv.,
+    2024, supplement, Sec. I B):
 
     .. math:: \tilde K = -\frac{E'}{\sqrt 2}\sqrt{i q_x + |q_y|}\,\tilde h
 
-    Parameters
-    ----------
-    heights : (n_x, n_y) array
-        Periodic roughness, positive at peaks. (Units: length)
-    pixel : float
-        Grid spacing, equal in both directions. (Units: length)
-    modulus : float, optional
-        Contact modulus E' = E / (1 - nu^2). (Units: pressure)
-
-    Returns
-    -------
-    (n_x, n_y) array
-        K with zero mean. (Units: pressure * length**0.5)
-
-    References
-    ----------
-    .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. I B.
+    Heights (n_x, n_y) are periodic, positive at peaks, with equal grid spacings (Units: length).
+    The modulus is E' = E / (1 - nu^2) (Units: pressure), K is in pressure * length**0.5.
 
     Examples
     --------

@@ -95,10 +95,7 @@ def equilibrium_force(radius: ArrayLike, work_of_adhesion: ArrayLike = 1.0) -> A
 def equilibrium_radius(penetration: float, work_of_adhesion: float = 1.0) -> float:
     """Radius of the stable smooth contact at a penetration.
 
-    Raises
-    ------
-    ValueError
-        If the penetration is below pull-off, where no contact is stable.
+    ValueError if the penetration is below pull-off, where no contact is stable.
 
     Examples
     --------
@@ -130,10 +127,7 @@ def equilibrium_radius(penetration: float, work_of_adhesion: float = 1.0) -> flo
 def radius_at_force(force: float, work_of_adhesion: float = 1.0) -> float:
     """Radius of the stable smooth contact at a force, the larger root of F = a^3 - sqrt(6 w a^3).
 
-    Raises
-    ------
-    ValueError
-        If the force is below pull-off, where no contact is stable.
+    ValueError if the force is below pull-off, where no contact is stable.
 
     Examples
     --------
@@ -155,12 +149,8 @@ def spring(radius: float, work_of_adhesion: float = 1.0) -> float:
     .. math:: L_\kappa = \frac{w_{int}}{dG/da} = \frac{a}{\sqrt{6 a^3 w} - w}
 
     Over it the edge is as stiff against a wave as against the penetration, at which it is fixed.
-    (Units: reduced lateral length)
-
-    Raises
-    ------
-    ValueError
-        If the radius is that of pull-off or smaller, where nothing holds the edge.
+    (Units: reduced lateral length) ValueError if the radius is that of pull-off or smaller, where
+    nothing holds the edge.
 
     Examples
     --------

@@ -77,17 +77,9 @@ class Spectrum(ABC):
 
     @abstractmethod
     def density(self, wavevector: ArrayLike) -> Array:
-        """Spectral density C(q).
+        """Spectral density C(q) at q >= 0, zero beyond q_s.
 
-        Parameters
-        ----------
-        wavevector : array_like
-            Magnitude q >= 0. (Units: 1 / length)
-
-        Returns
-        -------
-        array
-            C(q), zero beyond q_s. (Units: length**4 for heights)
+        (Units: length**4 for heights, 1 / length for the wavevector)
         """
 
     @abstractmethod
@@ -96,15 +88,8 @@ class Spectrum(ABC):
 
         .. math:: (h^{(\alpha)}_{rms})^2 = \frac{1}{4\pi^2} \int d^2q\, q^{2\alpha} C(q)
 
-        Parameters
-        ----------
-        order : float
-            Order alpha: 0 for heights, 1/2 for the half-derivative, 1 for slopes.
-
-        Returns
-        -------
-        float
-            Mean square. (Units: those of the density / length**(2 + 2 * order))
+        The order alpha is 0 for heights, 1/2 for the half-derivative, 1 for slopes. (Units: those
+        of the density / length**(2 + 2 * order))
         """
 
     def longer_than(self, wavelength: float) -> Self:
@@ -133,21 +118,10 @@ class Spectrum(ABC):
         return self.dominant_wavelengths(0.5)[1]
 
     def dominant_wavelengths(self, order: float, share: float = 0.8) -> tuple[float, float]:
-        """Range of wavelengths that carries a share of the mean square of a derivative.
+        """Shortest and longest wavelength of the range that carries a share of a mean square.
 
-        Half of the rest lies at shorter wavelengths, the other half at longer ones.
-
-        Parameters
-        ----------
-        order : float
-            Order alpha, as in :meth:`mean_square`.
-        share : float, optional
-            Part of the mean square within the range.
-
-        Returns
-        -------
-        tuple of float
-            Shortest and longest wavelength. (Units: length)
+        It is that of the derivative of an order, as in :meth:`mean_square`. Half of the rest lies
+        at shorter wavelengths, the other half at longer ones.
         """
         total, rest = self.mean_square(order), (1 - share) / 2
 
@@ -299,22 +273,12 @@ class SelfAffineSpectrum(Spectrum):
 
 @dataclass(frozen=True, slots=True)
 class TabulatedSpectrum(Spectrum):
-    r"""Isotropic 2D spectrum of values at wavelengths, as of a measurement.
+    """Isotropic 2D spectrum of values at wavelengths, as of a measurement.
 
-    Flat above the longest wavelength, a power law between neighbours, zero below the shortest.
-
-    Parameters
-    ----------
-    wavelengths : tuple of float
-        From long to short, two or more. (Units: length)
-    densities : tuple of float
-        C there. (Units: length**4 for heights)
-
-    Raises
-    ------
-    ValueError
-        If numbers are not positive and finite, the wavelengths do not fall, or there are not as
-        many densities.
+    Flat above the longest wavelength, a power law between neighbours, zero below the shortest. The
+    two or more wavelengths stand from long to short (Units: length), the densities are C there
+    (Units: length**4 for heights). ValueError if numbers are not positive and finite, the
+    wavelengths do not fall, or there are not as many densities.
 
     Examples
     --------

@@ -209,10 +209,7 @@ class _Models:
 def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
     """Models of one surface and of the instruments that are seen in its densities.
 
-    Raises
-    ------
-    ValueError
-        If the densities do not determine a spectrum.
+    ValueError if the densities do not determine a spectrum.
     """
     count = sum(item.value.size for item, _ in densities)
     if count < 5 or not all(np.all(item.value > 0) for item, _ in densities):

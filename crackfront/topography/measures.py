@@ -77,11 +77,7 @@ def measured_surface(
     """Spectrum and measures of a surface of which there is one measurement or several.
 
     Ends of the trusted wavelengths (Units: m) stand in place of those that are found in each.
-
-    Raises
-    ------
-    ValueError
-        If the densities do not determine a spectrum.
+    ValueError if the densities do not determine a spectrum.
     """
     scans = tuple(scan(item, shortest, longest) for item in measurements)
     joint = joint_spectrum(scans)
@@ -107,12 +103,8 @@ def measured_surface(
 def read_surface(paths: Sequence[Path], options: Sequence[ReadingOptions]) -> MeasuredSurface:
     """Surface of files, each of which is read by its options.
 
-    Raises
-    ------
-    ValueError
-        If a file cannot be used, or the densities do not determine a spectrum.
-    OSError
-        If a file cannot be opened.
+    ValueError if a file cannot be used, or the densities do not determine a spectrum; OSError if
+    one cannot be opened.
     """
     measurements = read_measurements(paths, options)
     return measured_surface(measurements, options[0].shortest, options[0].longest)

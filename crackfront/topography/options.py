@@ -82,14 +82,8 @@ def declared(record: type[Any]) -> Iterator[Option]:
 def parsed_options(record: type[Record], given: Mapping[str, Any], prefix: str = "") -> Record:
     """Record of the options among what a user gives; None is not given.
 
-    The prefix stands before names in refusals: -- in commands.
-
-    Raises
-    ------
-    ValueError
-        If a value cannot be used.
-    TypeError
-        If a value is of another type.
+    The prefix stands before names in refusals: -- in commands. ValueError if a value cannot be
+    used, TypeError if it is of another type.
     """
     [found] = options_for_each(record, given, 1, prefix)
     return found

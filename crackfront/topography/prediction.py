@@ -126,12 +126,8 @@ def predicted(
     """Prediction for a surface under a sphere, of scales in SI units.
 
     The range of attraction (Units: m) is that of van der Waals forces where none is given. A
-    measured pull-off force (Units: N) gives the w_int that it implies.
-
-    Raises
-    ------
-    ValueError
-        If no contact conforms, e_el >= w_int.
+    measured pull-off force (Units: N) gives the w_int that it implies. ValueError if no contact
+    conforms, e_el >= w_int.
     """
     works = _works(surface, scales)
     energy, factors, excess, appr, retr = works

@@ -101,19 +101,8 @@ def read_measurements(
 ) -> tuple[Measurement, ...]:
     """Measurements of one surface, from files in any format that SurfaceTopography reads.
 
-    Parameters
-    ----------
-    paths : sequence of Path
-        The files.
-    options : ReadingOptions or sequence of them, optional
-        How they are read; one for all, or one for each.
-
-    Raises
-    ------
-    ValueError
-        If the library is missing or a file cannot be used; one sentence.
-    OSError
-        If a file cannot be opened.
+    The options say how the files are read: one record for all, or one for each. ValueError, of one
+    sentence, if the library is missing or a file cannot be used; OSError if one cannot be opened.
     """
     if not paths:
         raise ValueError("no file is named; name one measurement of the surface or several")

@@ -25,27 +25,11 @@ _EQUAL = 1e-6
 def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
     """The very map as a surface to press on, on a periodic tile with the scan in its middle.
 
+    It is `height(x, y)` in reduced units of the sphere; its attributes say what was done and why.
     The scan is mirrored at its edges, which leaves no steps there, on a tile of twice its sides;
     waves shorter than can be trusted are taken away. The apex of the sphere is the centre of the
     scan. A map with oblong pixels is interpolated by cubic splines on square ones, and one that is
-    periodic is a tile as it stands.
-
-    Parameters
-    ----------
-    scan : Scan
-        A map, and the waves of it that are trusted.
-    sphere : Scales
-        What is pressed on it.
-
-    Returns
-    -------
-    xarray.DataArray
-        `height(x, y)` in reduced units; its attributes say what was done and why.
-
-    Raises
-    ------
-    ValueError
-        If the measurement is a line.
+    periodic is a tile as it stands. ValueError if the measurement is a line.
     """
     measurement = scan.trusted_measurement
     heights, pixel = tile_heights(measurement)
@@ -67,10 +51,7 @@ def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
 def tile_heights(measurement: Measurement) -> tuple[Array, float]:
     """Heights of the tile of :func:`scan_surface`, and its pixel (Units: m).
 
-    Raises
-    ------
-    ValueError
-        If the measurement is a line.
+    ValueError if the measurement is a line.
     """
     if measurement.is_line:
         raise ValueError(
