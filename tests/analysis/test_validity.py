@@ -8,8 +8,6 @@ from crackfront.analysis.validity import (
     ValidityRow,
     excess_coefficient,
     front_excess,
-    validity_of,
-    validity_text,
 )
 
 
@@ -22,8 +20,6 @@ def test_the_coefficient_weighs_amplitudes_by_their_errors():
     both, error = excess_coefficient(rows)
     assert 2 < both < 3
     assert excess_coefficient([*rows, row(0.2, 9.0, error=math.nan)]) == (both, error)
-    near, _ = excess_coefficient([row(0.1, math.exp(0.2), error=1e-4), rows[1]])
-    assert near == pytest.approx(2, rel=0.01)
 
 
 def test_a_hysteresis_is_divided_where_both_were_compared_and_else_its_interval_reaches_there():
@@ -37,12 +33,4 @@ def test_a_hysteresis_is_divided_where_both_were_compared_and_else_its_interval_
     for outside in (larger, stronger):
         assert not outside.is_measured
         assert outside.ratio.value == 1
-    assert larger.ratio.high == pytest.approx(inside.ratio.high)
-    assert "g = 1.3" in larger.sentence
     assert "not divided" in larger.sentence
-    assert "divided by it here" in inside.sentence
-
-
-def test_a_table_is_read_as_it_was_written():
-    rows = [row(0.05, 1.1, 0.5), row(0.18, 1.5, 1.3)]
-    assert validity_of(validity_text(rows)) == tuple(rows)

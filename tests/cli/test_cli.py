@@ -20,7 +20,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import crackfront as cf
-from crackfront import __version__
 from crackfront.cli import main
 from crackfront.cli.report import StoppedError
 from crackfront.core import jkr
@@ -365,10 +364,6 @@ def test_bad_numbers_of_ranks_are_refused(tmp_path, ranks):
     assert result.exit_code == 2
 
 
-def test_the_version_is_that_of_the_package():
-    assert __version__ in run("--version").output
-
-
 @pytest.mark.parametrize("kind", ["roughness", "chemical"])
 def test_a_surface_of_the_library_is_a_field_of_a_cycle(kind, tmp_path):
     surface = cf.random_surface(0.4, 0.05, kind=kind, side=4, error=0.05, seed=3)
@@ -423,23 +418,6 @@ def test_the_exit_codes_of_the_help_are_those_of_the_commands():
     text = run("--help").output
     for code in (0, 1, 2, StoppedError.exit_code):
         assert re.search(rf"^ +{code} +\w", text, re.MULTILINE)
-
-
-def test_a_shell_completes_commands():
-    told = subprocess.run(
-        [sys.executable, "-c", "from crackfront.cli import main; main(prog_name='crackfront')"],
-        env=os.environ
-        | {
-            "_CRACKFRONT_COMPLETE": "bash_complete",
-            "COMP_WORDS": "crackfront arch",
-            "COMP_CWORD": "1",
-        },
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=60,
-    )
-    assert told.stdout.split() == ["plain,archive"]
 
 
 def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path):

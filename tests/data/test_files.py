@@ -22,7 +22,7 @@ from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
 from crackfront.data.files import UnreadableFileError, date_back, write_dataset, write_text
-from crackfront.data.provenance import Provenance, provenance
+from crackfront.data.provenance import Provenance
 from crackfront.simulate.files import (
     cycle_dataset,
     read_cycle,
@@ -103,12 +103,6 @@ def test_every_file_says_where_it_comes_from(tmp_path, result):
     assert attributes["date"].endswith("+00:00")
     assert attributes["status"] == "lost_contact"
     assert attributes["status_sentence"] == Status.LOST_CONTACT.value
-
-
-def test_the_origin_of_this_process_is_known():
-    origin = provenance("text")
-    assert origin.configuration == "text"
-    assert all(getattr(origin, item.name) for item in fields(Provenance))
 
 
 def test_a_simulation_is_read_back_with_its_cost(tmp_path, result):

@@ -65,8 +65,7 @@ def test_surfaces_that_the_law_has_not_seen_lie_inside_its_interval(kept):
         for told in validity_rows([row for row in kept if row.seed not in left], 0.15):
             ratio = front_excess(told.elastic_energy, told.size).ratio
             scene = [row for row in fine if row.roll_off == pytest.approx(0.15 * told.roll_off)]
-            scene = [row for row in scene if row.elastic_energy < 1.3 * told.elastic_energy]
-            scene = [row for row in scene if row.elastic_energy > 0.7 * told.elastic_energy]
+            scene = [r for r in scene if 0.7 < r.elastic_energy / told.elastic_energy < 1.3]
             rest = {
                 row.seed: row.boundary_difference - row.front_difference / ratio.value
                 for row in scene
