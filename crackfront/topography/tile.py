@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import fftfreq, irfft2, rfft2
-from xarray import DataArray
 
 from crackfront.core import jkr
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
-from crackfront.simulate.given import surface_array
 from crackfront.topography.bands import Scan
 from crackfront.topography.cautions import scan_notes
 from crackfront.topography.levelling import Array
 from crackfront.topography.reading import Measurement
+
+if TYPE_CHECKING:
+    from xarray import DataArray
 
 _EQUAL = 1e-6
 """Relative difference up to which pixels count as square."""
@@ -31,6 +33,9 @@ def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
     scan. A map with oblong pixels is interpolated by cubic splines on square ones, and one that is
     periodic is a tile as it stands. ValueError if the measurement is a line.
     """
+    # A prediction needs the radius below, and no field.
+    from crackfront.simulate.given import surface_array
+
     measurement = scan.trusted_measurement
     heights, pixel = tile_heights(measurement)
     return surface_array(

@@ -28,9 +28,7 @@ def test_a_hysteresis_is_divided_where_both_were_compared_and_else_its_interval_
         front_excess(*scene, rows) for scene in ((0.1, 1.0), (0.1, 10.0), (0.4, 1.0))
     )
     assert inside.is_measured
-    assert inside.ratio.low < inside.ratio.value < inside.ratio.high
     assert inside.ratio.value == pytest.approx(math.exp(0.1 * excess_coefficient(rows)[0]))
     for outside in (larger, stronger):
         assert not outside.is_measured
         assert outside.ratio.value == 1
-    assert "not divided" in larger.sentence
