@@ -39,6 +39,9 @@ if TYPE_CHECKING:
 
 _SECONDS_BETWEEN_CHECKPOINTS = 60.0
 
+_SECONDS_IN_LOG = 10.0
+"""Time between two lines of a log."""
+
 _PLACE = Range(-NUMBER.most, NUMBER.most)
 """Loads and their steps; what is negative is refused where it cannot be."""
 
@@ -207,16 +210,19 @@ def _content(recorder: Recorder, found: Dataset, output: Path) -> dict[str, obje
 
 @contextmanager
 def _progress(expected: int, *, every_state: bool) -> Iterator[Observer]:
-    """What shows every new state: on a terminal a bar, and on request a line for each."""
+    """What shows new states: a bar on a terminal, now and then a line in a log, or one for each."""
     from tqdm import tqdm
 
     with tqdm(total=expected, unit="state", disable=not sys.stderr.isatty()) as bar:
+        following = time.monotonic() + _SECONDS_IN_LOG
 
         def shown(recorder: Recorder) -> None:
+            nonlocal following
             count, last = len(recorder.states), recorder.states[-1]
             bar.set_postfix_str(last.told, refresh=False)
             bar.update(count - bar.n)
-            if every_state:
+            if every_state or (bar.disable and time.monotonic() >= following):
+                following = time.monotonic() + _SECONDS_IN_LOG
                 branch = "approach" if last.direction > 0 else "retraction"
                 bar.write(f"state {count}, {branch}: {last.told}", file=sys.stderr)
 

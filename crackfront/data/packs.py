@@ -137,6 +137,12 @@ class Pack:
                 self._number = None
             raise
 
+    def beat(self) -> None:
+        """Show that this process lives, on machines that do not know its lock."""
+        with contextlib.suppress(OSError):
+            if self._number is not None:
+                os.utime(self._number)
+
     def close(self) -> None:
         """Have all of it on disk, and unlock it; an OSError where that is impossible."""
         if self._number is not None:

@@ -7,6 +7,7 @@ import hashlib
 import itertools
 import json
 import statistics
+import threading
 from collections import Counter, defaultdict, deque
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -40,6 +41,9 @@ from crackfront.sweep.table import (
     sweep_row,
     write_hysteresis,
 )
+
+SECONDS_BETWEEN_BEATS = 20.0
+"""Time after which a process that simulates or stores shows that it lives."""
 
 SUMS = "SHA256SUMS"
 """File of an archive that lists the checksums of all others."""
@@ -147,9 +151,20 @@ class Store:
         for name, block in blocks.items():
             deque(renew_packs(pack_paths(self.curves, name, block)), maxlen=0)
         found = {name: new_pack(self.curves, name, block) for name, block in blocks.items()}
+        left = threading.Event()
+
+        def beat() -> None:
+            while not left.wait(SECONDS_BETWEEN_BEATS):
+                for pack in found.values():
+                    pack.beat()
+
+        beating = threading.Thread(target=beat, daemon=True)
+        beating.start()
         try:
             yield found
         finally:
+            left.set()
+            beating.join()
             for pack in found.values():
                 pack.close()
 

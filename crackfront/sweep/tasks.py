@@ -21,14 +21,11 @@ from crackfront.simulate.run import PartialRun, SimulationResult, compile_solver
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
 from crackfront.sweep.journal import Entry, Note, forget_notes
-from crackfront.sweep.store import Store
+from crackfront.sweep.store import SECONDS_BETWEEN_BEATS, Store
 from crackfront.sweep.table import failed_row, row_fingerprint, sweep_row
 
 _STOPPED, _NOT_STORED = "stopped", "not_stored"
 """Statuses of tasks after which a run ends; they have no row."""
-
-SECONDS_BETWEEN_BEATS = 20.0
-"""Time after which a running simulation shows that it lives."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crackfront.data.written_units import prefixed
 from crackfront.topography.densities import (
@@ -163,13 +164,7 @@ def scan(
         instrument = replace(instrument, attenuation=math.inf)
     lower = list(_lower_limits(measurement, seen, instrument, cliff))
     upper = [BandLimit("longest", "levelling", measurement.longest)]
-    alternatives: tuple[Density, ...] = ()
-    if not measurement.periodic:
-        other_window = periodogram(measurement, window="blackman")
-        heights = measurement.heights
-        form = polynomial(heights, np.full(heights.shape, True), _ORDER)
-        other_levelling = periodogram(measurement, heights - form)
-        alternatives = other_window.density(without), other_levelling.density(without)
+    alternatives = () if measurement.periodic else _alternatives(measurement, without)
     if left := _form(density, alternatives, measurement.longest):
         upper.append(BandLimit("longest", "form", left))
     if shortest is not None:
@@ -186,17 +181,15 @@ def scan(
             "name --shortest and --longest"
         )
     drowned = instrument.noisy(seen, _DROWNED)
-    informative, coarsest = low.wavelength, high.wavelength
-    last = max(behind, NYQUIST * pixel)
+    least = max(cliff, drowned, measurement.shortest)
+    informative, coarsest, last = low.wavelength, high.wavelength, max(behind, NYQUIST * pixel)
     finest = last / _FINER
-    if low.cause in ("resolution", "tip", "noise"):
-        least = max(cliff, drowned, measurement.shortest)
-        if low.cause == "tip":
-            # It leaves the waves below there, though weaker: they end with the pixels.
-            coarsest = least
-        else:
-            informative = max(least, instrument.wavelength(_LOST))
-            last = max(last, behind or informative)
+    if low.cause == "tip":
+        # It leaves the waves below there, though weaker: they end with the pixels.
+        coarsest = least
+    elif low.cause in ("resolution", "noise"):
+        informative = max(least, instrument.wavelength(_LOST))
+        last = max(last, behind or informative)
     elif low.cause == "named":
         instrument = Instrument()
     band = Band(
@@ -214,6 +207,16 @@ def scan(
         coarsest=coarsest,
     )
     return Scan(measurement, waves, density, alternatives, band)
+
+
+def _alternatives(
+    measurement: Measurement, without: NDArray[np.bool_] | None
+) -> tuple[Density, Density]:
+    """Densities with another window, and with one more order of polynomials taken off."""
+    heights = measurement.heights
+    form = polynomial(heights, np.full(heights.shape, True), _ORDER)
+    others = periodogram(measurement, window="blackman"), periodogram(measurement, heights - form)
+    return others[0].density(without), others[1].density(without)
 
 
 def _lower_limits(

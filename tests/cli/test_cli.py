@@ -452,10 +452,12 @@ def test_machines_read_how_a_cycle_ended(smooth_tile, tmp_path):
     }
 
 
-def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_path):
+def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_path, monkeypatch):
+    monkeypatch.setattr(sys.modules["crackfront.cli.cycle"], "_SECONDS_IN_LOG", 0.0)
     result = cycle(rough_surface, tmp_path, "--figure", tmp_path / "pictures/loop", step=0.02)
     assert result.exit_code == 0, result.output
     found = xr.load_dataset(tmp_path / "out.nc")
+    assert "state 2, approach: " in result.stderr
     count, pdf, png, told, lost = result.stdout.splitlines()
     assert count == f"{found.sizes['step']} states: {tmp_path / 'out.nc'}"
     assert [pdf, png] == [f"figure: {tmp_path / 'pictures/loop'}.{kind}" for kind in ("pdf", "png")]

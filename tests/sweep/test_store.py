@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -72,6 +73,16 @@ def test_a_filled_store_lacks_nothing_and_holds_one_curve_a_simulation_in_one_fi
     assert store.inventory(FLAT).missing == ()
     assert len(list(store.curves.iterdir())) == 1
     assert set(curves(store.folder)) == {f"{simulation.stem}.nc" for simulation in FLAT}
+
+
+def test_a_pack_shows_that_its_process_lives_while_nothing_ends(store, monkeypatch):
+    monkeypatch.setattr("crackfront.sweep.store.SECONDS_BETWEEN_BEATS", 0.01)
+    with store.packs(FLAT) as packs:
+        packs["flat"].append({"a.json": b""})
+        [path] = pack_paths(store.curves)
+        os.utime(path, (0, 0))
+        time.sleep(0.5)
+        assert path.stat().st_mtime > 0
 
 
 def test_the_longest_simulations_start_first(store):

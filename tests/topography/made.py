@@ -10,7 +10,7 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import Scales
 from crackfront.topography.measures import read_surface
 from crackfront.topography.options import ReadingOptions, options_for_each
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.reading import Measurement, read_measurements
 from studies.accuracy import scans
 
 FOLDER = Path(__file__).parents[2] / "examples/scans"
@@ -78,3 +78,12 @@ def write_smooth(path):
 def measured_mean_square(one, order):
     """Mean square of a derivative of a scan over its trusted wavelengths, as it stands."""
     return one.waves.mean_square(order, *one.band.wavelengths)
+
+
+def periodic_measurement(heights, side=SIDE, shortest=None):
+    """A map that is one period of its surface, all waves trusted down to two pixels."""
+    pixel = side / len(heights)
+    shortest = 2 * pixel if shortest is None else shortest
+    return Measurement(
+        Path("periodic"), "", "", "", (side, side), heights, True, 0.0, shortest, side * (1 + 1e-9)
+    )

@@ -12,26 +12,18 @@ from crackfront.topography.bands import scan as scan_of
 from crackfront.topography.instruments import surface_library
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.options import ReadingOptions
-from crackfront.topography.reading import Measurement, read_measurements
+from crackfront.topography.reading import read_measurements
 from tests.topography.made import (
     SIDE,
     SPECTRUM,
     map_heights,
     measured_mean_square,
+    periodic_measurement,
     write_al3d,
     write_line,
 )
 
 SHIPPED = tuple(sorted((Path(__file__).parents[2] / "examples/scans").glob("*.al3d")))
-
-
-def periodic_measurement(heights, side=SIDE, shortest=None):
-    """A map that is one period of its surface, all waves trusted down to two pixels."""
-    pixel = side / len(heights)
-    shortest = 2 * pixel if shortest is None else shortest
-    return Measurement(
-        Path("periodic"), "", "", "", (side, side), heights, True, 0.0, shortest, side * (1 + 1e-9)
-    )
 
 
 def half(surface):

@@ -111,7 +111,6 @@ def test_where_boundary_elements_were_compared_the_hysteresis_is_divided(surface
     fine = replace(SCENE, radius=10e-6)
     found = predicted(surface, fine)
     assert found.excess.is_measured
-    assert found.front_excess.value > 1.2
     ratio = found.front_hysteresis.value / found.hysteresis.value
     assert ratio == pytest.approx(found.front_excess.value)
     assert found.excess.sentence in list(prediction_notes(found))

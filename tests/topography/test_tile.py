@@ -1,7 +1,6 @@
 """A measured map as the field of a simulation."""
 
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,33 +8,23 @@ import pytest
 
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.synthesis import gaussian_field
-from crackfront.core.units import WORK_OF_ADHESION, Scales
+from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.given import surface_adhesion
 from crackfront.topography.bands import scan as scan_of
 from crackfront.topography.options import ReadingOptions
-from crackfront.topography.reading import Measurement, read_measurements
+from crackfront.topography.reading import read_measurements
 from crackfront.topography.tile import scan_surface
 from studies.accuracy import scans
 from tests.topography.made import (
+    SCENE,
     SIDE,
     SPECTRUM,
     map_heights,
     measured_mean_square,
+    periodic_measurement,
     write_al3d,
     write_line,
 )
-
-
-def periodic_measurement(heights, side=SIDE, shortest=None):
-    """A map that is one period of its surface, all waves trusted down to two pixels."""
-    pixel = side / len(heights)
-    shortest = 2 * pixel if shortest is None else shortest
-    return Measurement(
-        Path("periodic"), "", "", "", (side, side), heights, True, 0.0, shortest, side * (1 + 1e-9)
-    )
-
-
-SOFT = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
 
 
 def measured_adhesion(measurement, scales):
@@ -50,7 +39,7 @@ def test_a_line_scan_is_no_field(rng, tmp_path):
     path = write_line(tmp_path / "line.xyz", 1e6 * map_heights(rng)[0], 20 / 128)
     [measurement] = read_measurements([path], ReadingOptions(unit="um"))
     with pytest.raises(ValueError, match="is a line scan, which is no field"):
-        measured_adhesion(measurement, SOFT)
+        measured_adhesion(measurement, SCENE)
 
 
 def test_oblong_pixels_are_read_and_made_square_for_a_field(tmp_path, heights, scan):
@@ -65,20 +54,20 @@ def test_oblong_pixels_are_read_and_made_square_for_a_field(tmp_path, heights, s
     assert oblong.pixels == pytest.approx((SIDE / 128, SIDE / 64))
     assert oblong.shortest == pytest.approx(4 * SIDE / 64)
     square = replace(whole, shortest=oblong.shortest)
-    both = [measured_adhesion(item, SOFT) for item in (square, oblong)]
+    both = [measured_adhesion(item, SCENE) for item in (square, oblong)]
     assert both[1].pixel == pytest.approx(both[0].pixel)
     assert both[1].e_el == pytest.approx(both[0].e_el, rel=0.02)
 
 
 def test_the_tile_of_a_map_is_its_mirror_images_around_it(scan):
     [measurement] = read_measurements([scan])
-    adhesion = measured_adhesion(measurement, SOFT)
+    adhesion = measured_adhesion(measurement, SCENE)
     assert adhesion.work_of_adhesion.shape == (256, 256)
-    assert adhesion.pixel * SOFT.lateral == pytest.approx(SIDE / 128)
+    assert adhesion.pixel * SCENE.lateral == pytest.approx(SIDE / 128)
     mean = np.mean(adhesion.work_of_adhesion) / WORK_OF_ADHESION
     assert mean == pytest.approx(1 - adhesion.e_el)
-    measured = SOFT.contact_modulus / 4 * measured_mean_square(scan_of(measurement), 0.5)
-    found = adhesion.e_el * SOFT.work_of_adhesion
+    measured = SCENE.contact_modulus / 4 * measured_mean_square(scan_of(measurement), 0.5)
+    found = adhesion.e_el * SCENE.work_of_adhesion
     assert found == pytest.approx(measured, rel=0.25)
     # The sum over x leaves a function of y alone, even about the edges of the scan.
     along_front = adhesion.work_of_adhesion.sum(axis=0)
@@ -89,7 +78,7 @@ def test_the_apex_is_above_the_centre_of_the_scan(scan):
     [measurement] = read_measurements([scan])
     places = np.arange(128) - 64
     bump = 1e-9 * np.exp(-(places[:, None] ** 2 + places**2) / 50)
-    adhesion = measured_adhesion(replace(measurement, heights=bump), SOFT)
+    adhesion = measured_adhesion(replace(measurement, heights=bump), SCENE)
     deviation = np.abs(adhesion.work_of_adhesion - np.mean(adhesion.work_of_adhesion))
     x, y = np.unravel_index(np.argmax(deviation), deviation.shape)
     assert abs(int(x) - 128) <= 8
@@ -98,8 +87,8 @@ def test_the_apex_is_above_the_centre_of_the_scan(scan):
 
 def test_a_periodic_map_is_a_tile_as_it_stands(rng):
     heights = gaussian_field(SPECTRUM, 128, SIDE, rng)
-    adhesion = measured_adhesion(periodic_measurement(heights), SOFT)
-    expected = rough_adhesion(heights / SOFT.vertical, SIDE / 128 / SOFT.lateral)
+    adhesion = measured_adhesion(periodic_measurement(heights), SCENE)
+    expected = rough_adhesion(heights / SCENE.vertical, SIDE / 128 / SCENE.lateral)
     assert adhesion.pixel == pytest.approx(expected.pixel)
     assert adhesion.work_of_adhesion == pytest.approx(expected.work_of_adhesion, rel=1e-9)
 
@@ -110,14 +99,14 @@ def test_a_map_of_odd_and_unequal_sides_has_a_tile(tmp_path, rng):
     (tmp_path / "scan.al3d").write_bytes(content)
     [measurement] = read_measurements([tmp_path / "scan.al3d"])
     assert measurement.size == pytest.approx((100 * SIDE / 128, 71 * SIDE / 128))
-    adhesion = measured_adhesion(measurement, SOFT)
+    adhesion = measured_adhesion(measurement, SCENE)
     assert adhesion.work_of_adhesion.shape == (200, 142)
-    found = adhesion.e_el * SOFT.work_of_adhesion
-    measured = SOFT.contact_modulus / 4 * measured_mean_square(scan_of(measurement), 0.5)
+    found = adhesion.e_el * SCENE.work_of_adhesion
+    measured = SCENE.contact_modulus / 4 * measured_mean_square(scan_of(measurement), 0.5)
     assert found == pytest.approx(measured, rel=0.4)
 
 
 def test_a_map_too_rough_for_full_conformity_is_no_field(tmp_path, heights):
     path = write_al3d(tmp_path / "rough.al3d", 20 * heights)
     with pytest.raises(ValueError, match="full conformity needs less than"):
-        measured_adhesion(read_measurements([path])[0], SOFT)
+        measured_adhesion(read_measurements([path])[0], SCENE)
