@@ -47,8 +47,7 @@ def range_of_validity():
     """Nothing is divided by what was not compared, and the interval says so."""
     rows = shipped_validity()
     energy, size = max(row.elastic_energy for row in rows), max(row.size for row in rows)
-    for scene in ((2 * energy, size), (energy, 2 * size)):
-        found = front_excess(*scene)
+    for found in (front_excess(2 * energy, size), front_excess(energy, 2 * size)):
         assert found.ratio.high > 1.5
         assert f"e_el/w_int = {energy:.2g}" in found.sentence
 

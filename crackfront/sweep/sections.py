@@ -23,6 +23,7 @@ from crackfront.core.field.fields import Interpolation
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.data.bounds import SI, Range
+from crackfront.data.packs import LONGEST_NAME
 from crackfront.data.section import (
     ConfigurationError,
     Count,
@@ -120,7 +121,8 @@ class SpectrumSection(Section):
     The method `shape` of such a section returns the spectrum and what its name ends with.
     """
 
-    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
+    # Names of the files in a pack hold it, an ending of 9 letters, and up to 48 more.
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=LONGEST_NAME - 57)]
     short_cutoff: Positive | None = None
     roll_off: Positive | None = None
     hurst: Annotated[float, Field(gt=0, le=1)] | None = None

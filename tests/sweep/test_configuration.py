@@ -334,6 +334,7 @@ BAD = {
     ),
     "step zero": (("step: 0.1", "step: 0"), "load.step is 0; it must be greater than 0"),
     "name twice": (("name: rough", "name: flat"), "spectrum name 'flat' stands twice"),
+    "name too long": (("name: rough", f"name: {44 * 'a'}"), "it must have at most 43 characters"),
     "name of a path": (
         ("name: rough", "name: a/b"),
         "spectra[1].name is 'a/b'; it must consist of letters, digits, _ and -",

@@ -76,7 +76,6 @@ def test_surfaces_that_the_law_has_not_seen_lie_inside_its_interval(kept):
             by_surface = student_estimate(0.0, np.std(known, ddof=1) / math.sqrt(2), 2).high
             apart = np.mean([value for seed, value in rest.items() if seed in left]) - 0.0018
             inside.append(abs(apart) < math.hypot(by_law, float(by_surface)))
-    assert len(inside) == 24
     assert np.mean(inside) >= 0.9
 
 
