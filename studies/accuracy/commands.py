@@ -21,7 +21,6 @@ from crackfront.data.provenance import provenance
 from crackfront.simulate.run import compile_solver
 from studies.accuracy import energies as synthetic
 from studies.accuracy import energy_balance as balance
-from studies.accuracy import forgetting as starts
 from studies.accuracy import independence as states
 from studies.accuracy import predictions as films
 from studies.accuracy import scans as instrument
@@ -116,13 +115,6 @@ def independence() -> None:
     """Measure errors of k from steady branches, and which states are independent; print tables."""
     announce_compilation()
     click.echo(states.independence_tables())
-
-
-@commands.command(epilog=examples("python -m studies accuracy forgetting"))
-def forgetting() -> None:
-    """Count steady states that depend on where their branch began; print a table."""
-    announce_compilation()
-    click.echo(starts.forgetting_table())
 
 
 @commands.command("energy-balance", epilog=examples("python -m studies accuracy energy-balance"))

@@ -12,10 +12,8 @@ from scipy.signal import resample
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
-from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.field.fields import Field
+from crackfront.core.cycle.record import Recorder
 from crackfront.core.outcome import Direction
-from crackfront.core.solver.relax import Solver
 from crackfront.core.variables import ADHESION, FORCE, variable
 from crackfront.simulate.costs import featured_cost, features
 from crackfront.simulate.laws import Knobs
@@ -163,7 +161,10 @@ def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
         loads = scene.penetrations[::direction]
         first = float(loads[0])
         start = forward_circle(field, first, direction, jkr.equilibrium_radius(first), length)
-        record = branch_record(field, start, loads, direction, simulation.solver)
+        recorder = Recorder(fronts=True)
+        steps = [Load(float(penetration), direction) for penetration in loads]
+        recorder.run(field, start, steps, simulation.solver)
+        record = recorder.record()
         if record.fronts is None or len(record.fronts) != scene.penetrations.size:
             raise RuntimeError(f"{simulation.label}: {record.status.value}")
         adhesion.append(record.states.apparent_work_of_adhesion[::direction])
@@ -171,16 +172,6 @@ def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
         radius.append(record.fronts[::direction])
     seconds = time.process_time() - begun
     return Branches(np.array(adhesion), np.array(force), np.array(radius), seconds)
-
-
-def branch_record(
-    field: Field, start: Array, penetrations: Array, direction: Direction, solver: Solver
-) -> CycleRecord:
-    """States and fronts of one branch over given loads."""
-    recorder = Recorder(fronts=True)
-    loads = [Load(float(penetration), direction) for penetration in penetrations]
-    recorder.run(field, start, loads, solver)
-    return recorder.record()
 
 
 def front_difference(fronts: Array, exact: Array) -> Array:

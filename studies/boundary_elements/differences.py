@@ -88,10 +88,10 @@ def differences(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Diffe
         rotated=int(front.rotated),
         force_mean=float(np.mean(force)),
         force_median=float(np.median(np.abs(force))),
-        force_rms=_rms(force),
+        force_rms=rms(force),
         force_largest=float(np.max(np.abs(force))),
         area_mean=float(np.mean(area)),
-        area_rms=_rms(area),
+        area_rms=rms(area),
         perimeter_approach=float(perimeters[0]),
         perimeter_retraction=float(perimeters[1]),
         perimeter_all=float(np.mean(apart)) / case.short_cutoff,
@@ -99,7 +99,7 @@ def differences(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Diffe
         jumps_front=sum(jump.distance >= large for jump in other),
         jumps_shared=shift.size,
         jump_shift=float(np.mean(shift)) if shift.size else 0.0,
-        jump_spread=_rms(shift) if shift.size else 0.0,
+        jump_spread=rms(shift) if shift.size else 0.0,
         pull_off_force=float(boundary.force.min() - states.force.min()),
         pull_off_penetration=float(boundary.penetration[-1] - front.end),
     )
@@ -160,6 +160,6 @@ def _compared_states(
     return theirs[kept], ours[kept]
 
 
-def _rms(values: Array) -> float:
+def rms(values: Array) -> float:
     """Root of the mean square."""
     return float(np.sqrt(np.mean(values**2)))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.touch import checked_touch
-from crackfront.core.field.fields import polar_field
+from crackfront.core.field.fields import RayField, polar_field
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
@@ -33,6 +33,7 @@ class FrontCycle:
 
     states: ContactState[Any]
     radius: Array  # fronts at the angles of the perimeters, (n_step, N_ANGLE) (reduced lateral)
+    field: RayField  # work of adhesion along its rays
     end: float  # penetration at which it lost contact (reduced vertical length)
     rotated: bool  # whether its crack turned with the angle
     seconds: float
@@ -61,6 +62,7 @@ def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = Tru
     return FrontCycle(
         states=record.states,
         radius=np.fft.irfft(np.fft.rfft(fronts, norm="forward"), n=N_ANGLE, norm="forward"),
+        field=field,
         end=record.end_load,
         rotated=rotated,
         seconds=ended - began,

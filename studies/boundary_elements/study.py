@@ -16,6 +16,7 @@ from studies.boundary_elements.averages import validity_rows
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import RUNNING, BoundaryCycle, boundary_cycle
 from studies.boundary_elements.differences import Differences, differences
+from studies.boundary_elements.edges import EdgeForces, edge_figure, edge_forces
 from studies.boundary_elements.front import FrontCycle, front_cycle
 from studies.boundary_elements.hysteresis import Hysteresis, hysteresis
 from studies.boundary_elements.parameters import ValidationParameters, validation_cases
@@ -78,6 +79,7 @@ def write_validation(
 
     rows: list[Hysteresis] = []
     loops: list[Differences] = []
+    edges: list[EdgeForces] = []
     pictured: tuple[float, ...] = ()
     for case in validation_cases(parameters):
         boundary = _cycle(folder, case, origin, progress, compute)
@@ -90,6 +92,9 @@ def write_validation(
             cracks = (True, False) if case.elastic_energy else (True,)
             loops += [differences(case, boundary, front(case, rotated)) for rotated in cracks]
             write_records(folder / "differences.nc", loops, "case", origin)
+        elif case.elastic_energy:
+            edges.append(edge_forces(case, boundary, front(case)))
+            write_records(folder / "edges.nc", edges, "case", origin)
         report = validation_report(rows, loops, parameters.short_cutoff)
         write_text(folder / "validation.md", report, sealed=True)
         rank = case.elastic_energy, -case.roll_off, case.n_point
@@ -104,6 +109,8 @@ def write_validation(
         )
     if not rows:
         raise ValueError(f"{folder} holds no finished case of this configuration; compute one")
+    if edges:
+        save_figure(edge_figure(edges), folder / "edges")
     if told := validity_rows(rows, parameters.short_cutoff):
         save_figure(hysteresis_figure(rows), folder / "hysteresis")
         write_text(folder / "validity.csv", validity_text(told))
