@@ -18,6 +18,7 @@ from crackfront.topography.densities import (
     periodic_part,
     periodogram,
     stripes,
+    unevenness,
 )
 from crackfront.topography.fitting import Instrument, seen_instrument
 from crackfront.topography.levelling import polynomial
@@ -122,6 +123,8 @@ class Scan:
     """Isotropic density of a map without its stripes, C_1D of a line; trusted or not."""
     alternatives: tuple[Density, ...]
     """This density with another window, and with one more order of polynomials taken off."""
+    unevenness: float
+    """Standard error of the density, as parts of the scan differ, relative."""
     band: Band
     """The trusted wavelengths."""
 
@@ -206,7 +209,7 @@ def scan(
         finest=min(finest, low.wavelength),
         coarsest=coarsest,
     )
-    return Scan(measurement, waves, density, alternatives, band)
+    return Scan(measurement, waves, density, alternatives, unevenness(measurement), band)
 
 
 def _alternatives(

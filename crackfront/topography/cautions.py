@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from crackfront.data.written_units import prefixed
 from crackfront.topography.bands import Scan
 from crackfront.topography.measures import MeasuredSurface
@@ -14,6 +16,9 @@ _MOST_UNMEASURED = 0.1
 
 _MOST_UNSURE = 0.5
 """How far the interval of e_el may reach above it before another scan is asked for, relative."""
+
+_DEEP = -1.0
+"""Skewness below which valleys are narrow."""
 
 _EDGE, _MATTERS = 0.05, 0.1
 """Distance of a Hurst exponent from 0 and 1, and continued part of e_el, that make it a doubt."""
@@ -41,6 +46,18 @@ def scan_notes(one: Scan, contact_radius: float | None = None) -> Iterator[str]:
         yield (
             f"{item.path}: the file does not say what its tip is, which is taken for one of "
             f"{1e9 * item.tip_radius:g} nm; --tip-radius names another."
+        )
+    deviation = item.heights - np.mean(item.heights)
+    skewness = float(np.mean(deviation**3) / np.mean(deviation**2) ** 1.5)
+    if item.tip_radius and skewness < _DEEP:
+        yield (
+            f"{item.path}: the heights have a skewness of {skewness:.2g}; what the tip does not "
+            "reach in narrow valleys is in no interval, so that e_el may be larger."
+        )
+    if one.unevenness:
+        yield (
+            f"{item.path}: parts of it differ more than those of a Gaussian surface, so that e_el "
+            f"is known to {one.unevenness:.1%} at best."
         )
     for axis in one.band.stripes:
         yield (

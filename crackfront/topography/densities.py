@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import fftfreq, rfftfreq, rfftn
+from scipy.fft import fftfreq, irfftn, rfftfreq, rfftn
 
 from crackfront.topography.levelling import Array
 from crackfront.topography.reading import Measurement
@@ -30,6 +30,13 @@ _STRIPES, _STRIPE_SIGMA = 1.5, 5.0
 _NEAR, _PEAK = 2.5, 30.0
 """Modes about a wave over which a window spreads it, and how far its power is above those of
 similar waves where it is periodic: powers of random surfaces are distributed exponentially."""
+
+_PARTS, _EDGE = 4, 24
+"""Parts along a side whose e_el is compared, and which part of a side is left out at its ends."""
+
+_PHASES = np.random.SeedSequence(20240229, spawn_key=(0x9A5E,))
+_SURROGATES, _UNEVEN = 4, 2.0
+"""Gaussian surfaces of the same waves, and ratio of the variances from which on one is not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,3 +226,28 @@ def anisotropy(waves: Periodogram, shortest: float) -> float:
     weight = waves.count * waves.power * (waves.wavevector <= 2 * np.pi / shortest)
     along_x, along_y = (float(np.sum(weight * one**2)) for one in waves.along)
     return math.sqrt(along_x / along_y)
+
+
+def unevenness(measurement: Measurement) -> float:
+    """Relative standard error of e_el as its parts differ more than those of a Gaussian surface.
+
+    That is one of the same waves with random phases. 0 where the parts differ no more.
+    """
+    shape = measurement.heights.shape
+    *others, last = zip(shape, measurement.pixels, strict=True)
+    waves = np.ix_(*(fftfreq(*one) for one in others), rfftfreq(*last))
+    root = np.sqrt(np.sqrt(sum(one**2 for one in waves)))
+    transform = root * rfftn(measurement.heights)
+
+    def scatter(turns: Array | float) -> float:
+        energy = irfftn(transform * np.exp(2j * np.pi * turns), shape) ** 2
+        for axis, count in enumerate(shape):
+            inner = np.arange(count // _EDGE, count - count // _EDGE)
+            parts = np.array_split(np.take(energy, inner, axis), _PARTS, axis)
+            energy = np.stack([np.mean(part, axis) for part in parts], axis)
+        return float(np.var(energy, ddof=1) / np.mean(energy) ** 2 / energy.size)
+
+    rng = np.random.default_rng(_PHASES)
+    found = scatter(0.0)
+    gaussian = np.mean([scatter(rng.random(transform.shape)) for _ in range(_SURROGATES)])
+    return math.sqrt(found - gaussian) if found > _UNEVEN * gaussian else 0.0

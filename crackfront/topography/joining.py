@@ -312,6 +312,8 @@ def _draws(
             logarithm = every[state] + options[rng.integers(len(options))]
             logarithm = logarithm + rng.standard_normal(item.value.size) / np.sqrt(item.modes)
             logarithm += one.measurement.missing * rng.uniform(0, 1)
+            if one.unevenness:
+                logarithm += one.unevenness * rng.standard_normal()
             first = rng.integers(_FIRST_BINS)
             highest = 2 * np.pi / one.band.shortest.wavelength * 2 ** -rng.uniform(0, _BAND_OCTAVES)
             kept = (np.arange(item.value.size) >= first) & (item.wavevector <= highest)

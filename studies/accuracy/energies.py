@@ -16,6 +16,7 @@ import numpy as np
 from scipy.ndimage import grey_dilation
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.core.synthesis import gaussian_field
@@ -42,7 +43,8 @@ class Kind:
 
     The tile is the number of sides of the scan in the surface that it is cut from. A scan is
     resolved where it holds the scales that matter to e_el; of an oblong one every other column is
-    left out, and of one of lines all but some of them.
+    left out, and of one of lines all but some of them. Heights in their standard deviation may be
+    shaped into a surface that is not Gaussian, of the same e_el.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Kind:
     oblong: bool = False
     is_line: bool = False
     tip_radius: float | None = None
+    shaped: Callable[[Array], Array] | None = None
 
     @property
     def truth(self) -> Spectrum:
@@ -174,6 +177,10 @@ KINDS = (
     Kind("three line scans", _self_affine(0.8), is_line=True),
     Kind("tip of 3 um, H = 0.4", _self_affine(0.4), resolved=False, tip_radius=3e-6),
     Kind("tip of 10 um, H = 0.4", _self_affine(0.4), resolved=False, tip_radius=10e-6),
+    Kind("plateau-honed", FILM, shaped=lambda heights: np.minimum(heights, 0.3)),
+    Kind("particles", FILM, shaped=lambda heights: np.maximum(heights, 0.3)),
+    Kind("deep scratches", FILM, shaped=lambda heights: -np.exp(-heights / 2)),
+    Kind("deep scratches, tip of 1 um", FILM, tip_radius=1e-6, shaped=lambda h: -np.exp(-h / 2)),
 )
 
 
@@ -190,6 +197,11 @@ def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     """Measured surface of a distorted map, cut from a larger one."""
     whole = kind.tile * N_POINT
     heights = gaussian_field(kind.truth, whole, kind.tile * SIDE, rng)
+    if kind.shaped:
+        weak = 1e-9  # for both to conform to the surface
+        shaped = kind.shaped(heights / heights.std())
+        asked, found = (rough_adhesion(weak * one, SIDE).e_el for one in (heights, shaped))
+        heights = shaped * math.sqrt(asked / found)
     if kind.distortion in (_bow, _form, _holes):
         heights = heights[:N_POINT, :N_POINT]
     if kind.tip_radius:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crackfront.topography.bands import scan
-from crackfront.topography.cautions import surface_notes
+from crackfront.topography.cautions import scan_notes, surface_notes
 from crackfront.topography.joining import joint_spectrum
 from studies.accuracy.energies import (
     KINDS,
@@ -152,6 +152,18 @@ def test_intervals_of_distorted_scans_hold_the_truth(found):
     assert all(one.ratio.low > 0 for one in results)
     assert np.mean([one.covers for one in results]) > 0.85
     assert np.median([abs(one.ratio.value - 1) for one in results]) < 0.2
+
+
+def test_surfaces_that_are_not_gaussian_are_told_and_known_less_well(found):
+    film, deep, scanned = (
+        found(name).surface.scans[0]
+        for name in ("self-affine, H = 0.8", "deep scratches", "deep scratches, tip of 1 um")
+    )
+    assert film.unevenness == 0.0
+    assert deep.unevenness > 0.03
+    assert [*scan_notes(film)] == []
+    assert any("differ more than those of a Gaussian" in told for told in scan_notes(deep))
+    assert any("in narrow valleys is in no interval" in told for told in scan_notes(scanned))
 
 
 def test_the_table_of_energies_has_a_row_for_each_kind(found):
