@@ -110,7 +110,7 @@ def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
 def _cell_table(fit: SweepFit) -> str:
     """Rows of k at every amplitude, and of its change with size where there is one."""
     header, rows = ["e_el/w_int", *map(str, fit.table.spectrum)], []
-    for index, energy in enumerate(fit.table.e_el_requested):
+    for index, energy in enumerate(fit.table.amplitude):
         cells = (_cell(fit, spectrum, index) for spectrum in range(fit.table.spectrum.size))
         rows.append([f"{energy:.4g}" if fit.in_range[index] else f"({energy:.4g})", *cells])
     if np.any(np.isfinite(fit.size_slope.value)):
@@ -128,7 +128,7 @@ def _sizes_table(fit: SweepFit) -> str:
     cells, rows = fit.cells, []
     for cell in np.ndindex(cells.size.shape):
         size = cells.size[cell]
-        name, energy = fit.table.spectrum[cell[0]], fit.table.e_el_requested[cell[1]]
+        name, energy = fit.table.spectrum[cell[0]], fit.table.amplitude[cell[1]]
         estimates = cells.factor, cells.law_factor, cells.infinite_factor
         factors = (_with_interval(estimate, cell) for estimate in estimates)
         known = f"{size:.2g}" if np.isfinite(size) else MISSING
@@ -263,7 +263,7 @@ def _onset_sentences(fit: SweepFit) -> Iterator[str]:
         known = np.flatnonzero(np.isfinite(factor[index]))
         if known.size == 0:
             continue
-        energy = fit.table.e_el_requested
+        energy = fit.table.amplitude
         weakest = known[np.argmin(energy[known])]
         first, largest = factor[index, weakest], np.max(factor[index, known])
         if first < ONSET * largest:
@@ -288,7 +288,7 @@ def _gap_sentences(fit: SweepFit) -> Iterator[str]:
                 "out; if they failed because of what they are, the means are biased."
             )
         if np.any(missing):
-            gaps = ", ".join(f"{value:.4g}" for value in fit.table.e_el_requested[missing])
+            gaps = ", ".join(f"{value:.4g}" for value in fit.table.amplitude[missing])
             yield (
                 f"{name}: no value at e_el = {gaps} w_int; its k averages the other amplitudes "
                 "and does not compare with the k of other spectra."
@@ -303,7 +303,7 @@ def _exponent_sentences(fit: SweepFit) -> Iterator[str]:
     for index, name in enumerate(fit.table.spectrum):
         negative = fit.in_range & (hysteresis[index] <= 0)
         if np.any(negative):
-            gaps = ", ".join(f"{value:.4g}" for value in fit.table.e_el_requested[negative])
+            gaps = ", ".join(f"{value:.4g}" for value in fit.table.amplitude[negative])
             yield (
                 f"{name}: the mean hysteresis at e_el = {gaps} w_int is not positive and is left "
                 "out of the exponent (not of k); raise the lower end of the range."
@@ -328,5 +328,5 @@ def _largest_numerical_error(fit: SweepFit) -> tuple[float, str, float] | None:
     if not np.any(np.isfinite(error)):
         return None
     spectrum, amplitude, _ = np.unravel_index(np.nanargmax(error), error.shape)
-    energy = fit.table.e_el_requested[fit.in_range][amplitude]
+    energy = fit.table.amplitude[fit.in_range][amplitude]
     return float(np.nanmax(error)), str(fit.table.spectrum[spectrum]), float(energy)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -19,11 +19,7 @@ Counts = NDArray[np.int64]
 
 _SIZE_SLOPE = "change of k per doubling of the correlation length among spectra of one shape"
 
-_ENDINGS = {
-    "standard_error": "standard error",
-    "low": "lower end of the 95% interval",
-    "high": "upper end of the 95% interval",
-}
+_BOUND = Variable("bound", ("bound",), "1", "value, its standard error, ends of its 95% interval")
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,11 +103,12 @@ class SweepFit:
 
 
 def fit_columns(fit: SweepFit) -> Iterator[tuple[Variable, NDArray[Any]]]:
-    """Arrays of a fit, an estimate as four: value, standard error and the ends of its interval.
+    """Arrays of a fit; those of estimates have the fields of one along the dimension `bound`.
 
-    Names are `exponent`, `exponent_standard_error`, `exponent_low`, `exponent_high`, the same with
-    the prefix `pooled_`, means over realisations with the prefix `cell_`, and so on.
+    Names are `exponent`, the same with the prefix `pooled_`, means over realisations with the
+    prefix `cell_`, and so on.
     """
+    yield _BOUND, np.array([item.name for item in fields(Estimate)])
     for item, values in _columns(fit.table):
         if REALISATION not in item.dims and values is not None:
             yield item, values
@@ -126,8 +123,7 @@ def _columns(record: Any, prefix: str = "", *along: str) -> Iterator[tuple[Varia
     """Columns of a record, their names with a prefix, along dimensions that all of them have."""
     for item in variables(type(record), *along):
         entry, column = getattr(record, item.name), replace(item, name=prefix + item.name)
-        is_estimate = isinstance(entry, Estimate)
-        yield column, entry.value if is_estimate else entry
-        for ending, words in _ENDINGS.items() if is_estimate else ():
-            name, text = f"{column.name}_{ending}", f"{item.long_name}: {words}"
-            yield replace(column, name=name, long_name=text), getattr(entry, ending)
+        if isinstance(entry, Estimate):
+            column = replace(column, dims=(*column.dims, *_BOUND.dims))
+            entry = np.stack(astuple(entry), axis=-1)
+        yield column, entry

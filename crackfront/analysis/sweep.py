@@ -138,7 +138,7 @@ def _amplitudes_in_range(table: SweepTable, lowest: float, highest: float) -> ND
         raise ValueError(
             f"range of e_el is {lowest} to {highest} w_int; give two positive ends, the lower first"
         )
-    requested = table.e_el_requested
+    requested = table.amplitude
     in_range = (requested >= lowest * (1 - 1e-9)) & (requested <= highest * (1 + 1e-9))
     if not np.any(in_range):
         raise ValueError(
@@ -262,7 +262,7 @@ def _size_slopes(table: SweepTable, cells: CellEstimates) -> Estimate:
     """Change of k per doubling of the correlation length at every amplitude."""
     slopes = [
         _size_slope(table, cells.factor.at((slice(None), index)), cells.count[:, index] - 1)
-        for index in range(table.e_el_requested.size)
+        for index in range(table.amplitude.size)
     ]
     return Estimate(*np.transpose([astuple(one) for one in slopes]))
 

@@ -16,11 +16,11 @@ from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variab
 SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
 """Dimensions of a sweep."""
 
+PLACE = SPECTRUM, AMPLITUDE, REALISATION
+"""What says which simulation of a sweep is meant."""
+
 _SHAPE = SPECTRUM, AMPLITUDE
 _SHAPE_TEXT = "JSON of a spectrum's parameters, where not all are self-affine"
-_CELL = SPECTRUM, AMPLITUDE, REALISATION
-
-_LENGTH = "reduced lateral length"
 
 
 @dataclass(frozen=True)
@@ -85,26 +85,26 @@ class SweepTable:
     ValueError if the shapes disagree, or a measured e_el or w_rms is not positive.
     """
 
-    spectrum: NDArray[np.str_] = variable("name of the spectrum", "", SPECTRUM)
-    short_cutoff: Array = variable("shortest wavelength", _LENGTH, SPECTRUM)
-    roll_off: Array = variable("roll-off wavelength", _LENGTH, SPECTRUM)
-    correlation_length: Array = variable("correlation length of w_loc", _LENGTH, SPECTRUM)
+    spectrum: NDArray[np.str_] = variable("name of the spectrum", "1", SPECTRUM)
+    short_cutoff: Array = variable("shortest wavelength", LATERAL, SPECTRUM)
+    roll_off: Array = variable("roll-off wavelength", LATERAL, SPECTRUM)
+    correlation_length: Array = variable("correlation length of w_loc", LATERAL, SPECTRUM)
     hurst: Array = variable("Hurst exponent", "1", SPECTRUM)
-    e_el_requested: Array = variable("requested e_el", ADHESION, AMPLITUDE)
-    e_el: Array = variable("measured e_el (chemical field: w_rms^2/4)", ADHESION, *_CELL)
-    w_rms: Array = variable("measured rms of the local work of adhesion", ADHESION, *_CELL)
-    w_appr: Array = variable("work of adhesion in approach", ADHESION, *_CELL)
-    w_retr: Array = variable("work of adhesion in retraction", ADHESION, *_CELL)
-    w_appr_from_force: Array = variable("that of a JKR fit of the approach", ADHESION, *_CELL)
-    w_retr_from_force: Array = variable("that of a JKR fit of the retraction", ADHESION, *_CELL)
-    w_appr_numerical_error: Array = variable("expected error of w_appr", ADHESION, *_CELL)
-    w_retr_numerical_error: Array = variable("expected error of w_retr", ADHESION, *_CELL)
-    contact_radius: Array = variable("middle of the steady window; else NaN", _LENGTH, *_CELL)
-    spring: Array = variable("springs of a straight front, L_kappa; else NaN", _LENGTH, *_SHAPE)
+    amplitude: Array = variable("requested e_el", ADHESION, AMPLITUDE)
+    e_el: Array = variable("measured e_el (chemical field: w_rms^2/4)", ADHESION, *PLACE)
+    w_rms: Array = variable("measured rms of the local work of adhesion", ADHESION, *PLACE)
+    w_appr: Array = variable("work of adhesion in approach", ADHESION, *PLACE)
+    w_retr: Array = variable("work of adhesion in retraction", ADHESION, *PLACE)
+    w_appr_from_force: Array = variable("that of a JKR fit of the approach", ADHESION, *PLACE)
+    w_retr_from_force: Array = variable("that of a JKR fit of the retraction", ADHESION, *PLACE)
+    w_appr_numerical_error: Array = variable("expected error of w_appr", ADHESION, *PLACE)
+    w_retr_numerical_error: Array = variable("expected error of w_retr", ADHESION, *PLACE)
+    contact_radius: Array = variable("middle of the steady window; else NaN", LATERAL, *PLACE)
+    spring: Array = variable("springs of a straight front, L_kappa; else NaN", LATERAL, *_SHAPE)
     parameters: NDArray[np.str_] | None = variable(_SHAPE_TEXT, "1", SPECTRUM, default=None)
 
     def __post_init__(self) -> None:
-        sizes = dict(zip(_CELL, (self.spectrum.size, *self.e_el.shape[1:]), strict=True))
+        sizes = dict(zip(PLACE, (self.spectrum.size, *self.e_el.shape[1:]), strict=True))
         for item in variables(SweepTable):
             values, whole = getattr(self, item.name), tuple(sizes[name] for name in item.dims)
             if values is not None and np.shape(values) != whole:

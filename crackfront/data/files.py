@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from crackfront.core.variables import Variable, variables
 from crackfront.data.bounds import TooLargeError, refuse_beyond_memory
 from crackfront.data.digests import Integrity, integrity, seal, sealed
+from crackfront.data.labels import CONVENTIONS
 from crackfront.data.packs import PACK, File
 from crackfront.data.provenance import Provenance, utc_now
 
@@ -37,20 +37,6 @@ NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 
 class UnreadableFileError(ValueError):
     """A file that is missing, damaged, or not what its reader needs."""
-
-
-def labelled(variable: Variable, values: Any) -> tuple[tuple[str, ...], Any, dict[str, str]]:
-    """A variable with its values, as xarray wants it."""
-    return variable.dims, values, variable.attributes
-
-
-def labelled_fields(record: Any, *along: str) -> dict[str, Any]:
-    """Variables of a record, its fields made by `variable`; None is left out.
-
-    The dimensions in `along` come before those that the fields state.
-    """
-    values = ((item, getattr(record, item.name)) for item in variables(type(record), *along))
-    return {item.name: labelled(item, value) for item, value in values if value is not None}
 
 
 def write_dataset(
@@ -88,7 +74,10 @@ def _stamped(
     dataset: xr.Dataset, origin: Provenance
 ) -> tuple[xr.Dataset, dict[str, dict[str, Any]]]:
     """A dataset with its origin, and how its variables are stored."""
-    stamped = dataset.assign_attrs(asdict(origin), date=utc_now())
+    date = utc_now()
+    stamped = dataset.assign_attrs(
+        asdict(origin), Conventions=CONVENTIONS, date=date, history=f"{date}: {origin.command}"
+    )
     encoding: dict[str, dict[str, Any]] = {
         str(name): {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
         for name, values in stamped.variables.items()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
@@ -16,11 +16,10 @@ from crackfront.core.variables import Variable, variables
 from crackfront.data.files import (
     PACKED,
     UnreadableFileError,
-    labelled,
-    labelled_fields,
     read_dataset,
     write_dataset,
 )
+from crackfront.data.labels import label, labelled, labelled_fields
 from crackfront.data.provenance import Provenance
 
 Record = TypeVar("Record")
@@ -50,26 +49,32 @@ def write_records_in_blocks(
     known: Sequence[Variable],
     blocks: Iterable[Block],
     origin: Provenance,
+    flags: Mapping[str, Sequence[str]],
 ) -> None:
     """Write records block by block, atomically, holding one block at a time.
 
     The dataset has the attributes, and coordinates of the dimensions that count the records; the
-    known variables are those of the records, all of these dimensions alone.
+    known variables are those of the records, all of these dimensions alone. Variables that take
+    some words alone are flags, stored as the places of the words.
     """
 
     def fill(part: Path) -> None:
         with netCDF4.Dataset(part, "a") as file:
             for place, rows in blocks:
                 for variable in known:
-                    values = _column(variable, rows)
+                    values, words = _column(variable, rows), flags.get(variable.name, ())
+                    if words:
+                        values = np.array([words.index(word) for word in values], np.int8)
                     if variable.name not in file.variables:
-                        _create(file, variable, values)
+                        _create(file, variable, values, words)
                     file[variable.name][place] = values
 
     write_dataset(path, dataset, origin, fill)
 
 
-def _create(file: netCDF4.Dataset, variable: Variable, values: NDArray[Any]) -> None:
+def _create(
+    file: netCDF4.Dataset, variable: Variable, values: NDArray[Any], flags: Sequence[str]
+) -> None:
     """Create a variable for values like those of a block, in chunks of a block's size."""
     text = values.dtype.kind == "U"
     sizes = [len(file.dimensions[name]) for name in variable.dims]
@@ -82,7 +87,7 @@ def _create(file: netCDF4.Dataset, variable: Variable, values: NDArray[Any]) -> 
         chunk_cache=values.nbytes,  # a chunk is written once; the default holds megabytes of them
         **({} if text else PACKED),
     )
-    created.setncatts(variable.attributes)
+    created.setncatts(label(variable, flags))
 
 
 def stacked(rows: Sequence[Any], along: str) -> dict[str, tuple[Any, ...]]:

@@ -117,8 +117,8 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
     breadth = float(np.mean([spectral_breadth(fit.kind, spectrum) for spectrum in spectra]))
     ends = _ends(size, 1.5)
     abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
-    shades = colormaps["viridis"](np.linspace(0, 0.88, table.e_el_requested.size))
-    for amplitude, energy in enumerate(table.e_el_requested):
+    shades = colormaps["viridis"](np.linspace(0, 0.88, table.amplitude.size))
+    for amplitude, energy in enumerate(table.amplitude):
         s = 0.0 if fit.uncorrelated else 2 * np.sqrt(energy)
         colour = to_hex(shades[amplitude])
         for index, family in enumerate(families):

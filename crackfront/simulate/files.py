@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from crackfront.analysis.table import RunMeasures
+from crackfront.analysis.table import PLACE, RunMeasures, SweepAxes
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import LineState
@@ -17,11 +17,10 @@ from crackfront.core.outcome import Status
 from crackfront.core.variables import LATERAL, STEP, Variable, variables
 from crackfront.data.files import (
     UnreadableFileError,
-    labelled,
-    labelled_fields,
     read_dataset,
     write_dataset,
 )
+from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.packs import File
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.run import PartialRun, SimulationResult
@@ -34,12 +33,20 @@ _FRONTS = {
 }
 """Fronts of a checkpoint, by their fields."""
 
+_STEP = Variable(STEP, (STEP,), "1", "number of the state")
+
+_PLACES = {one.name: replace(one, dims=()) for one in variables(SweepAxes) if one.name in PLACE}
+"""Coordinates of the curves of a simulation, along which curves are put together."""
+
 
 def simulation_dataset(result: SimulationResult) -> xr.Dataset:
     """Labelled curves and costs of one simulation of a sweep."""
     simulation = result.simulation
     dataset = cycle_dataset(result.record, simulation.geometry)
     dataset = dataset.assign(labelled_fields(result.measures))
+    place = simulation.spectrum_name, simulation.elastic_energy, simulation.realisation
+    labels = zip(PLACE, place, strict=True)
+    dataset = dataset.assign_coords({name: labelled(_PLACES[name], one) for name, one in labels})
     dataset.attrs |= {
         "simulation": simulation.label,
         "key": simulation.key,
@@ -157,6 +164,7 @@ def known_checkpoint(dataset: xr.Dataset, key: str, place: Path) -> Checkpoint |
 def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.Dataset:
     """Labelled curves of a record, of the contact of a sphere by default."""
     curves = labelled_fields(record.states, STEP) | labelled_fields(record)
+    curves[STEP] = labelled(_STEP, np.arange(record.states.direction.size))
     if record.fronts is not None:
         contact = geometry or sphere(record.fronts.shape[1])
         front, site = contact.variables
@@ -164,6 +172,7 @@ def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.D
         curves[site.name] = labelled(site, contact.sites)
     load = variables(type(record.states))[0].name
     attributes: dict[str, str | float] = {
+        "title": "states of a crack front from load to load",
         "status": record.status.name.lower(),
         "status_sentence": record.status.value,
         f"end_{load}": record.end_load,

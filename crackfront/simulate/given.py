@@ -17,7 +17,8 @@ from crackfront.core.variables import ADHESION, LATERAL, Variable
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import ADHESION as VALUES
 from crackfront.data.bounds import NUMBER, refuse_outside
-from crackfront.data.files import UnreadableFileError, labelled, read_dataset
+from crackfront.data.files import UnreadableFileError, read_dataset
+from crackfront.data.labels import label, labelled, stated_unit
 from crackfront.data.written_units import unit_value
 from crackfront.simulate.si_units import (
     SURFACES,
@@ -157,7 +158,7 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
     refuse_other_units(surface if kind == "roughness" else surface.coords.to_dataset())
     samples, pixel = _samples(surface)
     known = {"reduced": 1.0, "1": 1.0, ADHESION: WORK_OF_ADHESION}
-    unit, units = 1.0, str(surface.attrs.get("units") or "reduced")
+    unit, units = 1.0, str(stated_unit(surface.attrs) or "reduced")
     if kind == "chemical":
         if units not in known:
             raise ValueError(
@@ -200,7 +201,7 @@ def surface_array(
         axis.name: labelled(axis, pixel * (np.arange(count) - count / 2))
         for axis, count in zip(_AXES, values.shape, strict=True)
     }
-    return xr.DataArray(values, axes, item.dims, name=item.name, attrs=item.attributes | attributes)
+    return xr.DataArray(values, axes, item.dims, name=item.name, attrs=label(item) | attributes)
 
 
 def refuse_unknown_kind(kind: str) -> None:

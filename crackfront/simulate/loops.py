@@ -24,8 +24,8 @@ from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
-from crackfront.data.files import labelled, labelled_fields
 from crackfront.data.fingerprint import solver_fingerprint
+from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.provenance import __version__
 from crackfront.simulate.cases import (
     Problem,

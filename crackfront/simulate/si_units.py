@@ -20,11 +20,13 @@ from crackfront.core.variables import (
     ENERGY,
     FORCE,
     LATERAL,
+    STEP,
     VERTICAL,
     Variable,
     variables,
 )
 from crackfront.data.arguments import refuse_other_type
+from crackfront.data.labels import stated_unit, unit_attributes
 from crackfront.data.written_units import si_value, unit_value
 from crackfront.simulate.instabilities import Instabilities
 
@@ -98,7 +100,7 @@ _REDUCED = {
         *sphere(1).variables,
         *(item for kind in _KINDS for item in variables(kind)),
     )
-} | {"x": LATERAL, "y": LATERAL}
+} | {"x": LATERAL, "y": LATERAL, STEP: "1"}
 """Reduced units of everything that may be converted."""
 
 _ATTRIBUTES = dict.fromkeys((*Spectrum.length_names(), "travel"), LATERAL)
@@ -178,7 +180,7 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
 def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
     """Raise ValueError if a variable is unknown or not in reduced units; places need no units."""
     for name, part in as_dataset(data).variables.items():
-        given, needed = part.attrs.get("units"), _reduced_unit(str(name))
+        given, needed = stated_unit(part.attrs), _reduced_unit(str(name))
         plain = "reduced" if needed in (LATERAL, VERTICAL) else needed
         if given not in (needed, plain) and not (name in ("x", "y") and given in (None, "", "1")):
             raise ValueError(
@@ -214,6 +216,7 @@ def _converted(
         return {
             name: value * change(_ATTRIBUTES[name], None)[0] if name in _ATTRIBUTES else value
             for name, value in part.attrs.items()
+            if name != "reduced_unit"
         }
 
     parts = {}
@@ -222,7 +225,7 @@ def _converted(
         factor, unit = change(_reduced_unit(str(name)), part)
         # Counts and texts have no scale, and keep their types.
         values = part.values if factor == 1.0 else part.values * factor
-        parts[name] = (part.dims, values, attributes(part) | {"units": unit})
+        parts[name] = (part.dims, values, attributes(part) | unit_attributes(unit))
     found = xr.Dataset(parts, attrs=attributes(dataset)).set_coords([*dataset.coords])
     if isinstance(data, xr.DataArray):
         return found[data.name]
@@ -253,7 +256,7 @@ def _si(scales: units.Scales) -> dict[str, tuple[float, str]]:
 
 def _unit_value(part: xr.DataArray, needed: str) -> float:
     """Value of the units of a variable in those that are needed."""
-    if (given := part.attrs.get("units")) == needed:
+    if (given := stated_unit(part.attrs)) == needed:
         return 1.0
     try:
         return unit_value(str(given), needed)

@@ -15,15 +15,16 @@ from crackfront.analysis.report import fit_notes, fit_table
 from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import FIT_DEFINITION
-from crackfront.data.files import labelled, write_dataset, write_text
+from crackfront.data.files import write_dataset, write_text
+from crackfront.data.labels import labelled
 from crackfront.data.provenance import Provenance, utc_now
 
 
 def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Path, Path]:
     """Write `fit.nc`, `fit.json` and `fit.md`, and return their paths."""
     paths = folder / "fit.nc", folder / "fit.json", folder / "fit.md"
-    columns = list(fit_columns(fit))
     about = {
+        "title": f"fit of adhesion hysteresis, {fit.kind}",
         "definition": FIT_DEFINITION,
         "steady_definition": STEADY_DEFINITION,
         "lowest_elastic_energy": fit.lowest_elastic_energy,
@@ -33,11 +34,11 @@ def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Pa
         "factor_of_the_paper": PAPER_FACTOR,
         "factor_of_perturbation_theory": PERTURBATION_FACTOR,
     }
-    variables = {item.name: labelled(item, values) for item, values in columns}
-    write_dataset(paths[0], xr.Dataset(variables, attrs=about), origin)
+    columns = {item.name: labelled(item, values) for item, values in fit_columns(fit)}
+    write_dataset(paths[0], xr.Dataset(columns, attrs=about), origin)
     entries = {
-        item.name: {"dims": item.dims, "values": _plain(values), **item.attributes}
-        for item, values in columns
+        name: {"dims": dims, "values": _plain(values), **attributes}
+        for name, (dims, values, attributes) in columns.items()
     }
     content = {
         "about": about,

@@ -15,6 +15,7 @@ from xarray import Dataset
 
 from crackfront.data.arguments import refuse_other_type
 from crackfront.data.files import read_dataset
+from crackfront.data.labels import flag_words
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.data.section import movable_text
 from crackfront.sweep.configuration import load_configuration, results_folder
@@ -69,7 +70,7 @@ def without_value(table: Path, statuses: Mapping[str, int]) -> tuple[int, str]:
     ended = Counter(
         str(sentence)
         for status, sentence in zip(
-            found.status.values.flat, found.status_sentence.values.flat, strict=True
+            flag_words(found.status).flat, found.status_sentence.values.flat, strict=True
         )
         if str(status) not in COMPLETE
     )

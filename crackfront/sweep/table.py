@@ -32,10 +32,12 @@ from crackfront.analysis.table import (
     SweepTable,
 )
 from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.outcome import Status
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.variables import ADHESION, variables
-from crackfront.data.files import UnreadableFileError, labelled_fields, read_dataset
+from crackfront.data.files import UnreadableFileError, read_dataset
 from crackfront.data.fingerprint import fingerprint
+from crackfront.data.labels import flag_words, labelled_fields
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import Block, write_records_in_blocks
 from crackfront.simulate.run import SimulationResult
@@ -56,6 +58,9 @@ _WINDOW = ("lowest_radius", "highest_radius")
 
 NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
+
+_STATUSES = (*(one.name.lower() for one in Status), NO_STEADY_PART, "refused", "defect")
+"""What `status` may be; the file of a sweep has their places."""
 
 _OPTIONAL = ("parameters",)
 """Columns of sweeps that have spectra which are not self-affine."""
@@ -83,7 +88,7 @@ def write_hysteresis(
                 statuses.update(row.status for row in block)
                 yield (*cell, slice(start, stop)), block
 
-    write_records_in_blocks(path, dataset, known, blocks(), origin)
+    write_records_in_blocks(path, dataset, known, blocks(), origin, {"status": _STATUSES})
     return statuses
 
 
@@ -92,11 +97,9 @@ def read_table(path: Path) -> SweepTable:
 
     UnreadableFileError if the file is missing, truncated or that of something else.
     """
-    names = set(SweepTable.__dataclass_fields__) - {"contact_radius", *_OPTIONAL}
-    sources = {name: name for name in sorted(names)}
-    sources["e_el_requested"] = AMPLITUDE
-    dataset = _read(path, (*sources.values(), *_WINDOW))
-    columns = {name: np.asarray(dataset[source]) for name, source in sources.items()}
+    names = sorted(set(SweepTable.__dataclass_fields__) - {"contact_radius", *_OPTIONAL})
+    dataset = _read(path, (*names, *_WINDOW))
+    columns = {name: np.asarray(dataset[name]) for name in names}
     columns |= {name: np.asarray(dataset[name]) for name in _OPTIONAL if name in dataset}
     columns["contact_radius"] = np.mean([dataset[name] for name in _WINDOW], axis=0)
     columns["spectrum"] = columns["spectrum"].astype(np.str_)
@@ -105,13 +108,15 @@ def read_table(path: Path) -> SweepTable:
 
 def read_statuses(path: Path) -> Counter[str]:
     """Number of simulations of every status in the file of a sweep; as :func:`read_table`."""
-    return Counter(_read(path, ("status",))["status"].values.ravel().tolist())
+    return Counter(flag_words(_read(path, ("status",)).status).ravel().tolist())
 
 
 def _read(path: Path, names: Collection[str]) -> xr.Dataset:
-    """Dataset of a file with variables that it must have."""
+    """Dataset of a file with variables that it must have, `status` with the words of its flags."""
     dataset = read_dataset(path, names)
     missing = [name for name in names if name not in dataset]
+    if "status" in dataset and "flag_meanings" not in dataset.status.attrs:
+        missing.append("the flags of status")
     if missing:
         raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; aggregate the sweep again")
     return dataset

@@ -10,7 +10,8 @@ import numpy as np
 import xarray as xr
 
 from crackfront.core.variables import Variable, variables
-from crackfront.data.files import UnreadableFileError, labelled, labelled_fields, read_dataset
+from crackfront.data.files import UnreadableFileError, read_dataset
+from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.records import read_records, stacked
 from studies.accuracy import averages
 from studies.accuracy.scenes import HELD_OUT, SCENES, Progress, Scene, Setting

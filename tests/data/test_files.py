@@ -14,7 +14,7 @@ import xarray as xr
 
 from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import fit_sweep
-from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.analysis.table import PLACE, SweepAxes, SweepRow
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState
@@ -22,6 +22,7 @@ from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
 from crackfront.data.files import UnreadableFileError, date_back, write_dataset, write_text
+from crackfront.data.labels import flag_words
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.files import (
     cycle_dataset,
@@ -85,12 +86,23 @@ def test_a_cycle_without_states_is_read_back(tmp_path, result):
     assert_same(read_cycle(tmp_path / "cycle.nc"), record)
 
 
-def test_every_variable_says_what_it_is_and_in_which_units(tmp_path, result):
+def assert_follows_cf(dataset):
+    """A file has what the CF conventions want, with units that udunits knows."""
+    assert dataset.Conventions == "CF-1.11"
+    assert dataset.history == f"{dataset.date}: crackfront test"
+    assert dataset.title
+    for name, values in dataset.variables.items():
+        assert values.attrs["units"] in ("1", "rad", "s", "byte"), name
+        assert values.attrs["long_name"], name
+
+
+def test_a_curve_says_what_it_is_in_which_units_and_which_simulation(tmp_path, result):
     write_dataset(tmp_path / "one.nc", simulation_dataset(result), ORIGIN)
     dataset = xr.load_dataset(tmp_path / "one.nc")
-    for name, values in dataset.variables.items():
-        assert values.attrs["units"], name
-        assert values.attrs["long_name"], name
+    assert_follows_cf(dataset)
+    assert dataset.force.attrs["reduced_unit"] == "pi w_int R"
+    labels = {name: dataset.coords[name].item() for name in PLACE}
+    assert labels == {"spectrum": "flat", "amplitude": 0.1, "realisation": 0}
     assert dataset["radius"].dims == ("step", "angle")
     assert dataset["angle"].values == pytest.approx(2 * np.pi * np.arange(32) / 32)
 
@@ -286,7 +298,9 @@ def test_the_file_of_a_sweep_has_everything_under_its_labels(hysteresis, results
     assert dataset["w_rms_requested"].values == pytest.approx(2 * np.sqrt(SWEEP.elastic_energies))
     expected = {item.name for kind in (SweepAxes, SweepRow) for item in variables(kind)}
     assert set(dataset.variables) == expected - {"parameters"}
-    assert all(values.attrs["units"] for values in dataset.variables.values())
+    assert_follows_cf(dataset)
+    words = dataset.status.flag_meanings.split()
+    assert dataset.status.flag_values.tolist() == [*range(len(words))]
 
 
 def test_the_hysteresis_is_the_difference_of_the_branches(hysteresis):
@@ -294,8 +308,8 @@ def test_the_hysteresis_is_the_difference_of_the_branches(hysteresis):
     assert np.array_equal(
         dataset["hysteresis"], dataset["w_retr"] - dataset["w_appr"], equal_nan=True
     )
-    complete = dataset["status"] == "lost_contact"
-    assert np.all(dataset["hysteresis"].values[complete.values] > 0)
+    complete = flag_words(dataset["status"]) == "lost_contact"
+    assert np.all(dataset["hysteresis"].values[complete] > 0)
 
 
 def test_every_value_states_its_statistical_and_its_numerical_error(hysteresis, results):
@@ -320,7 +334,8 @@ def test_a_failed_simulation_has_a_status_and_a_sentence_but_no_values(hysteresi
     dataset = xr.load_dataset(hysteresis[0])
     failed = dataset.sel(spectrum="flat", amplitude=0.02, realisation=1)
     still = dataset.sel(spectrum="rough", amplitude=0.1, realisation=0)
-    assert (failed["status"], still["status"]) == ("step_limit", "no_steady_part")
+    found = [flag_words(one["status"]) for one in (failed, still)]
+    assert found == ["step_limit", "no_steady_part"]
     assert failed["status_sentence"] == Status.STEP_LIMIT.value
     assert "steady states in approach" in str(still["status_sentence"].values)
     for name in ("w_appr", "w_retr", "hysteresis", "w_appr_from_force", "pull_off_force"):
@@ -332,7 +347,7 @@ def test_the_table_of_a_fit_is_what_the_file_holds(hysteresis):
     table = read_table(hysteresis[0])
     dataset = xr.load_dataset(hysteresis[0])
     assert list(table.spectrum) == ["flat", "rough"]
-    assert np.array_equal(table.e_el_requested, dataset["amplitude"])
+    assert np.array_equal(table.amplitude, dataset["amplitude"])
     assert np.array_equal(table.w_appr, dataset["w_appr"], equal_nan=True)
     assert table.correlation_length[0] == pytest.approx(0.1 * 4 / 3)
 
@@ -347,8 +362,11 @@ def test_a_fit_is_written_for_machines_and_for_people(tmp_path, hysteresis):
     netcdf, plain, text = write_fit(tmp_path / "fit", fit, ORIGIN)
     dataset = xr.load_dataset(netcdf)
     content = json.loads(plain.read_text(encoding="utf-8"))
-    assert np.array_equal(dataset["factor"], fit.spectra.factor.value)
-    assert content["columns"]["factor"]["values"] == list(fit.spectra.factor.value)
+    assert_follows_cf(dataset)
+    assert dataset.factor.dims == ("spectrum", "bound")
+    errors = dataset.factor.sel(bound="standard_error").values.tolist()
+    assert errors == fit.spectra.factor.standard_error.tolist()
+    assert errors == [row[1] for row in content["columns"]["factor"]["values"]]
     assert content["about"]["lowest_elastic_energy"] == 0.02
     assert set(content["columns"]) == set(dataset.variables)
     assert "pooled" in text.read_text(encoding="utf-8")

@@ -38,7 +38,7 @@ def table(rng):
         roll_off=roll_off,
         hurst=hurst,
         correlation_length=np.array([spectrum.correlation_length for spectrum in spectra]),
-        e_el_requested=amplitudes,
+        amplitude=amplitudes,
         e_el=energy,
         w_rms=2 * np.sqrt(energy),
         w_appr=w_appr,
@@ -125,7 +125,7 @@ def line_table():
         roll_off=cutoff,
         hurst=np.ones(6),
         correlation_length=length,
-        e_el_requested=energy,
+        amplitude=energy,
         e_el=whole,
         w_rms=2 * np.sqrt(whole),
         w_appr=1 - whole - k * whole,
@@ -196,7 +196,7 @@ def test_every_positive_mean_lies_within_the_axes_and_others_are_arrows(table, f
 def test_the_labels_of_a_narrow_range_of_disorder_do_not_meet(table):
     arrays = {item.name: getattr(table, item.name) for item in fields(table)}
     strongest = {name: one[:, 2:] for name, one in arrays.items() if np.ndim(one) > 1}
-    narrow = replace(table, **strongest, e_el_requested=table.e_el_requested[2:])
+    narrow = replace(table, **strongest, amplitude=table.amplitude[2:])
     figure = hysteresis_figure(
         fit_sweep(narrow, lowest_elastic_energy=0.05, highest_elastic_energy=0.15)
     )

@@ -1,0 +1,64 @@
+"""What variables say of themselves in files and datasets, by the CF conventions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crackfront.core.variables import Variable, variables
+
+CONVENTIONS = "CF-1.11"
+
+_KNOWN_TO_UDUNITS = re.compile(r"1|(byte|rad|s|m|N|Pa|J)(\^?-?\d)?( (/ )?m(\^?-?\d)?)?")
+
+
+def unit_attributes(unit: str) -> dict[str, str]:
+    """Attributes for a unit: `units`, and `reduced_unit` where the numbers are multiples of one.
+
+    Examples
+    --------
+    >>> unit_attributes("J / m^2"), unit_attributes("w_int")
+    ({'units': 'J / m^2'}, {'units': '1', 'reduced_unit': 'w_int'})
+    """
+    if _KNOWN_TO_UDUNITS.fullmatch(unit):
+        return {"units": unit}
+    return {"units": "1", "reduced_unit": unit}
+
+
+def stated_unit(attributes: Mapping[Any, Any]) -> Any:
+    """The unit that attributes state, a reduced one where there is one; None without any."""
+    given = attributes.get("units")
+    return attributes.get("reduced_unit", given) if given == "1" else given
+
+
+def label(variable: Variable, flags: Sequence[str] = ()) -> dict[str, Any]:
+    """Attributes of a variable; flags are the words that its values 0, 1, ... mean."""
+    attributes: dict[str, Any] = variable.attributes | unit_attributes(variable.units)
+    if flags:
+        attributes["flag_values"] = np.arange(len(flags), dtype=np.int8)
+        attributes["flag_meanings"] = " ".join(flags)
+    return attributes
+
+
+def flag_words(values: xr.DataArray) -> NDArray[np.str_]:
+    """The words that the values of a variable with flags mean."""
+    return np.array(values.attrs["flag_meanings"].split())[values.values]
+
+
+def labelled(variable: Variable, values: Any) -> tuple[tuple[str, ...], Any, dict[str, Any]]:
+    """A variable with its values, as xarray wants it."""
+    return variable.dims, values, label(variable)
+
+
+def labelled_fields(record: Any, *along: str) -> dict[str, Any]:
+    """Variables of a record, its fields made by `variable`; None is left out.
+
+    The dimensions in `along` come before those that the fields state.
+    """
+    values = ((item, getattr(record, item.name)) for item in variables(type(record), *along))
+    return {item.name: labelled(item, value) for item, value in values if value is not None}
