@@ -1,12 +1,16 @@
 """The pages: what they show runs, and says what is true."""
 
 import doctest
+import json
 import re
+import tarfile
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from matplotlib import pyplot
 
+import crackfront as cf
 from crackfront import __all__
 from crackfront.cli import main
 
@@ -25,13 +29,14 @@ def _elsewhere(tmp_path, monkeypatch):
 
 
 def run_examples(page):
-    """Run the examples of a page, of which there must be ten or more, and compare their output."""
+    """Run the ten examples of a page or more, and compare their output; the names they define."""
     # The end of a block would pass for output.
     text = page.read_text().replace("```", "")
     test = doctest.DocTestParser().get_doctest(text, {}, page.name, str(page), 0)
-    found = doctest.DocTestRunner().run(test)
+    found = doctest.DocTestRunner().run(test, clear_globs=False)
     assert found.attempted >= 10
     assert found.failed == 0
+    return test.globs
 
 
 def test_the_page_of_the_core_gives_what_it_shows():
@@ -43,6 +48,25 @@ def test_the_tutorial_gives_what_it_shows():
     run_examples(DOCS / "tutorial.md")
     assert Path("loop.png").stat().st_size > 10_000
     assert Path("loop.nc").is_file()
+
+
+@pytest.mark.usefixtures("_elsewhere")
+def test_the_page_of_sweeps_computes_the_fit_and_puts_curves_together():
+    cf.sweep(ROOT / "config/test.yaml", "results/test", progress=False)
+    main(["fit", str(ROOT / "config/test.yaml")], standalone_mode=False)
+    shown = run_examples(DOCS / "sweeps.md")
+    stored = json.loads(Path("results/test/fit.json").read_text())["columns"]
+    for name, found in (("factor", shown["k"]), ("exponent", shown["exponent"])):
+        assert found.item() == pytest.approx(stored[f"pooled_{name}"]["values"][0], rel=1e-12)
+    with tarfile.open(*Path("results/test/curves").glob("flat.*.tar")) as pack:
+        pack.extractall(filter="data")
+    curves = [xr.load_dataset(path) for path in sorted(Path().glob("flat-e0.1-*.nc"))]
+    # What open_mfdataset does with them, which needs dask.
+    joined = xr.combine_nested(curves, concat_dim="realisation", join="outer")
+    for number, curve in enumerate(curves):
+        found = joined.force.sel(realisation=number)
+        assert (found.spectrum, found.amplitude) == ("flat", 0.1)
+        assert found.dropna("step").values.tolist() == curve.force.values.tolist()
 
 
 @pytest.mark.usefixtures("_elsewhere")

@@ -76,7 +76,10 @@ def _stamped(
     """A dataset with its origin, and how its variables are stored."""
     date = utc_now()
     stamped = dataset.assign_attrs(
-        asdict(origin), Conventions=CONVENTIONS, date=date, history=f"{date}: {origin.command}"
+        {"title": "results of crackfront"} | dataset.attrs | asdict(origin),
+        Conventions=CONVENTIONS,
+        date=date,
+        history=f"{date}: {origin.command}",
     )
     encoding: dict[str, dict[str, Any]] = {
         str(name): {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
