@@ -6,7 +6,6 @@ import os
 import platform
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 
 from crackfront.data.provenance import provenance
 
@@ -59,14 +58,6 @@ def described_machine() -> str:
     """One sentence: processor, cores, Python, version and commit."""
     origin = provenance()
     return (
-        f"Machine: {_processor()}, {os.cpu_count()} cores, Python {platform.python_version()}; "
+        f"Machine: {origin.processor}, {os.cpu_count()} cores, Python {platform.python_version()}; "
         f"crackfront {origin.crackfront_version}, commit {origin.git_commit}."
     )
-
-
-def _processor() -> str:
-    """Name of the processor, or its kind where the system does not say."""
-    listed = Path("/proc/cpuinfo")
-    lines = listed.read_text(encoding="utf-8").splitlines() if listed.exists() else []
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()

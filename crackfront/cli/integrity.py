@@ -20,6 +20,7 @@ def verify(place: Path, as_json: bool) -> None:
     The exit code is 1 where a file is damaged, or missing although a row or a list names it.
     """
     from crackfront.data.digests import Integrity
+    from crackfront.sweep.journal import mixture_sentence
     from crackfront.sweep.verification import verification
 
     found = verification(place)
@@ -35,9 +36,12 @@ def verify(place: Path, as_json: bool) -> None:
         *(f"damaged: {name}" for name in found.damaged),
         *(f"missing: {name}" for name in found.missing),
     ]
+    if sentence := mixture_sentence(found.arithmetic):
+        lines.append(sentence)
     if is_whole := not (found.damaged or found.missing):
         lines.append(f"{place}: nothing is damaged or missing")
     content = {"counts": counts, "damaged": found.damaged, "missing": found.missing}
+    content["arithmetic"] = found.arithmetic
     echo_answer(content, lines, as_json=as_json)
     if not is_whole:
         raise click.ClickException(

@@ -26,8 +26,8 @@ def aggregate(configuration: Path, output: Path | None) -> None:
     from crackfront.sweep.library import opened, without_value
 
     sweep, store, origin = opened(configuration, output)
-    path, statuses = store.aggregate(sweep, origin)
-    failed, sentence = without_value(path, statuses)
+    path = store.aggregate(sweep, origin)
+    failed, sentence = without_value(path)
     if failed > sweep.failed_fraction * sweep.n_simulation:
         raise click.ClickException(
             f"{sentence}; failed_fraction of the configuration allows {sweep.failed_fraction:g}"

@@ -70,6 +70,7 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "realisations": sweep.n_realisation,
         "simulations": sweep.n_simulation,
         "missing": len(inventory.missing),
+        "arithmetic": inventory.arithmetic,
         "shards": [shard.name for shard in shards],
         "expected": expected,
         "doubts": (doubtful := [*doubts(sweep)]),
@@ -87,6 +88,8 @@ def _plan_lines(
     expected: Mapping[str, Sequence[Expectation]],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
+    from crackfront.sweep.journal import mixture_sentence
+
     total = sweep.n_simulation // len(sweep.spectra)
     spectra, left = [], []
     for item in sweep.spectra:
@@ -113,8 +116,7 @@ def _plan_lines(
         spectra,
     )
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
-    if sentence := inventory.stale_sentence():
-        yield sentence
+    yield from filter(None, (inventory.stale_sentence(), mixture_sentence(inventory.arithmetic)))
     yield ""
     yield from table(
         ("to run", "shards", "simulations", "core hours", "longest s", "MB a rank", "MB disk"),

@@ -20,7 +20,7 @@ from crackfront.data.provenance import Provenance
 _COSTS = {"s", "byte"}
 """Units of what no two runs share."""
 
-_OF_ONE_RUN = {"date", "key", "seconds", "cpu_seconds", "sweep_fingerprint"}
+_OF_ONE_RUN = {"date", "history", "key", "seconds", "cpu_seconds", "sweep_fingerprint"}
 _OF_ONE_RUN |= {item.name for item in fields(Provenance)}
 """Attributes that say where, when and how a file was made."""
 

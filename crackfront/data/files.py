@@ -18,7 +18,6 @@ import xarray as xr
 
 from crackfront.data.bounds import TooLargeError, refuse_beyond_memory
 from crackfront.data.digests import Integrity, integrity, seal, sealed
-from crackfront.data.labels import CONVENTIONS
 from crackfront.data.packs import PACK, File
 from crackfront.data.provenance import Provenance, utc_now
 
@@ -75,12 +74,9 @@ def _stamped(
 ) -> tuple[xr.Dataset, dict[str, dict[str, Any]]]:
     """A dataset with its origin, and how its variables are stored."""
     date = utc_now()
-    stamped = dataset.assign_attrs(
-        {"title": "results of crackfront"} | dataset.attrs | asdict(origin),
-        Conventions=CONVENTIONS,
-        date=date,
-        history=f"{date}: {origin.command}",
-    )
+    stamped = dataset.assign_attrs({"title": "results of crackfront"} | dataset.attrs)
+    stamped.attrs |= {"Conventions": "CF-1.11", "history": f"{date}: {origin.command}"}
+    stamped.attrs |= asdict(origin) | {"date": date}
     encoding: dict[str, dict[str, Any]] = {
         str(name): {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
         for name, values in stamped.variables.items()

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from crackfront.core.variables import Variable, variables
 
-CONVENTIONS = "CF-1.11"
-
 _KNOWN_TO_UDUNITS = re.compile(r"1|(byte|rad|s|m|N|Pa|J)(\^?-?\d)?( (/ )?m(\^?-?\d)?)?")
 
 

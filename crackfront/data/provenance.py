@@ -1,27 +1,62 @@
-"""Where a result comes from: version, sources, command and moment."""
+"""Where a result comes from: version, sources, command, machine and moment."""
 
 from __future__ import annotations
 
 import functools
+import hashlib
 import platform
 import shlex
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, distributions, version
 from pathlib import Path
 
 from crackfront.data.fingerprint import solver_fingerprint
 
 PACKAGE = Path(__file__).parents[1]
 
+_OF_BITS = ("numpy", "scipy", "numba", "llvmlite", "rocket-fft")
+"""Packages whose versions may decide the last bits of a result."""
 
 try:
     __version__ = version("crackfront")
 except PackageNotFoundError:
     __version__ = "0+unknown"
 """Version of the package, which setuptools-scm took from git."""
+
+
+@functools.cache
+def _processor() -> str:
+    """Model of the processor, or its kind where the system does not say."""
+    listed = Path("/proc/cpuinfo")
+    lines = listed.read_text(encoding="utf-8").splitlines() if listed.exists() else []
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
+@functools.cache
+def _arithmetic() -> str:
+    """What numba compiles for, what numpy finds beyond what it needs, and versions."""
+    import numpy as np
+    from llvmlite.binding import get_host_cpu_name
+    from numba import config
+
+    compiled = config.CPU_NAME or get_host_cpu_name(), config.CPU_FEATURES or ""
+    found = np.show_config(mode="dicts")["SIMD Extensions"].get("found", ())
+    versions = (f"{name} {version(name)}" for name in _OF_BITS)
+    return ", ".join([" ".join(filter(None, (*compiled, *found))), *versions])
+
+
+@functools.cache
+def _packages() -> str:
+    """Twelve hexadecimal digits of the lock of a clone, or of what is installed."""
+    lock = PACKAGE.with_name("requirements.lock")
+    if lock.exists():
+        return hashlib.sha256(lock.read_bytes()).hexdigest()[:12]
+    installed = sorted({(one.name, one.version) for one in distributions()})
+    return hashlib.sha256(repr(installed).encode()).hexdigest()[:12]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +70,22 @@ class Provenance:
     """Changes with every source that determines a result."""
     command: str
     """Command line of the process, the program without its folder."""
-    platform: str
-    """Operating system, machine and Python."""
     configuration: str
     """Text of the configuration file, empty where there was none."""
+    platform: str = f"{platform.platform()}, Python {platform.python_version()}"
+    """Operating system, machine and Python."""
+    processor: str = field(default_factory=_processor)
+    """Model of the processor that computed the result."""
+    arithmetic: str = field(default_factory=_arithmetic)
+    """What decides the last bits beside sources and parameters: the kind of processor that numba
+    compiles for, the instruction sets that numpy uses, and the versions of what computes."""
+    packages: str = field(default_factory=_packages)
+    """Digits of requirements.lock, or without that file of the versions of all packages."""
+
+    def here(self) -> Provenance:
+        """The same with the machine of this process, which may be a rank elsewhere."""
+        sources = self.crackfront_version, self.git_commit, self.solver_fingerprint
+        return Provenance(*sources, self.command, self.configuration)
 
 
 def provenance(configuration: str = "") -> Provenance:
@@ -51,7 +98,6 @@ def provenance(configuration: str = "") -> Provenance:
         git_commit=git_commit(),
         solver_fingerprint=solver_fingerprint(),
         command=shlex.join([name, *sys.argv[1:]]),
-        platform=f"{platform.platform()}, Python {platform.python_version()}",
         configuration=configuration,
     )
 

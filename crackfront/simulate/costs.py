@@ -45,7 +45,7 @@ _PROCESS_BYTES = 300e6
 _TILES, _SITE_BYTES = 4, 512
 """Tiles in memory while one is made, and bytes a site while the front moves (docs/needs.md)."""
 
-_FILE_BYTES, _STATE_BYTES, _FRONT_PART = 22e3, 104.0, 0.72
+_FILE_BYTES, _STATE_BYTES, _FRONT_PART = 27e3, 112.0, 0.72
 """Bytes of a file and its row without states, of a state, and what compression leaves of fronts."""
 
 _RECORD_BYTES = 1e3

@@ -61,11 +61,6 @@ def simulation_dataset(result: SimulationResult) -> xr.Dataset:
     return dataset
 
 
-def read_cycle(path: Path) -> CycleRecord:
-    """Record of one cycle, or `UnreadableFileError`."""
-    return cycle_record(read_dataset(path), path)
-
-
 def read_simulation(path: File, simulation: Simulation) -> SimulationResult:
     """Stored result of a simulation; UnreadableFileError if missing, damaged or of another one."""
     dataset = read_dataset(path)
@@ -147,8 +142,7 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
         If the file is missing, damaged, or no netCDF.
     """
     dataset = read_dataset(Path(path))
-    names = [item.name for item in SURFACES.values()]
-    single = [name for name in names if [*dataset] == [name]]
+    single = [one.name for one in SURFACES.values() if [*dataset] == [one.name]]
     return dataset[single[0]] if single else dataset
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from xarray import DataArray, Dataset
 
 from crackfront.analysis.estimate import with_error
-from crackfront.analysis.steady import SteadyAdhesion, steady_adhesion
+from crackfront.analysis.steady import SteadyAdhesion, SteadyMeasures, steady_adhesion
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -39,18 +39,6 @@ from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import stated_error
 
 _KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
-
-_MEASURES = (
-    "w_appr",
-    "w_retr",
-    "w_appr_error",
-    "w_retr_error",
-    "hysteresis",
-    "hysteresis_error",
-    "lowest_radius",
-    "highest_radius",
-)
-"""Measures of a loop, named as in the table of a sweep."""
 
 
 def run_loop(
@@ -100,7 +88,7 @@ def run_loop(
     xarray.Dataset
         The curves over `step`, the fronts `radius(step, angle)` or `position(step, y)`, and
         measures of the whole: `e_el`, `w_rms`, `correlation_length`, of a sphere `w_appr`,
-        `w_retr`, their errors and `hysteresis`. The last four are NaN where the loop has no steady
+        `w_retr` and what else the table of a sweep has of them, NaN where the loop has no steady
         part. The attribute `result` states them and the forces of jump-in and pull-off,
         `steady_sentence` why they are NaN.
 
@@ -166,7 +154,7 @@ def loop_dataset(record: CycleRecord, problem: Problem) -> Dataset:
         if simulation is not None and not steady.sentence:
             numerical = stated_error(simulation, steady, measures.correlation_length)
         values["w_appr_numerical_error"], values["w_retr_numerical_error"] = numerical
-        values |= {name: getattr(steady, name) for name in _MEASURES}
+        values |= {item.name: getattr(steady, item.name) for item in variables(SteadyMeasures)}
         sentences = {"result": result_sentence(record, steady), "steady_sentence": steady.sentence}
     labels = sentences | curves.attrs | {"kind": measures.kind}
     whole = curves.assign(

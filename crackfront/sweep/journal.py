@@ -16,8 +16,8 @@ import re
 import secrets
 import socket
 import time
-from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -62,6 +62,8 @@ class Entry:
     """Its row, if rows have the same definition now."""
     curve_digest: str = ""
     """Digest of its curve, empty where it has none."""
+    arithmetic: str = ""
+    """That of its origin; empty where an earlier version stored it."""
 
     def files(self, curve: bytes = b"") -> dict[str, bytes]:
         """Files of a pack, by their names."""
@@ -215,23 +217,34 @@ def _write(kept: Iterable[Member], path: Path) -> None:
     finish(path)
 
 
-def lost_curves(folder: Path) -> list[str]:
-    """Curves that rows in the packs of a folder name and that are in none of them."""
+def lost_curves(folder: Path) -> tuple[list[str], Counter[str]]:
+    """Curves that rows in packs of a folder name and none has, and the rows of each arithmetic."""
     names: set[str] = set()
     wanted: list[str] = []
+    found: Counter[str] = Counter()
     for member in (one for path in pack_paths(folder) for one in members(path)[0]):
         names.add(member.name)
-        if member.name.endswith(_ROW):
-            entry = _entry(member)
-            wanted += [entry.stem + _CURVE] if entry is not None and entry.curve_digest else []
-    return [name for name in wanted if name not in names]
+        if member.name.endswith(_ROW) and (entry := _entry(member)) is not None:
+            wanted += [entry.stem + _CURVE] if entry.curve_digest else []
+            found[entry.arithmetic] += 1
+    return [name for name in wanted if name not in names], found
+
+
+def mixture_sentence(arithmetic: Mapping[str, int]) -> str:
+    """That simulations are of several processors or packages; empty where they are of one."""
+    if len(arithmetic) < 2:
+        return ""
+    listed = "; ".join(
+        f"{count} of {name or 'an earlier version'}" for name, count in arithmetic.items()
+    )
+    return f"stored simulations differ in their origin, and may in their last digits: {listed}"
 
 
 def _entry(member: Member) -> Entry | None:
     """Entry in the file of a row, None where it is of no use; an older row is left out of it."""
     if (content := member.content()) is None:
         return None
-    values = json.loads(content)
+    values = {"arithmetic": ""} | json.loads(content)
     if not values.keys() >= Entry.__dataclass_fields__.keys():
         return None  # of another version
     values = {name: values[name] for name in Entry.__dataclass_fields__}
@@ -261,14 +274,14 @@ class RowIndex:
             if member.name.endswith(_ROW):
                 self._latest[name] = member
 
-    def row(self, simulation: Simulation) -> SweepRow | None:
-        """Row of a simulation, if there is one and its curve is as the row says."""
+    def entry(self, simulation: Simulation) -> Entry | None:
+        """Entry of a simulation with a row, if there is one and its curve is as that says."""
         for member in self._of(simulation, _ROW):
             entry = _entry(member)
             if entry is None or entry.row is None:
                 continue
             if not entry.curve_digest or self._has_curve(simulation, entry.curve_digest):
-                return entry.row
+                return entry
         return None
 
     def _has_curve(self, simulation: Simulation, digest: str) -> bool:
@@ -288,11 +301,10 @@ class RowIndex:
             return []  # before its key is computed, which is slow
         return self._members.get(simulation.stem + suffix, [])
 
-    def parts(self, simulation: Simulation) -> dict[str, str]:
-        """Parts of the key with which a simulation was stored last, if it was with any."""
+    def latest(self, simulation: Simulation) -> Entry | None:
+        """Entry with which a simulation was stored last, with whatever key."""
         member = self._latest.get(_without_key(simulation))
-        entry = None if member is None else _entry(member)
-        return {} if entry is None else entry.parts
+        return None if member is None else _entry(member)
 
 
 def _without_key(simulation: Simulation) -> str:

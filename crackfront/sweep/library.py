@@ -6,10 +6,10 @@ import contextlib
 import sys
 import warnings
 from collections import Counter
-from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 
+import numpy as np
 from tqdm import tqdm
 from xarray import Dataset
 
@@ -54,25 +54,20 @@ def sweep_table(
             bar.update()
     for item in found.spectra:
         store.write_manifest(found, found.named_shard(item, range(found.n_realisation)))
-    table, statuses = store.aggregate(found, origin)
-    failed, sentence = without_value(table, statuses)
+    table = store.aggregate(found, origin)
+    failed, sentence = without_value(table)
     if failed:
         warnings.warn(sentence, stacklevel=2)
     return read_dataset(table)
 
 
-def without_value(table: Path, statuses: Mapping[str, int]) -> tuple[int, str]:
+def without_value(table: Path) -> tuple[int, str]:
     """How many simulations of a table have no value, and how most of them ended, with a remedy."""
-    others = {status: count for status, count in statuses.items() if status not in COMPLETE}
-    listed = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
-    failed, total = sum(others.values()), sum(statuses.values())
     found = read_dataset(table, ("status", "status_sentence"))
-    ended = Counter(
-        str(sentence)
-        for status, sentence in zip(
-            flag_words(found.status).flat, found.status_sentence.values.flat, strict=True
-        )
-        if str(status) not in COMPLETE
-    )
+    words, sentences = flag_words(found.status), found.status_sentence.values
+    failed = ~np.isin(words, COMPLETE)
+    others, ended = (Counter(values[failed].tolist()) for values in (words, sentences))
+    listed = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
     said = "; ".join(f"{count}: {sentence}" for sentence, count in ended.most_common(3))
-    return failed, f"{failed} of {total} simulations have no value: {listed} ({said})"
+    count = int(np.count_nonzero(failed))
+    return count, f"{count} of {failed.size} simulations have no value: {listed} ({said})"

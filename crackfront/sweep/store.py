@@ -9,7 +9,7 @@ import json
 import statistics
 import threading
 from collections import Counter, defaultdict, deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 from pathlib import Path
@@ -61,6 +61,8 @@ class Holding:
     unreadable: str
     changed: tuple[str, ...] = ()
     """Parts of its key that changed since it was stored, where it is missing."""
+    arithmetic: str = ""
+    """That of its origin, where it has a row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +75,8 @@ class Inventory:
     """A sentence for every curve that is of no use."""
     stale: tuple[tuple[str, ...], ...]
     """Of every missing simulation that is stored with another key the parts of it that changed."""
+    arithmetic: Mapping[str, int]
+    """How many of the others are of which arithmetic."""
 
     def stale_sentence(self) -> str:
         """How many are stale for which reason; empty where none is."""
@@ -177,8 +181,13 @@ class Store:
 
     def inventory(self, simulations: Iterable[Simulation], *, checked: bool = True) -> Inventory:
         """Which of some simulations are missing, and why; as :meth:`holdings`."""
-        absent = [one for one in self.holdings(simulations, checked=checked) if one.row is None]
+        known: Counter[str] = Counter()
+        absent = []
+        for one in self.holdings(simulations, checked=checked):
+            absent += [one] if one.row is None else []
+            known.update([] if one.row is None else [one.arithmetic])
         return Inventory(
+            arithmetic=known,
             missing=tuple(one.simulation for one in absent),
             unreadable=tuple(one.unreadable for one in absent if one.unreadable),
             stale=tuple(one.changed for one in absent if one.changed),
@@ -253,14 +262,14 @@ class Store:
             if count := self._forget(lacking.missing):
                 yield f"{self.folder}: {count} list(s) of shards are made anew with what they lack"
 
-    def aggregate(self, sweep: Sweep, origin: Provenance) -> tuple[Path, dict[str, int]]:
-        """Write the file of the whole sweep; it, and the number of simulations of every status.
+    def aggregate(self, sweep: Sweep, origin: Provenance) -> Path:
+        """Write the file of the whole sweep, and return its path.
 
         ValueError if simulations are missing or unreadable. The lists of their shards are removed,
         so that the workflow runs them again.
         """
-        statuses = write_hysteresis(self.hysteresis, sweep, self._rows(sweep), origin)
-        return self.hysteresis, dict(statuses)
+        write_hysteresis(self.hysteresis, sweep, self._rows(sweep), origin)
+        return self.hysteresis
 
     def _rows(self, sweep: Sweep) -> Iterator[SweepRow]:
         """Rows of a whole sweep; raises a ValueError that counts those that are missing."""
@@ -347,16 +356,17 @@ def checked_files(folder: Path) -> Iterator[tuple[Path, Counter[Integrity]]]:
 
 def _holding(simulation: Simulation, index: RowIndex) -> Holding:
     """What an index has of a simulation."""
-    if (row := index.row(simulation)) is not None:
-        return Holding(simulation, row, "")
-    unreadable = ""
+    if (entry := index.entry(simulation)) is not None:
+        return Holding(simulation, entry.row, "", arithmetic=entry.arithmetic)
+    unreadable, latest = "", index.latest(simulation)
     for member in index.curves(simulation):
         try:
-            return Holding(simulation, sweep_row(read_simulation(member, simulation)), "")
+            row = sweep_row(read_simulation(member, simulation))
         except UnreadableFileError as error:
             unreadable = str(error)
-    known = index.parts(simulation)
-    now = simulation.parts if known else {}
+        else:
+            return Holding(simulation, row, "", arithmetic=latest.arithmetic if latest else "")
+    known, now = (latest.parts, simulation.parts) if latest else ({}, {})
     changed = tuple(name for name, part in now.items() if part != known.get(name))
     return Holding(simulation, None, unreadable, changed)
 

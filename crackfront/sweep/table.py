@@ -68,28 +68,22 @@ _OPTIONAL = ("parameters",)
 
 def write_hysteresis(
     path: Path, sweep: Sweep, rows: Iterable[SweepRow], origin: Provenance
-) -> Counter[str]:
+) -> None:
     """Write the file of a sweep, in the memory of a few thousand rows.
 
-    There is one row for each simulation, in the order of
-    :meth:`crackfront.sweep.sweep.Sweep.simulations`. Returns the number of simulations of every
-    status.
+    The rows are those of :meth:`crackfront.sweep.sweep.Sweep.simulations`, in their order.
     """
     known = variables(SweepRow, SPECTRUM, AMPLITUDE, REALISATION)
     dataset = xr.Dataset(coords=labelled_fields(_axes(sweep)), attrs=_attributes(sweep))
-    statuses: Counter[str] = Counter()
 
     def blocks() -> Iterator[Block]:
         remaining = iter(rows)
         for cell in np.ndindex(len(sweep.spectra), len(sweep.elastic_energies)):
             for start in range(0, sweep.n_realisation, ROWS_AT_ONCE):
                 stop = min(start + ROWS_AT_ONCE, sweep.n_realisation)
-                block = list(islice(remaining, stop - start))
-                statuses.update(row.status for row in block)
-                yield (*cell, slice(start, stop)), block
+                yield (*cell, slice(start, stop)), list(islice(remaining, stop - start))
 
     write_records_in_blocks(path, dataset, known, blocks(), origin, {"status": _STATUSES})
-    return statuses
 
 
 def read_table(path: Path) -> SweepTable:

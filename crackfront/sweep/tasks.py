@@ -191,6 +191,7 @@ _OF_PHYSICS = (ValueError, ArithmeticError, DefectError)
 def _run(task: _Task, note: Note) -> _Outcome:
     """Run one simulation to its row and its curve."""
     simulation, keeper = task.simulation, _Keeper(task, note)
+    origin = task.origin.here()
     try:
         result, wrong = keeper.result()
     except TooLargeError:
@@ -202,9 +203,10 @@ def _run(task: _Task, note: Note) -> _Outcome:
         row, seconds = failed_row(simulation, status, sentence), 0.0
         curve, digest = b"", ""
     else:
-        curve, digest = dataset_content(simulation_dataset(result), task.origin)
+        curve, digest = dataset_content(simulation_dataset(result), origin)
         row, sentence, seconds = sweep_row(result), wrong, result.measures.seconds
-    entry = Entry(simulation.stem, simulation.parts, row_fingerprint(), row, digest)
+    named = simulation.stem, simulation.parts, row_fingerprint()
+    entry = Entry(*named, row, digest, origin.arithmetic)
     return _Outcome(Finished(row.status, seconds, sentence), entry, curve, keeper.has_file)
 
 

@@ -27,6 +27,8 @@ class Verification:
 
     counts: dict[str, Counter[Integrity]]
     """Numbers of whole and damaged files by their folder, and of such files in packs."""
+    arithmetic: Counter[str]
+    """How many rows are of which arithmetic."""
     damaged: tuple[str, ...]
     missing: tuple[str, ...]
     """Files that are not as they were written, and absent ones that a list or a row names."""
@@ -46,7 +48,8 @@ def verification(place: Path) -> Verification:
             damaged += [str(name)] if states[Integrity.DAMAGED] else []
         listed = _listed(folder)
         missing = [name for name in listed if not (folder / name).is_file()]
-        missing += lost_curves(folder / "curves")
+        lost, arithmetic = lost_curves(folder / "curves")
+        missing += lost
         for file in listed.keys() - set(missing):
             with (folder / file).open("rb") as opened:
                 if hashlib.file_digest(opened, "sha256").hexdigest() != listed[file]:
@@ -55,7 +58,8 @@ def verification(place: Path) -> Verification:
             damaged.append(place.name)  # the list is the last file of an archive
         elif not counts:
             raise UnreadableFileError(f"{place} holds no file; name a folder of results")
-    return Verification(dict(counts), tuple(dict.fromkeys(damaged)), tuple(dict.fromkeys(missing)))
+    listed_once = (tuple(dict.fromkeys(names)) for names in (damaged, missing))
+    return Verification(dict(counts), arithmetic, *listed_once)
 
 
 @contextlib.contextmanager

@@ -8,7 +8,7 @@ import pytest
 from crackfront.analysis.estimate import Estimate, mean_estimate
 from crackfront.analysis.law import law_value, shipped_law, spectral_breadth
 from crackfront.analysis.report import fit_notes, fit_table, trend_sentence
-from crackfront.analysis.result import SweepFit, fit_columns
+from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import REALISATION, SweepTable
@@ -363,20 +363,6 @@ def test_the_table_shows_theory_range_and_every_estimate(rng):
     for block in text.split("\n\n"):
         rows = [line for line in block.splitlines() if line.startswith("|")]
         assert len({row.count("|") for row in rows}) <= 1
-
-
-def test_every_array_of_a_fit_comes_out_with_its_dimensions(rng):
-    fit = fit_all(synthetic_table(rng, constant))
-    size = {"spectrum": 3, "amplitude": 5, "bound": 4}
-    columns = dict(fit_columns(fit))
-    for column, values in columns.items():
-        assert values.shape == tuple(size[dim] for dim in column.dims), column.name
-        assert column.long_name
-    columns = {column.name: values for column, values in columns.items()}
-    assert columns["pooled_factor"][2] == fit.pooled.factor.low
-    np.testing.assert_array_equal(columns["cell_factor"][..., 0], fit.cells.factor.value)
-    assert {"exponent", "from_force_approach", "size_slope"} <= set(columns)
-    assert {"cell_size", "cell_law_factor", "cell_infinite_factor", "k_0"} <= set(columns)
 
 
 @pytest.mark.parametrize(

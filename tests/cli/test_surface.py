@@ -12,7 +12,6 @@ import crackfront as cf
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.core.variables import variables
-from crackfront.simulate.files import read_cycle
 from crackfront.simulate.given import read_field, surface_adhesion
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.prediction import Prediction, predicted
@@ -211,7 +210,7 @@ def test_a_map_becomes_a_field_that_a_cycle_runs_on(tmp_path):
     more = ("--max-penetration", 0.2, "--step", 0.4)
     result = run("cycle", "--field", field, *more, "--output", out)
     assert result.exit_code == 0, result.output
-    assert read_cycle(out).states.penetration.size > 1
+    assert cf.load_result(out).penetration.size > 1
 
 
 def test_a_surface_alone_has_no_energy_and_with_a_sphere_it_has(surface):

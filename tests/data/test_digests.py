@@ -5,7 +5,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-import xarray as xr
 from click.testing import CliRunner
 
 import crackfront as cf
@@ -28,8 +27,8 @@ from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import blank_figure, save_figure
 from crackfront.simulate.files import (
     cycle_dataset,
+    cycle_record,
     read_checkpoint,
-    read_cycle,
     write_checkpoint,
 )
 from crackfront.simulate.given import read_field, surface_adhesion
@@ -108,17 +107,6 @@ def test_the_digest_is_the_checksum_of_everything_else(tmp_path):
     assert hashlib.sha256(text.replace(digest, "").encode()).hexdigest() == digest
 
 
-def test_a_file_with_a_digest_is_plain_netcdf(tmp_path):
-    surface = cf.random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, seed=1)
-    cf.save_result(surface, tmp_path / "surface.nc")
-    assert xr.open_dataset(tmp_path / "surface.nc")["height"].identical(surface)
-    assert cf.load_result(tmp_path / "surface.nc").identical(surface)
-    surface.to_netcdf(tmp_path / "plain.nc")
-    assert cf.load_result(tmp_path / "plain.nc").identical(surface)
-    with pytest.raises(ValueError, match="the array has no name; give it one"):
-        cf.save_result(surface.rename(None), tmp_path / "nameless.nc")
-
-
 @pytest.fixture(scope="module")
 def kinds(tmp_path_factory):
     """A file of every kind that is written and read later, each with its reader."""
@@ -164,7 +152,7 @@ def kinds(tmp_path_factory):
         "surface": (folder / "surface.nc", cf.load_result),
         "loop": (folder / "loop.nc", cf.load_result),
         "field": (folder / "surface.nc", read_field),
-        "cycle": (folder / "cycle.nc", read_cycle),
+        "cycle": (folder / "cycle.nc", lambda path: cycle_record(read_dataset(path), path)),
         "figure": (folder / "main-1d.nc", lambda path: read_record(path, FIGURE.record)),
         "provenance": (folder / "main-1d.nc", read_attributes),
         "PDF": (pictures[0], refuse_damaged),

@@ -25,7 +25,7 @@ N_SIMULATION = 12
 
 def dataset(configuration, folder):
     """The aggregated file, without costs and origin."""
-    path, _ = Store(folder).aggregate(load_configuration(configuration), provenance())
+    path = Store(folder).aggregate(load_configuration(configuration), provenance())
     found = xr.load_dataset(path).drop_vars(COSTS)
     found.attrs = {}
     return found

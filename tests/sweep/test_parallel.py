@@ -47,7 +47,7 @@ def crackfront(*arguments, ranks=None, timeout=120, **environment):
 
 def dataset(folder):
     """The aggregated file, without costs and origin."""
-    path, _ = Store(folder).aggregate(load_configuration(Path(TEST)), provenance())
+    path = Store(folder).aggregate(load_configuration(Path(TEST)), provenance())
     return xr.load_dataset(path).drop_vars(COSTS)
 
 

@@ -130,6 +130,20 @@ def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
     assert inventory.stale_sentence() == "2 stored simulations are stale: 2 as sources changed"
 
 
+def test_a_store_of_mixed_origin_is_told_where_it_is_planned_and_verified(store):
+    fill(store, FLAT[:1])
+    here = provenance().arithmetic
+    assert "numpy" in here
+    assert store.inventory(FLAT).arithmetic == {here: 1}
+    row = tables.failed_row(FLAT[1], "refused", "")
+    entry = Entry(FLAT[1].stem, FLAT[1].parts, tables.row_fingerprint(), row)
+    new_pack(store.curves, "flat", range(2)).append(entry.files())
+    for command in (["plan", str(TEST), "--output"], ["verify"]):
+        result = CliRunner().invoke(main, [*command, str(store.folder)])
+        words = f"and may in their last digits: 1 of {here}; 1 of an earlier version"
+        assert words in result.stdout, result.output
+
+
 def test_a_part_that_keys_did_not_have_before_is_told_as_changed(store):
     old = Entry(f"{FLAT[0].stem[:-16]}{0:016}", {"kind": FLAT[0].parts["kind"]}, "older", None)
     store.curves.mkdir(parents=True)
@@ -277,9 +291,9 @@ def test_a_sweep_is_aggregated_the_same_whatever_is_held_at_once(store, monkeypa
     fill(store, simulations[:3])
     without(store, ".json")  # some curves have no row any more
     fill(store, simulations[3:])
-    whole = read_dataset(store.aggregate(SWEEP, provenance("text"))[0])
+    whole = read_dataset(store.aggregate(SWEEP, provenance("text")))
     monkeypatch.setattr(tables, "ROWS_AT_ONCE", 1)
-    parts = read_dataset(store.aggregate(SWEEP, provenance("text"))[0])
+    parts = read_dataset(store.aggregate(SWEEP, provenance("text")))
     assert parts.drop_attrs().identical(whole.drop_attrs())
     assert [*whole["curve"].values.flat] == [f"{one.stem}.nc" for one in simulations]
 
@@ -311,12 +325,6 @@ def test_an_archive_holds_what_was_archived_under_checksums_that_fit(store, tmp_
         {f"curves/{path.name}" for path in store.curves.glob("*.tar")} if with_curves else set()
     )
     assert names == wanted
-
-
-def test_a_sweep_that_was_not_run_is_not_archived(store, tmp_path):
-    fill(store, FLAT[:1])
-    with pytest.raises(ValueError, match=r"holds no hysteresis.nc; run the sweep before it is ar"):
-        store.archive(tmp_path / "sweep.zip", curves=True)
 
 
 def test_what_a_killed_process_left_half_written_is_removed_by_the_next_run(store):
