@@ -36,11 +36,9 @@ def stated_unit(attributes: Mapping[Any, Any]) -> Any:
 
 def label(variable: Variable, flags: Sequence[str] = ()) -> dict[str, Any]:
     """Attributes of a variable; flags are the words that its values 0, 1, ... mean."""
-    attributes: dict[str, Any] = variable.attributes | unit_attributes(variable.units)
-    if flags:
-        attributes["flag_values"] = np.arange(len(flags), dtype=np.int8)
-        attributes["flag_meanings"] = " ".join(flags)
-    return attributes
+    places = np.arange(len(flags), dtype=np.int8)
+    meanings = {"flag_values": places, "flag_meanings": " ".join(flags)} if flags else {}
+    return variable.attributes | unit_attributes(variable.units) | meanings
 
 
 def flag_words(values: xr.DataArray) -> NDArray[np.str_]:

@@ -70,7 +70,7 @@ class ParametricStudy:
     def table(self) -> SweepTable:
         """The table of the sweep; without contact radii there is no k by the law."""
         names = {one.name for one in fields(SweepTable)} & {one.name for one in fields(self)}
-        columns = values_of(self, *names)
+        columns = values_of(self, *names) | {"amplitude": self.e_el_requested}
         columns["spectrum"] = self.spectrum.astype(np.str_)
         if self.contact_radius is None:
             columns["contact_radius"] = np.full(self.e_el.shape, np.nan)
@@ -85,8 +85,9 @@ def parametric_study(
 ) -> ParametricStudy:
     """Data of the figure from the fit of a sweep."""
     progress(f"{parameters.sweep}: {fit.table.finite.sum()} simulations with a value")
-    of_table = {one.name for one in fields(ParametricStudy)} - set(_OF_FIT)
-    return ParametricStudy(**values_of(fit.table, *of_table), **values_of(fit, *_OF_FIT))
+    of_table = {one.name for one in fields(ParametricStudy)} - {*_OF_FIT, "e_el_requested"}
+    columns = values_of(fit.table, *of_table) | values_of(fit, *_OF_FIT)
+    return ParametricStudy(**columns, e_el_requested=fit.table.amplitude)
 
 
 def study_fit(study: ParametricStudy) -> SweepFit:

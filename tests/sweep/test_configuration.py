@@ -523,7 +523,7 @@ def test_words_of_a_surface_that_cannot_be_used_are_refused(tmp_path, words, sen
 def test_the_table_of_a_sweep_keeps_measured_spectra(tmp_path):
     spectra = MEASURED + "  - {name: flat, short_cutoff: 2e-6, hurst: 0.8}\n"
     sweep = load_configuration(written(tmp_path, with_surface(spectra)))
-    rows = [failed_row(one, "failed", "a test") for one in sweep.simulations()]
+    rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
     write_hysteresis(tmp_path / "hysteresis.nc", sweep, rows, provenance("text"))
     table = read_table(tmp_path / "hysteresis.nc")
     measured, flat = (item.spectrum for item in sweep.spectra)

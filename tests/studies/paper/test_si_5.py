@@ -28,7 +28,7 @@ def study(factor, onset=(0.001, 0.004), exponent=2.0):
         roll_off=LENGTHS,
         hurst=np.array([0.8, 0.8]),
         correlation_length=LENGTHS,
-        e_el_requested=AMPLITUDES,
+        amplitude=AMPLITUDES,
         e_el=energy,
         w_rms=2 * np.sqrt(energy),
         w_appr=1 - energy - reach,
