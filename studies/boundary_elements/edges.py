@@ -93,8 +93,8 @@ def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
         forces.axline((0.0, 0.0), slope=1.0, color="0.6", linewidth=0.8, zorder=0)
         forces.legend(loc="upper left", title=r"$e_\mathrm{el}/w_\mathrm{int}$")
         left.set(
-            xlim=(0.0, None),
-            ylim=(0.0, None),
+            xlim=(0.0, 1.1 * max(row.interaction_range for row in rows)),
+            ylim=(0.0, 1.1 * max(row.left / row.pinning for row in rows)),
             xlabel="range of attraction, reduced",
             ylabel="rms force left / rms pinning",
         )
