@@ -29,10 +29,12 @@ endif
 export PYTHONNOUSERSITE := 1
 
 RESULTS  = results/$(basename $(notdir $(SWEEP)))/
+FRONTS   = $(if $(filter file,$(origin SWEEP)),$(LINE))
+fronts   = $(if $(FRONTS),; of straight fronts results/$(basename $(notdir $(LINE)))/$(1))
 VALIDATED = results/$(basename $(notdir $(VALIDATION)))/
 REPORT   = results/tests/junit.xml
 IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1
-SNAKE    = $(IN_ENV) .venv/bin/snakemake --profile workflow/profiles/default
+SNAKE    = $(IN_ENV) .venv/bin/python workflow/run.py --profile workflow/profiles/default
 REPAIR   = $(IN_ENV) .venv/bin/crackfront repair
 PIP      = PIP_USE_PEP517=1 .venv/bin/python -m pip install --quiet --no-deps --no-build-isolation --no-compile
 # Tests on all cores, of which eight are enough; one that is done takes from another.
@@ -51,10 +53,13 @@ locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
   clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
-	@$(REPAIR) $(SWEEP) $(if $(filter file,$(origin SWEEP)),$(LINE))
+	@$(REPAIR) $(SWEEP) $(FRONTS)
 	$(SNAKE) --config sweep=$(SWEEP)
-	$(if $(filter file,$(origin SWEEP)),$(SNAKE) --config sweep=$(LINE))
-	@echo "Results: $(RESULTS)$(if $(filter file,$(origin SWEEP)), and results/$(basename $(notdir $(LINE)))/)"
+	$(if $(FRONTS),$(SNAKE) --config sweep=$(FRONTS))
+	@sed -n '/^# /p; /^- /p; /^## /q' $(RESULTS)fit.md
+	@echo "Figures: $(addprefix $(RESULTS)figures/,hysteresis.png factor.png loop.png)"
+	@echo "Page:    $(RESULTS)summary.html$(call fronts,summary.html)"
+	@echo "Tables:  $(RESULTS)fit.md$(call fronts,fit.md)"
 
 env: $(READY)  ## Create .venv from requirements.lock
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate, with_error
+from crackfront.analysis.estimate import Estimate, finite_mean, with_error
 from crackfront.analysis.finding import (
     PAPER_FACTOR,
     PERTURBATION_FACTOR,
@@ -17,6 +17,7 @@ from crackfront.analysis.finding import (
 )
 from crackfront.analysis.law import LEAST_SIZE
 from crackfront.analysis.result import LawEstimates, SweepFit
+from crackfront.core.arrays import Array
 
 MISSING = "-"
 """What stands where the data give no number."""
@@ -31,16 +32,13 @@ _FITTED = "factor", "factor_by_sums", "exponent", "midpoint_slope", "disorder_sl
 def fit_table(fit: SweepFit) -> str:
     """Markdown tables of a fit beside the theory, and its notes."""
     in_range = int(np.count_nonzero(fit.in_range))
-    n_simulation = in_range * fit.table.spectrum.size * fit.table.e_el.shape[-1]
-    pooled = _pooled_entry(fit, "factor")
     blocks = [
-        f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el",
-        f"This sweep, {n_simulation} simulations: k = {pooled}.",
+        fit_result(fit),
         finding(_departure(fit)),
         "## The fit",
         f"Range: e_el/w_int from {fit.lowest_elastic_energy:g} to "
         f"{fit.highest_elastic_energy:g} ({in_range} of {fit.in_range.size} amplitudes); "
-        f"{n_simulation} simulations, {int(np.sum(fit.n_failed))} without a value. "
+        f"{_n_simulation(fit)} simulations, {int(np.sum(fit.n_failed))} without a value. "
         "Values with 95% intervals (Student's t with the bootstrap's standard error, "
         f"{fit.n_bootstrap} samples of realisations). k is the mean over the amplitudes with "
         "equal weights. Behind a pooled k stand how far the spectra lie apart, and the largest "
@@ -65,6 +63,25 @@ def fit_table(fit: SweepFit) -> str:
         "\n".join(f"- {sentence}" for sentence in fit_notes(fit)),
     ]
     return "\n\n".join(blocks) + "\n"
+
+
+def fit_result(fit: SweepFit) -> str:
+    """What a fit found in a few lines of Markdown: k beside the law's, and the exponent."""
+    known = fit.in_range & np.isfinite(fit.cells.factor.value)
+    law = finite_mean(np.where(known, fit.cells.law_factor.value, np.nan))
+    mean = float(finite_mean(law))
+    pooled = f"{mean:.2f}" if np.isfinite(mean) else MISSING
+    return (
+        f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el\n\n"
+        f"- k of this sweep, {_n_simulation(fit)} simulations: {_pooled_entry(fit, 'factor')}\n"
+        f"- k by the law: {'; '.join([pooled, *_apart(law)])}; k of the paper: {PAPER_FACTOR:g}\n"
+        f"- exponent of w_rms: {_with_interval(fit.pooled.exponent, ())}; of the paper: 2"
+    )
+
+
+def _n_simulation(fit: SweepFit) -> int:
+    """Number of simulations in the range of a fit."""
+    return int(np.count_nonzero(fit.in_range)) * fit.table.e_el[:, 0].size
 
 
 def _law_table(fit: SweepFit) -> str:
@@ -101,10 +118,15 @@ def _pooled_entry(fit: SweepFit, name: str) -> str:
 
 def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
     """What no interval of a pooled k holds, as far as it is known."""
-    known = spectra.value[np.isfinite(spectra.value)]
     bias = _largest_numerical_error(fit)
-    apart = (f"spectra {known.min():.2f} to {known.max():.2f}",) if known.size > 1 else ()
+    apart = _apart(spectra.value)
     return (*apart, f"numerical bias to {bias[0]:.2f}") if bias else apart
+
+
+def _apart(factors: Array) -> tuple[str, ...]:
+    """Range of the k of spectra, where there are two or more."""
+    known = factors[np.isfinite(factors)]
+    return (f"spectra {known.min():.2f} to {known.max():.2f}",) if known.size > 1 else ()
 
 
 def _cell_table(fit: SweepFit) -> str:

@@ -46,8 +46,8 @@ def aggregate(configuration: Path, output: Path | None) -> None:
 @output_option
 @as_json
 def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
-    """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the last."""
-    from crackfront.analysis.report import fit_table
+    """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print how the last begins."""
+    from crackfront.analysis.report import fit_result
     from crackfront.sweep.fit_files import write_fit
     from crackfront.sweep.library import opened
 
@@ -57,7 +57,7 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     if as_json:
         click.echo(paths[1].read_text(encoding="utf-8"))
         return
-    click.echo(fit_table(fitted))
+    click.echo(fit_result(fitted))
     click.echo(f"fit: {', '.join(map(str, paths))}")
 
 

@@ -41,6 +41,12 @@ _ALIVE = b"\n"
 _SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE")
 """Environment variables in which launchers state how many processes they start."""
 
+_AWAITED = (
+    b"Stopping at the next load step of what runs, or when the solver is compiled; Ctrl-C again "
+    b"ends it at once\n"
+)
+"""What a process says when it is requested to stop and goes on for a moment."""
+
 _SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Signals that request a stop; one that was ignored at the start of the process stays ignored."""
 
@@ -71,6 +77,8 @@ def deferring_stops() -> Iterator[None]:
     def receive(number: int, frame: FrameType | None) -> None:
         if number == signal.SIGINT and _received.is_set():
             raise KeyboardInterrupt
+        if not (_received.is_set() or under_mpi()):
+            _say_what_is_awaited()
         _received.set()
 
     try:
@@ -78,6 +86,12 @@ def deferring_stops() -> Iterator[None]:
             yield
     finally:
         _received.clear()
+
+
+def _say_what_is_awaited() -> None:
+    """Print what a process that is to stop waits for, from within the handler of a signal."""
+    with contextlib.suppress(OSError):  # of a terminal that was closed
+        os.write(2, _AWAITED)
 
 
 def stopping_as_ctrl_c() -> contextlib.AbstractContextManager[None]:
@@ -238,6 +252,7 @@ def launch_ranks(
     def leave_file(number: int, frame: FrameType | None) -> None:
         try:
             file.touch(exist_ok=False)
+            _say_what_is_awaited()
         except OSError:  # the second time, or where nothing can be written
             process.terminate()
 
