@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import atexit
 import errno
-import gc
-from collections.abc import Sequence
 from typing import Any
 
 import click
@@ -19,9 +16,6 @@ from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.sweep.parallel import stopping_as_ctrl_c
 
-_OBJECTS = 100_000
-"""New objects after which the process of a command collects garbage."""
-
 
 class _RefusalError(click.ClickException):
     """Input that cannot be used."""
@@ -31,14 +25,6 @@ class _RefusalError(click.ClickException):
 
 class Commands(click.Group):
     """Commands whose errors are sentences."""
-
-    def main(self, args: Sequence[str] | None = None, *others: Any, **options: Any) -> Any:
-        """Run a command line; that of the process, its only purpose, where none is given."""
-        if args is None:
-            # Imports leave no garbage; a collection after them is as slow as a short command.
-            gc.set_threshold(_OBJECTS)
-            atexit.register(gc.freeze)
-        return super().main(args, *others, **options)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""

@@ -142,22 +142,10 @@ def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
 
 
 def fit_of_sweep(configuration: Path) -> SweepFit:
-    """Fit of the results of a sweep, in `results/` under the name of its configuration.
-
-    Raises
-    ------
-    ValueError
-        If the sweep has not been run.
-    """
+    """Fit of a sweep that stands in `results/`; UnreadableFileError where it has not been run."""
     from crackfront.sweep.library import opened
 
-    sweep, store, _ = opened(configuration, None)
-    if not store.hysteresis.exists():
-        raise ValueError(
-            f"{store.folder} holds no hysteresis.nc; run the sweep first: "
-            f"make SWEEP={configuration}"
-        )
-    return _fitted(sweep, store)
+    return _fitted(*opened(configuration, None)[:2])
 
 
 def _fitted(sweep: Sweep, store: Store) -> SweepFit:

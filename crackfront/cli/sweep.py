@@ -30,6 +30,7 @@ from crackfront.data.bounds import COUNT, Range, in_bytes, refuse_beyond_memory
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
     from crackfront.data.provenance import Provenance
+    from crackfront.simulate.costs import Cost
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.expectation import Expectation
     from crackfront.sweep.journal import Running
@@ -58,9 +59,10 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
     """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
     from crackfront.sweep.expectation import doubts, expectation
     from crackfront.sweep.library import opened
+    from crackfront.sweep.needs import late_needs
 
     sweep, store, _ = opened(configuration, output)
-    shards = sweep.shards(block)
+    shards, late = sweep.shards(block), late_needs(sweep)
     expected = {item.name: [*map(expectation, sweep.firsts(item))] for item in sweep.spectra}
     inventory = store.inventory(sweep.simulations(), checked=False)
     content = {
@@ -75,8 +77,9 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "expected": expected,
         "doubts": (doubtful := [*doubts(sweep)]),
         **_costs(inventory.missing),
+        "late": late,
     }
-    lines = _plan_lines(sweep, store, shards, inventory, expected)
+    lines = _plan_lines(sweep, store, shards, inventory, expected, late)
     echo_answer(content, [*lines, *doubtful], as_json=as_json)
 
 
@@ -86,6 +89,7 @@ def _plan_lines(
     shards: Sequence[Shard],
     inventory: Inventory,
     expected: Mapping[str, Sequence[Expectation]],
+    late: Mapping[str, Cost],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
     from crackfront.sweep.journal import mixture_sentence
@@ -118,9 +122,13 @@ def _plan_lines(
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
     yield from filter(None, (inventory.stale_sentence(), mixture_sentence(inventory.arithmetic)))
     yield ""
+    left.append(_left("all", len(shards), inventory.missing))
+    for name, cost in late.items():
+        hours, seconds = f"{cost.seconds / 3600:.3g}", f"{cost.seconds:.3g}"
+        left.append((name, "-", "-", hours, seconds, f"{cost.memory / 1e6:.0f}", "-"))
     yield from table(
         ("to run", "shards", "simulations", "core hours", "longest s", "MB a rank", "MB disk"),
-        [*left, _left("all", len(shards), inventory.missing)],
+        left,
     )
     energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
     yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"

@@ -41,12 +41,6 @@ _ALIVE = b"\n"
 _SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE")
 """Environment variables in which launchers state how many processes they start."""
 
-_AWAITED = (
-    b"Stopping at the next load step of what runs, or when the solver is compiled; Ctrl-C again "
-    b"ends it at once\n"
-)
-"""What a process says when it is requested to stop and goes on for a moment."""
-
 _SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Signals that request a stop; one that was ignored at the start of the process stays ignored."""
 
@@ -91,7 +85,7 @@ def deferring_stops() -> Iterator[None]:
 def _say_what_is_awaited() -> None:
     """Print what a process that is to stop waits for, from within the handler of a signal."""
     with contextlib.suppress(OSError):  # of a terminal that was closed
-        os.write(2, _AWAITED)
+        os.write(2, b"Stopping at the next load step of what runs; Ctrl-C again ends it at once\n")
 
 
 def stopping_as_ctrl_c() -> contextlib.AbstractContextManager[None]:

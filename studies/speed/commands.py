@@ -12,9 +12,8 @@ from crackfront.cli.report import FILE, examples, refuse_unwritable
 from crackfront.data.files import write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import write_records
-from crackfront.plots.style import save_figure
 from crackfront.simulate.run import compile_solver
-from studies.pages import described_machine
+from studies.pages import described_machine, renewed
 from studies.speed import costs as cost_model
 from studies.speed import needs as requests
 from studies.speed import scaling as sweeps
@@ -72,8 +71,6 @@ def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path) ->
             click.echo(f"{row.label}: {row.ratio:.1f} times, error {row.error:.1e}")
     title = "The solvers against the reference"
     _write(output / "solvers", title, pairs.sections(rows, repeats), rows)
-    if "scaling" in groups:
-        save_figure(pairs.scaling_figure(rows), output / "scaling")
 
 
 @commands.command(epilog=examples("python -m studies speed needs"))
@@ -111,9 +108,14 @@ def costs(output: Path) -> None:
     )
 
 
-@commands.command(epilog=examples("python -m studies speed scaling"))
+@commands.command(epilog=examples("python -m studies speed scaling --page docs/cluster.md"))
 @_output
-def scaling(output: Path) -> None:
-    """Measure dispatch and aggregation, and play a sweep of a million simulations through."""
+@click.option("--page", type=FILE, help="Page whose blocks are written anew, as docs/cluster.md.")
+def scaling(output: Path, page: Path | None) -> None:
+    """Measure dispatch, the start of a job and what follows; play a million simulations through."""
     refuse_unwritable(output)
-    _write(output / "scaling", "How a sweep scales", sweeps.sections())
+    parts = sweeps.parts()
+    _write(output / "scaling", "How a sweep scales", [*parts.values()])
+    if page is not None:
+        parts["efficiency"] = f"{described_machine()} {parts['efficiency']}"
+        write_text(page, renewed(page.read_text(encoding="utf-8"), "speed", parts))

@@ -1,13 +1,14 @@
-"""How a sweep scales: efficiency of dispatch, a million simulations on paper, aggregation.
+"""How a sweep scales: dispatch, the start of a job, what follows, a million simulations on paper.
 
-Dispatch is measured with tasks that sleep, on real ranks of MPI. The million simulations are
-played through event by event, with the times of the cost model and the recorded deviations from
-it, for 1 to 4096 ranks. Aggregation reads as many rows as asked for from synthetic packs.
+Dispatch is measured with curves that are stored, on real ranks of MPI. The million simulations are
+played through event by event, with the times of the cost model and the recorded deviations from it,
+for 1 to 4096 ranks. What follows is run on copies of stored curves.
 """
 
 from __future__ import annotations
 
 import heapq
+import resource
 import subprocess
 import sys
 import tempfile
@@ -18,26 +19,24 @@ from pathlib import Path
 
 import numpy as np
 
+from crackfront.cli import main
 from crackfront.core.arrays import Array
+from crackfront.data.files import dataset_content
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost, measured_runs, predicted_seconds
+from crackfront.simulate.files import simulation_dataset
+from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry
+from crackfront.sweep.needs import late_needs
 from crackfront.sweep.parallel import default_launcher
 from crackfront.sweep.store import Store
-from crackfront.sweep.sweep import Sweep
-from crackfront.sweep.table import failed_row, row_fingerprint
+from crackfront.sweep.table import row_fingerprint, sweep_row
 from studies.pages import markdown_table
-from studies.speed.machine import peak_memory, restart_peak
+from studies.speed.machine import in_fresh_process, peak_memory
 
 ROOT = Path(__file__).parents[2]
 RANKS = tuple(2**power for power in range(13))
-
-HAND_OUT_SECONDS = 0.8e-3
-"""Time of the manager for a task."""
-
-START_SECONDS = 15.0
-"""From the start of a job to its first task: the nested Snakemake, imports, compiled code."""
 
 SUBMIT_SECONDS = 1.0
 """Between two submissions of Snakemake."""
@@ -54,19 +53,29 @@ class Played:
     efficiency: float
 
 
-def job_seconds(tasks: Sequence[float] | Array, n_worker: int) -> float:
+@dataclass(frozen=True, slots=True)
+class Losses:
+    """Seconds of the rank that hands out, a task, and of a job before and after its tasks."""
+
+    hand_out: float
+    start: float
+
+
+def job_seconds(tasks: Sequence[float] | Array, n_worker: int, losses: Losses) -> float:
     """Time of a job whose manager hands out tasks, the longest first, to whoever is free."""
     free = [0.0] * n_worker
     manager = end = 0.0
     for seconds in sorted(tasks, reverse=True):
-        begun = max(heapq.heappop(free), manager) + HAND_OUT_SECONDS
+        begun = max(heapq.heappop(free), manager) + losses.hand_out
         manager = begun
         heapq.heappush(free, begun + seconds)
         end = max(end, begun + seconds)
-    return START_SECONDS + end
+    return losses.start + end
 
 
-def played(shards: Sequence[Array], rank_numbers: Sequence[int] = RANKS) -> list[Played]:
+def played(
+    shards: Sequence[Array], losses: Losses, rank_numbers: Sequence[int] = RANKS
+) -> list[Played]:
     """Play a sweep, given as seconds of the tasks of its shards, through on numbers of ranks.
 
     Up to :data:`RANKS_OF_A_JOB` ranks are those of one job, more those of several.
@@ -74,7 +83,7 @@ def played(shards: Sequence[Array], rank_numbers: Sequence[int] = RANKS) -> list
     useful = float(sum(np.sum(shard) for shard in shards))
     sizes = {n_rank: min(n_rank, RANKS_OF_A_JOB) for n_rank in rank_numbers}
     jobs = {
-        size: [job_seconds(shard, max(1, size - 1)) for shard in shards]
+        size: [job_seconds(shard, max(1, size - 1), losses) for shard in shards]
         for size in set(sizes.values())
     }
     rows = []
@@ -98,81 +107,101 @@ def million(n_simulation: int = 10**6, n_shard: int = 1000, seed: int = 1) -> li
     rng = np.random.default_rng(seed)
     runs = measured_runs()
     recorded = [run.cpu_seconds for run in runs] / predicted_seconds(runs)
-    n_block = n_shard // len(sweep.spectra)
-    n_amplitude = len(sweep.elastic_energies)
-    n_realisation = n_simulation // (len(sweep.spectra) * n_block * n_amplitude)
+    n_block, n_amplitude = n_shard // len(sweep.spectra), len(sweep.elastic_energies)
+    shape = n_simulation // (n_block * len(sweep.spectra) * n_amplitude), n_amplitude
     shards = []
     for item in sweep.spectra:
         expected = [
             expected_cost(sweep.simulation(item, energy, 0)).seconds
             for energy in sweep.elastic_energies
         ]
-        for _ in range(n_block):
-            factors = rng.choice(recorded, (n_realisation, n_amplitude))
-            shards.append((factors * expected).ravel())
+        shards += [(rng.choice(recorded, shape) * expected).ravel() for _ in range(n_block)]
     return shards
 
 
-def dispatch_efficiency(n_worker: int, n_round: int, seconds: float = 0.5) -> float:
-    """Useful over worker seconds of tasks that sleep, on so many ranks and one that hands out."""
-    script = (
-        "import time\n"
-        "from crackfront.sweep import parallel\n"
-        f"n_worker, tasks = {n_worker}, [{seconds}] * {n_worker * n_round}\n"
-        "for given in ([0.0] * n_worker, tasks):\n"
-        "    started = time.perf_counter()\n"
-        "    if parallel.is_manager(n_worker):\n"
-        "        list(parallel.run_tasks(time.sleep, given, lambda task, _: task))\n"
-        "    else:\n"
-        "        parallel.serve_tasks('time')\n"
-        "if parallel.is_manager(n_worker):\n"
-        "    print(sum(tasks) / (n_worker * (time.perf_counter() - started)))\n"
-    )
+def hand_out_seconds(n_worker: int = 4, n_task: int = 5000) -> float:
+    """Time of the rank that hands out for a task whose curve of 25 kB it stores."""
+    script = f"""
+import sys, time
+from pathlib import Path
+from crackfront.data.packs import Pack
+from crackfront.sweep import parallel
+pack, files = Pack(Path(sys.argv[1]) / "curves.tar"), {{"row.json": bytes(2000)}}
+for tasks in ([0] * {n_worker}, [25_000] * {n_task}):
+    started = time.perf_counter()
+    if parallel.is_manager({n_worker}):
+        keep = lambda task, curve: pack.append(files | {{"curve.nc": curve}})
+        assert len(list(parallel.run_tasks(bytes, tasks, keep))) == len(tasks)
+    else:
+        parallel.serve_tasks("time")
+if parallel.is_manager({n_worker}):
+    print((time.perf_counter() - started) / {n_task})
+"""
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "dispatch.py"
-        path.write_text(script)
         mpi = [*default_launcher().split(), "-n", str(n_worker + 1), sys.executable, "-m", "mpi4py"]
+        (path := Path(folder) / "dispatch.py").write_text(script)
         done = subprocess.run(
-            [*mpi, str(path)], capture_output=True, text=True, timeout=250, check=True
+            [*mpi, str(path), folder], capture_output=True, text=True, timeout=250, check=True
         )
     return float(done.stdout)
 
 
-def synthetic(folder: Path, n_simulation: int) -> Sweep:
-    """A sweep whose simulations have all ended without a value, a pack a spectrum."""
-    sweep = load_configuration(ROOT / "config/test.yaml")
-    sweep = replace(sweep, n_realisation=n_simulation // 4, failed_fraction=1.0)
+def start_seconds() -> float:
+    """Processor time of a job on Slurm beside its tasks: two nested Snakemakes, and the command."""
+    with tempfile.TemporaryDirectory() as folder:
+        sweep = f"{ROOT}/config/test.yaml"
+        plan = ["-m", "snakemake", "--snakefile", f"{ROOT}/Snakefile", "-n", "--cores", "1"]
+        plan += ["--directory", folder, "--config", f"sweep={sweep}"]
+        simulate = ["-m", "crackfront", "simulate", sweep, "--output", folder]
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        for arguments in (plan, plan, [*simulate, "--realisations", "0-0"]):
+            subprocess.run([sys.executable, *arguments], capture_output=True, check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def synthetic(folder: Path, n_simulation: int) -> Path:
+    """Configuration of a stored sweep, whose realisations have the curves of the first ones."""
+    path = folder / "test.yaml"
+    text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
+    path.write_text(text.replace("realisations: 2", f"realisations: {n_simulation // 4}"))
+    sweep, rng = load_configuration(path), np.random.default_rng(1)
     with Store(folder).packs(sweep.simulations()) as packs:
-        for number, one in enumerate(sweep.simulations()):
-            row = failed_row(one, "step_limit", "the solver reached its limit of sweeps")
-            row = replace(row, seconds=0.1 * number, n_step=number % 60)
-            entry = Entry(one.stem, one.parts, row_fingerprint(), row)
-            packs[one.spectrum_name].append(entry.files())
-    return sweep
+        for one in sweep.simulations():
+            if one.realisation == 0:
+                result = run_simulation(one)
+                curve, digest = dataset_content(simulation_dataset(result), provenance())
+                first = sweep_row(result)
+            row = replace(first, w_appr=first.w_appr * rng.normal(1, 0.01), seed=one.seed)
+            entry = Entry(one.stem, one.parts, row_fingerprint(), row, digest)
+            packs[one.spectrum_name].append(entry.files(curve))
+    return path
 
 
-def aggregation(n_simulation: int) -> tuple[float, float]:
-    """Wall time and largest memory of aggregating synthetic rows. (Units: s, bytes)."""
-    # In memory, so that writing them costs no time.
-    with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
-        sweep = synthetic(Path(folder), n_simulation)
-        restart_peak()
-        started = time.perf_counter()
-        Store(Path(folder)).aggregate(sweep, provenance())
-        seconds = time.perf_counter() - started
-    return seconds, 1e6 * peak_memory()
+def late(configuration: Path, command: str) -> tuple[float, float]:
+    """Processor time and memory of a process for a command on a stored sweep. (Units: s, bytes)."""
+    output = str(configuration.parent)
+    main([command, str(configuration), "--output", output], standalone_mode=False)
+    return time.process_time(), 1e6 * peak_memory()
 
 
-def sections() -> list[str]:
-    """Paragraphs of the page, measured and played."""
-    measured = [
-        f"Dispatch of 0.5 s to {n_worker} workers: {dispatch_efficiency(n_worker, 20):.1%}."
-        for n_worker in (2, 32)
-    ]
-    for n_row in (10**5, 10**6):
-        seconds, peak = aggregation(n_row)
-        measured.append(f"Aggregation of {n_row} rows: {seconds:.1f} s, {peak / 1e6:.0f} MB.")
-    sweeps = [million(n_shard=n_shard) for n_shard in (1000, 250)]
+def late_table(sizes: Sequence[int]) -> str:
+    """What the commands that follow the simulations take, and what the law in use says."""
+    rows = []
+    for n_row in sizes:
+        with tempfile.TemporaryDirectory() as folder:
+            path = synthetic(Path(folder), n_row)
+            for name, cost in late_needs(load_configuration(path)).items():
+                seconds, peak = in_fresh_process(late, path, name)
+                numbers = seconds, cost.seconds, peak / 1e6, cost.memory / 1e6
+                rows.append([name, f"{n_row}", *(f"{number:.0f}" for number in numbers)])
+    return markdown_table("command | simulations | CPU s | by the law | MB | by the law", rows)
+
+
+def parts() -> dict[str, str]:
+    """Parts of the page, measured and played."""
+    losses = Losses(hand_out_seconds(), start_seconds())
+    sweeps = [million(n_shard=n_shard) for n_shard in (1000, 250, 160)]
     useful = sum(float(np.sum(shard)) for shard in sweeps[0]) / 3600
     header = " | ".join(
         ["ranks", *(f"hours, {len(shards)} shards | efficiency" for shards in sweeps)]
@@ -180,10 +209,11 @@ def sections() -> list[str]:
     cells = [
         [f"{rows[0].n_rank}"]
         + [text for row in rows for text in (f"{row.hours:.3g}", f"{row.efficiency:.1%}")]
-        for rows in zip(*map(played, sweeps), strict=True)
+        for rows in zip(*(played(shards, losses) for shards in sweeps), strict=True)
     ]
-    return [
-        "\n".join(measured),
-        f"{sum(map(len, sweeps[0]))} simulations of {useful:.0f} core hours:",
-        markdown_table(header, cells),
-    ]
+    return {
+        "late": late_table((10**4, 10**5)),
+        "efficiency": f"{sum(map(len, sweeps[0]))} simulations of {useful:.0f} core hours; "
+        f"{1e3 * losses.hand_out:.2f} ms to hand out and store one, {losses.start:.1f} s to start "
+        f"a job.\n\n{markdown_table(header, cells)}",
+    }

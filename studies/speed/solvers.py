@@ -7,7 +7,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
@@ -16,7 +15,6 @@ from crackfront.core.field.fields import RayField, TileField
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.variables import ADHESION, variable
-from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
 from studies.pages import markdown_table
 from studies.speed.machine import peak_memory
 from studies.speed.problems import Problem
@@ -102,46 +100,17 @@ def table(rows: Iterable[Row]) -> str:
     return markdown_table(header, lines)
 
 
-def _by_disorder(rows: Iterable[Row]) -> dict[float, list[Row]]:
-    """Rows of the group `scaling` by their w_rms."""
-    scaling = [row for row in rows if row.group == "scaling"]
-    disorders = dict.fromkeys(row.rms for row in scaling)
-    return {rms: [row for row in scaling if row.rms == rms] for rms in disorders}
-
-
 def exponents(rows: Iterable[Row]) -> str:
     """How the time grows with sites times cutoffs crossed, at every disorder."""
     lines = []
-    for rms, chosen in _by_disorder(rows).items():
+    scaling = [row for row in rows if row.group == "scaling"]
+    for rms in dict.fromkeys(row.rms for row in scaling):
+        chosen = [row for row in scaling if row.rms == rms]
         crossed = np.log([row.n_cutoff for row in chosen])
         seconds = np.log([(row.reference_seconds, row.newton_seconds) for row in chosen])
         reference, newton = np.polyfit(crossed, seconds, 1)[0]
         lines.append(f"- w_rms {rms:g}: reference {reference:.2f}, newton {newton:.2f}")
     return "\n".join(lines)
-
-
-def scaling_figure(rows: Iterable[Row]) -> Figure:
-    """Time of both solvers against sites times cutoffs crossed."""
-    with house_style():
-        figure = blank_figure(COLUMN, 0.85 * COLUMN)
-        axes = figure.add_subplot()
-        disorders = _by_disorder(rows).items()
-        for (rms, chosen), colour in zip(disorders, (BLUE, VERMILION), strict=True):
-            for solver, marker, dashes in (("reference", "s", (3, 2)), ("newton", "o", (1, 0))):
-                axes.plot(
-                    [row.n_cutoff for row in chosen],
-                    [getattr(row, f"{solver}_seconds") for row in chosen],
-                    color=colour,
-                    marker=marker,
-                    markersize=4,
-                    dashes=dashes,
-                    linewidth=0.8,
-                    label=rf"{solver}, $w_\mathrm{{rms}} = {rms:g}\,w_\mathrm{{int}}$",
-                )
-        axes.set(xscale="log", yscale="log")
-        axes.set(xlabel="sites times short cutoffs crossed", ylabel="CPU time of a cycle / s")
-        axes.legend(loc="upper left")
-        return figure
 
 
 def sections(rows: Sequence[Row], repeats: int) -> list[str]:

@@ -1,5 +1,4 @@
 # `make accuracy`: the numerical errors of every scene, their laws, tables and figures.
-ACCURACY = "results/accuracy"
 MEASURED = [
     f"{shape}-{energy}"
     for shape in ("chemical", "flat", "h08", "h03")
@@ -35,6 +34,14 @@ rule accuracy:
 rule accuracy_study:
     output:
         f"{ACCURACY}/{{study}}-{{scene}}.nc",
+    log:
+        f"{ACCURACY}/logs/{{study}}-{{scene}}.log",
+    benchmark:
+        f"{ACCURACY}/benchmarks/{{study}}-{{scene}}.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=2000,
+        runtime=240,
     params:
         sources=fingerprint(
             "studies.accuracy.files.STUDIES", "studies.accuracy.scenes.SCENES"
@@ -46,9 +53,10 @@ rule accuracy_study:
             and wildcards.scene.endswith(("-0.001", "-0.0025", "-0.01"))
             else 8
         ),
+        results=folder,
     shell:
-        "python -m studies accuracy scene {wildcards.scene} --study {wildcards.study} "
-        "--realisations {params.surfaces} --output {ACCURACY:q}"
+        f"{STUDIES} accuracy scene {{wildcards.scene}} --study {{wildcards.study}}"
+        f" --realisations {{params.surfaces}} --output {{params.results:q}}{LOGGED}"
 
 
 rule accuracy_report:
@@ -75,7 +83,16 @@ rule accuracy_report:
             figure=["work-precision", "laws"],
             suffix=["pdf", "png"],
         ),
+    log:
+        f"{ACCURACY}/logs/report.log",
+    benchmark:
+        f"{ACCURACY}/benchmarks/report.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=2000,
+        runtime=60,
     params:
         sources=fingerprint("studies.accuracy.report.write_report"),
+        results=folder,
     shell:
-        "python -m studies accuracy report --output {ACCURACY:q}"
+        f"{STUDIES} accuracy report --output {{params.results:q}}{LOGGED}"

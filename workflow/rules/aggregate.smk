@@ -3,6 +3,14 @@ rule aggregate:
         expand("{results}/shards/{shard}.json", results=RESULTS, shard=SHARDS),
     output:
         f"{RESULTS}/hysteresis.nc",
+    log:
+        f"{RESULTS}/logs/aggregate.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/aggregate.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=megabytes(NEEDS["aggregate"].memory),
+        runtime=minutes(NEEDS["aggregate"].seconds),
     params:
         sources=fingerprint(
             "crackfront.sweep.table.write_hysteresis",
@@ -10,5 +18,8 @@ rule aggregate:
             "crackfront.sweep.table.failed_row",
         ),
         sweep=SWEEP.fingerprint,
+        configuration=configuration,
+        results=folder,
     shell:
-        "crackfront aggregate {CONFIGURATION:q} --output {RESULTS:q}"
+        f"{CRACKFRONT} aggregate {{params.configuration:q}}"
+        f" --output {{params.results:q}}{LOGGED}"

@@ -12,6 +12,14 @@ rule sweep_figures:
             )
             for figure in SWEEP_FIGURES
         ],
+    log:
+        f"{RESULTS}/logs/figures.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figures.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=megabytes(NEEDS["figures"].memory),
+        runtime=minutes(NEEDS["figures"].seconds),
     params:
         sources=fingerprint(
             "crackfront.analysis.steady.steady_adhesion",
@@ -21,5 +29,8 @@ rule sweep_figures:
             "crackfront.plots.sweep",
         ),
         sweep=SWEEP.fingerprint,
+        configuration=configuration,
+        results=folder_above,
     shell:
-        "crackfront figures {CONFIGURATION:q} --output {RESULTS:q}"
+        f"{CRACKFRONT} figures {{params.configuration:q}}"
+        f" --output {{params.results:q}}{LOGGED}"

@@ -3,6 +3,14 @@ rule fit:
         f"{RESULTS}/hysteresis.nc",
     output:
         multiext(f"{RESULTS}/fit", ".nc", ".json", ".md"),
+    log:
+        f"{RESULTS}/logs/fit.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/fit.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=megabytes(NEEDS["fit"].memory),
+        runtime=minutes(NEEDS["fit"].seconds),
     params:
         sources=fingerprint(
             "crackfront.analysis.sweep.fit_sweep",
@@ -10,8 +18,11 @@ rule fit:
             "crackfront.sweep.table.read_table",
         ),
         sweep=SWEEP.fingerprint,
+        configuration=configuration,
+        results=folder,
     shell:
-        "crackfront fit {CONFIGURATION:q} --output {RESULTS:q}"
+        f"{CRACKFRONT} fit {{params.configuration:q}}"
+        f" --output {{params.results:q}}{LOGGED}"
 
 
 rule summary:
@@ -24,6 +35,14 @@ rule summary:
             caption="../report/summary.rst",
             category="Fit, configuration and provenance",
         ),
+    log:
+        f"{RESULTS}/logs/summary.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/summary.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=megabytes(NEEDS["summary"].memory),
+        runtime=minutes(NEEDS["summary"].seconds),
     params:
         sources=fingerprint(
             "crackfront.analysis.sweep.fit_sweep",
@@ -31,5 +50,8 @@ rule summary:
             "crackfront.sweep.summary.summary_page",
         ),
         sweep=SWEEP.fingerprint,
+        configuration=configuration,
+        results=folder,
     shell:
-        "crackfront summary {CONFIGURATION:q} --output {RESULTS:q}"
+        f"{CRACKFRONT} summary {{params.configuration:q}}"
+        f" --output {{params.results:q}}{LOGGED}"

@@ -1,21 +1,5 @@
 # `make figures`: every computed figure of the paper, with its data and its checks. One job computes
 # the data of a figure, another draws them, so that a change of the drawing computes nothing again.
-PAPER = f"results/figures/{SCALE}"
-
-
-ANIMATED = [name for name in FIGURES if figure(name).animate]
-
-
-def expected_seconds(name):
-    """Processor time of the data of a figure."""
-    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
-    return figure(name).seconds(parameters)
-
-
-# Those that take longest go first: one that began last would leave the other cores waiting.
-LONGEST = sorted(FIGURES, key=expected_seconds)[-5:]
-
-
 wildcard_constraints:
     figure="(main|si|beyond)-[a-z0-9-]+",
 
@@ -35,21 +19,25 @@ rule figures:
         "results/figures/checks.md",
 
 
-def settings_of(wildcards):
-    """What the data of a figure are computed from beside the sources."""
-    name = getattr(wildcards, "figure", "si-5")
-    return settings_fingerprint(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
-
-
 rule figure_data:
     output:
         f"{PAPER}/{{figure}}.nc",
+    log:
+        f"{PAPER}/logs/{{figure}}-data.log",
+    benchmark:
+        f"{PAPER}/benchmarks/{{figure}}-data.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=4000,
+        runtime=lambda wildcards: minutes(expected_seconds(wildcards.figure)),
     params:
         sources=lambda wildcards: figure_fingerprint(wildcards.figure),
         settings=settings_of,
+        file=figure_file,
+        results=folder_above,
     shell:
-        "python -m studies paper figure {FIGURE_SETTINGS:q}/{wildcards.figure}.yaml --scale {SCALE}"
-        " --output results/figures"
+        f"{STUDIES} paper figure {{params.file:q}} --scale {SCALE}"
+        f" --output {{params.results:q}}{LOGGED}"
 
 
 use rule figure_data as longest_figure_data with:
@@ -65,13 +53,24 @@ rule figure_of_sweep:
         f"results/{Path(SWEEPS[SCALE]).stem}/hysteresis.nc",
     output:
         f"{PAPER}/si-5.nc",
+    log:
+        f"{PAPER}/logs/si-5-data.log",
+    benchmark:
+        f"{PAPER}/benchmarks/si-5-data.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=megabytes(NEEDS["fit"].memory),
+        runtime=minutes(NEEDS["fit"].seconds),
     params:
         sources=figure_fingerprint("si-5"),
         fit=fingerprint("crackfront.analysis.sweep.fit_sweep"),
         settings=settings_of,
         sweep=lambda wildcards: load_configuration(Path(SWEEPS[SCALE])).fingerprint,
+        file=figure_file,
+        results=folder_above,
     shell:
-        "python -m studies paper figure {FIGURE_SETTINGS:q}/si-5.yaml --scale {SCALE} --output results/figures"
+        f"{STUDIES} paper figure {{params.file:q}} --scale {SCALE}"
+        f" --output {{params.results:q}}{LOGGED}"
 
 
 ruleorder: figure_of_sweep > longest_figure_data > figure_data
@@ -83,11 +82,19 @@ rule figure_drawing:
     output:
         f"{PAPER}/{{figure}}.pdf",
         f"{PAPER}/{{figure}}.png",
+    log:
+        f"{PAPER}/logs/{{figure}}-drawing.log",
+    benchmark:
+        f"{PAPER}/benchmarks/{{figure}}-drawing.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=4000,
+        runtime=30,
     params:
         sources=lambda wildcards: drawing_fingerprint(wildcards.figure),
         settings=settings_of,
     shell:
-        "python -m studies paper draw {input:q}"
+        f"{STUDIES} paper draw {{input:q}}{LOGGED}"
 
 
 rule figure_animation:
@@ -97,13 +104,21 @@ rule figure_animation:
         f"{PAPER}/{{figure}}.pdf",
         f"{PAPER}/{{figure}}.png",
         f"{PAPER}/{{figure}}.gif",
+    log:
+        f"{PAPER}/logs/{{figure}}-drawing.log",
+    benchmark:
+        f"{PAPER}/benchmarks/{{figure}}-drawing.tsv"
     wildcard_constraints:
         figure="|".join(ANIMATED),
+    resources:
+        cpus_per_task=1,
+        mem_mb=4000,
+        runtime=30,
     params:
         sources=lambda wildcards: drawing_fingerprint(wildcards.figure),
         settings=settings_of,
     shell:
-        "python -m studies paper draw {input:q}"
+        f"{STUDIES} paper draw {{input:q}}{LOGGED}"
 
 
 rule figure_checks:
@@ -111,8 +126,17 @@ rule figure_checks:
         expand("{results}/{figure}.nc", results=PAPER, figure=FIGURES),
     output:
         "results/figures/checks.md",
+    log:
+        "results/figures/logs/checks.log",
+    benchmark:
+        "results/figures/benchmarks/checks.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=4000,
+        runtime=30,
     params:
         sources=checks_fingerprint(),
         scale=SCALE,
+        results=folder,
     shell:
-        "python -m studies paper check --output results/figures"
+        f"{STUDIES} paper check --output {{params.results:q}}{LOGGED}"

@@ -1,30 +1,21 @@
 # One job a shard, spread over MPI ranks inside. The finished simulations stand in `curves/`,
 # which no rule declares: Snakemake deletes what a failed job declares, and they must survive.
-import shlex
-
-
-def rank_options(resources, threads):
-    """How many ranks simulate and what starts them, where a profile says so."""
-    # The rank that hands out the work is a task of the profile, and no thread of this machine.
-    ranks = resources.get("tasks", threads + 1) - 1
-    launcher = resources.get("mpi")
-    return f"--ranks {ranks}" + (
-        f" --launcher {shlex.quote(launcher)}" if launcher else ""
-    )
-
-
-def block_option(shard):
-    """First and last realisation of a job."""
-    return f"{shard.realisations.start}-{shard.realisations.stop - 1}"
-
-
 rule simulate:
     output:
         f"{RESULTS}/shards/{{shard}}.json",
+    log:
+        f"{RESULTS}/logs/simulate-{{shard}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/simulate-{{shard}}.tsv"
     # What takes all cores comes before what takes one, which would leave the others waiting: jobs
     # are chosen by the sum of their priorities.
     priority: 100
-    threads: int(config.get("ranks", workflow.resource_settings.cores or 1))
+    threads: RANKS
+    resources:
+        # Tasks and a launcher are a profile's. What is not done in time goes on in the next job.
+        cpus_per_task=1,
+        mem_mb_per_cpu=megabytes(RANK_BYTES),
+        runtime=240,
     params:
         # Changes with everything that determines the simulations, the solver's sources included.
         fingerprint=lambda wildcards: SWEEP.shard_fingerprint(SHARDS[wildcards.shard]),
@@ -32,7 +23,10 @@ rule simulate:
         block=lambda wildcards: block_option(SHARDS[wildcards.shard]),
         # No reason to run a job again, as a function of resources is none to Snakemake.
         ranks=lambda wildcards, resources, threads: rank_options(resources, threads),
+        configuration=configuration,
+        results=folder_above,
     shell:
         # The command takes the shell's place, so that it gets the notice before a time limit.
-        "exec crackfront simulate {CONFIGURATION:q} --output {RESULTS:q}"
-        " --spectrum {params.spectrum} --realisations {params.block} {params.ranks}"
+        f"exec {CRACKFRONT} simulate {{params.configuration:q}}"
+        f" --output {{params.results:q}} --spectrum {{params.spectrum}}"
+        f" --realisations {{params.block}} {{params.ranks}}{LOGGED}"

@@ -1,11 +1,5 @@
 # `make validate`: the crack-front model against boundary elements. The cycles of the boundary
 # elements are resumed from their last load step; the rule owns what is made of them.
-from studies.boundary_elements.parameters import load_validation
-
-VALIDATION = config.get("validation", "config/validation.yaml")
-VALIDATED = str(results_folder(Path(VALIDATION)))
-
-
 rule validation:
     input:
         f"{VALIDATED}/hysteresis.nc",
@@ -19,8 +13,19 @@ rule validate:
         f"{VALIDATED}/hysteresis.nc",
         f"{VALIDATED}/picture.nc",
         multiext(f"{VALIDATED}/validation", ".pdf", ".png"),
+    log:
+        f"{VALIDATED}/logs/validate.log",
+    benchmark:
+        f"{VALIDATED}/benchmarks/validate.tsv"
+    resources:
+        cpus_per_task=1,
+        mem_mb=8000,
+        runtime=1440,
     params:
         sources=fingerprint("studies.boundary_elements.study.write_validation"),
         settings=lambda wildcards: repr(load_validation(Path(VALIDATION))),
+        configuration=lambda wildcards, output: VALIDATION,
+        results=folder,
     shell:
-        "python -m studies boundary-elements validate {VALIDATION:q} --output {VALIDATED:q}"
+        f"{STUDIES} boundary-elements validate {{params.configuration:q}}"
+        f" --output {{params.results:q}}{LOGGED}"

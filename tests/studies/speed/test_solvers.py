@@ -17,5 +17,4 @@ def test_the_smoke_benchmark_reports_equal_fronts(tmp_path):
     assert row["newton_pairs"] < row["reference_pairs"]
     assert row["memory"] > 50
     page = (tmp_path / "solvers.md").read_text()
-    assert "| flat 0.16, w_rms 0.4, N 256" in page
-    assert "Machine: " in page
+    assert "Machine: " in page.split("| flat 0.16, w_rms 0.4, N 256")[0]

@@ -1,0 +1,29 @@
+"""What it takes to collect, fit and draw a sweep that has run, by a law of measured sweeps."""
+
+from __future__ import annotations
+
+from crackfront.simulate.costs import Cost
+from crackfront.sweep.sweep import Sweep
+
+_LATE = {
+    "aggregate": (4.5, 2.5e-4, 2.4e8, 1.2e3, 0),
+    "fit": (4.5, 1.2e-5, 2.4e8, 7e2, 1),
+    "figures": (10.0, 6e-5, 3.2e8, 7e2, 1),
+    "summary": (4.5, 1.2e-5, 2.4e8, 7e2, 1),
+}
+"""Of each command: seconds and those of a row, bytes of memory and those of a row, and whether it
+draws the bootstrap; by `python -m studies speed scaling`."""
+
+_DRAWN_SECONDS, _DRAWN_BYTES, _MOST_DRAWN = 4.2e-8, 16.0, 1.35e8
+"""Seconds of a row in a bootstrap sample; bytes of a realisation in one, and the most of them."""
+
+
+def late_needs(sweep: Sweep) -> dict[str, Cost]:
+    """Expected cost of the commands that follow the simulations, by their names, in their order."""
+    n_row, n_sample = sweep.n_simulation, sweep.fit.n_bootstrap
+    drawn = min(_MOST_DRAWN, _DRAWN_BYTES * n_sample * sweep.n_realisation)
+    needs = {}
+    for name, (start, row, memory, row_bytes, draws) in _LATE.items():
+        seconds = start + n_row * (row + draws * n_sample * _DRAWN_SECONDS)
+        needs[name] = Cost(seconds, memory + n_row * row_bytes + draws * drawn, disk=0.0)
+    return needs

@@ -1,0 +1,153 @@
+# What the rules share: the settings of a run, checked, and functions that say how a job is run.
+import os
+import shlex
+import sys
+from pathlib import Path
+
+from snakemake.exceptions import WorkflowError
+
+BASE = Path(workflow.current_basedir).parents[1]
+sys.path.insert(0, str(BASE))  # where the studies stand
+
+from crackfront.data.fingerprint import fingerprint
+from crackfront.simulate.costs import expected_cost
+from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.needs import late_needs
+from studies.boundary_elements.parameters import load_validation
+from studies.paper.figure import (
+    FIGURES,
+    SCALES,
+    checks_fingerprint,
+    drawing_fingerprint,
+    figure,
+    figure_fingerprint,
+    load_figure,
+    settings_fingerprint,
+)
+
+unknown = set(config) - {"sweep", "ranks", "block", "scale", "validation"}
+if unknown:
+    raise WorkflowError(
+        f"--config knows no {', '.join(sorted(unknown))}; its keys are sweep "
+        "(a file), ranks, block (realisations of a job), scale (of the paper's figures), and "
+        "validation (a file)"
+    )
+
+SCALE = config.get("scale", "quick")
+if SCALE not in SCALES:
+    raise WorkflowError(f"scale is {SCALE!r}; choose one of {', '.join(SCALES)}")
+RANKS = config.get("ranks", workflow.resource_settings.cores or 1)
+if not isinstance(RANKS, int) or RANKS < 1:
+    raise WorkflowError(f"ranks is {RANKS!r}; give a whole number of 1 or more")
+
+
+def shipped(path):
+    """A file of this repository, from the folder in which the workflow runs."""
+    return os.path.relpath(BASE / path)
+
+
+# The figures of the paper, and the sweep of each scale's SI Fig. S-5.
+FIGURE_SETTINGS = shipped("config/figures")
+SWEEPS = {
+    scale: shipped(load_figure(Path(FIGURE_SETTINGS, "si-5.yaml"), scale).sweep)
+    for scale in SCALES
+}
+CONFIGURATION = config.get("sweep", SWEEPS[SCALE])
+VALIDATION = config.get("validation", shipped("config/validation.yaml"))
+try:
+    RESULTS = str(results_folder(Path(CONFIGURATION)))
+    SWEEP = load_configuration(Path(CONFIGURATION))
+    SHARDS = {shard.name: shard for shard in SWEEP.shards(config.get("block"))}
+    VALIDATED = str(results_folder(Path(VALIDATION)))
+except ValueError as error:
+    raise WorkflowError(str(error)) from None
+
+SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
+PAPER = f"results/figures/{SCALE}"
+ACCURACY = "results/accuracy"
+NEEDS = late_needs(SWEEP)
+RANK_BYTES = max(
+    expected_cost(one).memory for item in SWEEP.spectra for one in SWEEP.firsts(item)
+)
+ANIMATED = [name for name in FIGURES if figure(name).animate]
+
+
+def expected_seconds(name):
+    """Processor time of the data of a figure of the paper."""
+    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+    return figure(name).seconds(parameters)
+
+
+# Those that take longest go first: one that began last would leave the other cores waiting.
+LONGEST = sorted(FIGURES, key=expected_seconds)[-5:]
+
+
+def settings_of(wildcards):
+    """What the data of a figure of the paper are computed from beside the sources."""
+    name = getattr(wildcards, "figure", "si-5")
+    return settings_fingerprint(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+
+
+def figure_file(wildcards, output):
+    """Configuration of a figure of the paper, whose name is that of its data."""
+    return f"{FIGURE_SETTINGS}/{Path(output[0]).stem}.yaml"
+
+
+# Commands stand beside the Python that runs Snakemake, in a folder of any name. What they print is
+# shown and kept; tee outlives the signals that end what it shows.
+def command(name):
+    """A command of the environment as shells and Snakemake read it."""
+    path = shlex.quote(str(Path(sys.executable).parent / name))
+    return path.replace("{", "{{").replace("}", "}}")
+
+
+def importable(path):
+    """Setting of a shell by which Python finds modules in a folder."""
+    quoted = shlex.quote(str(path)).replace("{", "{{").replace("}", "}}")
+    return f"PYTHONPATH={quoted}${{{{PYTHONPATH:+:$PYTHONPATH}}}} "
+
+
+CRACKFRONT = command("crackfront")
+STUDIES = importable(BASE) + command("python") + " -m studies"
+LOGGED = " > >(trap '' INT TERM HUP; exec tee {log:q}) 2>&1"
+
+
+# Functions of an output are no reason to run a job again, and know a module's prefix of paths.
+def folder(wildcards, output):
+    """Folder of the first file of a rule."""
+    return str(Path(output[0]).parent)
+
+
+def folder_above(wildcards, output):
+    """Folder above that of the first file of a rule."""
+    return str(Path(output[0]).parents[1])
+
+
+def configuration(wildcards, output):
+    """File of the configuration of the sweep."""
+    return CONFIGURATION
+
+
+def megabytes(number):
+    """Memory to ask for where a number of bytes is expected. (Units: MB)"""
+    return int(number * 1.5e-6) + 1
+
+
+def minutes(seconds):
+    """Time to ask for where some seconds are expected, which on slower machines are more."""
+    return 10 + int(seconds * 3 / 60)
+
+
+def rank_options(resources, threads):
+    """How many ranks simulate and what starts them, where a profile says so."""
+    # The rank that hands out the work is a task of the profile, and no thread of this machine.
+    ranks = resources.get("tasks", threads + 1) - 1
+    launcher = resources.get("mpi")
+    return f"--ranks {ranks}" + (
+        f" --launcher {shlex.quote(launcher)}" if launcher else ""
+    )
+
+
+def block_option(shard):
+    """First and last realisation of a job."""
+    return f"{shard.realisations.start}-{shard.realisations.stop - 1}"
