@@ -8,6 +8,7 @@ import numpy as np
 
 from crackfront.data.written_units import prefixed
 from crackfront.topography.bands import Scan
+from crackfront.topography.instruments import is_doubtful
 from crackfront.topography.measures import MeasuredSurface
 
 _MOST_ANISOTROPY = 1.25
@@ -88,9 +89,20 @@ def measure_next(surface: MeasuredSurface) -> str:
     return f"Measure next: waves {waves}, by which e_el may be up to {factor:.3g} times as large."
 
 
+def channel_doubts(surface: MeasuredSurface) -> Iterator[str]:
+    """Scans whose channel may hold no heights, one sentence each."""
+    for item in (one.measurement for one in surface.scans):
+        if is_doubtful(item.channel):
+            yield (
+                f"{item.path}: channel {item.channel} has a unit of length, but the name of "
+                "another quantity than heights; --list-channels shows them all."
+            )
+
+
 def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
     """What makes a spectrum doubtful, one sentence each."""
     joint = surface.joint
+    yield from channel_doubts(surface)
     for index, one in enumerate(surface.scans):
         path, ratio, level = one.measurement.path, one.band.anisotropy, joint.density.levels[index]
         if max(ratio, 1 / ratio) > _MOST_ANISOTROPY:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import importlib
+import re
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -24,8 +26,34 @@ _LIBRARY = "SurfaceTopography"
 _BEGIN = 512
 """Bytes of a file that hold its signature."""
 
+_NO_HEIGHTS = re.compile("ampl|phase|error|deflection|friction|potential|adhesion", re.IGNORECASE)
+"""Names of channels that are not of heights, also where the file gives them a unit of length."""
+
 _SIDES = (1e-9, 1.0)
 """Sides of a scan within which instruments measure (Units: m): beyond, the unit is wrong."""
+
+_LEAST_HEIGHT, _MOST_HEIGHT = 1e-12, 10.0
+"""Least rms of heights (Units: m), and most span over the side, that instruments measure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """What a file says of one of its channels."""
+
+    number: int
+    name: str
+    quantity: str
+    """Such as height or phase."""
+    points: tuple[int, ...]
+    is_default: bool
+    """Whether it is read where none is named."""
+
+    def __str__(self) -> str:
+        """A line on it."""
+        warned = self.quantity == "height" and is_doubtful(self.name)
+        quantity = f"{self.quantity}{', by its name another quantity' if warned else ''}"
+        points = f", {' x '.join(map(str, self.points))} points" if self.points else ""
+        return f"{self.number} {self.name!r} ({quantity}){points}{', default' * self.is_default}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +129,16 @@ def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
         )
     if sides is not None:
         level = library_scan(level.heights(), sides, periodic=False, info=raw.info)
+    if options.height_unit is not None:
+        _refuse_no_length("--height-unit", options.height_unit)
+        heights, sides = level.heights(), tuple(map(float, level.physical_sizes))
+        if channel.unit is not None and are_possible_heights(heights, sides):
+            raise ValueError(
+                f"{path} states heights in {channel.unit}, which may be; leave --height-unit "
+                f"{options.height_unit} out"
+            )
+        heights = metres(options.height_unit) * raw.heights()
+        level = library_scan(heights, sides, periodic=bool(level.is_periodic), info=raw.info)
     return RawScan(level, reader.format(), name)
 
 
@@ -183,28 +221,59 @@ def _signed(path: Path) -> Any:
     return found[0] if len(found) == 1 else None
 
 
+@_silenced()
+def list_channels(path: str | PathLike[str]) -> tuple[Channel, ...]:
+    """Channels of a file, as options `channel` name them.
+
+    Parameters
+    ----------
+    path : str or path
+        File of an instrument, in any format that SurfaceTopography reads.
+
+    Returns
+    -------
+    tuple of Channel
+        Number, name, quantity and points of each, and whether it is read by default.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read.
+    OSError
+        If it cannot be opened.
+    """
+    return _channels(Path(path), _reader(Path(path)))[1]
+
+
+def _channels(path: Path, reader: Any) -> tuple[list[Any], tuple[Channel, ...]]:
+    """Channels of a file as its reader has them, and what they are."""
+    with _parsing(path):
+        channels, default = list(reader.channels), reader.default_channel.index
+    return channels, tuple(
+        Channel(one.index, one.name, _kind(one), one.nb_grid_pts or (), one.index == default)
+        for one in channels
+    )
+
+
 def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
     """A channel of heights, the library's own choice if none is named, and what it is called."""
-    with _parsing(path):
-        channels = list(reader.channels)
-        found: Any = reader.default_channel
-    of_heights = [item for item in channels if _kind(item) == "height"]
-    if wanted is not None:
-        named = [item for item in channels if item.name == wanted]
-        named = named or [item for item in channels if str(item.index) == wanted]
-        if len(named) != 1:
-            raise ValueError(
-                f"{path} has {'several channels' if named else 'no channel'} {wanted!r}; "
-                f"{_choice(channels)}"
-            )
-        [found] = named
-    if _kind(found) != "height":
+    channels, known = _channels(path, reader)
+    named = [one for one in known if (one.is_default if wanted is None else one.name == wanted)]
+    named = named or [one for one in known if str(one.number) == wanted]
+    if len(named) != 1:
         raise ValueError(
-            f"{path}: channel {found.name!r} holds {_kind(found)}, no heights; "
+            f"{path} has {'several channels' if named else 'no channel'} {wanted!r}; "
+            f"{_choice(known)}"
+        )
+    [found] = named
+    if found.quantity != "height":
+        of_heights = [one for one in known if one.quantity == "height"]
+        raise ValueError(
+            f"{path}: channel {found.name!r} holds {found.quantity}, no heights; "
             + (_choice(of_heights) if of_heights else "export the channel of the heights")
         )
-    several = f", {found.index} of {len(channels)}" if len(channels) > 1 else ""
-    return found, f"{found.name!r}{several}"
+    several = f", {found.number} of {len(known)}" if len(known) > 1 else ""
+    return channels[known.index(found)], f"{found.name!r}{several}"
 
 
 def _kind(channel: Any) -> str:
@@ -213,10 +282,14 @@ def _kind(channel: Any) -> str:
     return "another quantity" if isinstance(channel.unit, tuple) else str(channel.data_kind.value)
 
 
-def _choice(channels: list[Any]) -> str:
-    """Sentence that lists channels with their numbers, names and quantities."""
-    known = (f"{item.index} {item.name!r} ({_kind(item)})" for item in channels)
-    return f"choose by number or name with --channel: {', '.join(known)}"
+def is_doubtful(channel: str) -> bool:
+    """Whether the name of a channel says that it holds no heights."""
+    return _NO_HEIGHTS.search(channel) is not None
+
+
+def _choice(channels: Sequence[Channel]) -> str:
+    """Sentence that lists channels."""
+    return f"choose by number or name with --channel: {'; '.join(map(str, channels))}"
 
 
 def _completed(
@@ -225,34 +298,28 @@ def _completed(
     """What a file does not state, and sides in metres where it states impossible ones."""
     unit, size = channel.unit, channel.physical_sizes
     is_sized = size is not None and None not in size
-    if unit is not None and is_sized and not _are_possible(stated := in_metres(size, unit)):
+    if unit is not None and is_sized and not _are_possible(stated := _in_metres(size, unit)):
         if options.size is None or options.unit is None:
             raise ValueError(
                 f"{path} states sides of {shown_sides(stated)}, which no instrument measures; its "
                 "unit is wrong, so name the sides, as in --size "
                 f"{','.join(f'{side:g}' for side in stated)} --unit um"
             )
-        return {}, _named_sides(path, options.size, options.unit)
+        return {}, _named_sides(path, _sides(path, options.size, len(stated)), options.unit)
     given: dict[str, Any] = {}
     if unit is None:
         if options.unit is None:
             raise ValueError(
                 f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
             )
-        if not library_part("Support.UnitConversion").is_length_unit(options.unit):
-            raise ValueError(f"--unit {options.unit} is no unit of length; name one, as in um")
+        _refuse_no_length("--unit", options.unit)
         given["unit"] = unit = options.unit
     elif options.unit not in (None, unit):
         raise ValueError(f"{path} states its own unit, {unit}; leave --unit {options.unit} out")
     if not is_sized:
         if options.size is None:
             raise ValueError(f"{path} states no size of the scan; name it, as in --size 50,50")
-        if len(options.size) != channel.dim:
-            raise ValueError(
-                f"{path} has {channel.dim} dimension(s) and the size that is named "
-                f"{len(options.size)}; name one length for each, as in --size 50,50"
-            )
-        given["physical_sizes"] = size = options.size
+        given["physical_sizes"] = size = _sides(path, options.size, channel.dim)
     elif options.size is not None:
         known = " x ".join(f"{side:g}" for side in size)
         raise ValueError(f"{path} states its own size, {known} {unit}; leave --size out")
@@ -260,10 +327,37 @@ def _completed(
     return given, None
 
 
-def in_metres(sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
+def _refuse_no_length(option: str, unit: str) -> None:
+    """Raise where an option names no unit of length."""
+    if not library_part("Support.UnitConversion").is_length_unit(unit):
+        raise ValueError(f"{option} {unit} is no unit of length; name one, as in um")
+
+
+def _sides(path: Path, named: tuple[float, ...], n_side: int) -> tuple[float, ...]:
+    """Sides of a scan that are named, one number for a square."""
+    found = named * n_side if len(named) == 1 else named
+    if len(found) != n_side:
+        raise ValueError(
+            f"{path} has {n_side} dimension(s) and the size that is named {len(named)}; name one "
+            "length for each, as in --size 50,40, or one for a square"
+        )
+    return found
+
+
+def metres(unit: str) -> float:
+    """Metres in a unit of length."""
+    return float(library_part("Support.UnitConversion").get_unit_conversion_factor(unit, "m"))
+
+
+def are_possible_heights(heights: np.ndarray[Any, Any], sides: tuple[float, ...]) -> bool:
+    """Whether an instrument measures heights on such sides, all in metres."""
+    known = np.ma.compressed(np.ma.masked_invalid(heights))
+    return bool(np.std(known) >= _LEAST_HEIGHT and np.ptp(known) <= _MOST_HEIGHT * max(sides))
+
+
+def _in_metres(sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
     """Sides of a scan in metres."""
-    factor = library_part("Support.UnitConversion").get_unit_conversion_factor(unit, "m")
-    return tuple(float(factor * side) for side in sides)
+    return tuple(metres(unit) * float(side) for side in sides)
 
 
 def _are_possible(sides: tuple[float, ...]) -> bool:
@@ -273,7 +367,7 @@ def _are_possible(sides: tuple[float, ...]) -> bool:
 
 def _named_sides(path: Path, sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
     """Sides in metres, refused where no instrument measures them."""
-    found = in_metres(sides, unit)
+    found = _in_metres(sides, unit)
     if not _are_possible(found):
         raise ValueError(
             f"{path} cannot have sides of {shown_sides(found)}: instruments measure from "

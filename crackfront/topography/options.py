@@ -206,7 +206,8 @@ def _detrend(value: Any, what: str) -> Detrend:
 
 
 def _sides(value: Any, what: str) -> tuple[float, ...]:
-    """Sides of a scan, from a text with commas or a sequence of numbers."""
+    """Sides of a scan, from a text with commas, a number or a sequence of numbers."""
+    value = (value,) if isinstance(value, Real) else value
     try:
         found = tuple(map(float, value.split(",") if isinstance(value, str) else value))
     except (TypeError, ValueError) as error:
@@ -251,9 +252,13 @@ class ReadingOptions:
     unit: str | None = option(
         "Unit of length of files that state none, as in um", Kind(_text, "str")
     )
+    height_unit: str | None = option(
+        "Unit of the heights alone, as in nm, where a file states none or one that cannot be",
+        Kind(_text, "str"),
+    )
     size: tuple[float, ...] | None = option(
-        "Sides of scans that state none, in that unit, as in 50,50 or 50",
-        Kind(_sides, "str or sequence of float"),
+        "Sides of scans that state none, in --unit, as in 50,40; 50 for a square or a line",
+        Kind(_sides, "str, float or sequence of float"),
     )
     tip_radius: float | None = option(
         "Radius of the tip that scanned it, as in 20nm; by default what the file says, and 10nm "

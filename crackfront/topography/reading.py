@@ -14,10 +14,11 @@ from crackfront.data.written_units import prefixed
 from crackfront.topography.files import checksum
 from crackfront.topography.instruments import (
     RawScan,
+    are_possible_heights,
     array_of,
-    in_metres,
     library_part,
     library_scan,
+    metres,
     raw_scan,
     shown_sides,
     surface_library,
@@ -45,9 +46,6 @@ _SCANNING_PROBES = {"di", "ezd", "ibw", "jpk", "mdt", "mi", "ps", "wsxm"}
 
 _TIP = 10e-9
 """Radius of a tip of which nothing is known (Units: m)."""
-
-_LEAST_HEIGHT, _MOST_HEIGHT = 1e-12, 10.0
-"""Least rms of heights (Units: m), and most span over the side, that instruments measure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,11 +185,11 @@ def _used_part(
     rms, span = float(np.std(known)), float(np.ptp(known))
     if not span > 0:
         raise ValueError(f"{path}: all heights are equal; a smooth surface has no spectrum")
-    if rms < _LEAST_HEIGHT or span > _MOST_HEIGHT * max(size):
+    if not are_possible_heights(known, size):
         raise ValueError(
             f"{path}: the heights vary by {prefixed('m', rms)} rms and span {prefixed('m', span)} "
-            f"on {shown_sides(size)}, which cannot be; their unit is wrong, so export them with "
-            "the right one"
+            f"on {shown_sides(size)}, which cannot be; their unit is wrong, so name the right "
+            "one, as in --height-unit nm"
         )
     return heights, fitted, size
 
@@ -201,7 +199,7 @@ def _tip(scan: RawScan, options: ReadingOptions) -> tuple[float, bool]:
     if options.tip_radius is not None:
         return options.tip_radius, False
     if stated := _instrument(scan.level).get("tip_radius"):
-        return in_metres((float(stated["value"]),), stated["unit"])[0], False
+        return metres(stated["unit"]) * float(stated["value"]), False
     is_assumed = scan.format in _SCANNING_PROBES
     return (_TIP if is_assumed else 0.0), is_assumed
 
@@ -215,8 +213,7 @@ def _trusted_wavelengths(path: Path, level: Any, size: tuple[float, ...]) -> tup
     """Wavelengths that points, resolution and sides allow to trust, refused where they are few."""
     shortest = _PIXELS_PER_WAVE * max(np.divide(size, level.nb_grid_pts).tolist())
     if resolution := _instrument(level).get("resolution"):
-        [stated] = in_metres((float(resolution["value"]),), resolution["unit"])
-        shortest = max(shortest, stated)
+        shortest = max(shortest, metres(resolution["unit"]) * float(resolution["value"]))
     longest = min(size) / _WAVES_PER_SIDE
     if longest < 2**_FEWEST_OCTAVES * shortest:
         raise ValueError(

@@ -14,7 +14,7 @@ from crackfront.analysis.validity import shipped_validity
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
 from crackfront.topography.bands import MOST_PERIODIC
-from crackfront.topography.cautions import surface_doubts
+from crackfront.topography.cautions import channel_doubts, surface_doubts
 from crackfront.topography.measures import MeasuredSurface, RmsMeasure
 from crackfront.topography.tile import zero_load_radius
 
@@ -130,7 +130,8 @@ def verdict(
         _slope_condition(surface),
         _random_condition(surface),
     )
-    doubts = [
+    doubts = [*channel_doubts(surface)]
+    doubts += [
         f"{item.name}: {item.found}; {item.reason}."
         for item in conditions
         if item.standing == "in doubt"
@@ -144,7 +145,7 @@ def verdict(
             f"The range of attraction is unknown and taken for {1e9 * reach:g} nm, that of van "
             "der Waals forces; --range names another."
         )
-    return Verdict(conditions, tuple(doubts), assumption)
+    return Verdict(conditions, tuple(dict.fromkeys(doubts)), assumption)
 
 
 def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Condition]:

@@ -10,13 +10,17 @@ import h5py
 import numpy as np
 import pytest
 
+import crackfront as cf
+from crackfront.topography import cautions
 from crackfront.topography.instruments import surface_library
+from crackfront.topography.measures import read_surface
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import read_measurements
 from studies.accuracy import scans
 from tests.topography.made import SIDE, read, refusal, write_text
 
 N_POINT = 48
+PLAIN = {"unit": "um", "size": (20.0,)}
 
 
 def write_arrays(path, **channels):
@@ -54,33 +58,57 @@ def test_a_channel_is_chosen_by_name_or_number(tmp_path, noise):
 
 
 def test_warnings_of_parsers_are_none_of_the_users(tmp_path, noise, monkeypatch):
-    path, mask = tmp_path / "scan.npy", tmp_path / "mask.npy"
-    np.save(path, 1e6 * noise)
+    library, path, mask = surface_library().IO, tmp_path / "scan.txt", tmp_path / "mask.npy"
+    np.savetxt(path, 1e6 * noise.T)
     np.save(mask, np.zeros(noise.shape))
-    library = pytest.importorskip("SurfaceTopography")
-    opened = library.open_topography
+    opened, warned = library.open_topography, []
 
     def warning(*arguments, **options):
-        warnings.warn("wmf image format is not supported", UserWarning, stacklevel=2)
+        warned.append(warnings.warn("wmf image format is not supported", stacklevel=2))
         return opened(*arguments, **options)
 
     monkeypatch.setattr(library, "open_topography", warning)
-    found = read(path, unit="um", size="5,4", mask=mask)
-    assert found.heights.shape == noise.shape
+    assert read(path, unit="um", size="5,4", mask=mask).heights.shape == noise.shape
+    assert warned
 
 
-def test_a_channel_without_heights_is_refused(monkeypatch, scan):
+def test_channels_are_listed_and_those_of_other_quantities_refused(monkeypatch, scan):
     module = surface_library().IO.Reader
-    monkeypatch.setattr(
-        module.ChannelInfo, "data_kind", property(lambda channel: module.DataKind.PHASE)
-    )
+    assert [str(one) for one in cf.list_channels(scan)] == [
+        "0 'Default' (height), 128 x 128 points, default"
+    ]
+    monkeypatch.setattr(module.ChannelInfo, "unit", property(lambda channel: ("nm", None)))
+    assert "channel 'Default' holds another quantity, no heights; export" in refusal(scan)
+    kind = property(lambda channel: module.DataKind.PHASE)
+    monkeypatch.setattr(module.ChannelInfo, "data_kind", kind)
+    monkeypatch.setattr(module.ChannelInfo, "unit", "m")
     assert "channel 'Default' holds phase, no heights" in refusal(scan)
 
 
-def test_a_channel_of_another_quantity_that_is_taken_for_heights_is_refused(monkeypatch, scan):
-    kind = surface_library().IO.Reader.ChannelInfo
-    monkeypatch.setattr(kind, "unit", property(lambda channel: ("nm", None)))
-    assert "channel 'Default' holds another quantity, no heights; export" in refusal(scan)
+def test_a_channel_of_lengths_that_is_named_after_another_quantity_is_in_doubt(tmp_path, noise):
+    path = write_text(tmp_path / "scan.txt", noise)
+    path.write_text(path.read_text().replace("Channel: Main", "Channel: AmplitudeTrace"))
+    assert "(height, by its name another quantity)" in str(cf.list_channels(path)[0])
+    [told] = cautions.channel_doubts(read_surface([path], [ReadingOptions()]))
+    assert "channel 'AmplitudeTrace' has a unit of length, but the name of another" in told
+
+
+def test_heights_have_a_unit_of_their_own_where_none_is_stated_or_it_cannot_be(tmp_path, noise):
+    nanometres, head = tmp_path / "plain.txt", "# Width: 20 µm\n# Height: 20 µm\n"
+    np.savetxt(nanometres, 1e9 * noise.T)
+    assert "name the right one, as in --height-unit nm" in refusal(nanometres, unit="um", size=20)
+    found = [read(nanometres, unit="um", size=20, height_unit="nm")]
+    for unit, given in (("m", {}), ("µm", {"unit": None})):
+        path = tmp_path / f"stated-{unit}.txt"
+        path.write_text(f"{head}# Value units: {unit}\n{nanometres.read_text()}")
+        found.append(read(path, height_unit="nm", **given))
+    for one in found:
+        assert one.size == pytest.approx((20e-6, 20e-6))
+        np.testing.assert_allclose(one.heights, found[0].heights, rtol=1e-9)
+    assert np.std(found[0].heights) == pytest.approx(np.std(noise), rel=0.1)
+    assert "--height-unit kg is no unit of length" in refusal(nanometres, height_unit="kg", **PLAIN)
+    path.write_text(path.read_text().replace("units: µm", "units: nm"))
+    assert "states heights in nm, which may be; leave" in refusal(path, height_unit="um")
 
 
 def test_unequally_spaced_lines_are_refused(rng, tmp_path):
@@ -95,8 +123,8 @@ def test_units_and_sizes_that_a_file_lacks_must_be_named(tmp_path, heights, scan
     assert "read as asc, states no unit of length; name it, as in --unit um" in refusal(path)
     assert "states no size" in refusal(path, unit="um")
     assert "--unit kg is no unit of length" in refusal(path, unit="kg", size=(20.0, 20.0))
-    assert "2 dimension(s)" in refusal(path, unit="um", size=(20.0,))
-    [given] = read_measurements([path], ReadingOptions(unit="um", size=(20.0, 20.0)))
+    assert "2 dimension(s)" in refusal(path, unit="um", size=(20.0, 20.0, 20.0))
+    [given] = read_measurements([path], ReadingOptions(**PLAIN))
     assert given.size == pytest.approx((20e-6, 20e-6))
     assert np.std(given.heights) == pytest.approx(
         np.std(read_measurements([scan])[0].heights), rel=1e-6
