@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable, Mapping
 from dataclasses import astuple, dataclass
 from pathlib import Path
@@ -35,6 +36,7 @@ from crackfront.topography.options import (
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
     from crackfront.topography.measures import MeasuredSurface
+    from crackfront.topography.simulated import Simulated
 
 Command = Callable[..., None]
 
@@ -74,7 +76,28 @@ def _options_of(record: type[Any], *, required: bool = False) -> Callable[[Comma
     return decorated
 
 
-_scans = click.argument("scans", type=FILE, nargs=-1, required=True)
+def _listed(
+    context: click.Context, parameter: click.Parameter, scans: tuple[Path, ...]
+) -> tuple[Path, ...]:
+    """The scans, unless a command is to list their channels instead of what it does."""
+    if context.params.get("list_channels"):
+        from crackfront.topography.instruments import list_channels
+
+        for scan in scans:
+            click.echo("\n  ".join(map(str, (scan, *list_channels(scan)))))
+        context.exit()
+    return scans
+
+
+def _scans(command: Command) -> Command:
+    """Give a command its scans; eager, so that channels are listed without its other options."""
+    command = click.option(
+        "--list-channels", is_flag=True, is_eager=True, help="List the channels of SCANS alone."
+    )(command)
+    scans = click.argument(
+        "scans", type=FILE, nargs=-1, required=True, is_eager=True, callback=_listed
+    )
+    return scans(command)
 
 
 @click.command(
@@ -103,7 +126,14 @@ _scans = click.argument("scans", type=FILE, nargs=-1, required=True)
     type=FILE,
     help="Figure: talk.svg, or without suffix PDF and PNG.  [default: results/predict/<scan>]",
 )
+@click.option("--panel", type=click.Choice("abcd"), help="Draw one panel of the figure alone.")
 @click.option("--no-figure", is_flag=True, help="Draw none: most of the time goes into it.")
+@click.option(
+    "--csv",
+    "table",
+    type=FILE,
+    help="Take each scan for a sample, and write a row for each.",
+)
 @click.option("--long", "is_long", is_flag=True, help="Print all that is known, not one page.")
 @click.option("--strict", is_flag=True, help="Let reservations fail as well.")
 @click.pass_context
@@ -116,7 +146,9 @@ def predict(
     realisations: int,
     seed: int,
     figure: Path | None,
+    panel: str | None,
     no_figure: bool,
+    table: Path | None,
     is_long: bool,
     strict: bool,
     **options: Any,
@@ -129,27 +161,23 @@ def predict(
 
     Exit code 0: a prediction, with reservations where there are any (3 with --strict). 4: the
     theory does not apply; nothing is predicted, and it is said what modulus, radius or roughness
-    would do.
+    would do. With --csv the largest of all samples, and 4 for a scan that cannot be used.
     """
-    from crackfront.topography.prediction import predicted
-    from crackfront.topography.report import (
-        machine_readable,
-        prediction_page,
-        report_text,
-        simulation_text,
-    )
-    from crackfront.topography.verdict import verdict
+    from crackfront.topography.prediction import judged
+    from crackfront.topography.report import machine_readable, prediction_page, report_text
 
     scales = _scales(options)
     given = parsed_options(PredictionOptions, options, "--")
+    if table is not None:
+        if as_json or simulate or is_long or panel or figure:
+            raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
+        outcomes = _write_samples(table, scans, scales, options)
+        context.exit(max(_exit_code(outcome, strict) for outcome in outcomes))
     stem = Path("results/predict", scans[0].stem) if figure is None else figure
     if not no_figure:
         refuse_unwritable(stem.parent)
     surface = _surface(scans, options)
-    ruling, prediction, outcome = verdict(surface, scales, given.range), None, None
-    if ruling.outcome != "does not apply":
-        prediction = predicted(surface, scales, given.range, given.pull_off)
-        ruling = prediction.verdict
+    (ruling, prediction), outcome = judged(surface, scales, given), None
     if not as_json:
         if prediction is not None:
             click.echo(prediction_page(prediction))
@@ -159,26 +187,66 @@ def predict(
         from crackfront.plots.style import save_figure
         from crackfront.topography.drawing import prediction_figure
 
-        for path in save_figure(prediction_figure(surface, prediction), stem):
+        for path in save_figure(prediction_figure(surface, prediction, panel), stem):
             if not as_json:
                 click.echo(f"figure: {path}")
     if prediction is not None and simulate:
-        from crackfront.topography.simulated import prediction_plan, simulated
-
-        plan = prediction_plan(surface, scales, realisations, seed)
-        if not as_json:
-            announce_compilation()
-            seconds = in_time(plan.expected_seconds)
-            about = f"simulating {realisations} surface(s), about {seconds} ..."
-            click.echo("\n".join(filter(None, (plan.remark, about))))
-        outcome = simulated(plan, scales)
-        if not as_json:
-            click.echo(simulation_text(outcome))
+        outcome = _simulated(surface, scales, realisations, seed, is_silent=as_json)
     if as_json:
         echo_json(machine_readable(surface, scales, ruling, prediction, outcome))
-    if prediction is None:
-        context.exit(_NO_PREDICTION)
-    context.exit(_RESERVATIONS if strict and ruling.reservations else 0)
+    context.exit(_exit_code(ruling.outcome, strict))
+
+
+def _exit_code(outcome: str, strict: bool) -> int:
+    """Exit code of what came of a surface."""
+    failed = {"applies": 0, "applies with reservations": _RESERVATIONS if strict else 0}
+    return failed.get(outcome, _NO_PREDICTION)
+
+
+def _write_samples(
+    path: Path, scans: tuple[Path, ...], scales: Scales, options: Mapping[str, Any]
+) -> list[str]:
+    """Write a table with a row for each scan, and give the outcomes."""
+    from crackfront.topography.measures import read_surface
+    from crackfront.topography.prediction import judged
+    from crackfront.topography.report import sample_row
+
+    refuse_unwritable(path.parent)
+    given, rows = parsed_options(PredictionOptions, options, "--"), []
+    reading = options_for_each(ReadingOptions, options, len(scans), "--")
+    for scan, by in zip(scans, reading, strict=True):
+        try:
+            surface = read_surface([scan], [by])
+            row = sample_row(surface, scales, *judged(surface, scales, given))
+        except (ValueError, OSError) as error:
+            row = {"outcome": "refused", "remarks": str(error)}
+        click.echo(f"{scan}: {row['outcome']}")
+        rows.append({"scan": str(scan)} | row)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        table = csv.DictWriter(file, dict.fromkeys(name for row in rows for name in row))
+        table.writeheader()
+        table.writerows(rows)
+    click.echo(f"table: {path}")
+    return [row["outcome"] for row in rows]
+
+
+def _simulated(
+    surface: MeasuredSurface, scales: Scales, realisations: int, seed: int, *, is_silent: bool
+) -> Simulated:
+    """What simulations of a surface find, announced and printed unless that is silent."""
+    from crackfront.topography.report import simulation_text
+    from crackfront.topography.simulated import prediction_plan, simulated
+
+    plan = prediction_plan(surface, scales, realisations, seed)
+    if is_silent:
+        return simulated(plan, scales)
+    announce_compilation()
+    seconds = in_time(plan.expected_seconds)
+    about = f"simulating {realisations} surface(s), about {seconds} ..."
+    click.echo("\n".join(filter(None, (plan.remark, about))))
+    outcome = simulated(plan, scales)
+    click.echo(simulation_text(outcome))
+    return outcome
 
 
 @click.command(

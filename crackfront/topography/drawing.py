@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.ticker import EngFormatter
 
 from crackfront.core import jkr
@@ -56,38 +56,59 @@ _ROOM = 3.0
 """How far beyond the longest trusted wavelength the spectrum is shown."""
 
 
-def prediction_figure(surface: MeasuredSurface, prediction: Prediction) -> Figure:
-    """Densities with the spectrum, predicted forces of both branches, and the scans as used."""
-    ends = surface.joint.longest * _ROOM, surface.joint.spectrum.short_cutoff / 1.5
-    wavevector = np.geomspace(2 * np.pi / ends[0], 2 * np.pi / ends[1], 400)
+def prediction_figure(
+    surface: MeasuredSurface, prediction: Prediction, panel: str | None = None
+) -> Figure:
+    """Densities with the spectrum, predicted forces of both branches, and the scans as used.
+
+    Of these the panel of a letter alone, if one is named.
+    """
     with house_style():
+        if panel == "d":
+            figure = blank_figure(0.5 * PAGE * min(len(surface.scans), _MOST_MAPS), 0.4 * PAGE)
+            _draw_scans(figure, surface)
+            return figure
+        if panel is not None:
+            figure = blank_figure(0.6 * PAGE, 0.45 * PAGE)
+            _DRAWINGS[panel](figure.subplots(), surface, prediction)
+            return figure
         figure = blank_figure(PAGE, 0.86 * PAGE)
         above, below = figure.subfigures(2, 1, height_ratios=(0.56, 0.3), squeeze=False)[:, 0]
         panels = above.subplot_mosaic([["a", "c"], ["b", "c"]], height_ratios=(1.35, 1))
-        upper, lower, forces = panels["a"], panels["b"], panels["c"]
-        upper.sharex(lower)
-        upper.tick_params(labelbottom=False)
-        _draw_isotropic(upper, surface, wavevector)
-        _draw_profiles(lower, surface, wavevector)
-        add_wavelengths(upper)
-        lower.set_xlabel(WAVEVECTOR_LABEL)
-        _draw_forces(forces, prediction)
-        for name, axes in panels.items():
-            label_panel(axes, name, _BESIDE_TICKS)
-        shown = surface.scans[:_MOST_MAPS]
-        maps = below.subplots(1, max(len(shown), _FEWEST_PLACES), squeeze=False)[0]
-        for axes, one in zip(maps, shown, strict=False):
-            draw_scan(axes, one.measurement, one.band.stripes)
-        for axes in maps[len(shown) :]:
-            axes.set_axis_off()
+        panels["a"].sharex(panels["b"])
+        for name, draw in _DRAWINGS.items():
+            draw(panels[name], surface, prediction)
+            label_panel(panels[name], name, _BESIDE_TICKS)
+        panels["a"].tick_params(labelbottom=False)
+        panels["a"].set_xlabel("")
+        _draw_scans(below, surface, _FEWEST_PLACES)
         below.text(0.005, 0.97, "d", fontsize=9, fontweight="bold", va="top")
         return figure
 
 
-def _draw_isotropic(axes: Axes, surface: MeasuredSurface, wavevector: Array) -> None:
+def _draw_scans(figure: FigureBase, surface: MeasuredSurface, fewest: int = 1) -> None:
+    """The scans as used, in a row of at least so many places."""
+    shown = surface.scans[:_MOST_MAPS]
+    maps = figure.subplots(1, max(len(shown), fewest), squeeze=False)[0]
+    for axes, one in zip(maps, shown, strict=False):
+        draw_scan(axes, one.measurement, one.band.stripes)
+    for axes in maps[len(shown) :]:
+        axes.set_axis_off()
+
+
+def _set_wavevectors(axes: Axes, surface: MeasuredSurface) -> Array:
+    """Wavevectors at which the spectrum is drawn, for which axes are prepared (Units: 1 / m)."""
+    ends = surface.joint.longest * _ROOM, surface.joint.spectrum.short_cutoff / 1.5
+    wavevector = np.geomspace(2 * np.pi / ends[0], 2 * np.pi / ends[1], 400)
+    set_density_scales(axes, wavevector)
+    axes.set_xlabel(WAVEVECTOR_LABEL)
+    return wavevector
+
+
+def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
     """Densities of maps, trusted and not, the spectrum and the scales that dominate."""
     spectrum, measures = surface.joint.spectrum, surface.measures
-    set_density_scales(axes, wavevector)
+    wavevector = _set_wavevectors(axes, surface)
     shown = wavevector[wavevector <= 2 * np.pi / spectrum.short_cutoff]
     for index, one in enumerate(surface.scans):
         if not one.measurement.is_line:
@@ -113,6 +134,7 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface, wavevector: Array) -> 
     )
     _draw_limits(axes, surface, named=False)
     axes.set_ylabel(ISOTROPIC_LABEL)
+    add_wavelengths(axes)
     axes.legend(loc="lower left")
 
 
@@ -138,14 +160,14 @@ def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
                 )
 
 
-def _draw_profiles(axes: Axes, surface: MeasuredSurface, wavevector: Array) -> None:
+def _draw_profiles(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
     """Densities of profiles and the projection of the model that continues the spectrum."""
+    wavevector = _set_wavevectors(axes, surface)
     for index, (one, density) in enumerate(zip(surface.scans, surface.profiles, strict=True)):
         name = one.measurement.path.name if one.measurement.is_line else ""
         _draw_density(axes, index, density, name)
     projection = surface.joint.fit.projected_density(wavevector)
     axes.plot(wavevector, projection, color=BLACK, label="projection of the model", zorder=4)
-    axes.set_yscale("log")
     low, high = axes.get_ylim()
     axes.set_ylim(low, high * (high / low) ** (0.12 * len(surface.scans)))
     _draw_limits(axes, surface, named=True)
@@ -169,7 +191,7 @@ def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
     )
 
 
-def _draw_forces(axes: Axes, prediction: Prediction) -> None:
+def _draw_forces(axes: Axes, _: MeasuredSurface, prediction: Prediction) -> None:
     """Force against contact radius of both branches with their intervals, and of a smooth one."""
     w_int = prediction.work_of_adhesion
     scales = Scales(prediction.radius, w_int, prediction.contact_modulus)
@@ -196,6 +218,10 @@ def _draw_forces(axes: Axes, prediction: Prediction) -> None:
     axes.set_xlabel("contact radius (µm)")
     axes.set_ylabel(f"normal force ({unit})")
     axes.legend(loc="upper left", title="95% intervals shaded", title_fontsize=6)
+
+
+_DRAWINGS = {"a": _draw_isotropic, "b": _draw_profiles, "c": _draw_forces}
+"""What draws a panel, by its letter."""
 
 
 def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ()) -> None:

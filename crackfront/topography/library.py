@@ -24,10 +24,9 @@ from crackfront.topography.options import (
     parameters_text,
     parsed_options,
 )
-from crackfront.topography.prediction import Prediction, predicted
+from crackfront.topography.prediction import Prediction, judged
 from crackfront.topography.reading import read_measurements
 from crackfront.topography.tile import scan_surface
-from crackfront.topography.verdict import verdict
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 File = str | PathLike[str]
@@ -138,9 +137,9 @@ def predict(
     given = parsed_options(PredictionOptions, options)
     surface_library()  # Whole: the program may use it too.
     surface = read_surface(files, options_for_each(ReadingOptions, options, len(files)))
-    ruling = verdict(surface, sphere, given.range)
-    if ruling.outcome == "does not apply":
+    ruling, prediction = judged(surface, sphere, given)
+    if prediction is None:
         raise ValueError(f"the theory does not apply; what would meet {'; '.join(ruling.remedies)}")
     if strict and ruling.reservations:
         raise ValueError(f"the theory applies with reservations: {' '.join(ruling.reservations)}")
-    return predicted(surface, sphere, given.range, given.pull_off)
+    return prediction

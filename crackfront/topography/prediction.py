@@ -19,6 +19,7 @@ from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.topography.cautions import surface_notes
 from crackfront.topography.measures import MeasuredSurface
+from crackfront.topography.options import PredictionOptions
 from crackfront.topography.tile import zero_load_radius
 from crackfront.topography.verdict import Verdict, verdict
 
@@ -115,6 +116,17 @@ def surface_spectrum(surface: MeasuredSurface, scales: Scales) -> TabulatedSpect
     shape = reduced_spectrum(surface.joint.spectrum, scales)
     energy = surface.conformity_energy(scales.contact_modulus).value / scales.work_of_adhesion
     return shape.amplified(energy / shape.elastic_energy)
+
+
+def judged(
+    surface: MeasuredSurface, scales: Scales, given: PredictionOptions
+) -> tuple[Verdict, Prediction | None]:
+    """Whether the theory applies under a sphere, and the prediction where it does."""
+    ruling = verdict(surface, scales, given.range)
+    if ruling.outcome == "does not apply":
+        return ruling, None
+    found = predicted(surface, scales, given.range, given.pull_off)
+    return found.verdict, found
 
 
 def predicted(

@@ -152,6 +152,26 @@ def machine_readable(
     }
 
 
+def sample_row(
+    surface: MeasuredSurface, scales: Scales, ruling: Verdict, prediction: Prediction | None
+) -> dict[str, Any]:
+    """Row of a surface in a table: numbers and the ends of their 95% intervals, in SI units."""
+    remarks = " ".join(ruling.reservations or ruling.remedies)
+    row = {"outcome": ruling.outcome, "remarks": remarks}
+    numbers: dict[str, Any] = {
+        f"rms_{_MEASURES[one.order][0].replace('-', '_')}": one.rms for one in surface.measures
+    }
+    numbers["e_el"] = surface.conformity_energy(scales.contact_modulus)
+    if prediction is not None:
+        numbers |= {item.name: getattr(prediction, item.name) for item in variables(Prediction)}
+    for name, found in numbers.items():
+        entry = _plain(found)
+        known = entry if isinstance(entry, dict) else {"value": entry}
+        heads = {"value": name, "low": f"{name}_low", "high": f"{name}_high"}
+        row |= {head: known[end] for end, head in heads.items() if end in known}
+    return row
+
+
 def _continuation(fit: Fit) -> tuple[tuple[str, Number, str], ...]:
     """Parameters of the model that continues a density, and units."""
     return (

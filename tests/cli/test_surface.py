@@ -1,5 +1,6 @@
 """`crackfront surface` and `crackfront predict`: what they say, write and refuse."""
 
+import csv
 import json
 import sys
 from dataclasses import replace
@@ -61,6 +62,33 @@ def test_a_prediction_does_not_depend_on_the_units_of_its_options(predict):
     assert one.pop("implied_work_of_adhesion")["value"] is None
     for name, entry in one.items():
         assert other[name]["value"] == pytest.approx(entry["value"], rel=1e-9)
+
+
+def test_a_batch_of_scans_is_a_table_with_a_row_for_each_sample(tmp_path):
+    table, absent = tmp_path / "samples.csv", tmp_path / "absent.al3d"
+    smooth = write_smooth(tmp_path / "smooth.al3d")
+    scans = {OVERVIEW: "applies with reservations", smooth: "applies", absent: "refused"}
+    command = ("predict", *sphere(), "--csv", table)
+    assert run(*command, *scans).exit_code == 4
+    with table.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {Path(row["scan"]): row["outcome"] for row in rows} == scans
+    expected = cf.predict(smooth, SCENE)
+    assert float(rows[1]["w_retr_high"]) == expected.w_retr.high
+    assert float(rows[1]["e_el"]) == expected.e_el.value
+    assert float(rows[1]["rms_slopes"]) == expected.surface.measures[2].rms.value
+    assert "small slopes" in rows[0]["remarks"]
+    assert "absent.al3d" in rows[2]["remarks"]
+    assert (rows[2]["w_retr"], rows[1]["remarks"]) == ("", "")
+    assert run(*command, "--strict", OVERVIEW).exit_code == 3
+    assert "--csv writes rows alone" in refused(*command, "--json", OVERVIEW)
+
+
+def test_channels_are_listed_without_the_options_that_a_prediction_needs():
+    for command in ("predict", "surface"):
+        listed = run(command, OVERVIEW, "--list-channels")
+        told = f"{OVERVIEW}\n  0 'Default' (height), 144 x 144 points, default\n"
+        assert (listed.output, listed.exit_code) == (told, 0)
 
 
 def test_a_negative_share_is_a_reservation_where_it_counts(predict):

@@ -22,6 +22,13 @@ def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
     assert "µN" in force.get_ylabel()
 
 
+@pytest.mark.parametrize(("panel", "label"), [("a", "C"), ("b", "C"), ("c", "force"), ("d", "y")])
+def test_a_panel_alone_has_labels_of_its_own(surface, prediction, panel, label):
+    axes = prediction_figure(surface, prediction, panel).axes[0]
+    assert label in axes.get_ylabel()
+    assert axes.get_xlabel()
+
+
 def test_the_figure_says_which_waves_the_density_leaves_out(surface):
     axes = Figure().add_subplot()
     draw_scan(axes, surface.scans[0].measurement, stripes=(0, 1))
