@@ -419,6 +419,20 @@ def test_loads_are_visited_up_and_down_by_library_and_command_alike(straight, tm
     np.testing.assert_array_equal(written[last], found[last])
 
 
+def test_a_straight_front_has_the_works_of_adhesion_of_a_period_of_its_tile():
+    surface = cf.random_surface(short_cutoff=0.4, elastic_energy=0.04, side=4, seed=2)
+    found = cf.run_loop(cf.straight_front(surface, spring=4.0), loads=[0, 12, 0], step=0.25)
+    for name, direction in (("w_appr", 1), ("w_retr", -1)):
+        period = found.pinning_force[found.direction == direction][-16:]
+        exact = float(1 - found.e_el - period.mean())
+        assert float(found[name]) == pytest.approx(exact, abs=1e-5)
+    assert float(found.hysteresis) > 3 * float(found.hysteresis_error) > 0
+    assert f"w_appr {float(found.w_appr):.3f}" in found.attrs["result"]
+    short = cf.run_loop(cf.straight_front(surface, spring=4.0), loads=[0, 1, 0], step=0.1)
+    assert np.isnan(short.hysteresis)
+    assert "so load further" in short.attrs["steady_sentence"]
+
+
 @pytest.mark.parametrize(
     ("loads", "sentence"),
     [

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import ADHESION, LATERAL, variable
 
@@ -20,6 +21,9 @@ FEWEST_STATES = 3
 
 _DEPTHS = 3.0
 """Rms deviations of a front from its mean after which it forgets; docs/model.md has the measure."""
+
+_ROUND_OFF = 1e-5
+"""Part of a period within which places are equal."""
 
 STEADY_DEFINITION = (
     "w_appr and w_retr are means of the apparent work of adhesion, <a G> / <a> with the mean over "
@@ -94,29 +98,64 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
             f"correlation length is {correlation_length}; it must be positive and finite"
         )
     states, radius = record.states, record.states.mean_radius
-    steady = states.least_travel >= correlation_length
-    branches = [np.flatnonzero(steady & (sign * states.direction > 0)) for sign in (1, -1)]
-    needed = f"{FEWEST_STATES} each are needed, so penetrate deeper or use a smaller load step"
-    counts = branches[0].size, branches[1].size
-    if min(counts) < FEWEST_STATES:
-        found = f"{counts[0]} steady states in approach and {counts[1]} in retraction"
-        return _no_value(counts, f"{found}; {needed}")
-    lowest = float(max(radius[branch].min() for branch in branches))
-    highest = float(min(radius[branch].max() for branch in branches))
-    shared = (radius >= lowest) & (radius <= highest)
-    branches = [branch[shared[branch]] for branch in branches]
-    counts = branches[0].size, branches[1].size
-    if min(counts) < FEWEST_STATES:
-        found = f"{counts[0]} states of approach and {counts[1]} of retraction at equal mean radii"
-        return _no_value(counts, f"the steady branches share {found}; {needed}")
+    branches, window, sentence = _steady_branches(states, radius, "radii", correlation_length)
+    if sentence:
+        return _no_value((branches[0].size, branches[1].size), sentence)
     from_force = [_adhesion_from_force(radius[branch], states.force[branch]) for branch in branches]
     columns = states.apparent_work_of_adhesion, radius, states.rms_radius
     return replace(
         _measures(columns, branches, correlation_length, from_force),
         hysteresis_error=_error_of_difference(states, branches, correlation_length),
-        lowest_radius=lowest,
-        highest_radius=highest,
+        lowest_radius=window[0],
+        highest_radius=window[1],
     )
+
+
+def _steady_branches(
+    states: ContactState[Array] | LineState[Array],
+    place: Array,
+    name: str,
+    correlation_length: float,
+    period: float = math.inf,
+) -> tuple[list[NDArray[np.int64]], tuple[float, float], str]:
+    """Steady states of both branches, the mean places that they share, and why they are too few.
+
+    These are the last places, of at most one period, which holds each state once.
+    """
+    steady = states.least_travel >= correlation_length
+    branches = [np.flatnonzero(steady & (sign * states.direction > 0)) for sign in (1, -1)]
+    deeper = "penetrate deeper" if isinstance(states, ContactState) else "load further"
+    needed = f"{FEWEST_STATES} each are needed, so {deeper} or use a smaller load step"
+    if min(branch.size for branch in branches) < FEWEST_STATES:
+        counts = f"{branches[0].size} steady states in approach and {branches[1].size}"
+        return branches, (math.nan, math.nan), f"{counts} in retraction; {needed}"
+    highest = float(min(place[branch].max() for branch in branches))
+    lowest = float(max(place[branch].min() for branch in branches))
+    lowest = max(lowest, highest - (1 - _ROUND_OFF) * period)
+    shared = (place >= lowest) & (place <= highest)
+    branches = [branch[shared[branch]] for branch in branches]
+    if min(branch.size for branch in branches) < FEWEST_STATES:
+        counts = f"{branches[0].size} states of approach and {branches[1].size} of retraction"
+        sentence = f"the steady branches share {counts} at equal mean {name}; {needed}"
+        return branches, (lowest, highest), sentence
+    return branches, (lowest, highest), ""
+
+
+def passing_adhesion(
+    record: CycleRecord, correlation_length: float, mean: float, period: float
+) -> SteadyAdhesion:
+    """As :func:`steady_adhesion` for a straight front under any loads, over a period at most.
+
+    The mean of w_loc is in w_int, the period that of the tile along the motion.
+    """
+    states = record.states
+    branches, _, sentence = _steady_branches(
+        states, states.mean_position, "places", correlation_length, period
+    )
+    if sentence:
+        return _no_value((branches[0].size, branches[1].size), sentence)
+    columns = mean - states.pinning_force, states.mean_position, states.rms_position
+    return _measures(columns, branches, correlation_length)
 
 
 def period_adhesion(

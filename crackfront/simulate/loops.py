@@ -11,7 +11,12 @@ import numpy as np
 from xarray import DataArray, Dataset
 
 from crackfront.analysis.estimate import with_error
-from crackfront.analysis.steady import SteadyAdhesion, SteadyMeasures, steady_adhesion
+from crackfront.analysis.steady import (
+    SteadyAdhesion,
+    SteadyMeasures,
+    passing_adhesion,
+    steady_adhesion,
+)
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -87,10 +92,10 @@ def run_loop(
     -------
     xarray.Dataset
         The curves over `step`, the fronts `radius(step, angle)` or `position(step, y)`, and
-        measures of the whole: `e_el`, `w_rms`, `correlation_length`, of a sphere `w_appr`,
-        `w_retr` and what else the table of a sweep has of them, NaN where the loop has no steady
-        part. The attribute `result` states them and the forces of jump-in and pull-off,
-        `steady_sentence` why they are NaN.
+        measures of the whole: `e_el`, `w_rms`, `correlation_length`, `w_appr`, `w_retr` and what
+        else the table of a sweep has of them, of a straight front over the last period of its tile
+        or less; NaN where the loop has no steady part. The attribute `result` states them, the
+        forces of jump-in and pull-off or the pinning force, `steady_sentence` why they are NaN.
 
     Raises
     ------
@@ -147,15 +152,17 @@ def loop_dataset(record: CycleRecord, problem: Problem) -> Dataset:
     measures, simulation = problem.measures, problem.simulation
     curves = cycle_dataset(record, problem.field.geometry)
     values = {name: getattr(measures, name) for name in ("e_el", "w_rms", "correlation_length")}
-    sentences = {"result": result_sentence(record)}
+    length = measures.correlation_length
     if isinstance(record.states, ContactState):
-        steady = steady_adhesion(record, measures.correlation_length)
-        numerical = (math.nan, math.nan)
-        if simulation is not None and not steady.sentence:
-            numerical = stated_error(simulation, steady, measures.correlation_length)
-        values["w_appr_numerical_error"], values["w_retr_numerical_error"] = numerical
-        values |= {item.name: getattr(steady, item.name) for item in variables(SteadyMeasures)}
-        sentences = {"result": result_sentence(record, steady), "steady_sentence": steady.sentence}
+        steady = steady_adhesion(record, length)
+    else:
+        steady = passing_adhesion(record, length, measures.mean, measures.period)
+    numerical = (math.nan, math.nan)
+    if simulation is not None and not steady.sentence:
+        numerical = stated_error(simulation, steady, length)
+    values["w_appr_numerical_error"], values["w_retr_numerical_error"] = numerical
+    values |= {item.name: getattr(steady, item.name) for item in variables(SteadyMeasures)}
+    sentences = {"result": _result_sentence(record, steady), "steady_sentence": steady.sentence}
     labels = sentences | curves.attrs | {"kind": measures.kind}
     whole = curves.assign(
         {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
@@ -163,20 +170,19 @@ def loop_dataset(record: CycleRecord, problem: Problem) -> Dataset:
     return whole.drop_attrs(deep=False).assign_attrs(labels)
 
 
-def result_sentence(record: CycleRecord, steady: SteadyAdhesion | None = None) -> str:
-    """Result of a cycle in one line; without steady parts the forces alone."""
+def _result_sentence(record: CycleRecord, steady: SteadyAdhesion) -> str:
+    """Result of a cycle in one line."""
     states = record.states
     if states.direction.size == 0:
         return "no state was found"
     if isinstance(states, LineState):
         most, least = float(np.max(states.pinning_force)), float(np.min(states.pinning_force))
-        return f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
-    forces = f"jump-in force {states.force[0]:.4g}"
-    if record.status is Status.LOST_CONTACT:
-        forces += f", pull-off force {np.min(states.force):.4g}"
-    forces += " (pi w_int R)"
-    if steady is None:
-        return forces
+        forces = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
+    else:
+        forces = f"jump-in force {states.force[0]:.4g}"
+        if record.status is Status.LOST_CONTACT:
+            forces += f", pull-off force {np.min(states.force):.4g}"
+        forces += " (pi w_int R)"
     if steady.sentence:
         return f"no steady part: w_appr and w_retr are unknown; {forces}"
     works = []

@@ -241,7 +241,10 @@ class TileMeasures:
     """Whether the mean work of adhesion lies below w_int by e_el, as that of a rough surface."""
     e_el: float
     w_rms: float
-    """Energy of full conformity and rms work of adhesion. (Units: w_int)"""
+    mean: float
+    """Energy of full conformity, rms and mean work of adhesion. (Units: w_int)"""
+    period: float
+    """Side along x. (Units: reduced lateral length)"""
     correlation_length: float
     """Mean wavelength of the work of adhesion, the pixel where it is uniform.
     (Units: reduced lateral length)"""
@@ -250,8 +253,9 @@ class TileMeasures:
 def tile_measures(adhesion: AdhesionMap) -> TileMeasures:
     """Measures of a tile, whose mean work of adhesion decides of what kind it is."""
     values, energy = adhesion.work_of_adhesion, adhesion.e_el
-    lacking = 1 - float(np.mean(values)) / WORK_OF_ADHESION
+    mean, period = float(np.mean(values)) / WORK_OF_ADHESION, adhesion.pixel * len(values)
+    lacking = 1 - mean
     kind: FieldKind = "chemical" if abs(lacking) < abs(lacking - energy) else "roughness"
     modes = tile_modes(values, adhesion.pixel)
     length = modes.mean_wavelength if modes.power.size else adhesion.pixel
-    return TileMeasures(kind, energy, adhesion.w_rms, length)
+    return TileMeasures(kind, energy, adhesion.w_rms, mean, period, length)
