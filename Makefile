@@ -137,7 +137,9 @@ figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=pape
 	$(SNAKE) --config scale=$(SCALE) -- figures
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
 
-report: env  ## The sweep SWEEP as one page of HTML: fit, figures, configuration, provenance
+report: env  ## The sweep SWEEP, run where it is not, as one page of HTML: fit, figures, configuration
+	@$(REPAIR) $(SWEEP)
+	$(SNAKE) --config sweep=$(SWEEP)
 	$(SNAKE) --config sweep=$(SWEEP) --report $(RESULTS)report.html
 	@echo "Report: $(RESULTS)report.html"
 
