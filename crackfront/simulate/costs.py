@@ -1,9 +1,10 @@
 r"""Expected time, memory and disk of simulations, from a law of measured runs.
 
 `python -m studies speed costs` measures the runs of `costs.csv`; the law is fitted to those that
-are not held out. The processor time is that of making the tile and that of the load steps,
+are not held out. The processor time is that of any simulation, of making the tile, and of the load
+steps,
 
-.. math:: t = c_t n_p^2 \log_2 n_p + n_b N\, e^{c_0 + c \cdot x},
+.. math:: t = t_0 + c_t n_p^2 \log_2 n_p + n_b (t_b + N\, e^{c_0 + c \cdot x}),
 
 with :math:`n_p^2` points of the tile, :math:`n_b` states and :math:`N` sites. :math:`x` are
 logarithms of what the sweeps of a load step depend on, and whether the load is a full cycle: steps
@@ -50,9 +51,6 @@ _FILE_BYTES, _STATE_BYTES, _FRONT_PART = 27e3, 112.0, 0.72
 
 _RECORD_BYTES = 1e3
 """Memory of a state that is recorded."""
-
-_STATE_SECONDS = 1e-4
-"""Least time of a state, however few its sites and however short its way."""
 
 _LEAD_IN, _FEWEST_STEADY = 1.0, 9.0
 """States of a branch before it is steady; the fewest of an approach."""
@@ -263,8 +261,8 @@ def _coefficients() -> tuple[float, ...]:
     return tuple(least_squares(residuals, _START).x.tolist())
 
 
-_START = (-18.0, -12.0, 0.5, *(0.0,) * 9)
-"""Logarithm of the time of a point of the tile, c_0, and exponents to begin with."""
+_START = (-7.0, -9.0, -18.0, -12.0, 0.5, *(0.0,) * 9)
+"""Logarithms of t_0, t_b and c_t, c_0, and exponents to begin with."""
 
 
 def _columns(items: Sequence[Features]) -> Array:
@@ -290,7 +288,7 @@ def _seconds(coefficients: Sequence[float] | Array, columns: Array) -> Array:
             full_cycle,
         ]
     )
-    point, constant, *exponents = coefficients
+    least, each, point, constant, *exponents = coefficients
     state = n_angle * np.exp(constant + np.array(exponents) @ terms)
     tile = np.exp(point) * n_point**2 * np.log2(n_point)
-    return np.asarray(tile + n_state * np.maximum(state, _STATE_SECONDS))
+    return np.asarray(np.exp(least) + tile + n_state * (np.exp(each) + state))

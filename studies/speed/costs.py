@@ -36,12 +36,11 @@ def _simulation(
     energy: float,
     schedule: LoadSchedule | SteadySchedule,
     knobs: Knobs = KNOBS,
+    cutoffs: float = 200.0,
 ) -> Simulation:
     """One simulation of a roughness spectrum (short cutoff, roll-off, Hurst exponent)."""
-    spectrum = SelfAffineSpectrum(*shape)
-    return simulation_of(
-        "roughness", spectrum, energy, schedule, Numerics(knobs), seed=7, name=name
-    )
+    spectrum, numerics = SelfAffineSpectrum(*shape), Numerics(knobs, tile_cutoffs=cutoffs)
+    return simulation_of("roughness", spectrum, energy, schedule, numerics, seed=7, name=name)
 
 
 def fitted_to() -> Iterator[Simulation]:
@@ -65,6 +64,15 @@ def fitted_to() -> Iterator[Simulation]:
         knobs = replace(KNOBS, tolerance=tolerance)
         for energy in ENERGIES:
             yield _simulation("flat", (0.02, 0.02, 1.0), energy, STEADY, knobs)
+    for cutoff in (0.6, 0.3, 0.15):
+        for energy in ENERGIES[1:]:
+            for schedule in (CYCLE, replace(CYCLE, step=0.02)):
+                yield _simulation("flat", (cutoff, cutoff, 1.0), energy, schedule, cutoffs=20)
+    for energy in ENERGIES[1:]:
+        yield _simulation("flat", (0.1, 0.1, 1.0), energy, STEADY, cutoffs=40)
+        for cutoff in (0.3, 0.04):
+            knobs = replace(KNOBS, tolerance=1e-6)
+            yield _simulation("flat", (cutoff, cutoff, 1.0), energy, CYCLE, knobs, cutoffs=20)
 
 
 def held_out() -> Iterator[Simulation]:
@@ -77,6 +85,8 @@ def held_out() -> Iterator[Simulation]:
         yield _simulation("h08", (0.025, 0.2, 0.8), energy, longer, finer)
         yield _simulation("h08", (0.02, 0.32, 0.8), energy, LoadSchedule(1.0, 0.05))
         yield _simulation("flat", (0.015, 0.015, 1.0), energy, LoadSchedule(0.5, 0.05), finer)
+        yield _simulation("h08", (0.2, 0.8, 0.8), energy, LoadSchedule(1.0, 0.05), cutoffs=30)
+        yield _simulation("flat", (0.4, 0.4, 1.0), energy, LoadSchedule(2.0, 0.1), finer, 20)
     for energy in (0.02, 0.1):
         yield _simulation("h08", (0.0008, 0.0128, 0.8), energy, STEADY)
 
