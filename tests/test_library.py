@@ -26,13 +26,10 @@ from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.simulate.surfaces import chosen_simulation, tile_modes
 from crackfront.sweep import parallel, tasks
-from crackfront.topography.bands import scan
 from crackfront.topography.measures import measured_surface
-from crackfront.topography.options import ReadingOptions, parsed_options
 from crackfront.topography.prediction import predicted
 from crackfront.topography.reading import read_measurements
 from crackfront.topography.report import prediction_page, report_text
-from crackfront.topography.tile import scan_surface
 from tests.commands import curves, run
 
 ROOT = Path(__file__).parents[1]
@@ -497,19 +494,6 @@ def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     assert "is smaller than the contact" in told["notes"]
 
 
-WORDS = {"channel": 0, "crop": "1um:6um,1.5um:6.5um", "detrend": 3, "mask": ["2um:3um,2um:3um"]}
-
-
-def test_scans_are_read_in_the_words_of_the_commands():
-    small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
-    [measurement] = read_measurements([SCAN], parsed_options(ReadingOptions, WORDS))
-    found = cf.read_scan(SCAN, small, **WORDS)
-    assert found.attrs["levelling"].startswith(f"{measurement.levelling} was taken off")
-    assert found.identical(scan_surface(scan(measurement), small))
-    expected = measured_surface([measurement]).conformity_energy(SPHERE.contact_modulus)
-    assert cf.predict(SCAN, SPHERE, **WORDS).e_el == expected
-
-
 def test_a_prediction_shows_itself_with_intervals_limits_and_notes():
     found = cf.predict(SCAN, SPHERE)
     surface = measured_surface(read_measurements([SCAN]))
@@ -639,13 +623,6 @@ def test_what_is_in_si_units_is_drawn_in_them(surface, loop, jumps):
         assert np.max(np.hypot(*fronts[0].get_data())) <= float(loop_si.radius.max())
     [patches] = cf.plot_instabilities(jumps_si, axes_of_a_figure()).collections
     assert patches.get_array().max() == pytest.approx(float(jumps_si.dissipated_energy.max()))
-
-
-def test_a_loop_in_si_units_is_drawn_from_its_file_as_well(loop, tmp_path):
-    cf.in_si_units(loop, SPHERE).to_netcdf(tmp_path / "loop.nc")
-    with xr.open_dataset(tmp_path / "loop.nc") as found:
-        labels = cf.plot_loop(found, axes_of_a_figure()).get_legend_handles_labels()[1]
-    assert "approach" in labels
 
 
 def test_without_axes_a_plot_makes_a_figure_of_pyplot(loop):

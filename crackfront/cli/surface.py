@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from crackfront.topography.simulated import Simulated
 
 Command = Callable[..., None]
+Say = Callable[[str], None]
 
 _RESERVATIONS, _NO_PREDICTION = 3, 4
 """Exit codes where the theory applies with reservations, if strict, and where it does not apply."""
@@ -178,20 +179,20 @@ def predict(
         refuse_unwritable(stem.parent)
     surface = _surface(scans, options)
     (ruling, prediction), outcome = judged(surface, scales, given), None
-    if not as_json:
-        if prediction is not None:
-            click.echo(prediction_page(prediction))
-        if is_long or prediction is None:
-            click.echo("\n" * is_long + report_text(surface, scales, ruling, prediction))
+    say: Say = (lambda _: None) if as_json else click.echo
+    if prediction is not None:
+        say(prediction_page(prediction))
+    if is_long or prediction is None:
+        say("\n" * is_long + report_text(surface, scales, ruling, prediction))
     if prediction is not None and not no_figure:
         from crackfront.plots.style import save_figure
         from crackfront.topography.drawing import prediction_figure
 
         for path in save_figure(prediction_figure(surface, prediction, panel), stem):
-            if not as_json:
-                click.echo(f"figure: {path}")
+            say(f"figure: {path}")
     if prediction is not None and simulate:
-        outcome = _simulated(surface, scales, realisations, seed, is_silent=as_json)
+        announce_compilation(err=as_json)
+        outcome = _simulated(surface, scales, realisations, seed, say)
     if as_json:
         echo_json(machine_readable(surface, scales, ruling, prediction, outcome))
     context.exit(_exit_code(ruling.outcome, strict))
@@ -231,21 +232,18 @@ def _write_samples(
 
 
 def _simulated(
-    surface: MeasuredSurface, scales: Scales, realisations: int, seed: int, *, is_silent: bool
+    surface: MeasuredSurface, scales: Scales, realisations: int, seed: int, say: Say
 ) -> Simulated:
-    """What simulations of a surface find, announced and printed unless that is silent."""
+    """What simulations of a surface find, which is announced and said."""
     from crackfront.topography.report import simulation_text
     from crackfront.topography.simulated import prediction_plan, simulated
 
     plan = prediction_plan(surface, scales, realisations, seed)
-    if is_silent:
-        return simulated(plan, scales)
-    announce_compilation()
     seconds = in_time(plan.expected_seconds)
     about = f"simulating {realisations} surface(s), about {seconds} ..."
-    click.echo("\n".join(filter(None, (plan.remark, about))))
+    say("\n".join(filter(None, (plan.remark, about))))
     outcome = simulated(plan, scales)
-    click.echo(simulation_text(outcome))
+    say(simulation_text(outcome))
     return outcome
 
 

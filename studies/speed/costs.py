@@ -10,6 +10,7 @@ import csv
 import io
 from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
+from itertools import product
 
 import numpy as np
 
@@ -45,14 +46,12 @@ def _simulation(
 
 def fitted_to() -> Iterator[Simulation]:
     """Simulations that the model is fitted to."""
-    for cutoff in (0.04, 0.01, 0.005):
-        for energy in ENERGIES:
-            yield _simulation("flat", (cutoff, cutoff, 1.0), energy, STEADY)
-            yield _simulation("h08", (cutoff, 16 * cutoff, 0.8), energy, STEADY)
-    for cutoff in (0.04, 0.01):
-        for energy in ENERGIES:
-            yield _simulation("flat", (cutoff, cutoff, 1.0), energy, CYCLE)
-            yield _simulation("h03", (cutoff, 20 * cutoff, 0.3), energy, CYCLE)
+    for cutoff, energy in product((0.04, 0.01, 0.005), ENERGIES):
+        yield _simulation("flat", (cutoff, cutoff, 1.0), energy, STEADY)
+        yield _simulation("h08", (cutoff, 16 * cutoff, 0.8), energy, STEADY)
+    for cutoff, energy in product((0.04, 0.01), ENERGIES):
+        yield _simulation("flat", (cutoff, cutoff, 1.0), energy, CYCLE)
+        yield _simulation("h03", (cutoff, 20 * cutoff, 0.3), energy, CYCLE)
     for energy in ENERGIES:
         yield _simulation("h08", (0.0025, 0.04, 0.8), energy, STEADY)
     for energy in (0.01, 0.05):
@@ -60,19 +59,16 @@ def fitted_to() -> Iterator[Simulation]:
         yield _simulation("h08", (0.000625, 0.01, 0.8), energy, STEADY)
     for energy in (0.003, 0.15):
         yield _simulation("h03", (0.000625, 0.1, 0.3), energy, STEADY)
-    for tolerance in (1e-3, 1e-6):
-        knobs = replace(KNOBS, tolerance=tolerance)
-        for energy in ENERGIES:
-            yield _simulation("flat", (0.02, 0.02, 1.0), energy, STEADY, knobs)
-    for cutoff in (0.6, 0.3, 0.15):
-        for energy in ENERGIES[1:]:
-            for schedule in (CYCLE, replace(CYCLE, step=0.02)):
-                yield _simulation("flat", (cutoff, cutoff, 1.0), energy, schedule, cutoffs=20)
+    coarser, finer = (replace(KNOBS, tolerance=tolerance) for tolerance in (1e-3, 1e-6))
+    for knobs, energy in product((coarser, finer), ENERGIES):
+        yield _simulation("flat", (0.02, 0.02, 1.0), energy, STEADY, knobs)
+    for cutoff, energy in product((0.6, 0.3, 0.15), ENERGIES[1:]):
+        for schedule in (CYCLE, replace(CYCLE, step=0.02)):
+            yield _simulation("flat", (cutoff, cutoff, 1.0), energy, schedule, cutoffs=20)
     for energy in ENERGIES[1:]:
         yield _simulation("flat", (0.1, 0.1, 1.0), energy, STEADY, cutoffs=40)
         for cutoff in (0.3, 0.04):
-            knobs = replace(KNOBS, tolerance=1e-6)
-            yield _simulation("flat", (cutoff, cutoff, 1.0), energy, CYCLE, knobs, cutoffs=20)
+            yield _simulation("flat", (cutoff, cutoff, 1.0), energy, CYCLE, finer, cutoffs=20)
 
 
 def held_out() -> Iterator[Simulation]:

@@ -367,24 +367,9 @@ def test_bad_numbers_of_ranks_are_refused(tmp_path, ranks):
     assert result.exit_code == 2
 
 
-@pytest.mark.parametrize("kind", ["roughness", "chemical"])
-def test_a_surface_of_the_library_is_a_field_of_a_cycle(kind, tmp_path):
-    surface = cf.random_surface(0.4, 0.05, kind=kind, side=4, error=0.05, seed=3)
-    surface.to_netcdf(tmp_path / "surface.nc")
-    assert cycle(tmp_path / "surface.nc", tmp_path, "--record", "fronts").exit_code == 0
-    found = cf.run_loop(surface, step=0.25)
-    np.testing.assert_array_equal(xr.load_dataset(tmp_path / "out.nc").radius, found.radius)
-
-
-@pytest.mark.parametrize(
-    ("kind", "words"),
-    [
-        ("roughness", "x has the units 'm'; the attribute units must be"),
-        ("chemical", "x has the units 'm'; the attribute units must be"),
-    ],
-)
-def test_a_surface_in_si_units_is_refused_as_a_field(kind, words, tmp_path):
-    surface = cf.random_surface(0.4, 0.05, kind=kind, side=4, error=0.05)
+def test_a_surface_in_si_units_is_refused_as_a_field(tmp_path):
+    words = "x has the units 'm'; the attribute units must be"
+    surface = cf.random_surface(0.4, 0.05, side=4, error=0.05)
     cf.in_si_units(surface, cf.Scales(1e-3, 50e-3, 1e6)).to_netcdf(tmp_path / "surface.nc")
     output = ("--max-penetration", 1, "--output", tmp_path / "out.nc")
     assert words in refused("cycle", "--field", tmp_path / "surface.nc", *output)

@@ -2,7 +2,6 @@
 
 import csv
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -52,16 +51,6 @@ def predict(tmp_path, monkeypatch):
         return run("predict", *scans, *sphere(**changes), "--figure", tmp_path / "figure", *more)
 
     return command
-
-
-def test_a_prediction_does_not_depend_on_the_units_of_its_options(predict):
-    one = json.loads(predict("--json").output)["prediction"]
-    other = json.loads(
-        predict("--json", modulus="7e5 Pa", radius="0.00125m", work_of_adhesion="0.063N/m").output
-    )["prediction"]
-    assert one.pop("implied_work_of_adhesion")["value"] is None
-    for name, entry in one.items():
-        assert other[name]["value"] == pytest.approx(entry["value"], rel=1e-9)
 
 
 def test_a_batch_of_scans_is_a_table_with_a_row_for_each_sample(tmp_path):
@@ -269,23 +258,6 @@ def test_a_surface_alone_has_no_energy_and_with_a_sphere_it_has(surface):
 def test_a_sphere_that_makes_no_sense_is_refused(tmp_path, changes, sentence):
     figure = ("--figure", tmp_path / "figure")
     assert sentence in refused("predict", OVERVIEW, *sphere(**changes), *figure)
-
-
-def test_every_kind_of_bad_scan_is_refused_with_a_sentence(tmp_path, monkeypatch, rng):
-    figure = ("--figure", tmp_path / "figure")
-    noise, plain = tmp_path / "noise.sur", tmp_path / "plain.txt"
-    noise.write_bytes(rng.bytes(777))
-    np.savetxt(plain, rng.standard_normal((64, 64)))
-    for scan, more, sentence in (
-        (noise, (), "is in no format that SurfaceTopography reads"),
-        (plain, ("--unit", "um", "--size", "5x5"), "--size is '5x5'"),
-        (tmp_path / "absent.al3d", (), "cannot be used"),
-        (OVERVIEW, ("--shortest", "5"), "--shortest is '5', without a unit"),
-        (OVERVIEW, ("--shortest", "15um"), "less than an octave; use a better scan"),
-    ):
-        assert sentence in refused("predict", scan, *sphere(), *figure, *more)
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
-    assert "pip install '.[surfaces]'" in refused("predict", OVERVIEW, *sphere(), *figure)
 
 
 def test_a_field_needs_the_whole_sphere_and_one_scan(tmp_path):

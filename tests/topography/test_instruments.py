@@ -207,24 +207,6 @@ def write_x3p(path, heights):
         archive.writestr("bindata/data.bin", numbers)
 
 
-def write_sdf(path, heights):
-    """ISO 25178-71: text with a head."""
-    head = {
-        "NumPoints": N_SIDE,
-        "NumProfiles": N_SIDE,
-        "Xscale": PIXEL,
-        "Yscale": PIXEL,
-        "Zscale": 1,
-        "Zresolution": -1,
-        "Compression": 0,
-        "DataType": 7,
-        "CheckType": 0,
-    }
-    rows = [" ".join(f"{value:.17e}" for value in row) for row in heights.T]
-    lines = ["aISO-1.0", *(f"{name} = {value}" for name, value in head.items()), "*", *rows, "*"]
-    path.write_text("\n".join(lines) + "\n")
-
-
 def write_h5(path, heights):
     """An array in HDF5."""
     with h5py.File(path, "w") as file:
@@ -239,7 +221,6 @@ def write_xyz(path, heights):
 
 WRITERS = {
     "x3p": (write_x3p, ReadingOptions(detrend="center")),
-    "sdf": (write_sdf, ReadingOptions(detrend="center")),
     "xyz": (write_xyz, ReadingOptions(detrend="center", unit="m")),
     "asc": (lambda path, heights: np.savetxt(path, heights.T), UNSTATED),
     "npy": (np.save, UNSTATED),
