@@ -199,7 +199,7 @@ def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
 
 
 def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_path):
-    changes = (("angles: 128", "angles: 2000"), ("step: 0.1", "step: 0.00025"))
+    changes = (("angles: 128", "angles: 2000"), ("step: 0.1", "step: 0.00018"))
     one = (("realisations: 2", "realisations: 1"), ("[0.02, 0.1]", "[0.1]"))
     sweep = configuration(tmp_path, *changes, *one)
     results, alone = tmp_path / "results", tmp_path / "alone"
