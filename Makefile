@@ -122,7 +122,7 @@ benchmark: env  ## Solvers against the reference, what requests cost, how sweeps
 	$(IN_ENV) .venv/bin/python -m studies speed scaling
 	@echo "Results: results/benchmark/"
 
-accuracy: env  ## Errors of all numerics on the scenes of docs/accuracy.md (half an hour on two cores)
+accuracy: env  ## Errors of all numerics of docs/experiments/numerics.md (half an hour, two cores)
 	$(if $(wildcard results/accuracy),@$(REPAIR) results/accuracy)
 	$(SNAKE) accuracy
 	@echo "Results: results/accuracy/"

@@ -92,28 +92,11 @@ html_theme = "pydata_sphinx_theme"
 html_title = "crackfront"
 html_show_sourcelink = False
 # Pages that stand alone have nothing to list beside them.
-html_sidebars = {
-    name: []
-    for name in (
-        "index",
-        "tutorial",
-        "equations",
-        "law",
-        "model",
-        "accuracy",
-        "validation",
-        "command-line",
-        "architecture",
-        "surfaces",
-        "sweeps",
-        "cluster",
-        "gallery",
-    )
-}
+html_sidebars = {name: [] for name in ("index", "tutorial")}
 html_theme_options = {
     "navigation_with_keys": False,
     # More would not stand in one row on a screen of 1280 pixels.
-    "header_links_before_dropdown": 5,
+    "header_links_before_dropdown": 6,
     "navbar_persistent": ["search-button"],
     "show_toc_level": 2,
     "secondary_sidebar_items": ["page-toc"],

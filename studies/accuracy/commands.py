@@ -78,9 +78,9 @@ def scene(scene: str, output: Path, study: str, realisations: int) -> None:
     click.echo(f"errors: {path}")
 
 
-@commands.command(epilog=examples("python -m studies accuracy report --page docs/accuracy.md"))
+@commands.command(epilog=examples("python -m studies accuracy report"))
 @_output
-@click.option("--page", type=FILE, help="Page whose tables are written anew, as docs/accuracy.md.")
+@click.option("--page", type=FILE, help="Page to renew, docs/experiments/numerics.md.")
 def report(output: Path, page: Path | None) -> None:
     """Fit the laws, write the tables, and draw the figures of what was measured."""
     write_report(output, page, click.echo)

@@ -27,8 +27,8 @@ ORDERS = (2, ORDER, 4)
 """Power of the range with which the hysteresis of boundary elements nears that of no range, between
 two whose difference is the error of the extrapolation.
 
-Measured, docs/validation.md: where a range was halved in two steps, the second changed the
-hysteresis by a third of the first. The length of the cohesive zone would suggest its square.
+Measured, docs/experiments/boundary-elements.md: where a range was halved twice, the second changed
+the hysteresis by a third of the first. The length of the cohesive zone would suggest its square.
 """
 
 

@@ -42,13 +42,15 @@ _output = click.option(
     help="Folder of all figures.",
 )
 
+_PAGE = Path("docs/experiments/gallery.md")
+
 _GALLERY = """\
 # Gallery
 
-Every computed figure of the paper, beside what the paper states or what must be true. `make
-figures` computes all of them, `python -m studies paper gallery` writes this page. A check agrees;
-or it differs from the paper as [the law of k](law.md) says, with the law's number beside it; or it
-fails, and then the difference has no explanation.
+For readers of the paper: every computed figure, beside what the paper states or what must be true.
+`make figures` computes them, `python -m studies paper gallery` writes this page. A check agrees;
+or it differs from the paper as [the law of k](../law.md) says, with the law's number beside it; or
+it fails, and then the difference has no explanation.
 """
 
 
@@ -132,11 +134,9 @@ def check_figures(output: Path, as_json: bool) -> None:
     click.echo(f"checks: {output / 'checks.md'}, {told}")
 
 
-@commands.command(epilog=examples("python -m studies paper gallery --page docs/gallery.md"))
+@commands.command(epilog=examples("python -m studies paper gallery"))
 @_output
-@click.option(
-    "--page", type=FILE, default=Path("docs/gallery.md"), show_default=True, help="Page to write."
-)
+@click.option("--page", type=FILE, default=_PAGE, show_default=True, help="Page to write.")
 def gallery(output: Path, page: Path) -> None:
     """Write the page of all figures beside their checks; of each the paper's scale if it is there.
 

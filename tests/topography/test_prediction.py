@@ -50,7 +50,7 @@ def test_intervals_hold_those_of_k_and_of_e_el(prediction):
 
 
 def test_nanodiamond_is_predicted_as_it_was_simulated(prediction):
-    """Main Fig. 5 at the paper's scale (docs/gallery.md): 32.1 and 71.6 mJ/m2.
+    """Main Fig. 5 at the paper's scale (docs/experiments/gallery.md): 32.1 and 71.6 mJ/m2.
 
     The scans do not hold its shortest waves, 7% of e_el; its own spectrum does.
     """

@@ -24,7 +24,7 @@ from crackfront.core.solver.relax import Solver
 DEFAULT_STEP = 0.004
 """Load step that leaves the dissipated energies of a full cycle within 1% of the quasi-static loop.
 
-docs/hard-cases.md has the measure. (Units: reduced vertical length)
+docs/experiments/hard-cases.md has the measure. (Units: reduced vertical length)
 """
 
 

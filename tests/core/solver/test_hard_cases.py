@@ -1,4 +1,4 @@
-"""Hard cases of the field and of the front; docs/hard-cases.md lists them with their numbers."""
+"""Hard cases of the field and of the front; docs/experiments/hard-cases.md lists them."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Hard cases of the load, the energy and round-off; docs/hard-cases.md lists their numbers."""
+"""Hard cases of the load, the energy and round-off; docs/experiments/hard-cases.md."""
 
 import json
 import os

@@ -23,7 +23,7 @@ def test_every_figure_has_a_configuration():
 
 
 def test_figures_that_took_longer_than_a_minute_tell_about_how_long_they_take():
-    page = (REFERENCES.parent / "gallery.md").read_text(encoding="utf-8")
+    page = (REFERENCES.parent / "experiments/gallery.md").read_text(encoding="utf-8")
     told = re.findall(r"Scale (\w+), (\d+) s of one core.*?config/figures/([\w-]+)\.yaml", page)
     slow = [(name, scale, float(seconds)) for scale, seconds, name in told if float(seconds) > 60]
     assert len(slow) >= 5
