@@ -28,7 +28,7 @@ from studies.law.spheres import (
 )
 from studies.pages import renewed
 
-PAGES = ("README.md", "docs/index.md", "docs/law.md")
+PAGES = ("README.md", "docs/index.md", "docs/law.md", "docs/experiments/spheres.md")
 """Pages with numbers of the law."""
 
 _FRONTS = "config/line.yaml config/line-weak.yaml"
