@@ -36,5 +36,5 @@ def test_predictions_hold_for_surfaces_that_the_law_was_not_fitted_to(comparison
 
 @pytest.mark.slow
 def test_the_documentation_holds_the_predictions_and_their_simulations(comparisons):
-    page = (ROOT / "docs/surfaces.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/experiments/scans.md").read_text(encoding="utf-8")
     assert comparison_table(comparisons) in page
