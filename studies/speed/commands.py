@@ -108,9 +108,9 @@ def costs(output: Path) -> None:
     )
 
 
-@commands.command(epilog=examples("python -m studies speed scaling --page docs/cluster.md"))
+@commands.command(epilog=examples("python -m studies speed scaling"))
 @_output
-@click.option("--page", type=FILE, help="Page whose blocks are written anew, as docs/cluster.md.")
+@click.option("--page", type=FILE, help="Page to renew, docs/experiments/clusters.md.")
 def scaling(output: Path, page: Path | None) -> None:
     """Measure dispatch, the start of a job and what follows; play a million simulations through."""
     refuse_unwritable(output)
