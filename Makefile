@@ -49,7 +49,7 @@ SOLVER   = numpy|scipy|numba|llvmlite|rocket-fft|click|pyyaml
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test test-cluster nightly accuracy validate benchmark figures report docs lint lock \
+.PHONY: all env test test-cluster nightly accuracy validate benchmark timings reproduce figures report docs lint lock \
   clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
@@ -122,6 +122,23 @@ benchmark: env  ## Solvers against the reference, what requests cost, how sweeps
 	$(IN_ENV) .venv/bin/python -m studies speed scaling
 	@echo "Results: results/benchmark/"
 
+timings: env  ## What depends on the machine, for the pages (40 minutes)
+	$(IN_ENV) .venv/bin/python -m studies speed solvers --keep
+	$(IN_ENV) .venv/bin/python -m studies speed needs --keep
+	$(IN_ENV) .venv/bin/python -m studies speed scaling --keep
+	$(IN_ENV) .venv/bin/python -m studies pages
+
+reproduce: env  ## The numbers and figures of the pages, but those of timings (3 core hours)
+	$(MAKE) --no-print-directory figures SCALE=paper
+	$(MAKE) --no-print-directory accuracy
+	$(IN_ENV) .venv/bin/python -m studies paper gallery
+	$(IN_ENV) .venv/bin/python -m studies accuracy report --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy energies --scans 12 --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy predictions --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy energy-balance --keep
+	$(IN_ENV) .venv/bin/python -m studies law numbers --keep
+	$(IN_ENV) .venv/bin/python -m studies pages
+
 accuracy: env  ## Errors of all numerics of docs/experiments/numerics.md (half an hour, two cores)
 	$(if $(wildcard results/accuracy),@$(REPAIR) results/accuracy)
 	$(SNAKE) accuracy
@@ -154,6 +171,7 @@ lint: env  ## Style, format, types, import floors, format of the rules
 	.venv/bin/mypy
 	.venv/bin/lint-imports
 	.venv/bin/snakefmt --check Snakefile workflow
+	$(IN_ENV) .venv/bin/python -m studies pages --check
 
 lock:  ## Resolve requirements.in and pyproject.toml anew into requirements.lock
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT \

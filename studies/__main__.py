@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import importlib
+from pathlib import Path
 
 import click
 
 from crackfront.cli import Commands
+from crackfront.cli.report import examples
+from crackfront.data.files import write_text
 
 STUDIES = {
     "paper": "Figures of the paper: compute their data, draw them, compare them with the paper.",
@@ -22,13 +25,13 @@ class _Studies(Commands):
     """Studies that are imported when they are called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names of all studies."""
-        return list(STUDIES)
+        """Names of all studies, and the commands of all."""
+        return [*STUDIES, *super().list_commands(ctx)]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Commands of a study."""
         if cmd_name not in STUDIES:
-            return None
+            return super().get_command(ctx, cmd_name)
         study: click.Group = importlib.import_module(
             f"studies.{cmd_name.replace('-', '_')}.commands"
         ).commands
@@ -37,12 +40,32 @@ class _Studies(Commands):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the names of the studies without importing them."""
         with formatter.section("Studies"):
-            formatter.write_dl(list(STUDIES.items()))
+            about = {name: one.get_short_help_str(80) for name, one in self.commands.items()}
+            formatter.write_dl([*STUDIES.items(), *about.items()])
 
 
 @click.group(cls=_Studies, context_settings={"help_option_names": ["-h", "--help"]})
 def main() -> None:
     """What was measured with crackfront; its numbers and figures stand in the pages."""
+
+
+@main.command(epilog=examples("python -m studies pages", "python -m studies pages --check"))
+@click.option("--check", is_flag=True, help="Write nothing; say which numbers are of before.")
+def pages(check: bool) -> None:
+    """Write what studies have kept into README.md and docs."""
+    from studies.pages import kept_parts, renewed, stale
+
+    parts = kept_parts()
+    for path in (Path("README.md"), *sorted(Path("docs").rglob("*.md"))):
+        text = path.read_text(encoding="utf-8")
+        if (new := renewed(text, parts)) == text:
+            continue
+        if check:
+            raise ValueError(f"{path} has not what was measured; run python -m studies pages")
+        write_text(path, new)
+        click.echo(f"page: {path}")
+    for told in stale(parts):
+        click.echo(told)
 
 
 if __name__ == "__main__":

@@ -2,14 +2,43 @@
 
 from __future__ import annotations
 
+import json
 import os
 import platform
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
 
+import click
+
+from crackfront.data.files import write_text
+from crackfront.data.fingerprint import fingerprint
 from crackfront.data.provenance import provenance
 
-_BLOCK = re.compile(r"<!-- (?P<study>[\w-]+): (?P<name>.*?) -->.*?<!-- end -->", re.DOTALL)
+KEPT = Path("docs/reference/parts")
+"""Folder of what studies keep for the pages, a file for each study."""
+
+_BLOCK = re.compile(
+    r"<!-- (?P<study>[\w-]+): (?P<name>.*?) -->(?P<text>.*?)<!-- end -->", re.DOTALL
+)
+
+keep_option = click.option("--keep", is_flag=True, help=f"Keep the tables for pages, in {KEPT}.")
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A table or a number of the pages, and where it was measured."""
+
+    text: str
+    command: str
+    commit: str
+    machine: str
+    sources: Sequence[str]
+    """Modules whose sources it comes from."""
+    fingerprint: str
+    """That of the sources, as they were."""
 
 
 def markdown_table(header: str, rows: Iterable[str | Sequence[str]]) -> str:
@@ -28,28 +57,82 @@ def markdown_table(header: str, rows: Iterable[str | Sequence[str]]) -> str:
     return "\n".join(f"| {text} |" for text in texts)
 
 
-def renewed(page: str, study: str, parts: Mapping[str, str]) -> str:
-    r"""Page with the blocks of a study written anew; those of others are kept.
+def keep_parts(
+    study: str, texts: Mapping[str, str], *sources: str, data: Mapping[str, Any] | None = None
+) -> None:
+    """Keep what a study has measured, in Markdown; what it has kept else stays.
 
-    A block stands between `<!-- STUDY: PART -->` and `<!-- end -->`; the parts are what the study
-    has measured, in Markdown. A block of a part that there is not is a ValueError.
+    The attributes of a file of data say where they were measured, if that is not here.
+    """
+    here = asdict(provenance())
+    where = here if data is None else data
+    is_here = where["git_commit"] == here["git_commit"]
+    origin: dict[str, Any] = {
+        "command": str(where["command"]),
+        "commit": str(where["git_commit"]),
+        "machine": str(where.get("processor", "unknown")),
+        "sources": sources,
+        "fingerprint": fingerprint(*sources) if is_here else "",
+    }
+    known = kept_parts().get(study, {})
+    known |= {name: Part(text, **origin) for name, text in texts.items()}
+    listed = {name: asdict(known[name]) for name in sorted(known)}
+    write_text(KEPT / f"{study}.json", json.dumps(listed, indent=1, ensure_ascii=False) + "\n")
+
+
+def tell(study: str, texts: Mapping[str, str], *sources: str, keep: bool) -> None:
+    """Print what a study has measured, and keep it for the pages if that is asked for."""
+    click.echo("\n\n".join(texts.values()))
+    if keep:
+        keep_parts(study, texts, *sources)
+        click.echo("kept for the pages, which python -m studies pages writes")
+
+
+def kept_parts() -> dict[str, dict[str, Part]]:
+    """All parts by study and name."""
+    files = {path.stem: json.loads(path.read_text("utf-8")) for path in KEPT.glob("*.json")}
+    return {
+        study: {name: Part(**one) for name, one in listed.items()}
+        for study, listed in files.items()
+    }
+
+
+def stale(parts: Mapping[str, Mapping[str, Part]]) -> Iterator[str]:
+    """Parts whose sources have changed since they were measured, a sentence for each command."""
+    commands: dict[tuple[str, str], list[str]] = {}
+    for study, listed in parts.items():
+        for name, part in listed.items():
+            if part.fingerprint != fingerprint(*part.sources):
+                commands.setdefault((part.command, part.commit[:7]), []).append(f"{study}: {name}")
+    for (command, commit), names in commands.items():
+        yield f"of other sources than today's, commit {commit}, `{command}`: {', '.join(names)}"
+
+
+def renewed(page: str, parts: Mapping[str, Mapping[str, Part]]) -> str:
+    r"""Page with all blocks written anew, each with its commit and command.
+
+    A block stands between `<!-- STUDY: PART -->` and `<!-- end -->`, on lines of its own or within
+    one, where it is a number alone. A block of a part that there is not is a ValueError.
 
     Examples
     --------
-    >>> renewed("<!-- speed: ratio -->\n7\n<!-- end -->", "speed", {"ratio": "8"}).split("\n\n")
-    ['<!-- speed: ratio -->', '8', '<!-- end -->']
+    >>> part = Part("8", "studies speed", "1a2b3c4d", "", (), "")
+    >>> renewed("<!-- speed: ratio -->7<!-- end --> times", {"speed": {"ratio": part}})
+    '<!-- speed: ratio -->8<!-- end --> times'
     """
 
     def block(found: re.Match[str]) -> str:
-        name = found["name"]
-        if found["study"] != study:
-            return found[0]
-        if name not in parts:
+        study, name = found["study"], found[2]
+        if name not in parts.get(study, {}):
             raise ValueError(
-                f"the page has a block {name!r}, which the study {study} has not measured; there "
-                f"are {', '.join(parts)}"
+                f"there is a block {name!r} of the study {study}, which has not measured it; there "
+                f"are {', '.join(parts.get(study, {})) or 'none'}"
             )
-        return f"<!-- {study}: {name} -->\n\n{parts[name]}\n\n<!-- end -->"
+        part = parts[study][name]
+        text = part.text
+        if "\n" in found["text"]:
+            text = f"\n\n{text}\n\n*Commit {part.commit[:7]}: `{part.command}`*\n\n"
+        return f"<!-- {study}: {name} -->{text}<!-- end -->"
 
     return _BLOCK.sub(block, page)
 

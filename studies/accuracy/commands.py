@@ -16,17 +16,17 @@ from crackfront.cli.report import (
     whole,
 )
 from crackfront.data.bounds import Range
-from crackfront.data.files import write_dataset
+from crackfront.data.files import read_attributes, write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.run import compile_solver
 from studies.accuracy import energies as synthetic
 from studies.accuracy import energy_balance as balance
-from studies.accuracy import independence as states
 from studies.accuracy import predictions as films
 from studies.accuracy import scans as instrument
 from studies.accuracy.files import STUDIES
 from studies.accuracy.report import write_report
 from studies.accuracy.scenes import SCENES
+from studies.pages import keep_option, keep_parts, tell
 
 
 @click.group()
@@ -80,25 +80,40 @@ def scene(scene: str, output: Path, study: str, realisations: int) -> None:
 
 @commands.command(epilog=examples("python -m studies accuracy report"))
 @_output
-@click.option("--page", type=FILE, help="Page to renew, docs/experiments/numerics.md.")
-def report(output: Path, page: Path | None) -> None:
+@keep_option
+def report(output: Path, keep: bool) -> None:
     """Fit the laws, write the tables, and draw the figures of what was measured."""
-    write_report(output, page, click.echo)
+    tables = write_report(output, click.echo)
+    if keep:
+        sources = "studies.accuracy.report", "studies.accuracy.files"
+        keep_parts("accuracy", tables, *sources, data=read_attributes(min(output.glob("*.nc"))))
 
 
 @commands.command(epilog=examples("python -m studies accuracy predictions"))
-def predictions() -> None:
+@keep_option
+def predictions(keep: bool) -> None:
     """Hold predictions from scans against simulations of the surfaces; print a table."""
-    click.echo(films.comparison_table(films.comparisons()))
+    tell(
+        "accuracy",
+        {"Predictions": films.comparison_table(films.comparisons())},
+        "studies.accuracy.predictions",
+        keep=keep,
+    )
 
 
 @commands.command(epilog=examples("python -m studies accuracy energies --scans 12"))
 @click.option(
     "--scans", type=whole(Range(1, 1e6)), default=14, show_default=True, help="Scans of each kind."
 )
-def energies(scans: int) -> None:
+@keep_option
+def energies(scans: int, keep: bool) -> None:
     """Hold e_el of synthetic scans against that of their spectra; print a table."""
-    click.echo(synthetic.energy_table(synthetic.found_scans(scans)))
+    tell(
+        "accuracy",
+        {"Scans": synthetic.energy_table(synthetic.found_scans(scans))},
+        "studies.accuracy.energies",
+        keep=keep,
+    )
 
 
 @commands.command(epilog=examples("python -m studies accuracy scans"))
@@ -110,15 +125,14 @@ def scans(output: Path) -> None:
     click.echo(f"scans: {output}")
 
 
-@commands.command(epilog=examples("python -m studies accuracy independence"))
-def independence() -> None:
-    """Measure errors of k from steady branches, and which states are independent; print tables."""
-    announce_compilation()
-    click.echo(states.independence_tables())
-
-
 @commands.command("energy-balance", epilog=examples("python -m studies accuracy energy-balance"))
-def energy_balance() -> None:
+@keep_option
+def energy_balance(keep: bool) -> None:
     """Compare the dissipated energy of cycles with the work of their steps; print a table."""
     announce_compilation()
-    click.echo(balance.energy_table())
+    tell(
+        "accuracy",
+        {"Energy balance": balance.energy_table()},
+        "studies.accuracy.energy_balance",
+        keep=keep,
+    )

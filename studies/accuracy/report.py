@@ -20,7 +20,7 @@ from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
 from studies.accuracy.scenes import SCENES, Progress, Scene
 from studies.accuracy.study import Errors, SceneErrors, pareto_front, rms
-from studies.pages import markdown_table, renewed
+from studies.pages import markdown_table
 
 Found = TypeVar("Found")
 
@@ -41,11 +41,10 @@ _NAMES = {
 }
 
 
-def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
+def write_report(folder: Path, progress: Progress) -> dict[str, str]:
     """Fit the laws, write the tables and draw the figures of all studies that a folder holds.
 
-    Blocks `<!-- accuracy: TABLE -->` of a page are written anew. A ValueError says if the folder
-    holds no study, or the page has a block of a table that was not measured.
+    Returns the tables by their names. A ValueError says if the folder holds no study.
     """
     knobs, asked, unseen = (
         _stored(folder, study, read_errors) for study in ("knobs", "asked", "unseen")
@@ -86,9 +85,7 @@ def write_report(folder: Path, page: Path | None, progress: Progress) -> None:
     for name, figure in drawn.items():
         for path in style.save_figure(figure, folder / name):
             progress(f"figure: {path}")
-    if page is not None:
-        write_text(page, renewed(page.read_text(encoding="utf-8"), "accuracy", tables))
-        progress(f"page: {page}")
+    return tables
 
 
 def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str, Found]:

@@ -26,10 +26,7 @@ from studies.law.spheres import (
     sphere_rows,
     sphere_table,
 )
-from studies.pages import renewed
-
-PAGES = ("README.md", "docs/index.md", "docs/law.md", "docs/experiments/spheres.md")
-"""Pages with numbers of the law."""
+from studies.pages import keep_option, tell
 
 _FRONTS = "config/line.yaml config/line-weak.yaml"
 
@@ -127,14 +124,10 @@ def figure(tables: tuple[Path, ...], output: Path) -> None:
     click.echo(f"figure: {output / 'law.png'}")
 
 
-@commands.command(epilog=examples("python -m studies law pages"))
+@commands.command(epilog=examples("python -m studies law numbers --keep"))
 @_tables
-@click.option(
-    "--output", type=FILE, default=Path(), show_default=True, help="Folder of the checkout."
-)
-def pages(tables: tuple[Path, ...], output: Path) -> None:
-    """Write the numbers of the law of the package into README.md and the pages."""
+@keep_option
+def numbers(tables: tuple[Path, ...], keep: bool) -> None:
+    """Print the numbers of the law of the package that stand in the pages."""
     parts = law_parts(read_spheres(tables))
-    for path in (output / name for name in PAGES):
-        write_text(path, renewed(path.read_text(encoding="utf-8"), "law", parts))
-        click.echo(f"page: {path}")
+    tell("law", parts, "studies.law.page", "studies.law.spheres", keep=keep)

@@ -25,6 +25,7 @@ from crackfront.data.files import read_attributes, write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import save_figure, save_picture
+from studies.pages import keep_parts
 from studies.paper.drawing import save_animation
 from studies.paper.figure import FIGURES, SCALES, Figure, Result, checks_table, figure, load_figure
 
@@ -42,16 +43,7 @@ _output = click.option(
     help="Folder of all figures.",
 )
 
-_PAGE = Path("docs/experiments/gallery.md")
-
-_GALLERY = """\
-# Gallery
-
-For readers of the paper: every computed figure, beside what the paper states or what must be true.
-`make figures` computes them, `python -m studies paper gallery` writes this page. A check agrees;
-or it differs from the paper as [the law of k](../law.md) says, with the law's number beside it; or
-it fails, and then the difference has no explanation.
-"""
+_PICTURES = Path("docs/experiments/figures")
 
 
 @commands.command(
@@ -136,39 +128,36 @@ def check_figures(output: Path, as_json: bool) -> None:
 
 @commands.command(epilog=examples("python -m studies paper gallery"))
 @_output
-@click.option("--page", type=FILE, default=_PAGE, show_default=True, help="Page to write.")
-def gallery(output: Path, page: Path) -> None:
-    """Write the page of all figures beside their checks; of each the paper's scale if it is there.
+@click.option("--pictures", type=FILE, default=_PICTURES, show_default=True, help="Their folder.")
+def gallery(output: Path, pictures: Path) -> None:
+    """Keep all figures and their checks for the pages; of each the paper's scale if it is there.
 
-    The pictures, for a screen, stand in `figures/` beside the page; an animation is that of the
-    results.
+    An animation is that of the results.
     """
     known = {path.stem: path for scale in SCALES for path in _data_of_figures(output / scale)}
     if not known:
         raise _no_data(output)
-    parts = [_GALLERY]
+    pictures.mkdir(parents=True, exist_ok=True)
     for name in filter(known.__contains__, FIGURES):
         shown, record = _figure_and_record(known[name])
-        picture = page.parent / "figures" / f"{name}.{'gif' if shown.animate else 'png'}"
-        picture.parent.mkdir(parents=True, exist_ok=True)
+        picture = pictures / f"{name}.{'gif' if shown.animate else 'png'}"
         if shown.animate:
             shutil.copyfile(known[name].with_suffix(".gif"), picture)
         else:
             save_picture(shown.draw(record), picture)
-        origin = read_attributes(known[name])
-        parts += [
+        data = read_attributes(known[name])
+        lines = [
             f"## {shown.title}",
             "",
             f"![{shown.title}](figures/{picture.name})",
             "",
-            f"Scale {origin['scale']}, {float(origin['cpu_seconds']):.0f} s of one core, commit "
-            f"{str(origin['git_commit'])[:12]}: `{origin['command']}`",
+            f"Scale {data['scale']}, {float(data['cpu_seconds']):.0f} s of one core.",
             "",
             *checks_table(shown.checks(record)),
-            "",
         ]
-    write_text(page, "\n".join(parts))
-    click.echo(f"gallery: {page}")
+        sources = f"studies.paper.{name.replace('-', '_')}"
+        keep_parts("paper", {name: "\n".join(lines)}, sources, data=data)
+        click.echo(f"figure: {picture}")
 
 
 def _data_of_figures(folder: Path) -> list[Path]:

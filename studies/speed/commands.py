@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args
 
@@ -13,7 +13,7 @@ from crackfront.data.files import write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import write_records
 from crackfront.simulate.run import compile_solver
-from studies.pages import described_machine, renewed
+from studies.pages import described_machine, keep_option, tell
 from studies.speed import costs as cost_model
 from studies.speed import needs as requests
 from studies.speed import scaling as sweeps
@@ -36,13 +36,15 @@ _output = click.option(
 )
 
 
-def _write(path: Path, title: str, sections: Sequence[str], rows: Sequence[Any] = ()) -> None:
-    """Write and print a page, and the rows of its tables as netCDF; the path has no suffix."""
-    page = "\n\n".join([f"# {title}", described_machine(), *sections]) + "\n"
+def _write(
+    path: Path, title: str, parts: Mapping[str, str], rows: Sequence[Any] = (), *, keep: bool
+) -> None:
+    """Write and print parts of pages, and the rows of their tables as netCDF, without a suffix."""
+    page = "\n\n".join([f"# {title}", described_machine(), *parts.values()]) + "\n"
     write_text(path.with_suffix(".md"), page)
     if rows:
         write_records(path.with_suffix(".nc"), rows, "row", provenance(), title=title)
-    click.echo(page)
+    tell("speed", parts, f"studies.speed.{path.name}", keep=keep)
     click.echo(f"results: {path.with_suffix('.md')}")
 
 
@@ -59,7 +61,8 @@ def _write(path: Path, title: str, sections: Sequence[str], rows: Sequence[Any] 
 @click.option("--repeats", type=click.IntRange(min=1), default=2, show_default=True)
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True)
 @_output
-def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path) -> None:
+@keep_option
+def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path, keep: bool) -> None:
     """Time the solvers against the reference on problems of known size."""
     refuse_unwritable(output)
     rows = []
@@ -70,12 +73,14 @@ def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path) ->
             rows.append(row := in_fresh_process(pairs.measured, problem, seed, repeats))
             click.echo(f"{row.label}: {row.ratio:.1f} times, error {row.error:.1e}")
     title = "The solvers against the reference"
-    _write(output / "solvers", title, pairs.sections(rows, repeats), rows)
+    parts = {"solvers": "\n\n".join(pairs.sections(rows, repeats))}
+    _write(output / "solvers", title, parts, rows, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies speed needs"))
 @_output
-def needs(output: Path) -> None:
+@keep_option
+def needs(output: Path, keep: bool) -> None:
     """Measure what each request of a contact costs: time, memory, disk, samples."""
     refuse_unwritable(output)
     rows = []
@@ -84,7 +89,8 @@ def needs(output: Path) -> None:
         in_fresh_process(requests.measured, requests.SMALL, need)
         rows.append(row := in_fresh_process(requests.measured, requests.SCENE, need))
         click.echo(f"{row.name}: {row.seconds:.3g} s, {row.peak:.1f} MB, {row.file:.1f} kB")
-    _write(output / "needs", "What each request costs", requests.sections(rows), rows)
+    parts = {"needs": "\n\n".join(requests.sections(rows))}
+    _write(output / "needs", "What each request costs", parts, rows, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies speed costs"))
@@ -110,12 +116,8 @@ def costs(output: Path) -> None:
 
 @commands.command(epilog=examples("python -m studies speed scaling"))
 @_output
-@click.option("--page", type=FILE, help="Page to renew, docs/experiments/clusters.md.")
-def scaling(output: Path, page: Path | None) -> None:
+@keep_option
+def scaling(output: Path, keep: bool) -> None:
     """Measure dispatch, the start of a job and what follows; play a million simulations through."""
     refuse_unwritable(output)
-    parts = sweeps.parts()
-    _write(output / "scaling", "How a sweep scales", [*parts.values()])
-    if page is not None:
-        parts["efficiency"] = f"{described_machine()} {parts['efficiency']}"
-        write_text(page, renewed(page.read_text(encoding="utf-8"), "speed", parts))
+    _write(output / "scaling", "How a sweep scales", sweeps.parts(), keep=keep)

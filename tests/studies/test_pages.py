@@ -1,21 +1,55 @@
 """Pages that studies write into."""
 
+import re
+from pathlib import Path
+
 import pytest
+from click.testing import CliRunner
 
-from studies.pages import described_machine, renewed
+from studies.__main__ import main
+from studies.pages import Part, described_machine, keep_parts, kept_parts, renewed, stale
 
-PAGE = "Before\n<!-- law: limit -->\nold\n<!-- end -->\nAfter <!-- speed: limit --><!-- end -->\n"
-
-
-def test_a_page_keeps_its_words_and_the_blocks_of_other_studies():
-    text = renewed(PAGE, "law", {"limit": "| 3 |", "more": "| 4 |"})
-    assert text == PAGE.replace("\nold\n", "\n\n| 3 |\n\n")
-    assert renewed(text, "law", {"limit": "| 3 |"}) == text
+ROOT = Path(__file__).parents[2]
+PAGE = "<!-- law: limit -->\nold\n<!-- end -->\nAfter <!-- speed: limit -->7<!-- end --> times\n"
 
 
-def test_a_block_that_was_not_measured_is_refused():
-    with pytest.raises(ValueError, match="'limit', which the study law has not measured; there"):
-        renewed(PAGE, "law", {"weather": ""})
+def part(text):
+    return Part(text, "studies law", "1a2b3c4d5e", "", ["studies.pages.renewed"], "")
+
+
+def test_blocks_are_written_with_their_origin_and_numbers_within_a_line_alone():
+    parts = {"law": {"limit": part("| 3 |")}, "speed": {"limit": part("8")}}
+    text = renewed(PAGE, parts)
+    assert "-->\n\n| 3 |\n\n*Commit 1a2b3c4: `studies law`*\n\n<!--" in text
+    assert "After <!-- speed: limit -->8<!-- end --> times" in text
+    assert renewed(text, parts) == text
+    with pytest.raises(ValueError, match="'limit' of the study speed, which has not measured it"):
+        renewed(PAGE, {"law": parts["law"]})
+
+
+def test_parts_of_other_sources_are_told_until_they_are_measured_anew(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    keep_parts(
+        "law", {"limit": "3"}, "studies.pages.renewed", data={"command": "a", "git_commit": "b"}
+    )
+    assert [*stale(kept_parts())] == ["of other sources than today's, commit b, `a`: law: limit"]
+    keep_parts("law", {"limit": "4", "more": "5"}, "studies.pages.renewed")
+    assert [*stale(kept_parts())] == []
+    assert kept_parts()["law"]["limit"].text == "4"
+
+
+def test_the_pages_hold_what_was_kept(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    done = CliRunner().invoke(main, ["pages", "--check"])
+    assert done.exit_code == 0, done.output  # Otherwise: python -m studies pages
+    known = {(study, name) for study, parts in kept_parts().items() for name in parts}
+    pages = [Path("README.md"), *Path("docs").rglob("*.md")]
+    blocks = {
+        block
+        for page in pages
+        for block in re.findall(r"<!-- ([\w-]+): (.*?) -->", page.read_text())
+    }
+    assert blocks == known
 
 
 def test_the_machine_is_named_with_the_commit():

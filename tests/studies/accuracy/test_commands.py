@@ -10,6 +10,7 @@ from studies.__main__ import main
 from studies.accuracy.files import STUDIES
 from studies.accuracy.scenes import SCENES
 from studies.accuracy.study import scene_errors
+from studies.pages import kept_parts
 
 
 def run(*arguments):
@@ -39,30 +40,16 @@ def test_an_empty_folder_has_nothing_to_report(tmp_path):
         ("coverage", {"Stated and true errors"}),
     ],
 )
-def test_one_measured_scene_is_reported(study, tables, tmp_path):
+def test_one_measured_scene_is_reported_and_kept(study, tables, tmp_path, monkeypatch):
     assert "asked 0.03: " in measure(tmp_path, study)
-    reported = run("report", "--output", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    reported = run("report", "--output", tmp_path, "--keep")
     assert reported.exit_code == 0, reported.output
     text = (tmp_path / "accuracy.md").read_text()
     assert set(re.findall("^## (.*)", text, re.MULTILINE)) - {"Settings, small-0.04"} == tables
     assert "| small-0.04 | 0.01 |" in text
-
-
-def test_a_page_gets_the_measured_tables_and_keeps_its_words(tmp_path):
-    measure(tmp_path, "asked")
-    page = tmp_path / "page.md"
-    page.write_text("Before\n<!-- accuracy: Settings, small-0.04 -->\nold\n<!-- end -->\nAfter\n")
-    reported = run("report", "--output", tmp_path, "--page", page)
-    assert reported.exit_code == 0, reported.output
-    text = page.read_text()
-    assert text.startswith("Before\n")
-    assert text.endswith("<!-- end -->\nAfter\n")
-    assert "old" not in text
-    assert "asked 0.03" in text
-    page.write_text("<!-- accuracy: Settings, flat-0.04 --><!-- end -->")
-    refused = run("report", "--output", tmp_path, "--page", page)
-    assert refused.exit_code == 2
-    assert "'Settings, flat-0.04', which the study accuracy has not measured" in refused.output
+    kept = kept_parts()["accuracy"]
+    assert tables <= kept.keys()
 
 
 @pytest.mark.parametrize("study", STUDIES)

@@ -4,28 +4,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from crackfront.analysis.finding import crossing, stated_breadths
 from crackfront.analysis.law import law_value, pinning_factor, shipped_law
-from studies.__main__ import main
-from studies.law.commands import PAGES
-from studies.law.page import limit_part
-
-ROOT = Path(__file__).parents[3]
+from studies.law.page import law_parts, limit_part
+from studies.law.spheres import read_spheres
+from studies.pages import kept_parts
 
 
-def test_the_pages_hold_the_numbers_of_the_law(tmp_path, monkeypatch):
-    monkeypatch.chdir(ROOT)
-    for name in PAGES:
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(Path(name).read_text())
-    done = CliRunner().invoke(main, ["law", "pages", "--output", str(tmp_path)])
-    assert done.exit_code == 0, done.output
-    for name in PAGES:
-        # Otherwise: python -m studies law pages
-        assert (tmp_path / name).read_text() == Path(name).read_text()
-        assert "<!-- law: " in Path(name).read_text()
+def test_what_is_kept_for_the_pages_are_the_numbers_of_the_law(monkeypatch):
+    monkeypatch.chdir(Path(__file__).parents[3])
+    spheres = [Path("docs/reference") / name for name in ("spheres.csv", "held-out.csv")]
+    # Otherwise: python -m studies law numbers --keep
+    assert {name: one.text for name, one in kept_parts()["law"].items()} == law_parts(
+        read_spheres(spheres)
+    )
 
 
 def test_the_table_of_the_limit_holds_its_values_and_where_k_is_that_of_the_paper():

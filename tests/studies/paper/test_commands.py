@@ -10,6 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from studies.__main__ import STUDIES, main
+from studies.pages import kept_parts
 from studies.paper.figure import figure
 from tests.studies.paper.made import CONFIGURATIONS
 
@@ -18,7 +19,7 @@ def run(*arguments):
     return CliRunner().invoke(main, ["paper", *map(str, arguments)])
 
 
-def test_commands_compute_draw_and_check_a_figure(tmp_path):
+def test_commands_compute_draw_check_and_keep_a_figure(tmp_path, monkeypatch):
     output = tmp_path / "figures"
     computed = run("figure", CONFIGURATIONS / "main-1d.yaml", "--output", output)
     assert computed.exit_code == 0, computed.output
@@ -31,10 +32,12 @@ def test_commands_compute_draw_and_check_a_figure(tmp_path):
     assert [(one["figure"], one["scale"], one["passed"]) for one in found] == [
         ("main-1d", "quick", True)
     ] * 4
-    page = tmp_path / "docs" / "gallery.md"
-    assert run("gallery", "--output", output, "--page", page).exit_code == 0
-    assert "![Main Fig. 1d" in page.read_text()
-    assert (page.parent / "figures" / "main-1d.png").stat().st_size > 1000
+    monkeypatch.chdir(tmp_path)
+    assert run("gallery", "--output", output).exit_code == 0
+    kept = kept_parts()["paper"]["main-1d"]
+    assert "![Main Fig. 1d" in kept.text
+    assert "figure" in kept.command
+    assert Path("docs/experiments/figures/main-1d.png").stat().st_size > 1000
 
 
 def test_the_studies_and_their_commands_are_listed():
