@@ -142,10 +142,16 @@ def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
 
 
 def fit_of_sweep(configuration: Path) -> SweepFit:
-    """Fit of a sweep that stands in `results/`; UnreadableFileError where it has not been run."""
+    """Fit of a sweep that stands in `results/`; ValueError where it has not been run."""
     from crackfront.sweep.library import opened
 
-    return _fitted(*opened(configuration, None)[:2])
+    sweep, store, _ = opened(configuration, None)
+    if not store.hysteresis.exists():
+        raise ValueError(
+            f"{store.folder} holds no hysteresis.nc; run the sweep first: "
+            f"make SWEEP={configuration}"
+        )
+    return _fitted(sweep, store)
 
 
 def _fitted(sweep: Sweep, store: Store) -> SweepFit:
