@@ -80,12 +80,11 @@ class Sweep:
 
     def named(self, name: str) -> NamedSpectrum:
         """Spectrum of a name; a ValueError names the nearest where there is none."""
-        for item in self.spectra:
-            if item.name == name:
-                return item
-        names = [item.name for item in self.spectra]
-        near = difflib.get_close_matches(name, names, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(names)}"
+        known = {item.name: item for item in self.spectra}
+        if name in known:
+            return known[name]
+        near = difflib.get_close_matches(name, known, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(known)}"
         raise ValueError(f"the sweep has no spectrum {name!r}; {hint}")
 
     def simulation(self, item: NamedSpectrum, energy: float, realisation: int) -> Simulation:
@@ -114,12 +113,6 @@ class Sweep:
     def firsts(self, item: NamedSpectrum) -> list[Simulation]:
         """First realisation of a spectrum for each amplitude."""
         return [self.simulation(item, energy, 0) for energy in self.elastic_energies]
-
-    def shard(
-        self, item: NamedSpectrum, realisations: range | None = None
-    ) -> tuple[Simulation, ...]:
-        """Simulations of one spectrum, amplitude by amplitude; by default all realisations."""
-        return tuple(self.simulations(item, realisations))
 
     @property
     def fingerprint(self) -> str:

@@ -215,7 +215,7 @@ def test_a_plan_tells_what_is_stale_and_why(tmp_path):
 def test_the_status_counts_what_is_done_failed_running_and_waiting(tmp_path):
     sweep = load_configuration(TEST)
     run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
-    flat = sweep.shard(sweep.spectra[0])
+    flat = tuple(sweep.simulations(sweep.spectra[0]))
     refused_row = failed_row(flat[0], "refused", "too rough")
     entry = Entry(flat[0].stem, flat[0].parts, row_fingerprint(), refused_row)
     new_pack(tmp_path / "curves", "flat", range(2)).append(entry.files())
@@ -238,7 +238,7 @@ def begun(tmp_path):
     """Folder of a sweep, and the note in it of a process that has begun a simulation."""
     sweep = load_configuration(TEST)
     write_text(tmp_path / "configuration.yaml", TEST.read_text(), sealed=True)
-    one = sweep.shard(sweep.spectra[0])[0]
+    one = next(sweep.simulations())
     (tmp_path / "checkpoints").mkdir()
     note = Note(tmp_path / "checkpoints")
     note.begin(one)

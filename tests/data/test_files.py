@@ -236,10 +236,8 @@ def test_a_file_that_is_no_netcdf_is_refused(tmp_path):
 def results():
     """Results of the whole sweep; one of them failed, and one has no steady part."""
     found = {}
-    for item in SWEEP.spectra:
-        for simulation in SWEEP.shard(item):
-            place = item.name, simulation.elastic_energy, simulation.realisation
-            found[place] = run_simulation(simulation)
+    for one in SWEEP.simulations():
+        found[one.spectrum_name, one.elastic_energy, one.realisation] = run_simulation(one)
     failed = found["flat", 0.02, 1]
     found["flat", 0.02, 1] = replace(
         failed, record=without_states(failed.record, Status.STEP_LIMIT)
@@ -257,10 +255,7 @@ def results():
 def hysteresis(tmp_path, results):
     """File of the sweep."""
     path = tmp_path / "hysteresis.nc"
-    simulations = [one for item in SWEEP.spectra for one in SWEEP.shard(item)]
-    places = [(one.spectrum_name, one.elastic_energy, one.realisation) for one in simulations]
-    rows = [sweep_row(results[place]) for place in places]
-    write_hysteresis(path, SWEEP, rows, ORIGIN)
+    write_hysteresis(path, SWEEP, map(sweep_row, results.values()), ORIGIN)
     return path
 
 
@@ -326,12 +321,8 @@ def test_the_table_of_a_fit_is_what_the_file_holds(hysteresis):
 
 
 def test_a_fit_is_written_for_machines_and_for_people(tmp_path, hysteresis):
-    fit = fit_sweep(
-        read_table(hysteresis),
-        lowest_elastic_energy=0.02,
-        highest_elastic_energy=0.1,
-        n_bootstrap=200,
-    )
+    ends = {"lowest_elastic_energy": 0.02, "highest_elastic_energy": 0.1}
+    fit = fit_sweep(read_table(hysteresis), **ends, n_bootstrap=200)
     netcdf, plain, text = write_fit(tmp_path / "fit", fit, ORIGIN)
     dataset = xr.load_dataset(netcdf)
     content = json.loads(plain.read_text(encoding="utf-8"))

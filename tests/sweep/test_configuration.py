@@ -221,10 +221,7 @@ BAD = {
         ("angles_per_cutoff: 2", "angles: 1000000000000"),
         "fronts of 1e+12 sites would need 512 TB of memory; here are",
     ),
-    "load without end": (
-        ("step: 0.1", "step: 1e-14"),
-        "of memory; here are",
-    ),
+    "load without end": (("step: 0.1", "step: 1e-14"), "of memory; here are"),
     "years": (
         ("angles_per_cutoff: 2", "angles: 1000000000"),
         "years of processor time; use fewer, coarser or larger load steps",
@@ -367,6 +364,14 @@ BAD = {
         ("lowest_elastic_energy: 0.01", "lowest_elastic_energy: 0.5"),
         "fit: lowest_elastic_energy 0.5 is above highest_elastic_energy 0.1; swap them",
     ),
+    "fit without amplitude": (
+        ("highest_elastic_energy: 0.1", "highest_elastic_energy: 0.015"),
+        "no amplitude lies in the range of the fit, e_el from 0.01 to 0.015",
+    ),
+    "tolerance below round-off": (
+        ("tolerance: 1e-6", "tolerance: 1e-20"),
+        "below the round-off of the 240 sites of flat",
+    ),
     "no YAML": (("seed: 1", "seed: [1"), "is no valid YAML in line"),
 }
 
@@ -378,13 +383,6 @@ def test_bad_input_is_refused_with_a_sentence(tmp_path, case):
     assert sentence in message
     assert len(message.splitlines()) == 1
     assert "Value error" not in message
-
-
-def test_a_fit_range_without_amplitude_is_refused(tmp_path):
-    text = changed("highest_elastic_energy: 0.1", "highest_elastic_energy: 0.015")
-    assert "no amplitude lies in the range of the fit, e_el from 0.01 to 0.015" in refusal(
-        tmp_path, text
-    )
 
 
 def test_every_error_has_its_own_sentence(tmp_path):
@@ -417,12 +415,6 @@ def test_a_file_that_does_not_exist_is_refused(tmp_path):
         load_configuration(tmp_path / "none.yaml")
 
 
-def test_a_tolerance_below_round_off_is_refused_before_anything_runs(tmp_path):
-    path = written(tmp_path, GOOD.replace("tolerance: 1e-6", "tolerance: 1e-20"))
-    with pytest.raises(ConfigurationError, match="below the round-off of the 240 sites of flat"):
-        load_configuration(path)
-
-
 SCANS = ROOT / "examples/scans"
 SCENE = "scales: {radius: 1.25e-3, work_of_adhesion: 63e-3, contact_modulus: 0.9333e6}\n"
 MEASURED = f"""
@@ -453,7 +445,7 @@ def test_a_spectrum_may_be_that_of_measurements(tmp_path):
     assert lengths == pytest.approx(np.array(found.wavelengths), rel=1e-4)
     ratios = np.array(item.spectrum.densities) / np.array(found.densities)
     assert ratios == pytest.approx(np.full(ratios.size, ratios[0]), rel=1e-4)
-    first, *_ = sweep.shard(item)
+    first, *_ = sweep.simulations(item)
     assert first.seed != replace(first, spectrum=item.spectrum.in_units(2.0)).seed
     assert first.key == replace(first, spectrum=item.spectrum.amplified(2.0)).key
 
@@ -543,11 +535,11 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
     for comment in (b"SYNTHETIC", b"Synthetic"):
         scan.write_bytes(content.replace(b"SYNTHETIC", comment))
         sweep = load_configuration(written(tmp_path, with_surface(spectra)))
-        stems.append([one.stem for one in sweep.shard(sweep.spectra[0])])
+        stems.append([one.stem for one in sweep.simulations()])
     assert not set(stems[0]) & set(stems[1])
     scan.write_bytes(content)
     again = load_configuration(written(tmp_path, with_surface(spectra)))
-    assert [one.stem for one in again.shard(again.spectra[0])] == stems[0]
+    assert [one.stem for one in again.simulations()] == stems[0]
 
 
 @pytest.mark.parametrize(

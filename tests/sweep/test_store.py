@@ -38,7 +38,7 @@ from tests.commands import curves
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
 SWEEP = load_configuration(TEST)
-FLAT = SWEEP.shard(SWEEP.spectra[0])
+FLAT = tuple(SWEEP.simulations(SWEEP.spectra[0]))
 
 
 @pytest.fixture
@@ -100,7 +100,7 @@ def test_added_realisations_are_all_that_is_missing(store):
     fill(store, FLAT)
     before = curves(store.folder)
     more = replace(SWEEP, n_realisation=3)
-    missing = store.inventory(more.shard(more.spectra[0])).missing
+    missing = store.inventory(more.simulations(more.spectra[0])).missing
     assert {simulation.realisation for simulation in missing} == {2}
     fill(store, missing)
     assert before.items() < curves(store.folder).items()
@@ -194,7 +194,7 @@ def test_what_a_job_reads_before_it_starts_is_that_of_its_own_block(store, monke
         "crackfront.sweep.journal.members", lambda path: (read.append(path), members(path))[1]
     )
     more = replace(SWEEP, n_realisation=3)
-    assert len(store.inventory(more.shard(more.spectra[0], range(2, 3))).missing) == 2
+    assert len(store.inventory(more.simulations(more.spectra[0], range(2, 3))).missing) == 2
     assert read == []
     assert store.inventory(FLAT[:1]).missing == ()
     assert [path.name.partition(".")[0] for path in read] == ["flat"]
@@ -277,8 +277,7 @@ def test_an_incomplete_sweep_is_not_aggregated(store):
 )
 def test_the_list_of_a_shard_with_a_damaged_curve_is_taken_back(store, block, left):
     for shard in SWEEP.shards(block):
-        simulations = SWEEP.shard(shard.item, shard.realisations)
-        fill(store, simulations)
+        fill(store, list(SWEEP.simulations(shard.item, shard.realisations)))
         store.write_manifest(SWEEP, shard)
     flip_curve(store, FLAT[0])
     with pytest.raises(ValueError, match="1 of 8 simulations are missing or unreadable"):
@@ -311,19 +310,13 @@ def test_an_archive_holds_what_was_archived_under_checksums_that_fit(store, tmp_
         assert len(archive.namelist()) == n_file + 1
         archive.extractall(tmp_path / "unpacked")
     unpacked = tmp_path / "unpacked/sweep"
-    done = subprocess.run(
-        ["sha256sum", "--check", "SHA256SUMS"],
-        cwd=unpacked,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    command = ["sha256sum", "--check", "SHA256SUMS"]
+    done = subprocess.run(command, cwd=unpacked, capture_output=True, text=True, check=True)
     assert done.stdout.count(": OK") == n_file
     names = {str(file.relative_to(unpacked)) for file in unpacked.rglob("*") if file.is_file()}
     wanted = {"hysteresis.nc", "configuration.yaml", "SHA256SUMS"}
-    wanted |= (
-        {f"curves/{path.name}" for path in store.curves.glob("*.tar")} if with_curves else set()
-    )
+    if with_curves:
+        wanted |= {f"curves/{path.name}" for path in store.curves.glob("*.tar")}
     assert names == wanted
 
 
@@ -457,8 +450,7 @@ def made(tmp_path_factory):
     """A store with everything that the workflow makes of a sweep but figures."""
     store = Store(tmp_path_factory.mktemp("made") / "sweep")
     for shard in SWEEP.shards():
-        simulations = SWEEP.shard(shard.item, shard.realisations)
-        fill(store, simulations)
+        fill(store, list(SWEEP.simulations(shard.item, shard.realisations)))
         store.write_manifest(SWEEP, shard)
     store.aggregate(SWEEP, provenance("text"))
     return store

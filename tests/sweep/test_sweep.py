@@ -14,7 +14,7 @@ SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 
 def stems(sweep):
     """Names of all simulations."""
-    return {one.stem for item in sweep.spectra for one in sweep.shard(item)}
+    return {one.stem for one in sweep.simulations()}
 
 
 def test_additions_and_order_leave_all_other_simulations_as_they_are():
@@ -51,9 +51,9 @@ def test_shards_hold_every_simulation_once(block):
     shards = sweep.shards(block)
     assert len(shards) == 2 * {None: 1, 1: 10, 3: 4, 10: 1, 11: 1}[block]
     assert len({shard.name for shard in shards}) == len(shards)
-    found = [one.key for shard in shards for one in sweep.shard(shard.item, shard.realisations)]
-    wanted = [one.key for item in sweep.spectra for one in sweep.shard(item)]
-    assert sorted(found) == sorted(wanted)
+    parts = [sweep.simulations(shard.item, shard.realisations) for shard in shards]
+    found = [one.key for part in parts for one in part]
+    assert sorted(found) == sorted(one.key for one in sweep.simulations())
 
 
 def test_a_hundred_thousand_simulations_are_no_more_than_a_thousand_jobs():
