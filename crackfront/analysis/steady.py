@@ -118,10 +118,7 @@ def _steady_branches(
     correlation_length: float,
     period: float = math.inf,
 ) -> tuple[list[NDArray[np.int64]], tuple[float, float], str]:
-    """Steady states of both branches, the mean places that they share, and why they are too few.
-
-    These are the last places, of at most one period, which holds each state once.
-    """
+    """Steady states of both branches, the mean places that they share, and why they are too few."""
     steady = states.least_travel >= correlation_length
     branches = [np.flatnonzero(steady & (sign * states.direction > 0)) for sign in (1, -1)]
     deeper = "penetrate deeper" if isinstance(states, ContactState) else "load further"
@@ -131,6 +128,7 @@ def _steady_branches(
         return branches, (math.nan, math.nan), f"{counts} in retraction; {needed}"
     highest = float(min(place[branch].max() for branch in branches))
     lowest = float(max(place[branch].min() for branch in branches))
+    # The last places of at most one period, which holds each state once.
     lowest = max(lowest, highest - (1 - _ROUND_OFF) * period)
     shared = (place >= lowest) & (place <= highest)
     branches = [branch[shared[branch]] for branch in branches]

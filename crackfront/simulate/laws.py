@@ -139,20 +139,14 @@ class _Place:
 
 @functools.cache
 def _place(kind: FieldKind, spectrum: Spectrum, elastic_energy: float, straight: bool) -> _Place:
-    """Shapes with the next correlation lengths, and amplitudes with as early an onset.
-
-    Of a shape counts the correlation length of w_loc, in short cutoffs. Avalanches begin where the
-    Larkin length falls below the size of the contact, at a disorder that falls with the cutoff and
-    is known to a factor of 2. Below it the largest error counts of the amplitudes up to that with
-    as many Larkin lengths at the cutoff of the laws, and as few are independent. A straight front
-    has no radius, and counts as one of that cutoff.
-    """
+    """Shapes with the next correlation lengths, and amplitudes with as early an onset."""
     shapes = (_NARROW[kind], "h03", "h08")
     measured = [_relative_correlation_length(*MEASURED[shape]) for shape in shapes]
     length = math.log(_relative_correlation_length(kind, spectrum))
     parts = [float(np.interp(length, np.log(measured), row)) for row in np.eye(len(shapes))]
     correlated = force_correlation_length(kind, spectrum) * _CUTOFF / spectrum.short_cutoff
-    # Where the Larkin length is _ONSET, at the cutoff of the laws: w_rms**2 = 4 e_el w_int.
+    # Avalanches begin where the Larkin length falls to _ONSET, within a factor of 2. Below it the
+    # amplitudes count up to that with as many at the cutoff of the laws; w_rms**2 = 4 e_el w_int.
     onset = 2 * math.pi * correlated / (4 * _ONSET)
     shorter = usual_size(spectrum, straight) / LAW_SIZE
     highest = max(elastic_energy, min(2 * elastic_energy * shorter, onset))
@@ -203,10 +197,7 @@ def chosen_knobs(
 
 
 def _beyond(kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> str:
-    """Why errors are not known of a spectrum and amplitude; empty where they are.
-
-    Spectra broader than all that were measured have smaller errors for their cutoff.
-    """
+    """Why errors are not known of a spectrum and amplitude; empty where they are."""
     low, high = measured_energies()
     remedy = "give the resolution and the tolerance instead"
     if not low / _LEEWAY <= elastic_energy <= high * _LEEWAY:
@@ -217,6 +208,7 @@ def _beyond(kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> str:
     shape = _NARROW[kind]
     least = _relative_correlation_length(*MEASURED[shape])
     length = _relative_correlation_length(kind, spectrum)
+    # Spectra broader than all that were measured have smaller errors for their cutoff.
     if length * _LEEWAY < least:
         return (
             f"errors were measured for correlation lengths of w_loc from {least:.3g} short cutoffs "
@@ -257,19 +249,15 @@ def _chosen_values(error: float, place: _Place, size: float) -> dict[Knob, float
 
 
 def _rarity(error: float, place: _Place, size: float) -> float:
-    """By how much scatter is to stay below an asked error, as few surfaces have an avalanche.
-
-    The mean square of eight surfaces has the mean s^2 and, of avalanches of one size a at random,
-    the variance s^2 (a^2 + 2 s^2) / 8. Its mean and three times its standard deviation are to be
-    the square T of 1.5 times the asked error, of which s^2 is the solution. With a third of the
-    asked error 19 of 20 draws of eight surfaces are below T, however large avalanches are.
-    """
+    """By how much scatter is to stay below an asked error, as few surfaces have an avalanche."""
     largest = 0.0
     for shape, part in place.shapes:
         laws = _laws()[shape, "sites", 1]
         sizes = np.array([[law.avalanche] for law in laws])
         largest += part * float(_largest_between(laws, sizes, place)[0])
     largest *= LAW_SIZE / size
+    # The mean square of eight surfaces has the mean s^2 and, of avalanches of one size a, the
+    # variance s^2 (a^2 + 2 s^2) / 8: the mean and three standard deviations are the bound.
     bound = (1.5 * error) ** 2
     half = bound + 9 / 16 * largest**2
     square = bound**2 / (half + math.sqrt(half**2 + 5 / 4 * bound**2))
@@ -316,11 +304,8 @@ def _combined(parts: Mapping[Knob, Array], size: float) -> tuple[float, float]:
 
 
 def _parts(place: _Place, knob: Knob, values: ArrayLike) -> Array:
-    """Bias and scatter of both branches at values of a knob, in units of e_el.
-
-    An array of the shape (bias or scatter, branch, values). Errors are interpolated, not their
-    logarithms: between a bias and none the geometric mean would be none.
-    """
+    """Errors at values of a knob, (bias or scatter, branch, values) (Units: e_el)."""
+    # Not their logarithms are interpolated: the geometric mean of a bias and none is none.
     branches = [
         np.tensordot(
             [part for _, part in place.shapes],

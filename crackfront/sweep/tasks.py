@@ -138,10 +138,7 @@ class _Keeper:
         self._written = self._beaten = time.monotonic()
 
     def result(self) -> tuple[SimulationResult, str]:
-        """Result of the task, from its checkpoint on if there is one, and what is wrong with that.
-
-        Where the checkpoint leads to an error, the task runs without it.
-        """
+        """Result of the task, from its checkpoint on if that is of use, and why it was of none."""
         simulation, wrong = self._task.simulation, ""
         if self.has_file:
             try:
