@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from scipy.optimize import brentq
+
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import (
     WEAKEST,
@@ -19,7 +21,6 @@ PAPER_FACTOR, PERTURBATION_FACTOR = 3.0, 4.0
 
 STRONG = 0.84
 """Disorder s of the paper's experiment, up to which the finding follows k."""
-
 
 STATED = {
     "a flat spectrum": SelfAffineSpectrum(1.0, 1.0, 1.0),
@@ -77,7 +78,6 @@ def departure_of_spheres(rms: float, n_large: int, n_cell: int) -> str:
 
 def crossing() -> tuple[float, float, float]:
     """Disorder s at which k of the infinite contact is the paper's, and its 95% interval."""
-    from scipy.optimize import brentq
 
     def excess(s: float, name: str) -> float:
         return float(getattr(pinning_factor(s, math.inf).factor, name)) - PAPER_FACTOR
@@ -91,8 +91,6 @@ def crossing() -> tuple[float, float, float]:
 
 def least_size() -> float:
     """Size g at which k of vanishing disorder is the paper's; smaller contacts never have it."""
-    from scipy.optimize import brentq
-
     coefficients = shipped_law().coefficients
 
     def excess(logarithm: float) -> float:

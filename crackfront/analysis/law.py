@@ -52,7 +52,6 @@ LEAST_SIZE = 0.3
 WEAKEST = 1e-6
 """Rms of w_loc that stands for the limit of weak disorder. (Units: w_int)"""
 
-
 _NARROWEST = 0.25
 """E-folds of the wavevector within which waves count as of one length."""
 

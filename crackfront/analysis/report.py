@@ -231,13 +231,11 @@ def trend_sentence(fit: SweepFit) -> str:
     size = _change(
         fit.pooled_size_slope, "per doubling of the correlation length among spectra of one shape"
     )
+    disorder = disorder or "its trend with w_rms needs two amplitudes"
+    size = size or "its trend with size needs two spectra of one shape and different lengths"
     return (
         "k is a function of disorder and of size, not a constant, so that each k of a spectrum "
-        "is an average over the stated range: "
-        + (disorder or "its trend with w_rms needs two amplitudes")
-        + "; "
-        + (size or "its trend with size needs two spectra of one shape and different lengths")
-        + "."
+        f"is an average over the stated range: {disorder}; {size}."
     )
 
 

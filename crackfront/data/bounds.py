@@ -60,7 +60,6 @@ MOST_SECONDS = 1e3 * 365.25 * 86400
 TOLERANCE = Range(1e-16, 1.0)
 """Force that may be left, relative to w_int per front length."""
 
-
 _KINDS = {"d": "a folder", "p": "a pipe", "s": "a socket", "c": "a device", "b": "a device"}
 """What a path names that is no file, by the first letter of its mode."""
 

@@ -72,13 +72,11 @@ def members(path: Path) -> tuple[list[Member], int]:
         while place < end:
             with contextlib.suppress(HeaderError):
                 head = TarInfo.frombuf(os.pread(file.fileno(), BLOCKSIZE, place), "ascii", "strict")
-                place += BLOCKSIZE
-                if place + head.size <= end:
-                    found.append(Member(path, head.name, place, head.size))
-                    place += _padded(head.size)
-                    known = True
+                start = place + BLOCKSIZE
+                if start + head.size <= end:
+                    found.append(Member(path, head.name, start, head.size))
+                    place, known = start + _padded(head.size), True
                     continue
-                place -= BLOCKSIZE
             # Headers begin at multiples of a block: the next one ends what is damaged.
             n_damaged += known
             known = False

@@ -13,12 +13,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.core.variables import Variable, variables
-from crackfront.data.files import (
-    PACKED,
-    UnreadableFileError,
-    read_dataset,
-    write_dataset,
-)
+from crackfront.data.files import PACKED, UnreadableFileError, read_dataset, write_dataset
 from crackfront.data.labels import label, labelled, labelled_fields
 from crackfront.data.provenance import Provenance
 

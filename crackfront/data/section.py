@@ -9,14 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
 import yaml
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    ConfigDict,
-    Field,
-    ValidationError,
-    ValidationInfo,
-)
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from crackfront.data.bounds import COUNT, DENSITY, NUMBER, PLATEAU, SEED, Range, regular_file
@@ -179,9 +172,8 @@ def _frozen(value: Any, depth: int = 0) -> Any:
 
 def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
     """What one error of pydantic means."""
-    place = "".join(
-        f"[{part}]" if isinstance(part, int) else f".{part}" for part in error["loc"]
-    ).lstrip(".")
+    parts = (f"[{part}]" if isinstance(part, int) else f".{part}" for part in error["loc"])
+    place = "".join(parts).lstrip(".")
     if error["type"] == "section":
         return f"{place}: {error['msg']}" if place else error["msg"]
     if error["type"] == "extra_forbidden":

@@ -193,12 +193,10 @@ def draw_loop(
             draw_curve(adhesion, label, color=look.colour, linewidth=1.0, zorder=2)
     if np.isfinite(elastic_energy):
         centre = 1 - elastic_energy if kind == "roughness" else 1.0
-        for factor, text in (
-            (-PAPER_FACTOR, f"JKR, $k = {PAPER_FACTOR:g}$ (paper)"),
-            (PAPER_FACTOR, None),
-        ):
-            adhesion = max(centre + factor * elastic_energy, 0.0)
-            draw_curve(adhesion, text, color="0.35", linewidth=0.6, dashes=(4, 2), zorder=1)
+        text = f"JKR, $k = {PAPER_FACTOR:g}$ (paper)"
+        for sign, name in ((-1, text), (1, None)):
+            adhesion = max(centre + sign * PAPER_FACTOR * elastic_energy, 0.0)
+            draw_curve(adhesion, name, color="0.35", linewidth=0.6, dashes=(4, 2), zorder=1)
     if np.isfinite(window[0]):
         ends = (units.lateral * end for end in window)
         axes.axvspan(*ends, color="0.93", linewidth=0, zorder=0, label="window of the averages")

@@ -15,11 +15,7 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.variables import LATERAL, STEP, Variable, variables
-from crackfront.data.files import (
-    UnreadableFileError,
-    read_dataset,
-    write_dataset,
-)
+from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
 from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.packs import File
 from crackfront.data.provenance import Provenance, provenance

@@ -260,10 +260,7 @@ _UNEQUAL = 1e-6
 
 
 def _samples(values: xr.DataArray) -> tuple[Array, float]:
-    """Values of a tile with dimensions x and y in any order, first axis x, and their spacing.
-
-    ValueError if a coordinate is missing or not uniform, or the two spacings differ.
-    """
+    """Values of a tile, first axis x, and their spacing, which must be one in x and y."""
     pixels = [_spacing(values, name) for name in ("x", "y")]
     if abs(pixels[1] / pixels[0] - 1) > _UNEQUAL:
         raise ValueError(
@@ -294,13 +291,12 @@ def _spacing(values: xr.DataArray, name: str) -> float:
 
 
 def _refuse_extreme(name: str, values: Array, unit: float = 1.0) -> None:
-    """Raise if a value is finite, but so large that no surface has it; NaN is left to others."""
-    beyond = (values < VALUES.least * unit) | (values > VALUES.most * unit)
-    beyond &= np.isfinite(values)
-    if np.any(beyond):
-        place = tuple(map(int, np.unravel_index(np.argmax(beyond), beyond.shape)))
+    """Raise if a finite value is so large that no surface has it."""
+    beyond = np.argwhere((values < VALUES.least * unit) | (values > VALUES.most * unit))
+    if beyond.size:
+        place = tuple(beyond[0].tolist())
         bounds = f"{VALUES.least:g} and {VALUES.most:g}"
         raise ValueError(
             f"{name} is {float(values[place]) / unit:g} at index {', '.join(map(str, place))} "
-            f"({np.count_nonzero(beyond)} such values); it must lie between {bounds}"
+            f"({len(beyond)} such values); it must lie between {bounds}"
         )

@@ -32,12 +32,7 @@ from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.provenance import __version__
-from crackfront.simulate.cases import (
-    Problem,
-    StraightFront,
-    load_values,
-    problem_of,
-)
+from crackfront.simulate.cases import Problem, StraightFront, load_values, problem_of
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
 from crackfront.simulate.run import compile_solver
@@ -125,10 +120,9 @@ def run_loop(
         refuse_other_type(name, value, bool, "True or False")
     if not callable(progress):
         refuse_other_type("progress", progress, type(None), "a function of a state")
-    visited, straight = None if loads is None else load_values(loads), False
-    if isinstance(surface, StraightFront):
-        straight = True
-    elif visited is None and max_penetration is None:
+    visited = None if loads is None else load_values(loads)
+    straight = isinstance(surface, StraightFront)
+    if not straight and visited is None and max_penetration is None:
         max_penetration = 1.0
     if step is None:
         step = 0.02 if visited is None else math.inf
@@ -163,11 +157,10 @@ def loop_dataset(record: CycleRecord, problem: Problem) -> Dataset:
     values["w_appr_numerical_error"], values["w_retr_numerical_error"] = numerical
     values |= {item.name: getattr(steady, item.name) for item in variables(SteadyMeasures)}
     sentences = {"result": _result_sentence(record, steady), "steady_sentence": steady.sentence}
-    labels = sentences | curves.attrs | {"kind": measures.kind}
     whole = curves.assign(
         {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
     )
-    return whole.drop_attrs(deep=False).assign_attrs(labels)
+    return whole.drop_attrs(deep=False).assign_attrs(sentences | curves.attrs, kind=measures.kind)
 
 
 def _result_sentence(record: CycleRecord, steady: SteadyAdhesion) -> str:

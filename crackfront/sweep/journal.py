@@ -234,9 +234,8 @@ def mixture_sentence(arithmetic: Mapping[str, int]) -> str:
     """That simulations are of several processors or packages; empty where they are of one."""
     if len(arithmetic) < 2:
         return ""
-    listed = "; ".join(
-        f"{count} of {name or 'an earlier version'}" for name, count in arithmetic.items()
-    )
+    parts = (f"{count} of {name or 'an earlier version'}" for name, count in arithmetic.items())
+    listed = "; ".join(parts)
     return f"stored simulations differ in their origin, and may in their last digits: {listed}"
 
 

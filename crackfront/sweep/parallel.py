@@ -98,10 +98,8 @@ def _handling_stops(receive: Callable[[int, FrameType | None], None]) -> Iterato
     """Handle each signal that requests a stop by a function of its number."""
     # Only the main thread receives signals and may set their handlers.
     in_main = threading.current_thread() is threading.main_thread()
-    handled = [
-        number for number in _SIGNALS if in_main and signal.getsignal(number) != signal.SIG_IGN
-    ]
-    before = {number: signal.signal(number, receive) for number in handled}
+    heeded = [number for number in _SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
+    before = {number: signal.signal(number, receive) for number in heeded if in_main}
     try:
         yield
     finally:

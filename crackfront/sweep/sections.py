@@ -75,10 +75,9 @@ class SurfaceSection(_ReadingSection):
     def _beside(cls, given: Any, info: ValidationInfo) -> Any:
         """Parts of a scan as they are, and files relative to the configuration."""
         masks = given if isinstance(given, tuple) else (given,)
-        is_file = [isinstance(one, str) and ":" not in one for one in masks]
         return tuple(
-            str(beside(Path(one), info)) if file else one
-            for one, file in zip(masks, is_file, strict=True)
+            str(beside(Path(one), info)) if isinstance(one, str) and ":" not in one else one
+            for one in masks
         )
 
     @functools.cached_property

@@ -62,9 +62,6 @@ NO_STEADY_PART = "no_steady_part"
 _STATUSES = (*(one.name.lower() for one in Status), NO_STEADY_PART, "refused", "defect")
 """What `status` may be; the file of a sweep has their places."""
 
-_OPTIONAL = ("parameters",)
-"""Columns of sweeps that have spectra which are not self-affine."""
-
 
 def write_hysteresis(
     path: Path, sweep: Sweep, rows: Iterable[SweepRow], origin: Provenance
@@ -91,10 +88,11 @@ def read_table(path: Path) -> SweepTable:
 
     UnreadableFileError if the file is missing, truncated or that of something else.
     """
-    names = sorted(set(SweepTable.__dataclass_fields__) - {"contact_radius", *_OPTIONAL})
+    names = sorted(set(SweepTable.__dataclass_fields__) - {"contact_radius", "parameters"})
     dataset = _read(path, (*names, *_WINDOW))
     columns = {name: np.asarray(dataset[name]) for name in names}
-    columns |= {name: np.asarray(dataset[name]) for name in _OPTIONAL if name in dataset}
+    if "parameters" in dataset:  # of spectra that are not self-affine
+        columns["parameters"] = np.asarray(dataset["parameters"])
     columns["contact_radius"] = np.mean([dataset[name] for name in _WINDOW], axis=0)
     columns["spectrum"] = columns["spectrum"].astype(np.str_)
     return SweepTable(**columns)
