@@ -52,24 +52,17 @@ def test_smooth_branches_return_their_works_of_adhesion_to_round_off():
 
 def test_both_branches_are_averaged_over_one_window_of_radii_without_transients():
     record = smooth_record(0.8, 1.3)
-    states = replace(record.states, apparent_work_of_adhesion=record.states.mean_radius)
-    drifting = replace(record, states=states)
-    steady = steady_adhesion(drifting, correlation_length=0.2)
+    radius, forward = record.states.mean_radius, record.states.direction > 0
+    drifting = replace(record.states, apparent_work_of_adhesion=radius)
+    steady = steady_adhesion(replace(record, states=drifting), correlation_length=0.2)
     # Retraction starts at 1.8: its first steady state lies 0.2 below. Approach starts at 1.2.
-    window = (record.states.mean_radius >= 1.2) & (record.states.mean_radius <= 1.6)
-    approach = window & (record.states.direction > 0)
-    last = np.max(
-        record.states.mean_radius[
-            (record.states.direction < 0) & (record.states.mean_radius <= 1.6)
-        ]
-    )
+    last = np.max(radius[~forward & (radius <= 1.6)])
+    approach = forward & (radius >= 1.2) & (radius <= last)
     assert steady.lowest_radius == 1.2
     assert steady.highest_radius == last
-    assert steady.w_appr == pytest.approx(
-        np.mean(record.states.mean_radius[approach & (record.states.mean_radius <= last)])
-    )
+    assert steady.w_appr == pytest.approx(np.mean(radius[approach]))
     assert steady.w_appr < 1.6
-    assert steady.n_approach == np.count_nonzero(approach & (record.states.mean_radius <= last))
+    assert steady.n_approach == np.count_nonzero(approach)
 
 
 @pytest.mark.parametrize(

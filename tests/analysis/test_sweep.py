@@ -149,12 +149,8 @@ def test_the_notes_tell_the_largest_numerical_error_of_k(rng):
     larger[1, 2] *= 3
     fit = fit_all(replace(table, w_retr_numerical_error=larger))
     energy = table.amplitude[2]
-    assert any(
-        note.startswith(
-            f"Numerical errors: up to 0.035 of k ({table.spectrum[1]} at e_el = {energy:.4g} w_int)"
-        )
-        for note in fit_notes(fit)
-    )
+    start = f"Numerical errors: up to 0.035 of k ({table.spectrum[1]} at e_el = {energy:.4g} w_int)"
+    assert any(note.startswith(start) for note in fit_notes(fit))
 
 
 def test_intervals_are_those_of_the_seed_and_point_estimates_do_not_depend_on_it_or_the_order(rng):

@@ -4,11 +4,7 @@ import math
 
 import pytest
 
-from crackfront.analysis.validity import (
-    ValidityRow,
-    excess_coefficient,
-    front_excess,
-)
+from crackfront.analysis.validity import ValidityRow, excess_coefficient, front_excess
 
 
 def row(energy, ratio, size=1.0, error=0.05):

@@ -130,10 +130,7 @@ def tile(tmp_path):
         ({"--error": "inf"}, "'--error': inf is not in the range"),
         ({"--error": "nan"}, "'--error': nan is no number"),
         ({"--step": 1e-300}, "load steps with 44.8 sites"),
-        (
-            {"--step": 1e-15},
-            "load steps with 44.8 sites and 57.1 samples a ray would need",
-        ),
+        ({"--step": 1e-15}, "load steps with 44.8 sites and 57.1 samples a ray would need"),
         ({"--max-penetration": 1e15}, "of memory; here are"),
         ({"--max-penetration": 1e308}, "'--max-penetration': 1e+308 is not in the range"),
     ],

@@ -25,12 +25,7 @@ from crackfront.data.files import (
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import blank_figure, save_figure
-from crackfront.simulate.files import (
-    cycle_dataset,
-    cycle_record,
-    read_checkpoint,
-    write_checkpoint,
-)
+from crackfront.simulate.files import cycle_dataset, cycle_record, read_checkpoint, write_checkpoint
 from crackfront.simulate.given import read_field, surface_adhesion
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep import tasks
@@ -117,14 +112,8 @@ def kinds(tmp_path_factory):
     list(tasks.fill(store, list(SWEEP.simulations()), origin))
     store.write_manifest(SWEEP, shard)
     store.aggregate(SWEEP, origin)
-    fitted = fit_sweep(
-        read_table(store.hysteresis),
-        lowest_elastic_energy=SWEEP.fit.lowest_elastic_energy,
-        highest_elastic_energy=SWEEP.fit.highest_elastic_energy,
-        n_bootstrap=100,
-        seed=1,
-        kind=SWEEP.kind,
-    )
+    ends = {"lowest_elastic_energy": 0.02, "highest_elastic_energy": 0.1}
+    fitted = fit_sweep(read_table(store.hysteresis), **ends, n_bootstrap=100)
     fits = write_fit(store.folder, fitted, origin)
     kept = []
     run_simulation(ONE, keep=lambda make: kept.append(make()))
@@ -132,10 +121,8 @@ def kinds(tmp_path_factory):
     surface = cf.random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, seed=1)
     cf.save_result(surface, folder / "surface.nc")
     cf.save_result(cf.run_loop(surface, step=0.25), folder / "loop.nc")
-    adhesion = surface_adhesion(surface)
-    record = run_cycle(
-        contact_field(adhesion, 0.2), LoadSchedule(0.2, 0.1), SOLVERS["newton"](1e-6)
-    )
+    field = contact_field(surface_adhesion(surface), 0.2)
+    record = run_cycle(field, LoadSchedule(0.2, 0.1), SOLVERS["newton"](1e-6))
     write_dataset(folder / "cycle.nc", cycle_dataset(record), origin)
     parameters = load_figure(ROOT / "config/figures/main-1d.yaml", "quick")
     smooth = FIGURE.compute(parameters, lambda line: None)

@@ -106,18 +106,14 @@ def line_table():
     energy = np.array([0.01, 0.04])
     lengths, springs = np.array([1.0, 2.0]), np.array([2.0, 20.0, 200.0])
     cutoff = np.repeat(lengths, 3)
-    length = np.array([SelfAffineSpectrum(one, one, 1.0).correlation_length for one in cutoff])
+    spectra = [SelfAffineSpectrum(one, one, 1.0) for one in cutoff]
+    length = np.array([spectrum.correlation_length for spectrum in spectra])
     spring = np.repeat((np.tile(springs, 2) * length)[:, None], 2, axis=1)
     whole = np.broadcast_to(energy[:, None], (6, 2, 2)).copy()
     unknown = np.full(whole.shape, np.nan)
-    larkin = [
-        [
-            larkin_length("roughness", SelfAffineSpectrum(one, one, 1.0), 2 * np.sqrt(e))
-            for e in energy
-        ]
-        for one in cutoff
-    ]
-    k = law_value(shipped_law().coefficients, 2 * np.sqrt(energy), spring / np.array(larkin))
+    rms = 2 * np.sqrt(energy)
+    larkin = [[larkin_length("roughness", one, each) for each in rms] for one in spectra]
+    k = law_value(shipped_law().coefficients, rms, spring / np.array(larkin))
     k = k[..., None] * np.array([0.99, 1.01])
     return SweepTable(
         spectrum=np.array([f"flat{one:g}-L{two:g}" for one in lengths for two in springs]),

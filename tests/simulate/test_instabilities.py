@@ -14,11 +14,7 @@ from crackfront.core.geometry.sphere import sphere
 from crackfront.core.solver.relax import Newton, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.instabilities import (
-    resolved_motion,
-    shortest_instability,
-    swept_clusters,
-)
+from crackfront.simulate.instabilities import resolved_motion, shortest_instability, swept_clusters
 
 TRAVEL = 0.004
 
@@ -39,19 +35,9 @@ def rough_field(amplitude=0.4, n_angle=24):
 
 def retraction(field, start=0.8, stop=0.2, precision=1e-6, tolerance=1e-9, travel=TRAVEL):
     count = field.products.shape[0]
+    options = {"travel": travel, "precision": precision, "solver": Newton(tolerance)}
     front = relax(np.full(count, 0.06), start, 1, field, Newton(tolerance)).front
-    return list(
-        resolved_motion(
-            field,
-            front,
-            start,
-            [stop],
-            -1,
-            travel=travel,
-            precision=precision,
-            solver=Newton(tolerance),
-        )
-    )
+    return list(resolved_motion(field, front, start, [stop], -1, **options))
 
 
 def test_the_steps_follow_each_other_and_end_where_one_large_step_does():
@@ -94,13 +80,8 @@ def test_a_finer_precision_finds_the_same_instabilities():
 
 
 def energies(motions, field, *, unstable):
-    return np.array(
-        [
-            dissipated_energy(one.before, one.after, one.end, field)
-            for one in motions
-            if one.unstable == unstable
-        ]
-    )
+    chosen = [one for one in motions if one.unstable == unstable]
+    return np.array([dissipated_energy(one.before, one.after, one.end, field) for one in chosen])
 
 
 def test_instabilities_dissipate_and_smooth_steps_ever_less_the_finer_they_are():
@@ -158,13 +139,9 @@ def test_a_straight_front_on_a_wave_jumps_once_a_period_from_where_its_load_turn
     front = straight_front(field, adhesion, 100.0)
     solver = Newton(1e-11)
     front = relax(front, 100.0, 1, field, solver).front
-    jumps = [
-        motion
-        for motion in resolved_motion(
-            field, front, 100.0, [200.0], 1, travel=1.0, precision=1e-6, solver=solver
-        )
-        if motion.unstable
-    ]
+    options = {"travel": 1.0, "precision": 1e-6, "solver": solver}
+    motions = resolved_motion(field, front, 100.0, [200.0], 1, **options)
+    jumps = [motion for motion in motions if motion.unstable]
     turn = -np.arccos(1 / (spring * amplitude * q)) / q
     load = turn - spring * amplitude * np.sin(q * turn)
     first = wavelength * np.ceil((100.0 - load) / wavelength)

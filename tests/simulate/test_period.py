@@ -58,24 +58,17 @@ def test_after_the_lead_in_a_period_later_the_front_is_the_same_further_on(energ
     record, schedule = run(simulation), simulation.schedule
     for direction in (1, -1):
         fronts = record.fronts[direction * record.states.direction > 0]
-        last, before = (
-            fronts[-schedule.n_period :],
-            fronts[-2 * schedule.n_period : -schedule.n_period],
-        )
-        assert len(before) == schedule.n_period
+        n_period = schedule.n_period
+        last, before = fronts[-n_period:], fronts[-2 * n_period : -n_period]
+        assert len(before) == n_period
         # The first of two periods may begin anywhere within the tolerance, and soft sites differ by
         # more than that.
         assert np.max(np.abs(last - before - direction * schedule.period)) < 2e-9
 
 
 def test_a_start_twice_as_far_behind_is_forgotten():
-    near, schedule = run(ONE), ONE.schedule
-    far = schedule.run(
-        simulation_field(ONE),
-        SOLVERS["newton"](1e-9),
-        Recorder(fronts=True),
-        elastic_energy=2 * ONE.elastic_energy,
-    )
+    twice, schedule = replace(ONE, elastic_energy=2 * ONE.elastic_energy), ONE.schedule
+    near, far = run(ONE), run(twice, simulation_adhesion(ONE))
     for record in (near, far):
         assert record.status is Status.STEADY
     for direction in (1, -1):
@@ -113,36 +106,27 @@ def test_without_disorder_no_force_is_needed():
     assert found.front_rms < 1e-11
 
 
+def of_shape(shape, schedule, **sizes):
+    """A simulation of a shape of spectrum under loads of its own, with a tile of such sizes."""
+    kind, spectrum = SHAPES[shape]
+    resolution = replace(ONE.resolution, **sizes)
+    return replace(ONE, kind=kind, spectrum=spectrum, schedule=schedule, resolution=resolution)
+
+
 @pytest.mark.parametrize("shape", sorted(SHAPES))
 def test_second_order_of_the_tile_is_that_of_the_spectrum(shape):
     # f_2 = (1 / 2 pi w_int) int q C_w(q) dq = w_rms^2 / w_int, of a large tile.
-    kind, spectrum = SHAPES[shape]
-    line = LineSchedule(spring=4.0, length=240.0, period=120.0, lead_in=3.0, step=0.5)
-    knobs = replace(SWEEP.numerics.knobs, pixels_per_cutoff=3.0)
-    wanted = replace(
-        ONE,
-        kind=kind,
-        spectrum=spectrum,
-        schedule=line,
-        resolution=replace(ONE.resolution, tile_side=240.0, n_point=720),
-    )
+    schedule = LineSchedule(spring=4.0, length=240.0, period=120.0, lead_in=3.0, step=0.5)
+    wanted = of_shape(shape, schedule, tile_side=240.0, n_point=720)
     adhesion = simulation_adhesion(wanted)
     assert adhesion.work_of_adhesion.shape == (360, 720)
-    assert knobs.pixels_per_cutoff == pytest.approx(1 / adhesion.pixel)
     assert adhesion.w_rms**2 == pytest.approx(4 * wanted.elastic_energy, rel=0.06)
 
 
 @pytest.mark.parametrize("shape", sorted(SHAPES))
 def test_uncorrelated_rows_have_the_second_order_of_the_spectrum(shape):
-    kind, spectrum = SHAPES[shape]
     schedule = LineSchedule(4.0, 480.0, 160.0, 3.0, 0.5, uncorrelated=True)
-    wanted = replace(
-        ONE,
-        kind=kind,
-        spectrum=spectrum,
-        schedule=schedule,
-        resolution=replace(ONE.resolution, tile_side=480.0, n_point=1440, n_angle=1440),
-    )
+    wanted = of_shape(shape, schedule, tile_side=480.0, n_point=1440, n_angle=1440)
     adhesion = simulation_adhesion(wanted)
     fluctuation = adhesion.work_of_adhesion / WORK_OF_ADHESION
     # All modes across have the density of the sum along the front: of each row, times a pixel.

@@ -119,13 +119,8 @@ def test_a_wrong_number_of_ranks_is_one_sentence_and_no_simulation(tmp_path):
 def test_a_launcher_of_another_mpi_is_no_silent_serial_run(tmp_path):
     # What such a launcher starts: ranks that each believe to be alone.
     lonely = [sys.executable, "-m", "mpi4py", "-m", "crackfront", "simulate", TEST]
-    run = subprocess.run(
-        [*lonely, "--output", str(tmp_path), "--ranks", "2"],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    lonely += ["--output", str(tmp_path), "--ranks", "2"]
+    run = subprocess.run(lonely, capture_output=True, text=True, timeout=60, check=False)
     assert run.returncode != 0
     assert "MPI started 1 rank(s) where 3 were expected" in run.stderr
     assert list(tmp_path.iterdir()) == []
