@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.report import as_json, echo_json, examples
+from crackfront.cli.report import as_json, echo_answer, examples
 from crackfront.data.bounds import LENGTH, refuse_outside
 
 if TYPE_CHECKING:
+    from crackfront.analysis.estimate import Estimate
+    from crackfront.analysis.law import PinningFactor
     from crackfront.core.adhesion import FieldKind
     from crackfront.core.spectrum import SelfAffineSpectrum
 
 _FRONT, _SPHERE = ("--w-rms", "--g"), ("--spectrum", "--elastic-energy", "--contact-radius")
+_ERRORS = ("statistical", "numerical", "model")
 
 
 @click.command(
@@ -56,6 +60,9 @@ def law(
     --elastic-energy, --contact-radius), whose edge is held as such a front is. Works of adhesion
     are then w_int - e_el -+ k e_el.
     """
+    from crackfront.analysis.law import pinning_factor, shipped_law
+    from crackfront.analysis.law_spheres import sphere_factors
+
     front, sphere = (w_rms, g), (spectrum, elastic_energy, contact_radius)
     if any(item is not None for item in front) and any(item is not None for item in sphere):
         raise ValueError(
@@ -63,98 +70,65 @@ def law(
             "name those of one"
         )
     if w_rms is not None and g is not None:
-        entries = _front_entries(field, w_rms, g)
+        found = pinning_factor(w_rms, g, field)
+        # JSON has no infinity.
+        place: dict[str, Any] = {"w_rms": w_rms, "g": g if math.isfinite(g) else "inf"}
+        entries = _entries(found.factor, found, found, place, found.warning)
     elif spectrum is not None and elastic_energy is not None and contact_radius is not None:
-        entries = _sphere_entries(field, _shape(spectrum), elastic_energy, contact_radius)
+        known = sphere_factors(field, _shape(spectrum), elastic_energy, contact_radius)
+        place = {"w_rms": 2 * math.sqrt(elastic_energy), "l_kappa": known.spring}
+        place |= {"larkin_length": known.larkin_length, "g": known.size}
+        entries = _entries(known.both, known.approach, known.retraction, place, known.warning)
     else:
         raise ValueError(
             f"the options are incomplete; name {_named(_FRONT)}, or else {_named(_SPHERE)}"
         )
-    entries |= {"measured": _measured()}
-    if as_json:
-        echo_json(entries)
-    else:
-        _echo_text(entries)
+    entries |= {"measured": {"w_rms": shipped_law().disorder, "g": shipped_law().size}}
+    echo_answer(entries, _lines(entries), as_json=as_json)
 
 
-def _front_entries(field: FieldKind, w_rms: float, g: float) -> dict[str, Any]:
-    """What is known of k of a straight front."""
-    from crackfront.analysis.law import pinning_factor
-
-    found = pinning_factor(w_rms, g, field)
-    k = found.factor
-    return {
-        "k": k.value,
-        "k_low": k.low,
-        "k_high": k.high,
-        "k_appr": k.value,
-        "k_retr": k.value,
-        "w_rms": w_rms,
-        # JSON has no infinity.
-        "g": g if math.isfinite(g) else "inf",
-        "statistical": found.statistical,
-        "numerical": found.numerical,
-        "model": found.model,
-        "negative_share": found.negative_share,
-        "warning": found.warning,
-    }
-
-
-def _sphere_entries(
-    field: FieldKind, spectrum: SelfAffineSpectrum, elastic_energy: float, contact_radius: float
+def _entries(
+    k: Estimate[float],
+    appr: PinningFactor,
+    retr: PinningFactor,
+    place: dict[str, Any],
+    warning: str,
 ) -> dict[str, Any]:
-    """What is known of k of a sphere."""
-    from crackfront.analysis.law_spheres import sphere_factors
-
-    found = sphere_factors(field, spectrum, elastic_energy, contact_radius)
-    appr, retr, k = found.approach, found.retraction, found.both
-    errors = {
-        name: (getattr(appr, name) + getattr(retr, name)) / 2
-        for name in ("statistical", "numerical", "model")
-    }
+    """What is known of k and of its branches at a disorder and a size, for JSON."""
+    errors = {name: (getattr(appr, name) + getattr(retr, name)) / 2 for name in _ERRORS}
     return {
         "k": k.value,
         "k_low": k.low,
         "k_high": k.high,
         "k_appr": appr.factor.value,
         "k_retr": retr.factor.value,
-        "w_rms": 2 * math.sqrt(elastic_energy),
-        "l_kappa": found.spring,
-        "larkin_length": found.larkin_length,
-        "g": found.size,
+        **place,
         **errors,
         "negative_share": appr.negative_share,
-        "warning": found.warning,
+        "warning": warning,
     }
 
 
-def _measured() -> dict[str, tuple[float, float]]:
-    """Ranges of what the law was fitted to."""
-    from crackfront.analysis.law import shipped_law
-
-    return {"w_rms": shipped_law().disorder, "g": shipped_law().size}
-
-
-def _echo_text(entries: dict[str, Any]) -> None:
-    """Print what is known of k in lines."""
+def _lines(entries: dict[str, Any]) -> Iterator[str]:
+    """Lines of what is known of k."""
     interval = f"{entries['k_low']:.3g} to {entries['k_high']:.3g}"
-    click.echo(f"k              {entries['k']:.3f} (95%: {interval})")
-    click.echo(
+    yield f"k              {entries['k']:.3f} (95%: {interval})"
+    errors = ", ".join(f"{name} {entries[name]:.2g}" for name in _ERRORS)
+    yield (
         f"               approach {entries['k_appr']:.3f}, retraction {entries['k_retr']:.3f}; "
-        "standard errors: "
-        + ", ".join(f"{name} {entries[name]:.2g}" for name in ("statistical", "numerical", "model"))
+        f"standard errors: {errors}"
     )
     size = f"g {float(entries['g']):.3g}"
     if "l_kappa" in entries:
         size += f" = L_kappa {entries['l_kappa']:.3g} / Larkin {entries['larkin_length']:.3g}"
-    click.echo(f"at             w_rms {entries['w_rms']:.3g} w_int, {size}")
+    yield f"at             w_rms {entries['w_rms']:.3g} w_int, {size}"
     ranges = (
         f"{name} {low:.3g} to {high:.3g}" for name, (low, high) in entries["measured"].items()
     )
-    click.echo(f"measured for   {', '.join(ranges)}")
-    click.echo(f"negative w_loc {entries['negative_share']:.2%} of the surface")
+    yield f"measured for   {', '.join(ranges)}"
+    yield f"negative w_loc {entries['negative_share']:.2%} of the surface"
     if entries["warning"]:
-        click.echo(f"beyond what was measured: {entries['warning']}")
+        yield f"beyond what was measured: {entries['warning']}"
 
 
 def _shape(text: str) -> SelfAffineSpectrum:

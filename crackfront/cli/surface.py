@@ -130,10 +130,7 @@ def _scans(command: Command) -> Command:
 @click.option("--panel", type=click.Choice("abcd"), help="Draw one panel of the figure alone.")
 @click.option("--no-figure", is_flag=True, help="Draw none: most of the time goes into it.")
 @click.option(
-    "--csv",
-    "table",
-    type=FILE,
-    help="Take each scan for a sample, and write a row for each.",
+    "--csv", "table", type=FILE, help="Take each scan for a sample, and write a row for each."
 )
 @click.option("--long", "is_long", is_flag=True, help="Print all that is known, not one page.")
 @click.option("--strict", is_flag=True, help="Let reservations fail as well.")

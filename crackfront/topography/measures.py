@@ -70,9 +70,7 @@ class MeasuredSurface:
 
 
 def measured_surface(
-    measurements: Sequence[Measurement],
-    shortest: float | None = None,
-    longest: float | None = None,
+    measurements: Sequence[Measurement], shortest: float | None = None, longest: float | None = None
 ) -> MeasuredSurface:
     """Spectrum and measures of a surface of which there is one measurement or several.
 

@@ -18,7 +18,6 @@ from crackfront.data.written_units import prefixed
 from crackfront.topography.bands import BandLimit, Scan
 from crackfront.topography.cautions import measure_next, surface_doubts, surface_notes
 from crackfront.topography.fitting import Fit
-from crackfront.topography.joining import JointSpectrum
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import Prediction, prediction_notes, repelled_note
 from crackfront.topography.verdict import Condition, Verdict
@@ -128,22 +127,36 @@ def machine_readable(
     found: Simulated | None = None,
 ) -> dict[str, Any]:
     """What the texts and notes say, for JSON, by the names of records and in their SI units."""
-    measured = zip(surface.scans, surface.profiles, surface.joint.density.levels, strict=True)
+    joint = surface.joint
+    measured = zip(surface.scans, surface.profiles, joint.density.levels, strict=True)
     return {
         "measurements": [
             _scan_entry(one)
             | {
                 "profile_density": _plain(profile),
                 "level": _plain(level),
-                "disagrees": surface.joint.density.disagrees(index),
+                "disagrees": joint.density.disagrees(index),
             }
             for index, (one, profile, level) in enumerate(measured)
         ],
-        "spectrum": _spectrum_entry(surface.joint),
-        "continuation": _continuation_entry(surface.joint.fit),
+        "spectrum": {
+            "wavelength": list(joint.spectrum.wavelengths),
+            "density": list(joint.spectrum.densities),
+            "measured": _plain(joint.density),
+            "share_of_e_el": _plain(joint.shares),
+            "shortest": joint.shortest,
+            "longest": joint.longest,
+            "end": joint.spectrum.short_cutoff,
+            "is_lower_bound": joint.is_lower_bound,
+        },
+        "continuation": {
+            **{name: _plain(number) for name, number, _ in _continuation(joint.fit)},
+            "deviance_per_freedom": joint.fit.misfit,
+            "has_roll_off": joint.fit.has_roll_off,
+        },
         "measures": _plain(surface.measures),
         "e_el": None if scales is None else _energy_entry(surface, scales.contact_modulus),
-        "prediction": None if prediction is None else dict(_prediction_entries(prediction)),
+        "prediction": None if prediction is None else _prediction_entries(prediction),
         "factors": None if prediction is None else _plain(prediction.factors),
         "excess": None if prediction is None else _plain(prediction.excess),
         "verdict": None if ruling is None else _verdict_entry(ruling),
@@ -157,19 +170,19 @@ def sample_row(
 ) -> dict[str, Any]:
     """Row of a surface in a table: numbers and the ends of their 95% intervals, in SI units."""
     remarks = " ".join(ruling.reservations or ruling.remedies)
-    row = {"outcome": ruling.outcome, "remarks": remarks}
-    numbers: dict[str, Any] = {
-        f"rms_{_MEASURES[one.order][0].replace('-', '_')}": one.rms for one in surface.measures
+    numbers = {
+        f"rms_{_MEASURES[one.order][0].replace('-', '_')}": _plain(one.rms)
+        for one in surface.measures
     }
-    numbers["e_el"] = surface.conformity_energy(scales.contact_modulus)
-    if prediction is not None:
-        numbers |= {item.name: getattr(prediction, item.name) for item in variables(Prediction)}
-    for name, found in numbers.items():
-        entry = _plain(found)
-        known = entry if isinstance(entry, dict) else {"value": entry}
-        heads = {"value": name, "low": f"{name}_low", "high": f"{name}_high"}
-        row |= {head: known[end] for end, head in heads.items() if end in known}
-    return row
+    numbers["e_el"] = _plain(surface.conformity_energy(scales.contact_modulus))
+    numbers |= {} if prediction is None else _prediction_entries(prediction)
+    heads = {"value": "", "low": "_low", "high": "_high"}
+    return {"outcome": ruling.outcome, "remarks": remarks} | {
+        f"{name}{head}": entry[end]
+        for name, entry in numbers.items()
+        for end, head in heads.items()
+        if end in entry
+    }
 
 
 def _continuation(fit: Fit) -> tuple[tuple[str, Number, str], ...]:
@@ -314,20 +327,6 @@ def _scan_entry(one: Scan) -> dict[str, Any]:
     }
 
 
-def _spectrum_entry(joint: JointSpectrum) -> dict[str, Any]:
-    """The spectrum of a surface, and where its e_el comes from."""
-    return {
-        "wavelength": list(joint.spectrum.wavelengths),
-        "density": list(joint.spectrum.densities),
-        "measured": _plain(joint.density),
-        "share_of_e_el": _plain(joint.shares),
-        "shortest": joint.shortest,
-        "longest": joint.longest,
-        "end": joint.spectrum.short_cutoff,
-        "is_lower_bound": joint.is_lower_bound,
-    }
-
-
 def _energy_entry(surface: MeasuredSurface, contact_modulus: float) -> dict[str, Any]:
     """e_el, of what is recorded and as estimated (Units: J / m^2)."""
     numbers = {"recorded": surface.recorded, "estimated": surface.estimated}
@@ -337,18 +336,13 @@ def _energy_entry(surface: MeasuredSurface, contact_modulus: float) -> dict[str,
     }
 
 
-def _continuation_entry(fit: Fit) -> dict[str, Any]:
-    """The model that continues a density."""
-    parameters = {name: _plain(found) for name, found, _ in _continuation(fit)}
-    return parameters | {"deviance_per_freedom": fit.misfit, "has_roll_off": fit.has_roll_off}
-
-
-def _prediction_entries(prediction: Prediction) -> Iterator[tuple[str, dict[str, Any]]]:
+def _prediction_entries(prediction: Prediction) -> dict[str, dict[str, Any]]:
     """Numbers of a prediction by name, with what they have of standard errors and intervals."""
-    for item in variables(Prediction):
-        found = _plain(getattr(prediction, item.name))
-        number = found if isinstance(found, dict) else {"value": found}
-        yield item.name, number | item.attributes
+    items = [(item, _plain(getattr(prediction, item.name))) for item in variables(Prediction)]
+    return {
+        item.name: (found if isinstance(found, dict) else {"value": found}) | item.attributes
+        for item, found in items
+    }
 
 
 def _plain(value: Any) -> Any:

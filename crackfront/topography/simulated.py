@@ -20,12 +20,7 @@ from crackfront.core.units import Scales
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.lines import LineLoad
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import (
-    Numerics,
-    Simulation,
-    numerical_error,
-    simulation_of,
-)
+from crackfront.simulate.simulation import Numerics, Simulation, numerical_error, simulation_of
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import surface_spectrum

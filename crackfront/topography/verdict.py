@@ -127,8 +127,7 @@ def verdict(
         *_energy_conditions(surface, scales),
         *_contact_conditions(surface, scales),
         *_range_conditions(surface, scales, reach),
-        _slope_condition(surface),
-        _random_condition(surface),
+        *_roughness_conditions(surface),
     )
     doubts = [*channel_doubts(surface)]
     doubts += [
@@ -249,10 +248,10 @@ def _waves(surface: MeasuredSurface) -> tuple[RmsMeasure, str]:
     return half, f"{prefixed('m', half.shortest)} to {prefixed('m', half.longest)}"
 
 
-def _slope_condition(surface: MeasuredSurface) -> Condition:
-    """Condition on the rms slope."""
+def _roughness_conditions(surface: MeasuredSurface) -> Iterator[Condition]:
+    """Conditions on the rms slope, and on waves that stand out, as grooves do."""
     slope = surface.measures[2].rms.value
-    return Condition(
+    yield Condition(
         "small slopes",
         f"rms slope of {slope:.3g}",
         "linear elasticity leaves the square of slopes out",
@@ -261,13 +260,9 @@ def _slope_condition(surface: MeasuredSurface) -> Condition:
         "1",
         remedies=(f"slopes lower by a factor of {slope / _SLOPES[1]:.3g}",),
     )
-
-
-def _random_condition(surface: MeasuredSurface) -> Condition:
-    """Condition on waves that stand out, as grooves do."""
     part, wavelength = max(one.band.periodic for one in surface.scans)
     found = f"the wave of {prefixed('m', wavelength)} alone has {part:.0%} of e_el"
-    return Condition(
+    yield Condition(
         "random roughness",
         found if part else "no wave stands out",
         "k is that of random surfaces, and grooves pin a front otherwise",
