@@ -111,13 +111,7 @@ _MOMENT = 20.0
 
 
 def refuse_unwritable(folder: Path) -> None:
-    """Raise where no file can be written in a folder, before anything is computed for it.
-
-    Raises
-    ------
-    OSError
-        If the folder cannot be made or written to.
-    """
+    """Raise an OSError where a folder cannot be made or written to, before anything is computed."""
     import tempfile
 
     folder.mkdir(parents=True, exist_ok=True)

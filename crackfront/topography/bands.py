@@ -147,10 +147,7 @@ class Scan:
 def scan(
     measurement: Measurement, shortest: float | None = None, longest: float | None = None
 ) -> Scan:
-    """A measurement with its trusted band, refused if it is narrow; its ends may be named.
-
-    (Units: m)
-    """
+    """A measurement with its trusted band, refused if narrow; its ends may be named (Units: m)."""
     waves, pixel = periodogram(measurement), max(measurement.pixels)
     periodic = periodic_part(waves, measurement.shortest, measurement.longest)
     # Grooves along an axis are no rows that the instrument has shifted.

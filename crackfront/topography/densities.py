@@ -171,10 +171,7 @@ def cosine_window(name: str, count: int) -> Array:
 
 
 def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
-    """Axes along which a map has stripes: rows or columns that are shifted or levelled as wholes.
-
-    On such an axis the density departs from that of all other directions.
-    """
+    """Axes on which a density departs from that beside them: rows or columns moved as wholes."""
     wavevector = waves.wavevector
     beside = ~(waves.near_axis(0) | waves.near_axis(1)) & (wavevector > 0)
     inside = wavevector <= 2 * np.pi / shortest
@@ -201,10 +198,7 @@ def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
 
 
 def periodic_part(waves: Periodogram, shortest: float, longest: float) -> tuple[float, float]:
-    """Part of e_el in the one wave that stands out most, and its wavelength (Units: m); 0 if none.
-
-    Waves between two wavelengths count.
-    """
+    """Part of e_el in the wave within bounds that stands out most, and its wavelength; else 0."""
     wavevector = waves.wavevector
     inside = (wavevector >= 2 * np.pi / longest) & (wavevector <= 2 * np.pi / shortest)
     energy = np.where(inside, waves.count * waves.power * wavevector, 0.0)
@@ -229,10 +223,7 @@ def anisotropy(waves: Periodogram, shortest: float) -> float:
 
 
 def unevenness(measurement: Measurement) -> float:
-    """Relative standard error of e_el as its parts differ more than those of a Gaussian surface.
-
-    That is one of the same waves with random phases. 0 where the parts differ no more.
-    """
+    """Relative standard error of e_el where parts differ more than at random phases; else 0."""
     shape = measurement.heights.shape
     *others, last = zip(shape, measurement.pixels, strict=True)
     waves = np.ix_(*(fftfreq(*one) for one in others), rfftfreq(*last))

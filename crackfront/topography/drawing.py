@@ -59,10 +59,7 @@ _ROOM = 3.0
 def prediction_figure(
     surface: MeasuredSurface, prediction: Prediction, panel: str | None = None
 ) -> Figure:
-    """Densities with the spectrum, predicted forces of both branches, and the scans as used.
-
-    Of these the panel of a letter alone, if one is named.
-    """
+    """Densities with the spectrum, forces of both branches and scans; or one panel, by letter."""
     with house_style():
         if panel == "d":
             figure = blank_figure(0.5 * PAGE * min(len(surface.scans), _MOST_MAPS), 0.4 * PAGE)

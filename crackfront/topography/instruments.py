@@ -137,7 +137,8 @@ def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
                 f"{path} states heights in {channel.unit}, which may be; leave --height-unit "
                 f"{options.height_unit} out"
             )
-        heights = metres(options.height_unit) * raw.heights()
+        [factor] = in_metres(options.height_unit, 1.0)
+        heights = factor * raw.heights()
         level = library_scan(heights, sides, periodic=bool(level.is_periodic), info=raw.info)
     return RawScan(level, reader.format(), name)
 
@@ -199,10 +200,7 @@ def _reader(path: Path) -> Any:
 
 
 def _signed(path: Path) -> Any:
-    """Reader whose signature a file begins with; None where that is none or several.
-
-    The readers in their order would each import what it needs before it finds that it cannot read.
-    """
+    """Reader whose signature a file begins with, found by few imports; None if none or several."""
     base = library_part("IO.Reader")
     with path.open("rb") as file:
         begin = file.read(_BEGIN)
@@ -242,22 +240,22 @@ def list_channels(path: str | PathLike[str]) -> tuple[Channel, ...]:
     OSError
         If it cannot be opened.
     """
-    return _channels(Path(path), _reader(Path(path)))[1]
+    return _channels(Path(path), _reader(Path(path)))
 
 
-def _channels(path: Path, reader: Any) -> tuple[list[Any], tuple[Channel, ...]]:
-    """Channels of a file as its reader has them, and what they are."""
+def _channels(path: Path, reader: Any) -> tuple[Channel, ...]:
+    """Channels of a file, numbered as its reader has them."""
     with _parsing(path):
-        channels, default = list(reader.channels), reader.default_channel.index
-    return channels, tuple(
-        Channel(one.index, one.name, _kind(one), one.nb_grid_pts or (), one.index == default)
-        for one in channels
-    )
+        default = reader.default_channel.index
+        return tuple(
+            Channel(one.index, one.name, _kind(one), one.nb_grid_pts or (), one.index == default)
+            for one in reader.channels
+        )
 
 
 def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
     """A channel of heights, the library's own choice if none is named, and what it is called."""
-    channels, known = _channels(path, reader)
+    known = _channels(path, reader)
     named = [one for one in known if (one.is_default if wanted is None else one.name == wanted)]
     named = named or [one for one in known if str(one.number) == wanted]
     if len(named) != 1:
@@ -273,7 +271,8 @@ def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
             + (_choice(of_heights) if of_heights else "export the channel of the heights")
         )
     several = f", {found.number} of {len(known)}" if len(known) > 1 else ""
-    return channels[known.index(found)], f"{found.name!r}{several}"
+    [channel] = [one for one in reader.channels if one.index == found.number]
+    return channel, f"{found.name!r}{several}"
 
 
 def _kind(channel: Any) -> str:
@@ -298,7 +297,7 @@ def _completed(
     """What a file does not state, and sides in metres where it states impossible ones."""
     unit, size = channel.unit, channel.physical_sizes
     is_sized = size is not None and None not in size
-    if unit is not None and is_sized and not _are_possible(stated := _in_metres(size, unit)):
+    if unit is not None and is_sized and not _are_possible(stated := in_metres(unit, *size)):
         if options.size is None or options.unit is None:
             raise ValueError(
                 f"{path} states sides of {shown_sides(stated)}, which no instrument measures; its "
@@ -344,20 +343,16 @@ def _sides(path: Path, named: tuple[float, ...], n_side: int) -> tuple[float, ..
     return found
 
 
-def metres(unit: str) -> float:
-    """Metres in a unit of length."""
-    return float(library_part("Support.UnitConversion").get_unit_conversion_factor(unit, "m"))
+def in_metres(unit: str, *lengths: float) -> tuple[float, ...]:
+    """Lengths of a unit in metres."""
+    factor = library_part("Support.UnitConversion").get_unit_conversion_factor(unit, "m")
+    return tuple(float(factor * float(length)) for length in lengths)
 
 
 def are_possible_heights(heights: np.ndarray[Any, Any], sides: tuple[float, ...]) -> bool:
     """Whether an instrument measures heights on such sides, all in metres."""
     known = np.ma.compressed(np.ma.masked_invalid(heights))
     return bool(np.std(known) >= _LEAST_HEIGHT and np.ptp(known) <= _MOST_HEIGHT * max(sides))
-
-
-def _in_metres(sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
-    """Sides of a scan in metres."""
-    return tuple(metres(unit) * float(side) for side in sides)
 
 
 def _are_possible(sides: tuple[float, ...]) -> bool:
@@ -367,7 +362,7 @@ def _are_possible(sides: tuple[float, ...]) -> bool:
 
 def _named_sides(path: Path, sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
     """Sides in metres, refused where no instrument measures them."""
-    found = _in_metres(sides, unit)
+    found = in_metres(unit, *sides)
     if not _are_possible(found):
         raise ValueError(
             f"{path} cannot have sides of {shown_sides(found)}: instruments measure from "

@@ -41,8 +41,7 @@ def _taking(*records: type[Any]) -> Callable[[Function], Function]:
             default=one.default,
             annotation=one.kind.accepts,
         )
-        for record in records
-        for one in declared(record)
+        for one in declared(*records)
     ]
 
     def decorated(function: Function) -> Function:

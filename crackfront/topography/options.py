@@ -73,9 +73,9 @@ def option(meaning: str, kind: Kind, *, default: Any = None, times: Times = "onc
     return field(default=default, metadata={"option": (meaning, kind, default, times)})
 
 
-def declared(record: type[Any]) -> Iterator[Option]:
-    """Options of a record, in the order of its fields."""
-    for item in fields(record):
+def declared(*records: type[Any]) -> Iterator[Option]:
+    """Options of records, in the order of their fields."""
+    for item in (one for record in records for one in fields(record)):
         yield Option(item.name, *item.metadata["option"])
 
 
@@ -125,13 +125,11 @@ def _values(item: Option, given: Any, n_scan: int, prefix: str) -> Sequence[Any]
 
 def parameters_text(*records: type[Any]) -> str:
     """Paragraphs of a docstring on the options of records."""
-    lines = []
-    for item in (one for record in records for one in declared(record)):
+    lines, indent = [], " " * 8
+    for item in declared(*records):
         several = "" if item.times == "once" else " or list of such"
         lines.append(f"    {item.name} : {item.kind.accepts}{several}, optional")
-        indent = " " * 8
-        text = textwrap.fill(item.sentence, 100, initial_indent=indent, subsequent_indent=indent)
-        lines.append(text)
+        lines += textwrap.wrap(item.sentence, 100, initial_indent=indent, subsequent_indent=indent)
     return "\n".join(lines).lstrip()
 
 
@@ -286,7 +284,6 @@ class PredictionOptions:
         "Measured pull-off force, as in 0.4mN; the w_int that it implies is told",
         quantity("N", "force", "0.4mN"),
     )
-
     range: float | None = option(
         "Range of the attraction, as in 0.3nm; by default 0.5nm, that of van der Waals forces",
         LENGTH,

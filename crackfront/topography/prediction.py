@@ -141,16 +141,15 @@ def predicted(
     measured pull-off force (Units: N) gives the w_int that it implies. ValueError if no contact
     conforms, e_el >= w_int.
     """
-    works = _works(surface, scales)
-    energy, factors, excess, appr, retr = works
+    energy, factors, excess, appr, retr = _works(surface, scales)
     radius, adhesion = zero_load_radius(scales), scales.work_of_adhesion
-    front = product(_exactly(2.0), factors.both, energy)
+    front = product(factors.both, energy).each(lambda work: 2 * work)
     # By JKR, pull-off forces are linear in the work of adhesion.
     at_load, at_displacement = (
         -reduced * scales.force / adhesion
         for reduced in (jkr.pull_off_force(), float(jkr.equilibrium_force(jkr.pull_off_radius())))
     )
-    implied = _exactly(math.nan)
+    implied = Estimate(*[math.nan] * 4)
     if pull_off is not None:
         implied = _implied_work_of_adhesion(surface, scales, pull_off / at_load)
     return Prediction(
@@ -222,11 +221,6 @@ def _implied_work_of_adhesion(
         return float(brentq(apart, least, most, rtol=1e-4))
 
     return Estimate(solved("value"), math.nan, solved("high"), solved("low"))
-
-
-def _exactly(value: float) -> Estimate[float]:
-    """A number that is known."""
-    return Estimate(value, math.nan, value, value)
 
 
 def _inverse(number: Estimate[float]) -> Estimate[float]:

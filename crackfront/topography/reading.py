@@ -16,9 +16,9 @@ from crackfront.topography.instruments import (
     RawScan,
     are_possible_heights,
     array_of,
+    in_metres,
     library_part,
     library_scan,
-    metres,
     raw_scan,
     shown_sides,
     surface_library,
@@ -198,22 +198,22 @@ def _tip(scan: RawScan, options: ReadingOptions) -> tuple[float, bool]:
     """Radius of the tip of a scan, 0 where it has none, and whether it is assumed (Units: m)."""
     if options.tip_radius is not None:
         return options.tip_radius, False
-    if stated := _instrument(scan.level).get("tip_radius"):
-        return metres(stated["unit"]) * float(stated["value"]), False
+    if (stated := _stated(scan.level, "tip_radius")) is not None:
+        return stated, False
     is_assumed = scan.format in _SCANNING_PROBES
     return (_TIP if is_assumed else 0.0), is_assumed
 
 
-def _instrument(level: Any) -> dict[str, Any]:
-    """What a file says of its instrument."""
-    return dict(level.info.get("instrument", {}).get("parameters", {}))
+def _stated(level: Any, name: str) -> float | None:
+    """A length that a file states of its instrument (Units: m)."""
+    found = level.info.get("instrument", {}).get("parameters", {}).get(name)
+    return in_metres(found["unit"], found["value"])[0] if found else None
 
 
 def _trusted_wavelengths(path: Path, level: Any, size: tuple[float, ...]) -> tuple[float, float]:
     """Wavelengths that points, resolution and sides allow to trust, refused where they are few."""
     shortest = _PIXELS_PER_WAVE * max(np.divide(size, level.nb_grid_pts).tolist())
-    if resolution := _instrument(level).get("resolution"):
-        shortest = max(shortest, metres(resolution["unit"]) * float(resolution["value"]))
+    shortest = max(shortest, _stated(level, "resolution") or 0.0)
     longest = min(size) / _WAVES_PER_SIDE
     if longest < 2**_FEWEST_OCTAVES * shortest:
         raise ValueError(

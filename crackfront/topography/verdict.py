@@ -129,13 +129,13 @@ def verdict(
         *_range_conditions(surface, scales, reach),
         *_roughness_conditions(surface),
     )
-    doubts = [*channel_doubts(surface)]
-    doubts += [
-        f"{item.name}: {item.found}; {item.reason}."
-        for item in conditions
-        if item.standing == "in doubt"
+    unsure = (item for item in conditions if item.standing == "in doubt")
+    doubts = [
+        *channel_doubts(surface),
+        *(f"{item.name}: {item.found}; {item.reason}." for item in unsure),
+        *_energy_doubts(surface, scales),
+        *surface_doubts(surface),
     ]
-    doubts += [*_energy_doubts(surface, scales), *surface_doubts(surface)]
     if factors is not None and factors.warning:
         doubts.append(f"The law of k was not measured there: {factors.warning}.")
     assumption = ""
