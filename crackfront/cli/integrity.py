@@ -35,9 +35,8 @@ def verify(place: Path, as_json: bool) -> None:
         ),
         *(f"damaged: {name}" for name in found.damaged),
         *(f"missing: {name}" for name in found.missing),
+        *filter(None, [mixture_sentence(found.arithmetic)]),
     ]
-    if sentence := mixture_sentence(found.arithmetic):
-        lines.append(sentence)
     if is_whole := not (found.damaged or found.missing):
         lines.append(f"{place}: nothing is damaged or missing")
     content = {"counts": counts, "damaged": found.damaged, "missing": found.missing}

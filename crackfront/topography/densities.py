@@ -109,14 +109,6 @@ class Periodogram:
             is_profile=len(self.along) == 1,
         )
 
-    def mean_square(self, order: float, shortest: float, longest: float) -> float:
-        """Mean square of a derivative between two wavelengths (Units: m^(2 - 2 order))."""
-        wavevector = self.wavevector
-        inside = (wavevector >= 2 * np.pi / longest) & (wavevector <= 2 * np.pi / shortest)
-        power = self.count[inside] * self.power[inside]
-        total = float(np.sum(power * wavevector[inside] ** (2 * order)))
-        return total * math.prod(step / (2 * math.pi) for step in self.steps)
-
 
 def bin_numbers(wavevector: Array) -> NDArray[np.int64]:
     """Numbers of the bins of wavevectors, the same for all scans."""

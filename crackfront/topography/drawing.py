@@ -123,12 +123,8 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None
     label = "spectrum, with its 95% interval"
     axes.plot(shown, spectrum.density(shown), color=BLACK, label=label, zorder=4)
     axes.set_ylim(0.02 * np.min(low), 5 * np.max(high))
-    draw_dominant_scales(
-        axes,
-        np.array([item.rms.value**2 for item in measures]),
-        np.array([item.shortest for item in measures]),
-        np.array([item.longest for item in measures]),
-    )
+    scales = [(item.rms.value**2, item.shortest, item.longest) for item in measures]
+    draw_dominant_scales(axes, *np.transpose(scales))
     _draw_limits(axes, surface, named=False)
     axes.set_ylabel(ISOTROPIC_LABEL)
     add_wavelengths(axes)
@@ -222,10 +218,7 @@ _DRAWINGS = {"a": _draw_isotropic, "b": _draw_profiles, "c": _draw_forces}
 
 
 def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ()) -> None:
-    """A map in colours with their scale, or the heights along a line, with what was done to it.
-
-    `stripes` are the axes along which its density leaves waves out.
-    """
+    """A map in colours, or heights along a line; its density leaves out waves along `stripes`."""
     low, high = (float(end) for end in np.quantile(measurement.heights, _SHOWN))
     unit, scale = _scaled_unit("m", max(abs(low), abs(high)))
     lateral, side = _scaled_unit("m", max(measurement.size))

@@ -250,10 +250,7 @@ def _continued(
     lowest: float | None,
     end: float,
 ) -> TabulatedSpectrum:
-    """Table of measured values, continued by a model: over gaps, to an end, and to the plateau.
-
-    It is flat above the longest measured wave where the lowest wavevector of a model is None.
-    """
+    """Table of values, continued by a model over gaps, to an end, and below `lowest` if given."""
     last = max(2 * math.pi / end, float(wavevector[-1]) * (1 + 1e-6))
     first = [] if lowest is None else [lowest / _FLAT]
     between = []
@@ -297,10 +294,7 @@ def _draws(
     fit: Fit,
     rest: Density,
 ) -> tuple[tuple[TabulatedSpectrum, ...], tuple[TabulatedSpectrum, ...]]:
-    """Spectra that agree with what was measured, continued by the model and by what is recorded.
-
-    The logarithms are those of every state of the fit.
-    """
+    """Spectra by the states of the fit, continued by the model and by what is recorded."""
     finest = math.log(min(one.band.finest for one in scans))
     coarsest = math.log(min(one.band.coarsest for one in scans))
     rng = np.random.default_rng(_SEED)

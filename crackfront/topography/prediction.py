@@ -204,10 +204,7 @@ def _works(surface: MeasuredSurface, scales: Scales) -> _Works:
 def _implied_work_of_adhesion(
     surface: MeasuredSurface, scales: Scales, measured: float
 ) -> Estimate[float]:
-    """The w_int at which the prediction for w_retr is the measured one (Units: J / m^2).
-
-    Its interval ends where those of predictions do. NaN where no w_int in reach gives it.
-    """
+    """The w_int at which the predicted w_retr is the measured one; NaN if none (Units: J / m^2)."""
     least = 1.001 * surface.conformity_energy(scales.contact_modulus).value
 
     def solved(end: str) -> float:
@@ -220,6 +217,7 @@ def _implied_work_of_adhesion(
             return math.nan
         return float(brentq(apart, least, most, rtol=1e-4))
 
+    # Its interval ends where those of predictions do.
     return Estimate(solved("value"), math.nan, solved("high"), solved("low"))
 
 

@@ -15,7 +15,7 @@ from crackfront.analysis.law import shipped_law
 from crackfront.core.units import Scales
 from crackfront.core.variables import variables
 from crackfront.data.written_units import prefixed
-from crackfront.topography.bands import BandLimit, Scan
+from crackfront.topography.bands import BandLimit
 from crackfront.topography.cautions import measure_next, surface_doubts, surface_notes
 from crackfront.topography.fitting import Fit
 from crackfront.topography.measures import MeasuredSurface
@@ -128,17 +128,8 @@ def machine_readable(
 ) -> dict[str, Any]:
     """What the texts and notes say, for JSON, by the names of records and in their SI units."""
     joint = surface.joint
-    measured = zip(surface.scans, surface.profiles, joint.density.levels, strict=True)
     return {
-        "measurements": [
-            _scan_entry(one)
-            | {
-                "profile_density": _plain(profile),
-                "level": _plain(level),
-                "disagrees": joint.density.disagrees(index),
-            }
-            for index, (one, profile, level) in enumerate(measured)
-        ],
+        "measurements": list(_scan_entries(surface)),
         "spectrum": {
             "wavelength": list(joint.spectrum.wavelengths),
             "density": list(joint.spectrum.densities),
@@ -315,16 +306,21 @@ def _span(shortest: float, longest: float) -> str:
     return f"{prefixed('m', shortest)} to {prefixed('m', longest)}"
 
 
-def _scan_entry(one: Scan) -> dict[str, Any]:
-    """A scan without its heights: its file, trusted wavelengths, and what its density shows."""
-    item = one.measurement
-    told = (entry.name for entry in fields(item) if entry.name != "heights")
-    return {
-        **{name: _plain(getattr(item, name)) for name in told},
-        "points": list(item.heights.shape),
-        **_plain(one.band),
-        "density": _plain(one.trusted),
-    }
+def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:
+    """Scans without heights: their files, trusted wavelengths, and what their densities show."""
+    joined = surface.joint.density
+    for index, (one, profile) in enumerate(zip(surface.scans, surface.profiles, strict=True)):
+        item = one.measurement
+        told = (entry.name for entry in fields(item) if entry.name != "heights")
+        yield {
+            **{name: _plain(getattr(item, name)) for name in told},
+            "points": list(item.heights.shape),
+            **_plain(one.band),
+            "density": _plain(one.trusted),
+            "profile_density": _plain(profile),
+            "level": _plain(joined.levels[index]),
+            "disagrees": joined.disagrees(index),
+        }
 
 
 def _energy_entry(surface: MeasuredSurface, contact_modulus: float) -> dict[str, Any]:

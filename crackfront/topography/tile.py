@@ -54,10 +54,7 @@ def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
 
 
 def tile_heights(measurement: Measurement) -> tuple[Array, float]:
-    """Heights of the tile of :func:`scan_surface`, and its pixel (Units: m).
-
-    ValueError if the measurement is a line.
-    """
+    """Heights of the tile of a map, and its pixel (Units: m); ValueError if it is a line."""
     if measurement.is_line:
         raise ValueError(
             f"{measurement.path} is a line scan, which is no field; use its spectrum, as "

@@ -77,7 +77,11 @@ def write_smooth(path):
 
 def measured_mean_square(one, order):
     """Mean square of a derivative of a scan over its trusted wavelengths, as it stands."""
-    return one.waves.mean_square(order, *one.band.wavelengths)
+    waves, (low, high) = one.waves, (2 * np.pi / length for length in one.band.wavelengths[::-1])
+    inside = (waves.wavevector >= low) & (waves.wavevector <= high)
+    power = waves.count[inside] * waves.power[inside]
+    steps = np.prod([step / (2 * np.pi) for step in waves.steps])
+    return float(np.sum(power * waves.wavevector[inside] ** (2 * order)) * steps)
 
 
 def periodic_measurement(heights, side=SIDE, shortest=None):
