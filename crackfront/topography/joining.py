@@ -18,6 +18,7 @@ from crackfront.topography.levelling import Array
 
 _DRAWS = 400
 _SEED = np.random.SeedSequence(20240229, spawn_key=(0xD4A3,))
+_UNEVEN_SEED = np.random.SeedSequence(20240229, spawn_key=(0xD4A4,))
 
 _CONTINUED_BINS = 6
 """Points a decade of a continuation."""
@@ -297,7 +298,7 @@ def _draws(
     """Spectra by the states of the fit, continued by the model and by what is recorded."""
     finest = math.log(min(one.band.finest for one in scans))
     coarsest = math.log(min(one.band.coarsest for one in scans))
-    rng = np.random.default_rng(_SEED)
+    rng, apart = (np.random.default_rng(one) for one in (_SEED, _UNEVEN_SEED))
     choices = [_choices(one, density) for one, density in zip(scans, densities, strict=True)]
     drawn, recorded = [], []
     for state in rng.integers(len(fit.surface), size=_DRAWS):
@@ -307,7 +308,7 @@ def _draws(
             logarithm = logarithm + rng.standard_normal(item.value.size) / np.sqrt(item.modes)
             logarithm += one.measurement.missing * rng.uniform(0, 1)
             if one.unevenness:
-                logarithm += one.unevenness * rng.standard_normal()
+                logarithm += one.unevenness * apart.standard_normal()
             first = rng.integers(_FIRST_BINS)
             highest = 2 * np.pi / one.band.shortest.wavelength * 2 ** -rng.uniform(0, _BAND_OCTAVES)
             kept = (np.arange(item.value.size) >= first) & (item.wavevector <= highest)

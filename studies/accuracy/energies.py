@@ -198,9 +198,8 @@ def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     whole = kind.tile * N_POINT
     heights = gaussian_field(kind.truth, whole, kind.tile * SIDE, rng)
     if kind.shaped:
-        weak = 1e-9  # for both to conform to the surface
         shaped = kind.shaped(heights / heights.std())
-        asked, found = (rough_adhesion(weak * one, SIDE).e_el for one in (heights, shaped))
+        asked, found = (rough_adhesion(1e-9 * one, SIDE).e_el for one in (heights, shaped))
         heights = shaped * math.sqrt(asked / found)
     if kind.distortion in (_bow, _form, _holes):
         heights = heights[:N_POINT, :N_POINT]

@@ -22,9 +22,7 @@ from studies.accuracy.study import rms
 from studies.pages import markdown_table
 
 CUTOFF = 0.08
-N_POINT = 128
-N_ANGLE = 340
-N_SURFACE = 4
+N_POINT, N_ANGLE, N_SURFACE = 128, 340, 4
 STEPS = DEFAULT_STEP * 2.0 ** np.arange(5, -2, -1)
 
 

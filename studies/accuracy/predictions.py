@@ -22,7 +22,7 @@ from studies.accuracy.scans import scanned
 from studies.pages import markdown_table
 
 SCENE = Scales(radius=1e-3, work_of_adhesion=60e-3, contact_modulus=0.7e6 / 0.75)
-REALISATIONS, SEED, N_POINT = 3, 20240229, 128
+REALISATIONS, SEED, N_POINT = 5, 20240229, 128
 _PIXELS_PER_CUTOFF = 2.5
 
 

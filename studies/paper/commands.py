@@ -146,17 +146,14 @@ def gallery(output: Path, pictures: Path) -> None:
         else:
             save_picture(shown.draw(record), picture)
         data = read_attributes(known[name])
-        lines = [
+        parts = [
             f"## {shown.title}",
-            "",
             f"![{shown.title}](figures/{picture.name})",
-            "",
             f"Scale {data['scale']}, {float(data['cpu_seconds']):.0f} s of one core.",
-            "",
-            *checks_table(shown.checks(record)),
+            "\n".join(checks_table(shown.checks(record))),
         ]
         sources = f"studies.paper.{name.replace('-', '_')}"
-        keep_parts("paper", {name: "\n".join(lines)}, sources, data=data)
+        keep_parts("paper", {name: "\n\n".join(parts)}, sources, data=data)
         click.echo(f"figure: {picture}")
 
 

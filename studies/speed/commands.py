@@ -72,9 +72,8 @@ def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path, ke
             in_fresh_process(pairs.measured, problem.smallest(), seed, 1)
             rows.append(row := in_fresh_process(pairs.measured, problem, seed, repeats))
             click.echo(f"{row.label}: {row.ratio:.1f} times, error {row.error:.1e}")
-    title = "The solvers against the reference"
     parts = {"solvers": "\n\n".join(pairs.sections(rows, repeats))}
-    _write(output / "solvers", title, parts, rows, keep=keep)
+    _write(output / "solvers", "The solvers against the reference", parts, rows, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies speed needs"))

@@ -31,7 +31,7 @@ def measured_adhesion(measurement, scales):
     """Work of adhesion of the surface of a map whose waves are all trusted."""
     band = SimpleNamespace(stripes=())
     parts = {"measurement": measurement, "trusted_measurement": measurement, "band": band}
-    trusted = SimpleNamespace(**parts)
+    trusted = SimpleNamespace(**parts, unevenness=0.0)
     return surface_adhesion(scan_surface(trusted, scales))
 
 
