@@ -226,7 +226,7 @@ def test_the_command_writes_a_cycle_of_the_line(command):
     assert np.array_equal(found.position, expected.fronts)
     most, least = float(found.pinning_force.max()), float(found.pinning_force.min())
     told = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
-    assert result.stdout.splitlines()[-1] == told
+    assert result.stdout.splitlines()[-1].endswith(f"hysteresis 0.051 ± 0.025 (w_int); {told}")
     loop, fronts = (draw(found, axes=Figure().add_subplot()) for draw in (plot_loop, plot_fronts))
     np.testing.assert_array_equal(loop.get_lines()[0].get_xdata(), loads[:7])
     np.testing.assert_array_equal(fronts.get_lines()[0].get_xdata(), found.position[6])
