@@ -171,15 +171,7 @@ def scan(
         lower = [BandLimit("shortest", "named", shortest)]
     if longest is not None:
         upper = [BandLimit("longest", "named", longest)]
-    low = max(lower, key=lambda limit: limit.wavelength)
-    high = min(upper, key=lambda limit: limit.wavelength)
-    if high.wavelength < 2**_FEWEST_OCTAVES * low.wavelength:
-        short, long = (prefixed("m", limit.wavelength) for limit in (low, high))
-        raise ValueError(
-            f"{measurement.path}: of the waves only those above {short} ({low.cause}) and below "
-            f"{long} ({high.cause}) can be trusted, less than an octave; use a better scan, or "
-            "name --shortest and --longest"
-        )
+    low, high = _ends(measurement, lower, upper)
     drowned = instrument.noisy(seen, _DROWNED)
     least = max(cliff, drowned, measurement.shortest)
     informative, coarsest, last = low.wavelength, high.wavelength, max(behind, NYQUIST * pixel)
@@ -207,6 +199,22 @@ def scan(
         coarsest=coarsest,
     )
     return Scan(measurement, waves, density, alternatives, unevenness(measurement), band)
+
+
+def _ends(
+    measurement: Measurement, lower: Sequence[BandLimit], upper: Sequence[BandLimit]
+) -> tuple[BandLimit, BandLimit]:
+    """The limits that count, refused where less than an octave lies between them."""
+    low = max(lower, key=lambda limit: limit.wavelength)
+    high = min(upper, key=lambda limit: limit.wavelength)
+    if high.wavelength < 2**_FEWEST_OCTAVES * low.wavelength:
+        short, long = (prefixed("m", limit.wavelength) for limit in (low, high))
+        raise ValueError(
+            f"{measurement.path}: of the waves only those above {short} ({low.cause}) and below "
+            f"{long} ({high.cause}) can be trusted, less than an octave; use a better scan, or "
+            "name --shortest and --longest"
+        )
+    return low, high
 
 
 def _alternatives(
