@@ -124,6 +124,19 @@ def test_the_page_of_the_command_line_names_every_command_and_exit_code():
     )
 
 
+def test_the_page_of_the_command_line_names_every_environment_variable():
+    page = (DOCS / "command-line.md").read_text()
+    texts = (path.read_text() for path in (ROOT / "crackfront").rglob("*.py"))
+    named = {
+        name
+        for text in texts
+        if "os.environ" in text
+        for name in re.findall(r'"([A-Z]+_[A-Z_]+)"', text)
+    }
+    assert "XDG_CACHE_HOME" in named
+    assert {name for name in named if f"`{name}`" not in page} == set()
+
+
 def test_the_page_of_the_reference_names_the_whole_library():
     page = (DOCS / "reference-pages.md").read_text()
     functions = {name for name in __all__ if name.islower() and name[0] != "_"}
