@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
@@ -13,6 +14,11 @@ from sphinx.util.math import get_node_equation_number
 from sphinx.writers.html5 import HTML5Translator
 
 import crackfront
+from crackfront.core.geometry.line import LineState
+from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.variables import variables
+from crackfront.sweep.configuration import Configuration
+from crackfront.sweep.table import SweepRow
 
 project = "crackfront"
 author = "crackfront developers"
@@ -147,9 +153,63 @@ def _refuse_network(app: Sphinx, error: Exception | None) -> None:
             raise ExtensionError(f"{page} needs a network: {found[0]}")
 
 
+def _kind(schema: dict[str, Any]) -> str:
+    """What a value of a configuration may be, in words."""
+    if "anyOf" in schema:
+        return " or ".join(_kind(one) for one in schema["anyOf"] if one.get("type") != "null")
+    if "$ref" in schema:
+        return f"section {schema['$ref'].rpartition('/')[2].removesuffix('Section')}"
+    if "enum" in schema or "const" in schema:
+        return " or ".join(f"`{one}`" for one in schema.get("enum", [schema.get("const")]))
+    if schema.get("type") == "array":
+        items = [schema["items"]] if "items" in schema else schema.get("prefixItems", [{}])
+        return "list of " + ", ".join(_kind(one) for one in items)
+    signs = {"minimum": "at least", "exclusiveMinimum": "above"}
+    signs |= {"maximum": "at most", "exclusiveMaximum": "below"}
+    bounds = [f"{word} {schema[key]:g}" for key, word in signs.items() if key in schema]
+    names = {"number": "number", "integer": "whole number", "string": "text", "boolean": "switch"}
+    return " ".join([names.get(schema.get("type", ""), "as the reader takes it"), *bounds])
+
+
+def _write_references(app: Sphinx) -> None:
+    """Write the keys of configurations and the variables of files, as the code has them."""
+    schema = Configuration.model_json_schema()
+    lines = ["# Keys of a configuration", "", "For those who write one."]
+    sections = {"The file": schema} | schema["$defs"]
+    for name, one in sections.items():
+        lines += ["", f"## {name.removesuffix('Section')}", "", one["description"], ""]
+        lines += ["| key | value | default |", "|---|---|---|"]
+        for key, value in one["properties"].items():
+            default = "required" if key in one.get("required", ()) else f"`{value.get('default')}`"
+            lines.append(f"| `{key}` | {_kind(value)} | {default} |")
+    files = {
+        "A simulation in `hysteresis.nc`": SweepRow,
+        "A curve of a sphere": ContactState,
+        "A curve of a straight front": LineState,
+    }
+    tables = ["# Variables of files", "", "For those who read one.", ""]
+    tables += ["What is said of a file's origin stands in {py:mod}`crackfront.data.provenance`."]
+    for name, kind in files.items():
+        tables += [
+            "",
+            f"## {name}",
+            "",
+            "| variable | dimensions | unit | what |",
+            "|---|---|---|---|",
+        ]
+        for item in variables(kind):
+            dims = ", ".join(item.dims)
+            tables.append(f"| `{item.name}` | {dims} | {item.units} | {item.long_name} |")
+    folder = Path(app.srcdir) / "api"
+    folder.mkdir(exist_ok=True)
+    for name, text in {"configuration": lines, "variables": tables}.items():
+        (folder / f"{name}.md").write_text("\n".join(text) + "\n", encoding="utf-8")
+
+
 def setup(app: Sphinx) -> None:
     """Draw formulas, and leave out what is not ours before numpydoc reads what is."""
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_displaymath, None))
     app.connect("autodoc-skip-member", _is_foreign)
     app.connect("autodoc-process-docstring", _escape_magnitudes, priority=400)
+    app.connect("builder-inited", _write_references)
     app.connect("build-finished", _refuse_network)
