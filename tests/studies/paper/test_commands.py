@@ -36,7 +36,6 @@ def test_commands_compute_draw_check_and_keep_a_figure(tmp_path, monkeypatch):
     assert run("gallery", "--output", output).exit_code == 0
     kept = kept_parts()["paper"]["main-1d"]
     assert "![Main Fig. 1d" in kept.text
-    assert "figure" in kept.command
     assert Path("docs/experiments/figures/main-1d.png").stat().st_size > 1000
 
 
