@@ -5,6 +5,8 @@ from __future__ import annotations
 import difflib
 import re
 import reprlib
+from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
@@ -42,8 +44,8 @@ Energy = Annotated[float, Field(gt=0, lt=1), within(NUMBER)]
 _MOST_BYTES = 5e5
 """Size of a file; that of a person has some thousands."""
 
-_DEEPEST = 30
-"""Levels of lists and mappings within each other."""
+_MOST_VALUES = 200_000
+"""Values, those of repeated anchors included."""
 
 _MOST_SENTENCES = 20
 """Refusals of one file that are printed."""
@@ -141,13 +143,13 @@ def content_of(path: Path) -> dict[str, Any]:
     except ValueError as error:
         raise ConfigurationError(str(error)) from error
     try:
-        content = _frozen(yaml.load(text, Loader=_Loader))
+        content = _frozen(yaml.load(text, Loader=_Loader), count())
     except yaml.MarkedYAMLError as error:
         line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise ConfigurationError(f"{path} is no valid YAML{line}: {error.problem}") from error
     except RecursionError as error:
         raise ConfigurationError(
-            f"{path}: more than {_DEEPEST} lists and mappings are nested; write it flatter"
+            f"{path}: more than {_MOST_VALUES} values, or nested without end; write it shorter"
         ) from error
     except Exception as error:  # what constructors raise at dates and numbers that are none, too
         raise ConfigurationError(f"{path} is no valid YAML: {error}") from error
@@ -159,14 +161,14 @@ def content_of(path: Path) -> dict[str, Any]:
     return content
 
 
-def _frozen(value: Any, depth: int = 0) -> Any:
+def _frozen(value: Any, counted: Iterator[int]) -> Any:
     """A YAML value with tuples for lists and text for keys."""
-    if depth > _DEEPEST:
+    if next(counted) > _MOST_VALUES:
         raise RecursionError
     if isinstance(value, list):
-        return tuple(_frozen(item, depth + 1) for item in value)
+        return tuple(_frozen(item, counted) for item in value)
     if isinstance(value, dict):
-        return {str(key): _frozen(item, depth + 1) for key, item in value.items()}
+        return {str(key): _frozen(item, counted) for key, item in value.items()}
     return value
 
 

@@ -17,8 +17,7 @@ from crackfront.topography.fitting import Fit, fitted_model
 from crackfront.topography.levelling import Array
 
 _DRAWS = 400
-_SEED = np.random.SeedSequence(20240229, spawn_key=(0xD4A3,))
-_UNEVEN_SEED = np.random.SeedSequence(20240229, spawn_key=(0xD4A4,))
+_SEEDS = [np.random.SeedSequence(20240229, spawn_key=(key,)) for key in (0xD4A3, 0xD4A4)]
 
 _CONTINUED_BINS = 6
 """Points a decade of a continuation."""
@@ -298,7 +297,7 @@ def _draws(
     """Spectra by the states of the fit, continued by the model and by what is recorded."""
     finest = math.log(min(one.band.finest for one in scans))
     coarsest = math.log(min(one.band.coarsest for one in scans))
-    rng, apart = (np.random.default_rng(one) for one in (_SEED, _UNEVEN_SEED))
+    rng, apart = map(np.random.default_rng, _SEEDS)
     choices = [_choices(one, density) for one, density in zip(scans, densities, strict=True)]
     drawn, recorded = [], []
     for state in rng.integers(len(fit.surface), size=_DRAWS):
