@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Callable, Mapping
 from dataclasses import astuple, dataclass
 from pathlib import Path
@@ -201,6 +202,7 @@ def _write_samples(
     path: Path, scans: tuple[Path, ...], scales: Scales, options: Mapping[str, Any]
 ) -> list[str]:
     """Write a table with a row for each scan, and give the outcomes."""
+    from crackfront.data.files import write_text
     from crackfront.topography.measures import read_surface
     from crackfront.topography.prediction import judged
     from crackfront.topography.report import sample_row
@@ -216,10 +218,12 @@ def _write_samples(
             row = {"outcome": "refused", "remarks": str(error)}
         click.echo(f"{scan}: {row['outcome']}")
         rows.append({"scan": str(scan)} | row)
-    with path.open("w", encoding="utf-8", newline="") as file:
-        table = csv.DictWriter(file, dict.fromkeys(name for row in rows for name in row))
+        # After every scan, as each takes seconds: an interruption keeps what was read.
+        text = io.StringIO()
+        table = csv.DictWriter(text, dict.fromkeys(name for row in rows for name in row))
         table.writeheader()
         table.writerows(rows)
+        write_text(path, text.getvalue())
     click.echo(f"table: {path}")
     return [row["outcome"] for row in rows]
 

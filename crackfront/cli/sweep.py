@@ -127,8 +127,7 @@ def _plan_lines(
         hours, seconds = f"{cost.seconds / 3600:.3g}", f"{cost.seconds:.3g}"
         left.append((name, "-", "-", hours, seconds, f"{cost.memory / 1e6:.0f}", "-"))
     yield from table(
-        ("to run", "shards", "simulations", "core hours", "longest s", "MB a rank", "MB disk"),
-        left,
+        ("to run", "shards", "simulations", "core hours", "longest s", "MB a rank", "MB disk"), left
     )
     energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
     yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"

@@ -39,10 +39,7 @@ class UnreadableFileError(ValueError):
 
 
 def write_dataset(
-    path: Path,
-    dataset: xr.Dataset,
-    origin: Provenance,
-    fill: Callable[[Path], None] | None = None,
+    path: Path, dataset: xr.Dataset, origin: Provenance, fill: Callable[[Path], None] | None = None
 ) -> str:
     """Write a dataset as netCDF with its origin, atomically, and return its digest.
 

@@ -266,7 +266,7 @@ def test_a_process_elsewhere_runs_as_long_as_it_shows_signs_of_life(begun):
     note.end()
     [path] = (folder / "checkpoints").iterdir()
     path = path.rename(path.with_name("another-host-12-abcd.running"))
-    told = json.loads(run("status", folder, "--json").output)["processes"]
+    told = json.loads(run("status", folder, "--json").stdout)["processes"]
     assert [(one["host"], one["process"]) for one in told] == [("another-host", "12")]
     os.utime(path, (1e9, 1e9))
     assert last_line_of_status(folder).endswith("have ended; nothing runs")
@@ -410,19 +410,19 @@ def test_the_exit_codes_of_the_help_are_those_of_the_commands():
 
 def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path):
     output = ("--output", tmp_path, "--json")
-    before = json.loads(run("plan", TEST, *output).output)
+    before = json.loads(run("plan", TEST, *output).stdout)
     assert (before["simulations"], before["missing"], before["shards"]) == (8, 8, ["flat", "rough"])
     assert before["core_seconds"] > before["longest_seconds"] > 0
     for command in ("simulate", "aggregate"):
         assert run(command, TEST, *output[:2]).exit_code == 0
-    after = json.loads(run("plan", TEST, *output).output)
+    after = json.loads(run("plan", TEST, *output).stdout)
     assert (after["missing"], after["core_seconds"], len(after["late"])) == (0, 0, 4)
-    spectra = json.loads(run("status", tmp_path, "--json").output)["spectra"]
+    spectra = json.loads(run("status", tmp_path, "--json").stdout)["spectra"]
     assert [(one["name"], one["done"], one["waiting"]) for one in spectra] == [
         ("flat", 4, 0),
         ("rough", 4, 0),
     ]
-    told = json.loads(run("fit", TEST, *output).output)
+    told = json.loads(run("fit", TEST, *output).stdout)
     assert told == json.loads((tmp_path / "fit.json").read_text())
 
 

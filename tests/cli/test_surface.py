@@ -13,7 +13,7 @@ from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.core.variables import variables
 from crackfront.simulate.given import read_field, surface_adhesion
-from crackfront.topography.measures import measured_surface
+from crackfront.topography.measures import measured_surface, read_surface
 from crackfront.topography.prediction import Prediction, predicted
 from crackfront.topography.reading import read_measurements
 from tests.commands import refused, run
@@ -73,6 +73,19 @@ def test_a_batch_of_scans_is_a_table_with_a_row_for_each_sample(tmp_path):
     assert "--csv writes rows alone" in refused(*command, "--json", OVERVIEW)
 
 
+def test_an_interrupted_batch_of_scans_keeps_the_rows_of_those_before(tmp_path, monkeypatch):
+    def interrupted(paths, options):
+        if OVERVIEW in paths:
+            raise KeyboardInterrupt
+        return read_surface(paths, options)
+
+    monkeypatch.setattr("crackfront.topography.measures.read_surface", interrupted)
+    smooth, table = write_smooth(tmp_path / "smooth.al3d"), tmp_path / "samples.csv"
+    assert run("predict", *sphere(), "--csv", table, smooth, OVERVIEW).exit_code != 0
+    with table.open(encoding="utf-8", newline="") as file:
+        assert [row["scan"] for row in csv.DictReader(file)] == [str(smooth)]
+
+
 def test_channels_are_listed_without_the_options_that_a_prediction_needs():
     for command in ("predict", "surface"):
         listed = run(command, OVERVIEW, "--list-channels")
@@ -81,11 +94,11 @@ def test_channels_are_listed_without_the_options_that_a_prediction_needs():
 
 
 def test_a_negative_share_is_a_reservation_where_it_counts(predict):
-    content = json.loads(predict("--json", modulus="0.9MPa").output)
+    content = json.loads(predict("--json", modulus="0.9MPa").stdout)
     [told] = [text for text in content["verdict"]["reservations"] if "w_loc negative" in text]
     share = content["prediction"]["negative_share"]["value"]
     assert f"{share:.2%} of the surface" in told
-    weak = json.loads(predict("--json", modulus="0.1MPa").output)
+    weak = json.loads(predict("--json", modulus="0.1MPa").stdout)
     assert weak["prediction"]["negative_share"]["value"] < 0.05
     assert not any("w_loc" in text for text in weak["verdict"]["reservations"])
 
@@ -100,7 +113,7 @@ def test_each_outcome_has_its_exit_code(predict, tmp_path):
     ):
         strict = ["--strict"] * more.pop("strict", False)
         result = predict("--json", "--no-figure", *strict, **more)
-        content = json.loads(result.output)
+        content = json.loads(result.stdout)
         assert (result.exit_code, content["verdict"]["outcome"]) == (code, outcome)
         assert (content["prediction"] is None) == (code == 4)
     told = run("predict", "--help").output
@@ -148,7 +161,7 @@ def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
 
 def test_json_has_units_for_everything_that_is_predicted(predict, surface):
     prediction = predicted(surface, SCENE)
-    content = json.loads(predict("--json").output)
+    content = json.loads(predict("--json").stdout)
     assert set(content["prediction"]) == {item.name for item in variables(Prediction)}
     for item in variables(Prediction):
         found, entry = getattr(prediction, item.name), content["prediction"][item.name]
@@ -180,7 +193,7 @@ def test_simulations_find_what_is_predicted(predict):
         modulus="1.2MPa",
     )
     assert result.exit_code == 0, result.output
-    content = json.loads(result.output)
+    content = json.loads(result.stdout)
     found, law = content["simulation"], content["prediction"]
     assert found["realisations"] == 3
     assert found["remark"] == ""
@@ -198,7 +211,7 @@ def test_simulations_find_what_is_predicted(predict):
 def test_a_single_simulation_has_no_interval(predict):
     more = ("--simulate", "--realisations", "1")
     options = {"scans": (OVERVIEW,), "radius": "0.5mm", "modulus": "1.2MPa"}
-    content = json.loads(predict(*more, "--json", **options).output)
+    content = json.loads(predict(*more, "--json", **options).stdout)
     assert content["simulation"]["w_appr"]["low"] is None
     text = predict(*more, **options).output
     assert "simulating 1 surface(s), about" in text
@@ -235,7 +248,7 @@ def test_a_surface_alone_has_no_energy_and_with_a_sphere_it_has(surface):
     assert alone.exit_code == 0, alone.output
     assert "e_el  " not in alone.output
     assert "e_el  " in run("surface", DETAIL, OVERVIEW, *sphere()).output
-    content = json.loads(run("surface", DETAIL, OVERVIEW, *sphere(), "--json").output)
+    content = json.loads(run("surface", DETAIL, OVERVIEW, *sphere(), "--json").stdout)
     energy = surface.conformity_energy(SCENE.contact_modulus)
     assert content["e_el"]["value"] == pytest.approx(energy.value)
     assert content["prediction"] is None
