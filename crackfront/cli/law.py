@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from crackfront.core.adhesion import FieldKind
     from crackfront.core.spectrum import SelfAffineSpectrum
 
-_FRONT, _SPHERE = ("--w-rms", "--g"), ("--spectrum", "--elastic-energy", "--contact-radius")
+_FRONT, _SPHERE = "--w-rms and --g", "--spectrum, --elastic-energy and --contact-radius"
 _ERRORS = ("statistical", "numerical", "model")
 
 
@@ -66,8 +66,7 @@ def law(
     front, sphere = (w_rms, g), (spectrum, elastic_energy, contact_radius)
     if any(item is not None for item in front) and any(item is not None for item in sphere):
         raise ValueError(
-            f"options of a front ({_named(_FRONT)}) and of a sphere ({_named(_SPHERE)}) are mixed; "
-            "name those of one"
+            f"options of a front ({_FRONT}) and a sphere ({_SPHERE}) are mixed; name those of one"
         )
     if w_rms is not None and g is not None:
         found = pinning_factor(w_rms, g, field)
@@ -80,9 +79,7 @@ def law(
         place |= {"larkin_length": known.larkin_length, "g": known.size}
         entries = _entries(known.both, known.approach, known.retraction, place, known.warning)
     else:
-        raise ValueError(
-            f"the options are incomplete; name {_named(_FRONT)}, or else {_named(_SPHERE)}"
-        )
+        raise ValueError(f"the options are incomplete; name {_FRONT}, or else {_SPHERE}")
     entries |= {"measured": {"w_rms": shipped_law().disorder, "g": shipped_law().size}}
     echo_answer(entries, _lines(entries), as_json=as_json)
 
@@ -145,8 +142,3 @@ def _shape(text: str) -> SelfAffineSpectrum:
     for length in (short_cutoff, roll_off):
         refuse_outside("--spectrum: a wavelength", length, LENGTH)
     return SelfAffineSpectrum(short_cutoff, roll_off, hurst)
-
-
-def _named(options: tuple[str, ...]) -> str:
-    """Options in a sentence."""
-    return f"{', '.join(options[:-1])} and {options[-1]}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import sys
 import time
 from collections import Counter
@@ -9,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import astuple
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 from typing import TYPE_CHECKING
 
 import click
@@ -211,6 +213,7 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
     default=60.0,
     help="Seconds between checkpoints of a running simulation.",
 )
+@click.option("--found", type=FILE, hidden=True, help="What is missing, as the launcher found it.")
 def simulate(
     configuration: Path,
     output: Path | None,
@@ -219,6 +222,7 @@ def simulate(
     ranks: int,
     launcher: str | None,
     checkpoint: float,
+    found: Path | None,
 ) -> None:
     """Run the simulations of a sweep that are not stored yet.
 
@@ -239,10 +243,20 @@ def simulate(
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
     chosen = range(sweep.n_realisation) if realisations is None else realisations
     shards = [sweep.named_shard(item, chosen) for item in items]
-    total = len(shards) * len(sweep.elastic_energies) * len(chosen)
-    inventory = store.inventory(one for item in items for one in sweep.simulations(item, chosen))
-    if inventory.missing and not parallel.under_mpi():
-        busy, costs = min(ranks, len(inventory.missing)), _costs(inventory.missing)
+    if found is None:
+        inventory = store.inventory(
+            one for item in items for one in sweep.simulations(item, chosen)
+        )
+        missing, n_stored = inventory.missing, sum(inventory.arithmetic.values())
+        stored = f"{n_stored} of {n_stored + len(missing)} simulations are stored"
+        click.echo(f"{configuration}: {stored}")
+        for sentence in inventory.unreadable:
+            click.echo(f"Warning: {sentence}; it is computed anew", err=True)
+        click.echo(inventory.stale_sentence(), nl=bool(inventory.stale))
+    else:
+        missing = pickle.loads(found.read_bytes())
+    if missing and not parallel.under_mpi():
+        busy, costs = min(ranks, len(missing)), _costs(missing)
         refuse_beyond_memory(
             f"{busy} rank(s) of {in_bytes(costs['bytes_a_rank'])}",
             costs["bytes_a_rank"] * (busy if launcher is None else 1),
@@ -256,16 +270,10 @@ def simulate(
             arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
             arguments += [] if spectrum is None else ["--spectrum", spectrum]
             arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
-            _launch(arguments, busy, launcher, store.folder)
+            _launch(arguments, pickle.dumps(missing), busy, launcher, store.checkpoints)
             return
-    stored = total - len(inventory.missing)
-    click.echo(f"{configuration}: {stored} of {total} simulations are stored")
-    for sentence in inventory.unreadable:
-        click.echo(f"Warning: {sentence}; it is computed anew", err=True)
-    if sentence := inventory.stale_sentence():
-        click.echo(sentence)
     try:
-        fill_store(store, inventory.missing, origin, checkpoint)
+        fill_store(store, missing, origin, checkpoint)
     except KeyboardInterrupt as stop:
         # A second Ctrl-C, which ends the process at once, has no sentence.
         if not (str(stop) and parallel.launcher_knows_of_stop()):
@@ -277,12 +285,17 @@ def simulate(
     click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
 
 
-def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path) -> None:
-    """Run a command on ranks, and end where they failed."""
+def _launch(
+    arguments: list[str], missing: bytes, ranks: int, launcher: str | None, folder: Path
+) -> None:
+    """Run a command on ranks, which read what is missing, and end where they failed."""
     from crackfront.sweep import parallel
 
     folder.mkdir(parents=True, exist_ok=True)
-    code = parallel.launch_ranks(arguments, ranks, launcher, folder)
+    with NamedTemporaryFile(prefix=".", suffix=".part", dir=folder) as found:
+        Path(found.name).write_bytes(missing)
+        arguments += ["--found", found.name]
+        code = parallel.launch_ranks(arguments, ranks, launcher, folder)
     if code is None or code == StoppedError.exit_code:
         sys.exit(StoppedError.exit_code)  # the manager has printed its sentence
     if code != 0:

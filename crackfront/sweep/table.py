@@ -6,7 +6,7 @@ import functools
 import json
 import math
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import asdict, fields
 from itertools import islice
 from operator import attrgetter
@@ -33,7 +33,7 @@ from crackfront.analysis.table import (
 )
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.outcome import Status
-from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
+from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.variables import ADHESION, variables
 from crackfront.data.files import UnreadableFileError, read_dataset
 from crackfront.data.fingerprint import fingerprint
@@ -170,6 +170,8 @@ def _axes(sweep: Sweep) -> SweepAxes:
     spectra = [item.spectrum for item in sweep.spectra]
     energies = np.array(sweep.elastic_energies)
     firsts = [sweep.firsts(item) for item in sweep.spectra]
+    stated = all(isinstance(one, SelfAffineSpectrum) for one in spectra)
+    texts = [json.dumps(one.parameters, default=np.ndarray.tolist) for one in spectra]
 
     def each(name: str) -> NDArray[Any]:
         return np.array([[attrgetter(name)(one) for one in row] for row in firsts])
@@ -189,15 +191,8 @@ def _axes(sweep: Sweep) -> SweepAxes:
         amplitude=energies,
         w_rms_requested=2 * np.sqrt(energies),
         realisation=np.arange(sweep.n_realisation),
-        parameters=_parameters(spectra),
+        parameters=None if stated else np.array(texts),
     )
-
-
-def _parameters(spectra: Sequence[Spectrum]) -> NDArray[np.str_] | None:
-    """Texts that state the shapes of spectra; None where their columns do."""
-    if all(isinstance(one, SelfAffineSpectrum) for one in spectra):
-        return None
-    return np.array([json.dumps(item.parameters, default=np.ndarray.tolist) for item in spectra])
 
 
 def _attributes(sweep: Sweep) -> dict[str, str | float]:

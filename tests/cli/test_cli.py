@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import pickle
 import re
 import shlex
 import shutil
@@ -29,6 +30,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.files import write_text
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, Note, new_pack
+from crackfront.sweep.store import Store
 from crackfront.sweep.table import failed_row, row_fingerprint
 from tests.commands import curves, refused, run
 
@@ -288,6 +290,16 @@ def test_a_block_of_realisations_can_be_run_alone(tmp_path):
     assert run("simulate", TEST, *options).exit_code == 0
     assert {"-r1-" in name for name in curves(tmp_path)} == {True}
     assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.1-1.json"]
+
+
+def test_what_a_launcher_found_missing_is_not_looked_for_again(tmp_path, monkeypatch):
+    sweep = load_configuration(TEST)
+    found = tmp_path / "found"
+    found.write_bytes(pickle.dumps((one := next(sweep.simulations()),)))
+    monkeypatch.setattr(Store, "inventory", None)
+    options = ("--output", tmp_path, "--found", found)
+    assert run("simulate", TEST, *options).exit_code == 0
+    assert [Path(name).stem for name in curves(tmp_path)] == [one.stem]
 
 
 @pytest.mark.parametrize("block", ["1", "1-", "2-1", "a-b", "0-9"])

@@ -210,7 +210,7 @@ def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_pat
     assert 3 <= kept < N_SIMULATION
     # A simulation that has not come to its first state, or just ends, leaves none.
     assert len(list((tmp_path / "checkpoints").iterdir())) <= ranks
-    assert not list(tmp_path.glob(".stop-*"))
+    assert not list(tmp_path.rglob(".stop-*"))
     assert rerun(configuration, tmp_path) == N_SIMULATION - kept
     assert not any((tmp_path / "checkpoints").iterdir())
     assert same(tmp_path)
