@@ -52,11 +52,11 @@ def main() -> None:
 @main.command(epilog=examples("python -m studies pages", "python -m studies pages --check"))
 @click.option("--check", is_flag=True, help="Write nothing; say which numbers are of before.")
 def pages(check: bool) -> None:
-    """Write what studies have kept into README.md and docs."""
+    """Write what studies have kept into README.md, paper.md and docs."""
     from studies.pages import kept_parts, renewed, stale
 
     parts = kept_parts()
-    for path in (Path("README.md"), *sorted(Path("docs").rglob("*.md"))):
+    for path in (Path("README.md"), Path("paper.md"), *sorted(Path("docs").rglob("*.md"))):
         text = path.read_text(encoding="utf-8")
         if (new := renewed(text, parts)) == text:
             continue

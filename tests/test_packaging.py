@@ -142,13 +142,31 @@ def test_the_catalogue_of_workflows_finds_what_it_asks_for():
     assert (ROOT / "config/README.md").is_file()
 
 
-def test_the_paper_cites_what_its_bibliography_has():
+def test_the_paper_has_the_sections_of_its_journal_and_cites_all_of_its_bibliography():
     text, references = ((ROOT / name).read_text() for name in ("paper.md", "paper.bib"))
-    known = re.findall(r"^@\w+\{(\w+),", references, re.MULTILINE)
-    assert set(re.findall(r"@(\w+)", text)) == set(known)
-    assert len(set(known)) == len(known)
-    # Two pages.
-    assert 600 < len(text.split("---", 2)[2].split()) < 1200
+    entries = re.split(r"^@\w+\{", references, flags=re.MULTILINE)[1:]
+    known = [entry.split(",")[0] for entry in entries]
+    assert sorted(known) == sorted(set(re.findall(r"@(\w+)", text)))
+    assert all(re.search(r"^  (doi|url) +=", entry, re.MULTILINE) for entry in entries)
+    assert re.findall(r"^# (.*)", text, re.MULTILINE) == [
+        "Summary",
+        "Statement of need",
+        "State of the field",
+        "Software design",
+        "Research impact statement",
+        "AI usage disclosure",
+        "Acknowledgements",
+        "References",
+    ]
+    assert 750 <= len(text.split("---", 2)[2].split()) <= 1750
+
+
+def test_the_numbers_of_the_paper_stand_on_the_pages():
+    pages = " ".join(path.read_text() for path in [ROOT / "README.md", *ROOT.glob("docs/**/*.md")])
+    body = re.sub(r"@\w+", "", (ROOT / "paper.md").read_text().split("---", 2)[2])
+    found, known = (set(re.findall(r"(?<![\w.])\d[\d.e-]*\d", text)) for text in (body, pages))
+    assert len(found) > 40
+    assert found <= known
 
 
 def test_the_job_script_is_one_that_bash_can_read():
