@@ -1,19 +1,22 @@
 """The package: its version from git or without, its wheel, and what cites it."""
 
+import json
 import re
 import subprocess
 import sys
+import sysconfig
 import tarfile
 import tomllib
 import zipfile
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from packaging.version import Version
 
-from crackfront import __version__
+from crackfront import __version__, pinning_factor
 
 ROOT = Path(__file__).parents[1]
 
@@ -55,13 +58,14 @@ def archive(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def wheel(archive, tmp_path_factory):
-    """Wheel that is built from the tarball with the tools that are installed."""
-    folder = tmp_path_factory.mktemp("wheel")
-    pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet")
-    told(*pip, "--no-deps", "--no-build-isolation", "--no-index", "-w", folder, archive)
-    [path] = folder.iterdir()
-    return path
+def built(tmp_path_factory):
+    """Archive and wheel of a release: of a tagged clone, by the tools that are installed."""
+    clone, dist = (tmp_path_factory.mktemp("built") / name for name in ("clone", "dist"))
+    told("git", "clone", "-q", "--depth", "1", "--no-tags", f"file://{ROOT}", clone)
+    told("git", "-C", clone, "tag", "v7.1.0")
+    # The wheel is built from the archive.
+    told(sys.executable, "-m", "build", "--no-isolation", "--outdir", dist, clone)
+    return dist / "crackfront-7.1.0.tar.gz", dist / "crackfront-7.1.0-py3-none-any.whl"
 
 
 def test_a_clone_without_tags_has_the_coming_version_and_names_its_commit(tmp_path):
@@ -70,12 +74,6 @@ def test_a_clone_without_tags_has_the_coming_version_and_names_its_commit(tmp_pa
     found = scm_version(tmp_path / "clone")
     assert found.startswith(COMING.replace("dev0", "dev"))
     assert f"+g{commit}" in found
-
-
-def test_a_tagged_commit_has_the_version_of_its_tag(tmp_path):
-    told("git", "clone", "-q", "--depth", "1", "--no-tags", f"file://{ROOT}", tmp_path / "clone")
-    told("git", "-C", tmp_path / "clone", "tag", "v7.1.0")
-    assert scm_version(tmp_path / "clone") == "7.1.0"
 
 
 def test_sources_without_git_have_the_coming_version_and_a_tarball_names_its_commit(
@@ -96,27 +94,28 @@ def test_the_changelog_begins_with_the_coming_version_and_the_citation_has_the_l
     assert released == next(section for section in sections if section[1])
 
 
-def test_the_wheel_holds_the_laws_and_the_types_and_neither_tests_nor_studies(wheel):
-    names = zipfile.ZipFile(wheel).namelist()
-    modules = {str(path.relative_to(ROOT)) for path in (ROOT / "crackfront").rglob("*.py")}
+def test_the_archive_holds_all_that_is_committed_and_the_wheel_the_package_alone(built):
     committed = set(told("git", "-C", ROOT, "ls-tree", "-r", "--name-only", "HEAD").splitlines())
-    assert (modules & committed) <= set(names)
-    assert {"crackfront/simulate/laws.csv", "crackfront/simulate/costs.csv"} <= set(names)
+    with tarfile.open(built[0]) as sources:
+        assert committed <= {name.partition("/")[2] for name in sources.getnames()}
+    names = {name for name in zipfile.ZipFile(built[1]).namelist() if ".dist-info/" not in name}
     assert "crackfront/analysis/law.json" in names
-    assert "crackfront/py.typed" in names
-    others = {name.split("/")[0] for name in names} - {"crackfront"}
-    assert len(others) == 1
-    assert others.pop().endswith(".dist-info")
+    assert names == {name for name in committed if name.startswith("crackfront/")}
 
 
-def test_the_wheel_imports_in_an_empty_environment(wheel, tmp_path):
-    told(sys.executable, "-m", "venv", "--without-pip", tmp_path / "empty")
-    python = tmp_path / "empty/bin/python"
-    pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "--python", python)
-    told(*pip, "install", "--quiet", "--no-deps", "--no-index", wheel)
-    code = "import crackfront; print(crackfront.__version__)"
-    assert told(python, "-c", code, cwd=tmp_path) == wheel.name.split("-")[1].replace("_", "+")
-    assert (tmp_path / "empty/bin/crackfront").is_file()
+def test_the_wheel_runs_in_an_empty_environment(built, tmp_path):
+    empty = tmp_path / "empty"
+    told(sys.executable, "-m", "venv", "--without-pip", empty)
+    pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "--python", empty)
+    told(*pip, "install", "--quiet", "--no-deps", "--no-index", built[1])
+    # The packages that it needs are those of the tests.
+    [site] = empty.glob("lib/python*/site-packages")
+    (site / "needed.pth").write_text(sysconfig.get_path("purelib"))
+    told(*pip, "check")
+    command = (empty / "bin/python", "-I", empty / "bin/crackfront")
+    assert told(*command, "--version").endswith(" 7.1.0")
+    found = json.loads(told(*command, "law", "--w-rms", "0.4", "--g", "inf", "--json"))
+    assert found["k"] == pinning_factor(0.4, np.inf).factor.value
 
 
 def test_the_version_is_that_of_the_installed_package():
