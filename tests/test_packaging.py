@@ -130,6 +130,17 @@ def test_the_citation_names_the_paper_and_the_licence():
     assert "stickier" in paper["title"]
 
 
+def test_the_recipe_has_the_version_and_needs_of_the_package():
+    recipe = yaml.safe_load((ROOT / "recipe/recipe.yaml").read_text())
+    assert recipe["context"]["version"] == CITATION["version"]
+    assert PROJECT["project"]["requires-python"] == f">={recipe['context']['python_min']}"
+    texts = (PROJECT["project"]["dependencies"], PROJECT["build-system"]["requires"])
+    run, host = ([one.lower().replace(">=", " >=") for one in listed] for listed in texts)
+    found = [one.replace("matplotlib-base", "matplotlib") for one in recipe["requirements"]["run"]]
+    assert found == ["python >=${{ python_min }}", *run]
+    assert recipe["requirements"]["host"] == ["python ${{ python_min }}.*", "pip", *host]
+
+
 def test_the_catalogue_of_workflows_finds_what_it_asks_for():
     usage = yaml.safe_load((ROOT / ".snakemake-workflow-catalog.yml").read_text())["usage"]
     assert set(usage) == {"mandatory-flags", "software-stack-deployment"}
