@@ -13,7 +13,7 @@ from crackfront.data.files import write_text
 
 STUDIES = {
     "paper": "Figures of the paper: compute their data, draw them, compare them with the paper.",
-    "law": "The law of k: measure it on straight fronts, fit it, hold spheres against it.",
+    "law": "The law of k: measure it on straight fronts, fit it, compare spheres with it.",
     "accuracy": "Errors of the numerics, the fit of their laws, and what the errors rest on.",
     "boundary-elements": "The model against boundary elements of the same rough sphere.",
     "speed": "Solvers against the reference, what requests cost, how sweeps scale.",
@@ -46,11 +46,11 @@ class _Studies(Commands):
 
 @click.group(cls=_Studies, context_settings={"help_option_names": ["-h", "--help"]})
 def main() -> None:
-    """What was measured with crackfront; its numbers and figures stand in the pages."""
+    """Measure the numbers and figures of the pages anew."""
 
 
 @main.command(epilog=examples("python -m studies pages", "python -m studies pages --check"))
-@click.option("--check", is_flag=True, help="Write nothing; say which numbers are of before.")
+@click.option("--check", is_flag=True, help="Write nothing; list numbers of older sources.")
 def pages(check: bool) -> None:
     """Write what studies have kept into README.md, paper.md and docs."""
     from studies.pages import kept_parts, renewed, stale

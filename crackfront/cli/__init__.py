@@ -71,8 +71,8 @@ def _sentence(error: OSError | ValueError) -> str:
 def compile_solvers() -> None:
     """Compile the solver of sweeps, so that no run waits for it.
 
-    What runs call is compiled once for these sources and this kind of processor, for spheres and
-    for straight fronts in a process each; what the cache holds already is only loaded.
+    Compiled code is kept for these sources and this kind of processor; what is kept already is
+    only loaded. Spheres and straight fronts are compiled in a process each.
     """
     import multiprocessing
 

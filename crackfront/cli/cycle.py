@@ -138,8 +138,8 @@ def cycle(
     attribute units is w_int are relative to it.
 
     With --spring the front is straight, along y, one site for every y of the tile. Springs pull it
-    along x, their other end at the loads; lengths are those of the tile, and the springs do not
-    pull where the front feels the mean of the tile.
+    along x, their other end at the loads; lengths are those of the tile. On a tile without
+    roughness the front rests at the load.
 
     The exit code is 0 where the cycle came to its end (on a sphere without --loads, by losing
     contact) and 1 where it ended early; the output is written in both cases. It is 2 where the

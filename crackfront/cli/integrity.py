@@ -57,7 +57,7 @@ def verify(place: Path, as_json: bool) -> None:
     "--output", type=FILE, help="Folder of the results of configurations.  [default: their own]"
 )
 def repair(places: tuple[Path, ...], output: Path | None) -> None:
-    """Set aside what is damaged, so that the workflow makes it and what is made of it anew.
+    """Set damaged files aside, so that the workflow makes them and what depends on them anew.
 
     A PLACE is a configuration of a sweep, or a folder of results. Lists of shards that lack
     simulations are removed, and files that are dated in the future get the date of now. `make`
@@ -95,8 +95,8 @@ def repair(places: tuple[Path, ...], output: Path | None) -> None:
 def compare(one: Path, other: Path, tolerance: float, as_json: bool) -> None:
     """Compare two files of results, or two folders of them, in values and in bits.
 
-    The numbers are largest differences relative to the largest magnitude, a variable each. What a
-    run cost and where it comes from is left out. The exit code is 1 where the results do not agree.
+    The numbers are largest differences relative to the largest magnitude, a variable each. Costs
+    and origin of a run are left out. The exit code is 1 where the results do not agree.
     """
     from crackfront.data.comparison import comparison
 

@@ -56,9 +56,9 @@ def law(
 ) -> None:
     """Print the factor k by the law that was measured on straight fronts.
 
-    Either of a straight front on springs (--w-rms, --g), or of a sphere (--spectrum,
-    --elastic-energy, --contact-radius), whose edge is held as such a front is. Works of adhesion
-    are then w_int - e_el -+ k e_el.
+    Give --w-rms and --g for a straight front on springs, or --spectrum, --elastic-energy and
+    --contact-radius for a sphere, whose edge is held as such a front is. Works of adhesion are
+    w_int - e_el -+ k e_el.
     """
     from crackfront.analysis.law import pinning_factor, shipped_law
     from crackfront.analysis.law_spheres import sphere_factors

@@ -46,7 +46,7 @@ def aggregate(configuration: Path, output: Path | None) -> None:
 @output_option
 @as_json
 def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
-    """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print how the last begins."""
+    """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the result."""
     from crackfront.analysis.report import fit_result
     from crackfront.sweep.fit_files import write_fit
     from crackfront.sweep.library import opened
@@ -132,7 +132,7 @@ def summary(configuration: Path, output: Path | None) -> None:
 )
 @click.argument("folder", type=FILE)
 @click.option("--output", type=FILE, help="The archive.  [default: <folder>.zip]")
-@click.option("--no-curves", is_flag=True, help="Without the files of the single simulations.")
+@click.option("--no-curves", is_flag=True, help="Leave out the curves of single simulations.")
 def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
     """Pack the results of a sweep into a ZIP file with checksums, SHA256SUMS."""
     from crackfront.sweep.store import Store

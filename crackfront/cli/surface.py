@@ -111,7 +111,7 @@ def _scans(command: Command) -> Command:
 @_options_of(PredictionOptions)
 @as_json
 @click.option(
-    "--simulate", is_flag=True, help="Run the simulations that the prediction stands for."
+    "--simulate", is_flag=True, help="Simulate surfaces of the measured spectrum as well."
 )
 @click.option(
     "--realisations",
@@ -119,19 +119,19 @@ def _scans(command: Command) -> Command:
     default=3,
     help="Synthesised surfaces that --simulate runs.",
 )
-@click.option("--seed", type=whole(SEED), default=0, help="Seed of their noise.")
+@click.option("--seed", type=whole(SEED), default=0, help="Seed of these surfaces.")
 @click.option(
     "--figure",
     type=FILE,
     help="Figure: talk.svg, or without suffix PDF and PNG.  [default: results/predict/<scan>]",
 )
 @click.option("--panel", type=click.Choice("abcd"), help="Draw one panel of the figure alone.")
-@click.option("--no-figure", is_flag=True, help="Draw none: most of the time goes into it.")
+@click.option("--no-figure", is_flag=True, help="Draw no figure, which saves most of the time.")
 @click.option(
-    "--csv", "table", type=FILE, help="Take each scan for a sample, and write a row for each."
+    "--csv", "table", type=FILE, help="Treat each scan as a sample, and write a row for each."
 )
 @click.option("--long", "is_long", is_flag=True, help="Print all that is known, not one page.")
-@click.option("--strict", is_flag=True, help="Let reservations fail as well.")
+@click.option("--strict", is_flag=True, help="Exit with 3 where there are reservations.")
 @click.pass_context
 def predict(
     context: click.Context,
@@ -152,12 +152,12 @@ def predict(
     """Predict how strongly a soft sphere sticks to a measured surface, from the fitted law.
 
     SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
-    the surface or several. w = w_int - e_el -+ k e_el with k by the law of straight fronts
-    (crackfront law).
+    the surface or several. Works of adhesion are w_int - e_el -+ k e_el, with k by the law of
+    `crackfront law`.
 
     Exit code 0: a prediction, with reservations where there are any (3 with --strict). 4: the
-    theory does not apply; nothing is predicted, and it is said what modulus, radius or roughness
-    would do. With --csv the largest of all samples, and 4 for a scan that cannot be used.
+    theory does not apply; nothing is predicted, and the output says which modulus, radius or
+    roughness would meet it. With --csv the largest of all samples; an unusable scan counts as 4.
     """
     from crackfront.topography.prediction import judged
     from crackfront.topography.report import machine_readable, prediction_page, report_text
@@ -255,12 +255,12 @@ def _simulated(
 @_options_of(ReadingOptions)
 @_options_of(SphereOptions)
 @as_json
-@click.option("--field", type=FILE, help="Write the very map as a field for crackfront cycle.")
+@click.option("--field", type=FILE, help="Write the map as a field for crackfront cycle.")
 def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **options: Any) -> None:
     """Analyse one measurement of a surface or several: spectrum, rms measures, their scales.
 
-    SCANS are files of instruments in any format that SurfaceTopography reads. With the sphere,
-    e_el and w_rms too.
+    SCANS are files of instruments in any format that SurfaceTopography reads. Options of
+    the sphere add e_el and w_rms.
     """
     from crackfront.topography.report import machine_readable, report_text
 

@@ -55,10 +55,10 @@ output_option = click.option(
 )
 @configuration_argument
 @output_option
-@click.option("--block", type=whole(COUNT), help="Realisations of a shard.  [default: all]")
+@click.option("--block", type=whole(COUNT), help="Realisations of a shard (a job).  [default: all]")
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
-    """Print the shards of a sweep, their sizes, what is stored of them and what the rest costs."""
+    """Print what a sweep would run, shard by shard, what is stored and what the rest costs."""
     from crackfront.sweep.expectation import doubts, expectation
     from crackfront.sweep.library import opened
     from crackfront.sweep.needs import late_needs
@@ -352,7 +352,7 @@ def status(folder: Path, as_json: bool) -> None:
     """Show how far the sweep in a folder is, and which processes run it, here or elsewhere.
 
     A process on this machine counts as long as it lives, one on another machine as long as
-    it shows signs of life.
+    it renews its file in the folder.
     """
     from crackfront.data.files import refuse_damaged
     from crackfront.sweep.configuration import load_configuration

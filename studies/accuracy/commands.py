@@ -92,7 +92,7 @@ def report(output: Path, keep: bool) -> None:
 @commands.command(epilog=examples("python -m studies accuracy predictions"))
 @keep_option
 def predictions(keep: bool) -> None:
-    """Hold predictions from scans against simulations of the surfaces; print a table."""
+    """Compare predictions from scans with simulations of the surfaces; print a table."""
     tell(
         "accuracy",
         {"Predictions": films.comparison_table(films.comparisons())},
@@ -107,7 +107,7 @@ def predictions(keep: bool) -> None:
 )
 @keep_option
 def energies(scans: int, keep: bool) -> None:
-    """Hold e_el of synthetic scans against that of their spectra; print a table."""
+    """Compare e_el of synthetic scans with that of their spectra; print a table."""
     tell(
         "accuracy",
         {"Scans": synthetic.energy_table(synthetic.found_scans(scans))},

@@ -33,7 +33,7 @@ _FRONTS = "config/line.yaml config/line-weak.yaml"
 
 @click.group()
 def commands() -> None:
-    """The law of k: measure it on straight fronts, fit it, hold spheres against it."""
+    """The law of k: measure it on straight fronts, fit it, compare spheres with it."""
 
 
 _configurations = click.argument("configurations", nargs=-1, type=FILE)
@@ -88,7 +88,7 @@ def fit(configurations: tuple[Path, ...], output: Path) -> None:
 @_tables
 @_output
 def spheres(configurations: tuple[Path, ...], tables: tuple[Path, ...], output: Path) -> None:
-    """Hold spheres against the law: of sweeps that have been run, or of tables.
+    """Compare spheres with the law: of sweeps that have been run, or of tables.
 
     Of sweeps it writes spheres.csv, which is kept as docs/reference/spheres.csv.
     """
@@ -101,7 +101,7 @@ def spheres(configurations: tuple[Path, ...], tables: tuple[Path, ...], output: 
 @commands.command("held-out", epilog=examples("python -m studies law held-out"))
 @_output
 def held_out(output: Path) -> None:
-    """Simulate spheres that had no part in any fit, and hold them against the law.
+    """Simulate spheres that had no part in any fit, and compare them with the law.
 
     Writes held-out.csv, with the spheres of docs/reference/si-5.nc, which is kept in
     docs/reference.

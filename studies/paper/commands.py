@@ -130,9 +130,9 @@ def check_figures(output: Path, as_json: bool) -> None:
 @_output
 @click.option("--pictures", type=FILE, default=_PICTURES, show_default=True, help="Their folder.")
 def gallery(output: Path, pictures: Path) -> None:
-    """Keep all figures and their checks for the pages; of each the paper's scale if it is there.
+    """Keep all figures and their checks for the pages.
 
-    An animation is that of the results.
+    Of each figure the paper's scale is kept if it is there; an animation is that of the results.
     """
     known = {path.stem: path for scale in SCALES for path in _data_of_figures(output / scale)}
     if not known:
