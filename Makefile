@@ -26,6 +26,8 @@ ifeq ($(filter wheel system,$(MPI)),)
 $(error MPI=$(MPI) is unknown; use MPI=wheel or MPI=system)
 endif
 
+# Without its cache of bytecode Python compiles all packages at every start.
+unexport PYTHONDONTWRITEBYTECODE
 export PYTHONNOUSERSITE := 1
 
 RESULTS  = results/$(basename $(notdir $(SWEEP)))/
