@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -18,59 +18,49 @@ _MOST_UNMEASURED = 0.1
 _MOST_UNSURE = 0.5
 """How far the interval of e_el may reach above it before another scan is asked for, relative."""
 
-_DEEP = -1.0
-"""Skewness below which valleys are narrow."""
-
 _EDGE, _MATTERS = 0.05, 0.1
 """Distance of a Hurst exponent from 0 and 1, and continued part of e_el, that make it a doubt."""
 
 
-def surface_notes(surface: MeasuredSurface, contact_radius: float | None = None) -> Iterator[str]:
-    """Treatments of the measurements, against the radius of a contact (Units: m)."""
-    for one in surface.scans:
-        yield from scan_notes(one, contact_radius)
-
-
-def scan_notes(one: Scan, contact_radius: float | None = None) -> Iterator[str]:
-    """Treatments of a measurement, as of :func:`surface_notes`."""
-    item = one.measurement
-    if item.missing > 0:
-        yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
-    if item.is_line:
-        yield (
-            f"{item.path} is a line scan: its density is that of an isotropic surface with "
-            "this projection."
-        )
-    elif max(item.pixels) > 1.001 * min(item.pixels):
-        yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
-    if item.tip_is_assumed:
-        yield (
-            f"{item.path}: the file does not say what its tip is, which is taken for one of "
-            f"{1e9 * item.tip_radius:g} nm; --tip-radius names another."
-        )
-    deviation = item.heights - np.mean(item.heights)
-    skewness = float(np.mean(deviation**3) / np.mean(deviation**2) ** 1.5)
-    if item.tip_radius and skewness < _DEEP:
-        yield (
-            f"{item.path}: the heights have a skewness of {skewness:.2g}; what the tip does not "
-            "reach in narrow valleys is in no interval, so that e_el may be larger."
-        )
-    if one.unevenness:
-        yield (
-            f"{item.path}: parts of it differ more than those of a Gaussian surface, so that e_el "
-            f"is known to {one.unevenness:.1%} at best."
-        )
-    for axis in one.band.stripes:
-        yield (
-            f"{item.path}: waves along {'xy'[axis]} alone have another density than all "
-            "others, as of rows that are shifted or levelled one by one; they are left out."
-        )
-    if contact_radius is not None and min(item.size) < 2 * contact_radius:
-        yield (
-            f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
-            f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
-            "spectrum."
-        )
+def scan_notes(scans: Iterable[Scan], contact_radius: float | None = None) -> Iterator[str]:
+    """Treatments of measurements, against the radius of a contact (Units: m)."""
+    for one in scans:
+        item = one.measurement
+        if item.missing > 0:
+            yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
+        if item.is_line:
+            yield (
+                f"{item.path} is a line scan: its density is that of an isotropic surface with "
+                "this projection."
+            )
+        elif max(item.pixels) > 1.001 * min(item.pixels):
+            yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
+        if item.tip_is_assumed:
+            yield (
+                f"{item.path}: the file does not say what its tip is, which is taken for one of "
+                f"{1e9 * item.tip_radius:g} nm; --tip-radius names another."
+            )
+        if most := item.hidden:
+            yield (
+                f"{item.path}: valleys are deep; by what the tip does not reach in narrow ones "
+                f"e_el may be {np.exp(most):.2g} times as large, which its interval holds."
+            )
+        if one.unevenness:
+            yield (
+                f"{item.path}: parts of it differ more than those of a Gaussian surface, so that "
+                f"e_el is known to {one.unevenness:.1%} at best."
+            )
+        for axis in one.band.stripes:
+            yield (
+                f"{item.path}: waves along {'xy'[axis]} alone have another density than all "
+                "others, as of rows that are shifted or levelled one by one; they are left out."
+            )
+        if contact_radius is not None and min(item.size) < 2 * contact_radius:
+            yield (
+                f"{item.path} is smaller than the contact ({1e6 * min(item.size):.3g} um against "
+                f"{2e6 * contact_radius:.3g} um across): it stands for the whole surface by its "
+                "spectrum."
+            )
 
 
 def measure_next(surface: MeasuredSurface) -> str:

@@ -299,6 +299,7 @@ def _draws(
     coarsest = math.log(min(one.band.coarsest for one in scans))
     rng, apart = map(np.random.default_rng, _SEEDS)
     choices = [_choices(one, density) for one, density in zip(scans, densities, strict=True)]
+    hidden = max(one.measurement.hidden for one in scans)
     drawn, recorded = [], []
     for state in rng.integers(len(fit.surface), size=_DRAWS):
         parts = []
@@ -320,7 +321,8 @@ def _draws(
         wavevector, value, _ = _joined(parts, levels, scatter)
         shortest = min(math.log(2 * np.pi / wavevector[-1]), coarsest)
         last = math.exp(rng.uniform(min(finest, shortest), shortest))
-        drawn.append(_continued(wavevector, value, fit.of_state(state), fit.lowest, last))
+        whole = value * math.exp(hidden * apart.uniform(0, 1)) if hidden else value
+        drawn.append(_continued(wavevector, whole, fit.of_state(state), fit.lowest, last))
         recorded.append(_recorded(wavevector, value, rest))
     return tuple(drawn), tuple(recorded)
 

@@ -17,7 +17,7 @@ from crackfront.core import jkr
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
-from crackfront.topography.cautions import surface_notes
+from crackfront.topography.cautions import scan_notes
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.options import PredictionOptions
 from crackfront.topography.tile import zero_load_radius
@@ -70,7 +70,7 @@ class Prediction:
 
 def prediction_notes(prediction: Prediction) -> Iterator[str]:
     """Treatments of the measurements, where k comes from, and where the numbers are weak."""
-    yield from surface_notes(prediction.surface, prediction.contact_radius)
+    yield from scan_notes(prediction.surface.scans, prediction.contact_radius)
     yield (
         "k is that of a straight front on springs of the length L_kappa, by the law that was "
         "fitted to simulations of such fronts; its interval holds the errors of both."

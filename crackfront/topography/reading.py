@@ -47,6 +47,9 @@ _SCANNING_PROBES = {"di", "ezd", "ibw", "jpk", "mdt", "mi", "ps", "wsxm"}
 _TIP = 10e-9
 """Radius of a tip of which nothing is known (Units: m)."""
 
+_DEEP, _HIDDEN = -1.0, 0.5
+"""Skewness below which valleys are narrow, and logarithm of e_el over what a tip finds of it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
@@ -92,6 +95,13 @@ class Measurement:
     def is_line(self) -> bool:
         """Whether it is a line scan."""
         return self.heights.ndim == 1
+
+    @property
+    def hidden(self) -> float:
+        """Logarithm by which e_el may be larger for what the tip does not reach in valleys."""
+        deviation = self.heights - np.mean(self.heights)
+        skewness = np.mean(deviation**3) / np.mean(deviation**2) ** 1.5
+        return _HIDDEN if self.tip_radius and skewness < _DEEP else 0.0
 
 
 def read_measurements(

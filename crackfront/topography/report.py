@@ -16,7 +16,7 @@ from crackfront.core.units import Scales
 from crackfront.core.variables import variables
 from crackfront.data.written_units import prefixed
 from crackfront.topography.bands import BandLimit
-from crackfront.topography.cautions import measure_next, surface_doubts, surface_notes
+from crackfront.topography.cautions import measure_next, scan_notes, surface_doubts
 from crackfront.topography.fitting import Fit
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import Prediction, prediction_notes, repelled_note
@@ -33,9 +33,6 @@ _MEASURES = {0.0: ("heights", "m"), 0.5: ("half-derivative", "m^1/2"), 1.0: ("sl
 
 _FAR = 1000.0
 """Factor to a limit from which on it is not worth a number."""
-
-_CAUTIONS = 2
-"""Reservations that stand on the first page."""
 
 _ADHESIONS = ("w_appr", "w_retr", "hysteresis")
 
@@ -96,7 +93,7 @@ def prediction_page(prediction: Prediction) -> str:
             *(f"{name:18}{text}" for name, text in rows),
             f"{trust}. {prediction.excess.sentence}",
             *repelled_note(prediction),
-            *doubts[:_CAUTIONS],
+            *doubts[:2],  # the most important ones
             measure_next(surface),
             "Intervals hold 95%; --long says all.",
         ]
@@ -105,7 +102,7 @@ def prediction_page(prediction: Prediction) -> str:
 
 def _notes(surface: MeasuredSurface, prediction: Prediction | None) -> list[str]:
     """Notes of a surface, and of its prediction where there is one."""
-    return list(surface_notes(surface) if prediction is None else prediction_notes(prediction))
+    return list(scan_notes(surface.scans) if prediction is None else prediction_notes(prediction))
 
 
 def simulation_text(found: Simulated) -> str:

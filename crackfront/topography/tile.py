@@ -49,7 +49,7 @@ def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
         else "mirrored at its edges, where a scan does not go on: twice its sides",
         waves=f"those shorter than {prefixed('m', measurement.shortest)} were taken away, as they "
         "are not to be trusted",
-        notes=" ".join(scan_notes(scan, zero_load_radius(sphere))),
+        notes=" ".join(scan_notes([scan], zero_load_radius(sphere))),
     )
 
 
