@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import time
 from collections import Counter
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any, get_args
 
@@ -15,8 +14,6 @@ from crackfront.cli.report import (
     FILE,
     announce_compilation,
     announce_cost,
-    as_json,
-    echo_json,
     examples,
     refuse_unwritable,
 )
@@ -93,36 +90,27 @@ def draw_figure(data: Path) -> None:
         click.echo(f"animation: {save_animation(animation, data.with_suffix(''))}")
 
 
-@commands.command(
-    "check",
-    epilog=examples("python -m studies paper check", "python -m studies paper check --json"),
-)
+@commands.command("check", epilog=examples("python -m studies paper check"))
 @_output
-@as_json
-def check_figures(output: Path, as_json: bool) -> None:
+def check_figures(output: Path) -> None:
     """Compare the data of all figures with what the paper states, in checks.md."""
     lines: list[str] = []
-    found: list[dict[str, Any]] = []
+    counts: Counter[Result] = Counter()
     for scale in SCALES:
         for path in _data_of_figures(output / scale):
             shown, record = _figure_and_record(path)
             checks = shown.checks(record)
-            of = {"figure": path.stem, "scale": scale}
-            found += [{**of, **asdict(check), "result": check.result} for check in checks]
+            counts.update(check.result for check in checks)
             lines += ["", f"## {shown.title} ({scale})", "", *checks_table(checks)]
-    if not found:
+    if not counts:
         raise _no_data(output)
-    counts = Counter(one["result"] for one in found)
     agree, predicted, fail = (counts[result] for result in get_args(Result))
     told = (
-        f"{agree} of {len(found)} agree, {predicted} differ from the paper as the law of k says "
-        f"(docs/law.md), {fail} fail"
+        f"{agree} of {counts.total()} agree, {predicted} differ from the paper as the law of k "
+        f"says (docs/law.md), {fail} fail"
     )
     lines = ["# Checks of the figures", "", f"{told}.", *lines, ""]
     write_text(output / "checks.md", "\n".join(lines), sealed=True)
-    if as_json:
-        echo_json(found)
-        return
     click.echo(f"checks: {output / 'checks.md'}, {told}")
 
 

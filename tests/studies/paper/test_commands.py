@@ -1,6 +1,5 @@
 """`python -m studies paper`: its figures from their configurations to the gallery."""
 
-import json
 import subprocess
 import sys
 from dataclasses import replace
@@ -28,10 +27,6 @@ def test_commands_compute_draw_check_and_keep_a_figure(tmp_path, monkeypatch):
     assert data.with_suffix(".pdf").stat().st_size > 1000
     assert run("check", "--output", output).exit_code == 0
     assert "4 of 4 agree, 0 differ" in (output / "checks.md").read_text()
-    found = json.loads(run("check", "--output", output, "--json").stdout)
-    assert [(one["figure"], one["scale"], one["passed"]) for one in found] == [
-        ("main-1d", "quick", True)
-    ] * 4
     monkeypatch.chdir(tmp_path)
     assert run("gallery", "--output", output).exit_code == 0
     kept = kept_parts()["paper"]["main-1d"]
