@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import platform
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -80,11 +78,17 @@ def keep_parts(
     write_text(KEPT / f"{study}.json", json.dumps(listed, indent=1, ensure_ascii=False) + "\n")
 
 
-def tell(study: str, texts: Mapping[str, str], *sources: str, keep: bool) -> None:
+def tell(
+    study: str,
+    texts: Mapping[str, str],
+    *sources: str,
+    keep: bool,
+    data: Mapping[str, Any] | None = None,
+) -> None:
     """Print what a study has measured, and keep it for the pages if that is asked for."""
     click.echo("\n\n".join(texts.values()))
     if keep:
-        keep_parts(study, texts, *sources)
+        keep_parts(study, texts, *sources, data=data)
         click.echo("kept for the pages, which python -m studies pages writes")
 
 
@@ -112,7 +116,8 @@ def renewed(page: str, parts: Mapping[str, Mapping[str, Part]]) -> str:
     r"""Page with all blocks written anew, each with its commit and command.
 
     A block stands between `<!-- STUDY: PART -->` and `<!-- end -->`, on lines of its own or within
-    one, where it is a number alone. A block of a part that there is not is a ValueError.
+    one, where it is a number alone. `<!-- STUDY: PART / ROW / COLUMN -->` is a cell of a table, in
+    the row that begins with ROW, counted from 1. What was not measured is a ValueError.
 
     Examples
     --------
@@ -122,25 +127,25 @@ def renewed(page: str, parts: Mapping[str, Mapping[str, Part]]) -> str:
     """
 
     def block(found: re.Match[str]) -> str:
-        study, name = found["study"], found[2]
+        study, (name, *place) = found["study"], found["name"].split(" / ")
         if name not in parts.get(study, {}):
             raise ValueError(
                 f"there is a block {name!r} of the study {study}, which has not measured it; there "
                 f"are {', '.join(parts.get(study, {})) or 'none'}"
             )
         part = parts[study][name]
-        text = part.text
+        text = _cell(part.text, *place) if place else part.text
         if "\n" in found["text"]:
-            text = f"\n\n{text}\n\n*Commit {part.commit[:7]}: `{part.command}`*\n\n"
-        return f"<!-- {study}: {name} -->{text}<!-- end -->"
+            machine = "" if part.machine == "unknown" else f", {part.machine}"
+            text = f"\n\n{text}\n\n*Commit {part.commit[:7]}{machine}: `{part.command}`*\n\n"
+        return f"<!-- {study}: {found['name']} -->{text}<!-- end -->"
 
     return _BLOCK.sub(block, page)
 
 
-def described_machine() -> str:
-    """One sentence: processor, cores, Python, version and commit."""
-    origin = provenance()
-    return (
-        f"Machine: {origin.processor}, {os.cpu_count()} cores, Python {platform.python_version()}; "
-        f"crackfront {origin.crackfront_version}, commit {origin.git_commit}."
-    )
+def _cell(table: str, row: str, column: str) -> str:
+    """Text of a cell, in the row that begins with some cells; bold or not is the same."""
+    for line in table.replace("**", "").splitlines():
+        if line.startswith(f"| {row} |"):
+            return line.split("|")[int(column)].strip()
+    raise ValueError(f"no row of the table begins with {row!r}")

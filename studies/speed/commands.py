@@ -13,7 +13,7 @@ from crackfront.data.files import write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import write_records
 from crackfront.simulate.run import compile_solver
-from studies.pages import described_machine, keep_option, tell
+from studies.pages import keep_option, tell
 from studies.speed import costs as cost_model
 from studies.speed import needs as requests
 from studies.speed import scaling as sweeps
@@ -40,10 +40,12 @@ def _write(
     path: Path, title: str, parts: Mapping[str, str], rows: Sequence[Any] = (), *, keep: bool
 ) -> None:
     """Write and print parts of pages, and the rows of their tables as netCDF, without a suffix."""
-    page = "\n\n".join([f"# {title}", described_machine(), *parts.values()]) + "\n"
+    origin = provenance()
+    machine = f"Machine: {origin.processor}, {origin.platform}; commit {origin.git_commit}."
+    page = "\n\n".join([f"# {title}", machine, *parts.values()]) + "\n"
     write_text(path.with_suffix(".md"), page)
     if rows:
-        write_records(path.with_suffix(".nc"), rows, "row", provenance(), title=title)
+        write_records(path.with_suffix(".nc"), rows, "row", origin, title=title)
     tell("speed", parts, f"studies.speed.{path.name}", keep=keep)
     click.echo(f"results: {path.with_suffix('.md')}")
 
@@ -101,7 +103,6 @@ def costs(output: Path) -> None:
     """
     refuse_unwritable(output)
     compile_solver("newton")
-    click.echo(described_machine())
     runs = cost_model.least_of_passes(cost_model.fitted_to(), held=False, progress=click.echo)
     runs += cost_model.least_of_passes(cost_model.held_out(), held=True, progress=click.echo)
     write_text(output / "costs.csv", cost_model.table(runs))
