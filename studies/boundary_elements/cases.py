@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
-from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -106,13 +105,6 @@ class Loads(Section):
             yield Load(self.max_penetration, 1)
             for count in range(counts["turned"], counts["end"] - 1, -1):
                 yield Load(count * self.step, -1)
-
-    @property
-    def n_load(self) -> float:
-        """Number of load steps; a whole loop ends near the pull-off of a smooth sphere."""
-        if self.steady is None:
-            return (2 * self.max_penetration - jkr.pull_off_penetration()) / self.step
-        return len([*self.loads(0.0)])
 
     def are_steady(self, penetration: Array) -> NDArray[np.bool_]:
         """Whether states at these penetrations are on the steady part of their branch."""

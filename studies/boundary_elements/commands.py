@@ -10,10 +10,10 @@ from crackfront.cli.report import (
     FILE,
     StoppedError,
     announce_compilation,
-    announce_cost,
     examples,
     refuse_unwritable,
 )
+from studies.pages import keep_option, tell
 
 
 @click.group()
@@ -22,15 +22,11 @@ def commands() -> None:
 
 
 @commands.command(
-    epilog=examples(
-        "python -m studies boundary-elements validate config/validation.yaml",
-        "python -m studies boundary-elements validate config/validation-strong.yaml --finished",
-    )
+    epilog=examples("python -m studies boundary-elements validate config/validation.yaml")
 )
 @click.argument("configuration", type=FILE)
 @click.option("--output", type=FILE, help="Folder of the results.  [default: results/<name>]")
-@click.option("--finished", is_flag=True, help="Compare the finished cases, compute no other.")
-def validate(configuration: Path, output: Path | None, finished: bool) -> None:
+def validate(configuration: Path, output: Path | None) -> None:
     """Run rough spheres by boundary elements and by the crack front, and compare them.
 
     Every load step of the boundary elements is on disk at once: a run that is killed goes on with
@@ -39,17 +35,25 @@ def validate(configuration: Path, output: Path | None, finished: bool) -> None:
     from crackfront.data.provenance import provenance
     from crackfront.sweep.configuration import results_folder
     from studies.boundary_elements import study
-    from studies.boundary_elements.parameters import load_validation, validation_cases
+    from studies.boundary_elements.parameters import load_validation
 
     parameters = load_validation(configuration)
     folder = output or results_folder(configuration)
     study.refuse_missing_libraries()
     refuse_unwritable(folder)
     origin = provenance(configuration.read_text(encoding="utf-8"))
-    if not finished:
-        announce_cost(study.expected_seconds(validation_cases(parameters), folder))
     announce_compilation()
     try:
-        study.write_validation(folder, parameters, origin, click.echo, compute=not finished)
+        study.write_validation(folder, parameters, origin, click.echo)
     except KeyboardInterrupt as error:
         raise StoppedError("Run the same command to continue with the next load step") from error
+
+
+@commands.command(epilog=examples("python -m studies boundary-elements numbers --keep"))
+@keep_option
+def numbers(keep: bool) -> None:
+    """Print the comparisons of docs/reference/validation that stand in the pages."""
+    from studies.boundary_elements.page import page_parts
+
+    for parts, data in page_parts():
+        tell("boundary-elements", parts, "studies.boundary_elements.page", keep=keep, data=data)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, FORCE, VERTICAL, variable
+from studies.accuracy.study import rms
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import BoundaryCycle
 from studies.boundary_elements.front import FrontCycle, shared_states, shown_states
@@ -158,8 +159,3 @@ def _compared_states(
     left = np.all(boundary.radius > first + case.short_cutoff / 8, axis=1)
     kept = (touching & (left | (boundary.direction < 0)))[theirs]
     return theirs[kept], ours[kept]
-
-
-def rms(values: Array) -> float:
-    """Root of the mean square."""
-    return float(np.sqrt(np.mean(values**2)))

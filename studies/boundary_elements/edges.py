@@ -24,9 +24,9 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, VERTICAL, variable
 from crackfront.plots.parts import label_panel
 from crackfront.plots.style import COLOURS, MARKERS, PAGE, blank_figure, house_style
+from studies.accuracy.study import rms
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import BoundaryCycle
-from studies.boundary_elements.differences import rms
 from studies.boundary_elements.front import FrontCycle
 
 _CLASSES = 12

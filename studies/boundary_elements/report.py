@@ -12,6 +12,7 @@ from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.validity import ValidityRow, excess_coefficient
 from studies.boundary_elements import averages
 from studies.boundary_elements.differences import Differences
+from studies.boundary_elements.edges import EdgeForces
 from studies.boundary_elements.hysteresis import Hysteresis
 from studies.pages import markdown_table
 
@@ -23,65 +24,68 @@ def validation_report(
     rows: Sequence[Hysteresis], loops: Sequence[Differences], short_cutoff: float
 ) -> str:
     """Markdown tables of the finished cases, and of those that are whole loops."""
+    tables = *surface_tables(rows, short_cutoff).values(), *loop_tables(loops).values()
+    return "\n\n".join(["# Crack front against boundary elements", *filter(None, tables), ""])
+
+
+def surface_tables(rows: Sequence[Hysteresis], short_cutoff: float) -> dict[str, str]:
+    """Tables of both hystereses, empty ones where there is nothing to show."""
     found, limits = averages.settings(rows), averages.limit_settings(rows)
-    told = averages.validity_rows(rows, short_cutoff)
-    parts = [
-        ["# Crack front against boundary elements", ""],
-        _excess_table(told),
-        _hysteresis_table([*found, *limits]),
-        _run_table(found),
-        _difference_table(loops),
-        _jump_table([row for row in loops if row.elastic_energy > 0]),
-    ]
-    return "\n".join(line for part in parts for line in part)
+    return {
+        "ratios": _excess_table(averages.validity_rows(rows, short_cutoff)),
+        "averages": _hysteresis_table(limits),
+        "settings": _hysteresis_table(found),
+    }
 
 
-def _table(text: str, header: str, lines: Iterable[str]) -> list[str]:
+def loop_tables(loops: Sequence[Differences]) -> dict[str, str]:
+    """Tables of whole loops, state by state and jump by jump."""
+    rough = [row for row in loops if row.elastic_energy > 0]
+    return {"differences": _difference_table(loops), "events": _jump_table(rough)}
+
+
+def _table(text: str, header: str, lines: Iterable[str]) -> str:
     """A paragraph and its table, or nothing where the table has no lines."""
     rows = list(lines)
-    return [text, "", markdown_table(header, rows), ""] if rows else []
+    return f"{text}\n\n{markdown_table(header, rows)}" if rows else ""
 
 
-_SETTING = "roll-off | e_el | points | range | step"
-
-
-def _cells(found: averages.Setting, *names: str) -> list[str]:
-    """Cells of the setting, of the number of surfaces, and of means over them by their fields."""
-    row, energy = found.rows[0], float(found.mean(attrgetter("elastic_energy")).value)
-    grid = f"{row.n_point} | {row.interaction_range:g} | {row.step:g}"
-    means = (_shown(found.mean(attrgetter(name))) for name in names)
-    return [f"{row.roll_off:g} | {energy:.4f} | {grid}", f"{found.surfaces}", *means]
-
-
-def _shown(found: Estimate, digits: int = 4) -> str:
-    """A value and its standard error, if it has one."""
-    value, error = float(found.value), float(found.standard_error)
-    return f"{value:.{digits}f}" + (f" ({error:.{digits}f})" if math.isfinite(error) else "")
-
-
-def _hysteresis_table(found: Sequence[averages.Setting]) -> list[str]:
-    """Works of adhesion and hysteresis of both models."""
-    models = [
-        f"{model}_{name}"
-        for name in ("approach", "retraction", "difference")
-        for model in ("boundary", "front")
-    ]
+def _hysteresis_table(found: Sequence[averages.Setting]) -> str:
+    """Works of adhesion and hysteresis of both models, and how much of a surface repels."""
+    branches = "approach", "retraction", "difference"
+    models = [f"{model}_{branch}" for branch in branches for model in ("boundary", "front")]
+    lines = []
+    for one in found:
+        row = one.rows[0]
+        energy, repelling, *works = (
+            one.mean(attrgetter(name)) for name in ("elastic_energy", "repelling", *models)
+        )
+        lines.append(
+            f"{row.roll_off:g} | {float(energy.value):.4f} | {row.n_point} | "
+            f"{row.interaction_range:g} | {row.step:g} | {one.surfaces} | "
+            f"{float(repelling.value):.1%} | {' | '.join(map(_shown, works))}"
+        )
     return _table(
         "Works of adhesion of the smooth sphere with the same force at the same penetration, in "
         "w_int; boundary elements first, then the front on the same surfaces; in brackets standard "
-        "errors over surfaces. Hysteresis: w_retr - w_appr; k is half of it over e_el. Range 0 "
-        f"is extrapolated by the range to the power {averages.ORDER} from the two shortest of a "
-        "surface: the mean of the longest over all surfaces, and that of what extrapolation "
-        "changes on those that have a shorter one.",
-        f"{_SETTING} | surfaces | w_appr | front | w_retr | front | hysteresis | front",
-        (" | ".join(_cells(one, *models)) for one in found),
+        "errors over surfaces. Hysteresis: w_retr - w_appr. Range 0 is extrapolated by the range "
+        f"to the power {averages.ORDER}. Repels: where w_loc is negative.",
+        "roll-off | e_el | points | range | step | surfaces | repels | w_appr | front | w_retr "
+        "| front | hysteresis | front",
+        lines,
     )
 
 
-def _excess_table(told: Sequence[ValidityRow]) -> list[str]:
+def _shown(found: Estimate) -> str:
+    """A value and its standard error, if it has one."""
+    value, error = float(found.value), float(found.standard_error)
+    return f"{value:.4f}" + (f" ({error:.4f})" if math.isfinite(error) else "")
+
+
+def _excess_table(told: Sequence[ValidityRow]) -> str:
     """Ratios of the hystereses at a vanishing range, and the law through them."""
     if not any(math.isfinite(row.error) for row in told):
-        return []
+        return ""
     slope, error = excess_coefficient(told)
     return _table(
         "Hysteresis of the front over that of boundary elements at a vanishing range, without what "
@@ -99,28 +103,6 @@ def _excess_table(told: Sequence[ValidityRow]) -> list[str]:
     )
 
 
-def _run_table(found: Sequence[averages.Setting]) -> list[str]:
-    """What the minimiser did, and the processor time."""
-    hours = sum(row.boundary_seconds for one in found for row in one.rows) / 3600
-    return _table(
-        "Part of the surface that repels the front. Products of a load step; steps that would have "
-        "passed a barrier and were shortened; states without forces that were no minimum and were "
-        "left; least fall of the energy at a penetration. Seconds of one core for a surface; "
-        f"boundary elements took {hours:.2f} core hours in all.",
-        f"{_SETTING} | surfaces | repels | products | barriers | saddles | least fall | s "
-        "| front, s",
-        (
-            " | ".join(_cells(one, "repelling"))
-            + f" | {one.mean(lambda row: row.products).value:.0f} | "
-            f"{sum(row.barriers for row in one.rows)} | {sum(row.saddles for row in one.rows)} | "
-            f"{min(row.least_released for row in one.rows):.1e} | "
-            f"{one.mean(lambda row: row.boundary_seconds).value:.0f} | "
-            f"{one.mean(lambda row: row.front_seconds).value:.1f}"
-            for one in found
-        ),
-    )
-
-
 _CRACK = "points | range | e_el | crack"
 _CRACK_CELLS = "{n_point} | {interaction_range:g} | {elastic_energy:.4f} | {crack}"
 
@@ -132,7 +114,7 @@ def _cell_values(row: Differences) -> dict[str, Any]:
     return known | forces | {"crack": "turns" if row.rotated else "fixed"}
 
 
-def _difference_table(loops: Sequence[Differences]) -> list[str]:
+def _difference_table(loops: Sequence[Differences]) -> str:
     """Forces, areas and perimeters."""
     cells = (
         f"{_CRACK_CELLS} | {{force_mean:.2%}} | {{force_median:.2%}} | "
@@ -140,9 +122,7 @@ def _difference_table(loops: Sequence[Differences]) -> list[str]:
         "{perimeter_approach:.4f} | {perimeter_retraction:.4f} | {perimeter_all:.4f}"
     )
     return _table(
-        "Boundary elements minus front, in all states in which both have contact; in approach from "
-        "the penetration b on at which the boundary elements have left, everywhere, the perimeter "
-        "with which they jumped into contact. Forces in units of the smooth pull-off force, areas "
+        "Boundary elements minus front. Forces in units of the smooth pull-off force, areas "
         "relative, distances of perimeters in short cutoffs: in approach and retraction at the "
         "shown penetration, and the mean over all states.",
         f"{_CRACK} | force, mean | median size | rms | largest | area, mean | rms "
@@ -151,7 +131,7 @@ def _difference_table(loops: Sequence[Differences]) -> list[str]:
     )
 
 
-def _jump_table(loops: Sequence[Differences]) -> list[str]:
+def _jump_table(loops: Sequence[Differences]) -> str:
     """Jumps and the end of contact."""
     cells = (
         f"{_CRACK_CELLS} | {{jumps_boundary}} | {{jumps_front}} | {{jumps_shared}} | "
@@ -164,4 +144,18 @@ def _jump_table(loops: Sequence[Differences]) -> list[str]:
         f"{_CRACK} | boundary | front | shared | mean shift | rms shift | pull-off force "
         "| end of contact",
         (cells.format(**_cell_values(row)) for row in loops),
+    )
+
+
+def edge_table(rows: Sequence[EdgeForces]) -> str:
+    """Forces of the front's model on the edges of boundary elements."""
+    return _table(
+        "Rms slope of the edges, rms of w_loc along them, in w_int, and the force left over "
+        "it; force of the line that would balance the others, over that of first order.",
+        "points | range | e_el | slope | pinning | left / pinning | line",
+        (
+            f"{row.n_point} | {row.interaction_range:g} | {row.elastic_energy:.4f} | "
+            f"{row.slope:.2f} | {row.pinning:.2f} | {row.left / row.pinning:.2f} | {row.share:.2f}"
+            for row in rows
+        ),
     )

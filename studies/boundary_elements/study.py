@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
 from crackfront.analysis.validity import validity_text
-from crackfront.data.files import UnreadableFileError, set_aside, write_text
+from crackfront.data.files import write_text
 from crackfront.data.optional_libraries import MissingExtraError
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import read_record, write_record, write_records
@@ -31,10 +31,6 @@ Progress = Callable[[str], None]
 
 _LIBRARIES = ("ContactMechanics", "Adhesion", "SurfaceTopography", "finufft")
 
-_STEP_SECONDS = 6e-8
-"""Time of a load step over the cube of the points along a side: 4e-8 to 9e-8 were measured from 64
-to 512 points, smooth to e_el = 0.18, in steps of 0.01 to 0.1. (Units: s)"""
-
 
 def refuse_missing_libraries() -> None:
     """Raise before anything is computed if a library is missing that a validation needs."""
@@ -45,28 +41,13 @@ def refuse_missing_libraries() -> None:
             raise MissingExtraError("boundary elements", error, "bem") from error
 
 
-def expected_seconds(cases: Iterable[Case], folder: Path) -> float:
-    """Processor time expected of the cases that were not begun in a folder, roughly."""
-    return sum(
-        _STEP_SECONDS * case.n_point**3 * case.loads.n_load
-        for case in cases
-        if not (folder / f"{case.stem}.nc").exists()
-    )
-
-
 def write_validation(
-    folder: Path,
-    parameters: ValidationParameters,
-    origin: Provenance,
-    progress: Progress,
-    *,
-    compute: bool = True,
+    folder: Path, parameters: ValidationParameters, origin: Provenance, progress: Progress
 ) -> None:
     """Compare the front with boundary elements, case by case, and write what is found so far.
 
-    Every load step of the boundary elements is kept in the folder, and found again. Without
-    computing, cases that it does not hold are left out. A ValueError says if a front fails,
-    or nothing is finished.
+    Every load step of the boundary elements is kept in the folder, and found again. A ValueError
+    says if a front fails.
     """
     fronts: dict[tuple[object, ...], FrontCycle] = {}
 
@@ -82,9 +63,7 @@ def write_validation(
     edges: list[EdgeForces] = []
     pictured: tuple[float, ...] = ()
     for case in validation_cases(parameters):
-        boundary = _cycle(folder, case, origin, progress, compute)
-        if boundary is None:
-            continue
+        boundary = _cycle(folder, case, origin, progress)
         rows.append(hysteresis(case, boundary, front(case)))
         write_records(folder / "hysteresis.nc", rows, "case", origin)
         if case.loads.steady is None:
@@ -107,8 +86,6 @@ def write_validation(
             f"{case.label}: hysteresis {rows[-1].boundary_difference:.4f} by boundary elements, "
             f"{rows[-1].front_difference:.4f} by the front"
         )
-    if not rows:
-        raise ValueError(f"{folder} holds no finished case of this configuration; compute one")
     if edges:
         save_figure(edge_figure(edges), folder / "edges")
     if told := validity_rows(rows, parameters.short_cutoff):
@@ -117,17 +94,10 @@ def write_validation(
     progress(f"tables: {folder / 'validation.md'}")
 
 
-def _cycle(
-    folder: Path, case: Case, origin: Provenance, progress: Progress, compute: bool
-) -> BoundaryCycle | None:
-    """Cycle of a case: read, else continued or computed, or none where it is not to be."""
-    path, known = folder / f"{case.stem}.nc", None
-    try:
-        known = read_record(path, BoundaryCycle) if path.exists() else None
-    except UnreadableFileError as error:
-        if not compute:
-            raise
-        progress(f"{error}; it is computed anew, and set aside as {set_aside(path).name}")
+def _cycle(folder: Path, case: Case, origin: Provenance, progress: Progress) -> BoundaryCycle:
+    """Cycle of a case: read, else continued or computed."""
+    path = folder / f"{case.stem}.nc"
+    known = read_record(path, BoundaryCycle) if path.exists() else None
     if known is not None and known.status != RUNNING:
         return known
 
@@ -139,4 +109,4 @@ def _cycle(
             f"{cycle.seconds[-1]:.2f} s"
         )
 
-    return boundary_cycle(case, known, keep) if compute else None
+    return boundary_cycle(case, known, keep)

@@ -24,9 +24,10 @@ from studies.boundary_elements.averages import (
 )
 from studies.boundary_elements.differences import Differences
 from studies.boundary_elements.hysteresis import Hysteresis
+from studies.boundary_elements.page import page_parts
 from studies.boundary_elements.parameters import load_validation, validation_cases
 from studies.boundary_elements.picture import ValidationPicture
-from studies.boundary_elements.report import validation_report
+from studies.pages import kept_parts
 
 ROOT = Path(__file__).parents[3]
 REFERENCES = ROOT / "docs/reference/validation"
@@ -79,15 +80,16 @@ def test_surfaces_that_the_law_has_not_seen_lie_inside_its_interval(kept):
     assert np.mean(inside) >= 0.9
 
 
-def test_the_documentation_has_the_extrapolated_rows_and_the_law(kept):
-    page = (ROOT / "docs/experiments/boundary-elements.md").read_text()
-    report = validation_report(kept, [], 0.15)
-    excess = report.split("\n\n")[2]
-    assert excess.count("\n") == 9
-    assert excess in page
-    told = [line for line in report.splitlines() if "512 | 0 |" in line or "1024 | 0 |" in line]
-    assert len(told) == 9
-    assert "\n".join(told[1:]) in page
+def test_the_pages_show_the_kept_comparisons_with_their_commits(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    known = kept_parts()["boundary-elements"]
+    shown = {}
+    for parts, data in page_parts():
+        shown |= parts
+        assert {known[name].commit for name in parts} == {data["git_commit"]}
+    assert shown == {name: part.text for name, part in known.items()}
+    assert shown["ratios"].count("\n") == 11
+    assert shown["averages"].count("| 0 | 0.1 |") == 9
 
 
 def test_the_kept_comparison_has_the_cases_of_its_configuration_and_no_energy_rose(kept):
