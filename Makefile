@@ -8,6 +8,7 @@
 #   SCALE=quick | paper         coarser lengths, or the paper's, for `make figures`
 #   VALIDATION=config/validation.yaml   sizes of `make validate`; config/validation-512.yaml
 #                               and config/validation-1024.yaml are hours
+#   PROFILE=workflow/profiles/default   profile of Snakemake; one of a cluster runs all rules there
 #   PYTHON=python3              the interpreter that .venv is made from (3.11 or newer)
 #   MPI=wheel | system          wheel (default): MPICH from the package index, no system MPI needed.
 #                               system: for a cluster. mpi4py is built from its source release against
@@ -19,6 +20,7 @@ SWEEP  ?= config/default.yaml
 LINE   ?= config/line-quick.yaml
 SCALE  ?= quick
 VALIDATION ?= config/validation.yaml
+PROFILE ?= workflow/profiles/default
 PYTHON ?= python3
 MPI    ?= $(if $(wildcard .venv/.packages-system),system,wheel)
 
@@ -36,7 +38,7 @@ fronts   = $(if $(FRONTS),; of straight fronts results/$(basename $(notdir $(LIN
 VALIDATED = results/$(basename $(notdir $(VALIDATION)))/
 REPORT   = results/tests/junit.xml
 IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1
-SNAKE    = $(IN_ENV) .venv/bin/python workflow/run.py --profile workflow/profiles/default
+SNAKE    = $(IN_ENV) .venv/bin/python workflow/run.py --profile $(PROFILE)
 REPAIR   = $(IN_ENV) .venv/bin/crackfront repair
 PIP      = PIP_USE_PEP517=1 .venv/bin/python -m pip install --quiet --no-deps --no-build-isolation --no-compile
 # Tests on all cores, of which eight are enough; one that is done takes from another.
@@ -51,8 +53,8 @@ SOLVER   = numpy|scipy|numba|llvmlite|rocket-fft|click|pyyaml
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test test-cluster nightly accuracy validate benchmark timings reproduce figures report docs lint lock \
-  clean help
+.PHONY: all env test test-cluster nightly accuracy validate benchmark timings reproduce reproduce-boundary figures report docs \
+  lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
 	@$(REPAIR) $(SWEEP) $(FRONTS)
@@ -130,15 +132,38 @@ timings: env  ## What depends on the machine, for the pages (40 minutes)
 	$(IN_ENV) .venv/bin/python -m studies speed scaling --keep
 	$(IN_ENV) .venv/bin/python -m studies pages
 
-reproduce: env  ## The numbers and figures of the pages, but those of timings (3 core hours)
+# All of it resumes: rules that are done are not run again, and boundary elements keep every load step.
+reproduce: env  ## The numbers and figures of the pages, but for timings and reproduce-boundary (3 core hours)
 	$(MAKE) --no-print-directory figures SCALE=paper
 	$(MAKE) --no-print-directory accuracy
+	$(MAKE) --no-print-directory validate VALIDATION=config/validation.yaml
+	cp results/accuracy/laws.png results/accuracy/work-precision.png docs/figures/
+	cp results/validation/differences.nc $(KEPT)/differences-256.nc
 	$(IN_ENV) .venv/bin/python -m studies paper gallery
 	$(IN_ENV) .venv/bin/python -m studies accuracy report --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy energies --scans 12 --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy predictions --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy energy-balance --keep
+	$(IN_ENV) .venv/bin/python -m studies boundary-elements numbers --keep
+	$(IN_ENV) .venv/bin/python -m studies law figure
 	$(IN_ENV) .venv/bin/python -m studies law numbers --keep
+	$(IN_ENV) .venv/bin/python -m studies pages
+
+KEPT = docs/reference/validation
+LARGE = 512 1024 series strong fine edges
+
+reproduce-boundary: env  ## The same of large boundary elements (a day of one core)
+	set -e; for name in $(LARGE); do $(MAKE) --no-print-directory validate VALIDATION=config/validation-$$name.yaml; done
+	cp results/validation-512/differences.nc $(KEPT)/differences-512.nc
+	cp results/validation-512/picture.nc $(KEPT)/picture-512.nc
+	cp results/validation-512/validation.png docs/figures/validation.png
+	cp results/validation-series/differences.nc $(KEPT)/differences-series.nc
+	cp results/validation-strong/hysteresis.nc $(KEPT)/hysteresis-strong.nc
+	cp results/validation-strong/hysteresis.png docs/figures/validation-strong.png
+	cp results/validation-strong/validity.csv crackfront/analysis/validity.csv
+	cp results/validation-edges/edges.nc $(KEPT)/edges.nc
+	cp results/validation-edges/edges.png docs/figures/validation-edges.png
+	$(IN_ENV) .venv/bin/python -m studies boundary-elements numbers --keep
 	$(IN_ENV) .venv/bin/python -m studies pages
 
 accuracy: env  ## Errors of all numerics of docs/experiments/numerics.md (half an hour, two cores)
@@ -189,5 +214,5 @@ clean:  ## Remove .venv and caches, never results
 	find crackfront studies tests workflow -type d -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
 help:  ## Show this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
-	@echo "Variables: SWEEP=$(SWEEP) PYTHON=$(PYTHON) MPI=$(MPI) (see the top of the Makefile)"
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-19s %s\n", $$1, $$2 }' Makefile
+	@echo "Variables: SWEEP=$(SWEEP) PROFILE=$(PROFILE) PYTHON=$(PYTHON) MPI=$(MPI) (see the top of the Makefile)"
