@@ -19,6 +19,7 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import variables
 from crackfront.sweep.configuration import Configuration
 from crackfront.sweep.table import SweepRow
+from crackfront.topography.options import ReadingOptions, declared
 
 project = "crackfront"
 author = "crackfront developers"
@@ -171,17 +172,27 @@ def _kind(schema: dict[str, Any]) -> str:
     return " ".join([names.get(schema.get("type", ""), "as the reader takes it"), *bounds])
 
 
+def _meanings() -> dict[tuple[str, str], str]:
+    """What each key of a section means, from config/README.md and the options of scans."""
+    text = (Path(__file__).parents[1] / "config/README.md").read_text(encoding="utf-8")
+    # A link leads from there to a page, and here from one.
+    rows = re.findall(r"^\| (\w+) \| `(\w+)` \| (.*) \|$", text, re.MULTILINE)
+    found = {(section, key): meaning.replace("(../docs/", "(../") for section, key, meaning in rows}
+    return found | {("Surface", one.name): one.meaning for one in declared(ReadingOptions)}
+
+
 def _write_references(app: Sphinx) -> None:
     """Write the keys of configurations and the variables of files, as the code has them."""
     schema = Configuration.model_json_schema()
     lines = ["# Keys of a configuration", "", "For those who write one."]
-    sections = {"The file": schema} | schema["$defs"]
+    sections, meanings = {"file": schema} | schema["$defs"], _meanings()
     for name, one in sections.items():
-        lines += ["", f"## {name.removesuffix('Section')}", "", one["description"], ""]
-        lines += ["| key | value | default |", "|---|---|---|"]
+        section = name.removesuffix("Section")
+        lines += ["", f"## {section.capitalize()}", "", one["description"], ""]
+        lines += ["| key | meaning and unit | value | default |", "|---|---|---|---|"]
         for key, value in one["properties"].items():
             default = "required" if key in one.get("required", ()) else f"`{value.get('default')}`"
-            lines.append(f"| `{key}` | {_kind(value)} | {default} |")
+            lines.append(f"| `{key}` | {meanings[section, key]} | {_kind(value)} | {default} |")
     files = {
         "A simulation in `hysteresis.nc`": SweepRow,
         "A curve of a sphere": ContactState,

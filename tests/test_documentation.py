@@ -13,6 +13,8 @@ from matplotlib import pyplot
 import crackfront as cf
 from crackfront import __all__
 from crackfront.cli import main
+from crackfront.sweep.configuration import Configuration
+from crackfront.topography.options import ReadingOptions, declared
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -135,6 +137,20 @@ def test_the_page_of_the_command_line_names_every_environment_variable():
     }
     assert {"XDG_CACHE_HOME", "CRACKFRONT_LAUNCHER"} <= named
     assert {name for name in named if f"`{name}`" not in page} == set()
+
+
+def test_every_key_of_a_configuration_has_a_meaning_and_no_other_key():
+    schema = Configuration.model_json_schema()
+    sections = {"file": schema} | schema["$defs"]
+    keys = {
+        (name.removesuffix("Section"), key)
+        for name, one in sections.items()
+        for key in one["properties"]
+    }
+    page = (ROOT / "config/README.md").read_text()
+    told = set(re.findall(r"^\| (\w+) \| `(\w+)` \| \w.* \|$", page, re.MULTILINE))
+    options = {("Surface", one.name) for one in declared(ReadingOptions)}
+    assert keys - options == told
 
 
 def test_the_page_of_the_reference_names_the_whole_library():
