@@ -40,8 +40,8 @@ from crackfront.simulate.lines import LineSchedule
 from crackfront.simulate.simulation import Numerics, Simulation
 from crackfront.simulate.steady import SteadySchedule
 
-_PROCESS_BYTES = 300e6
-"""Memory of a rank with all imported and compiled."""
+_PROCESS_BYTES, _STORE_SECONDS = 300e6, 0.015
+"""Memory of a rank with all imported and compiled; processor time to store a simulation."""
 
 _TILES, _SITE_BYTES = 4, 512
 """Tiles in memory while one is made, and bytes a site while the front moves (docs/needs.md)."""
@@ -115,7 +115,7 @@ def featured_cost(item: Features, *, fronts: bool) -> Cost:
     """Expected cost of a run of some features, with its fronts recorded or not."""
     recorded = 8 * item.n_state * item.n_angle if fronts else 0.0
     return Cost(
-        seconds=float(_seconds(_coefficients(), _columns([item]))[0]),
+        seconds=_STORE_SECONDS + float(_seconds(_coefficients(), _columns([item]))[0]),
         memory=_PROCESS_BYTES
         + 8 * _TILES * item.n_point**2
         + _SITE_BYTES * item.n_angle

@@ -60,7 +60,7 @@ def test_a_cycle_finds_the_states_that_were_expected(step):
 def test_more_sites_cost_more_time_and_more_points_more_memory():
     sizes = ONE.resolution
     base = expected_cost(ONE)
-    longer = expected_cost(replace(ONE, resolution=replace(sizes, n_angle=10 * sizes.n_angle)))
+    longer = expected_cost(replace(ONE, resolution=replace(sizes, n_angle=20 * sizes.n_angle)))
     larger = expected_cost(replace(ONE, resolution=replace(sizes, n_point=10 * sizes.n_point)))
     fronts = expected_cost(replace(ONE, record_fronts=True))
     assert longer.seconds > 10 * base.seconds
