@@ -43,7 +43,7 @@ def scan_notes(scans: Iterable[Scan], contact_radius: float | None = None) -> It
         if most := item.hidden:
             yield (
                 f"{item.path}: valleys are deep; by what the tip does not reach in narrow ones "
-                f"e_el may be {np.exp(most):.2g} times as large, which its interval holds."
+                f"e_el may be {np.exp(most):.1g} times as large, which its interval holds."
             )
         if one.unevenness:
             yield (

@@ -47,7 +47,7 @@ _SCANNING_PROBES = {"di", "ezd", "ibw", "jpk", "mdt", "mi", "ps", "wsxm"}
 _TIP = 10e-9
 """Radius of a tip of which nothing is known (Units: m)."""
 
-_DEEP, _HIDDEN = -1.0, 0.5
+_DEEP, _HIDDEN = -1.0, 0.7
 """Skewness below which valleys are narrow, and logarithm of e_el over what a tip finds of it."""
 
 

@@ -164,7 +164,7 @@ def test_surfaces_that_are_not_gaussian_are_told_and_known_less_well(found):
     assert [*scan_notes([film])] == []
     assert any("differ more than those of a Gaussian" in told for told in scan_notes([deep]))
     assert any(
-        "in narrow ones e_el may be 1.6 times as large" in told for told in scan_notes([scanned])
+        "in narrow ones e_el may be 2 times as large" in told for told in scan_notes([scanned])
     )
 
 
