@@ -6,10 +6,10 @@ from crackfront.simulate.costs import Cost
 from crackfront.sweep.sweep import Sweep
 
 _LATE = {
-    "aggregate": (4.5, 2.5e-4, 2.4e8, 1.2e3, 0),
-    "fit": (4.5, 1.2e-5, 2.4e8, 7e2, 1),
-    "figures": (10.0, 6e-5, 3.2e8, 7e2, 1),
-    "summary": (4.5, 1.2e-5, 2.4e8, 7e2, 1),
+    "aggregate": (1.0, 2.5e-4, 2.4e8, 1.2e3, 0),
+    "fit": (1.2, 2e-6, 2.4e8, 7e2, 1),
+    "figures": (5.5, 4.5e-5, 3.2e8, 7e2, 1),
+    "summary": (1.2, 2e-6, 2.4e8, 7e2, 1),
 }
 """Of each command: seconds and those of a row, bytes of memory and those of a row, and whether it
 draws the bootstrap; by `python -m studies speed scaling`."""
