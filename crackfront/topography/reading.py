@@ -101,7 +101,8 @@ class Measurement:
         """Logarithm by which e_el may be larger for what the tip does not reach in valleys."""
         deviation = self.heights - np.mean(self.heights)
         skewness = np.mean(deviation**3) / np.mean(deviation**2) ** 1.5
-        return _HIDDEN if self.tip_radius and skewness < _DEEP else 0.0
+        shapes = self.tip_wavelength > 2 * max(self.pixels)  # waves that the pixels would hold
+        return _HIDDEN if shapes and skewness < _DEEP else 0.0
 
 
 def read_measurements(
