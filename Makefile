@@ -138,7 +138,12 @@ reproduce: env  ## The numbers and figures of the pages, but for timings and rep
 	$(MAKE) --no-print-directory accuracy
 	$(MAKE) --no-print-directory validate VALIDATION=config/validation.yaml
 	cp results/accuracy/laws.png results/accuracy/work-precision.png docs/figures/
-	cp results/validation/differences.nc $(KEPT)/differences-256.nc
+	cp results/validation/differences.nc $(KEPT)/validation/differences-256.nc
+	cp $(addprefix results/figures/paper/,$(addsuffix .nc,$(PAPER))) $(KEPT)/
+	@$(REPAIR) config/spheres.yaml
+	$(SNAKE) --config sweep=config/spheres.yaml
+	$(IN_ENV) .venv/bin/python -m studies law spheres config/spheres.yaml --output $(KEPT)
+	$(IN_ENV) .venv/bin/python -m studies law held-out --output $(KEPT)
 	$(IN_ENV) .venv/bin/python -m studies paper gallery
 	$(IN_ENV) .venv/bin/python -m studies accuracy report --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy energies --scans 12 --keep
@@ -147,21 +152,24 @@ reproduce: env  ## The numbers and figures of the pages, but for timings and rep
 	$(IN_ENV) .venv/bin/python -m studies boundary-elements numbers --keep
 	$(IN_ENV) .venv/bin/python -m studies law figure
 	$(IN_ENV) .venv/bin/python -m studies law numbers --keep
+	$(IN_ENV) .venv/bin/crackfront predict examples/scans/nanodiamond-*.al3d --modulus 0.7MPa --poisson 0.5 \
+	  --radius 1.25mm --work-of-adhesion 63mJ/m2 --figure docs/figures/prediction.png
 	$(IN_ENV) .venv/bin/python -m studies pages
 
-KEPT = docs/reference/validation
+KEPT = docs/reference
+PAPER = main-3cd main-5bc si-5 beyond-avalanches beyond-roughness
 LARGE = 512 1024 series strong fine edges
 
 reproduce-boundary: env  ## The same of large boundary elements (a day of one core)
 	set -e; for name in $(LARGE); do $(MAKE) --no-print-directory validate VALIDATION=config/validation-$$name.yaml; done
-	cp results/validation-512/differences.nc $(KEPT)/differences-512.nc
-	cp results/validation-512/picture.nc $(KEPT)/picture-512.nc
+	cp results/validation-512/differences.nc $(KEPT)/validation/differences-512.nc
+	cp results/validation-512/picture.nc $(KEPT)/validation/picture-512.nc
 	cp results/validation-512/validation.png docs/figures/validation.png
-	cp results/validation-series/differences.nc $(KEPT)/differences-series.nc
-	cp results/validation-strong/hysteresis.nc $(KEPT)/hysteresis-strong.nc
+	cp results/validation-series/differences.nc $(KEPT)/validation/differences-series.nc
+	cp results/validation-strong/hysteresis.nc $(KEPT)/validation/hysteresis-strong.nc
+	cp results/validation-fine/hysteresis.nc $(KEPT)/validation/hysteresis-fine.nc
 	cp results/validation-strong/hysteresis.png docs/figures/validation-strong.png
-	cp results/validation-strong/validity.csv crackfront/analysis/validity.csv
-	cp results/validation-edges/edges.nc $(KEPT)/edges.nc
+	cp results/validation-edges/edges.nc $(KEPT)/validation/edges.nc
 	cp results/validation-edges/edges.png docs/figures/validation-edges.png
 	$(IN_ENV) .venv/bin/python -m studies boundary-elements numbers --keep
 	$(IN_ENV) .venv/bin/python -m studies pages
