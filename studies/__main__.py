@@ -35,6 +35,7 @@ class _Studies(Commands):
         study: click.Group = importlib.import_module(
             f"studies.{cmd_name.replace('-', '_')}.commands"
         ).commands
+        study.help = STUDIES[cmd_name]
         return study
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -11,6 +12,7 @@ from typing import Any
 
 import click
 
+from crackfront.cli.report import FILE
 from crackfront.data.files import write_text
 from crackfront.data.fingerprint import fingerprint
 from crackfront.data.provenance import provenance
@@ -23,6 +25,9 @@ _BLOCK = re.compile(
 )
 
 keep_option = click.option("--keep", is_flag=True, help=f"Keep the tables for pages, in {KEPT}.")
+
+output_option = functools.partial(click.option, "--output", type=FILE, show_default=True)
+"""Option for the folder that a command writes into."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,6 @@ from pathlib import Path
 import click
 
 from crackfront.cli.report import (
-    FILE,
     announce_compilation,
     announce_cost,
     examples,
@@ -26,21 +25,11 @@ from studies.accuracy import scans as instrument
 from studies.accuracy.files import STUDIES
 from studies.accuracy.report import write_report
 from studies.accuracy.scenes import SCENES
-from studies.pages import keep_option, keep_parts, tell
+from studies.pages import keep_option, keep_parts, output_option, tell
 
+commands = click.Group()
 
-@click.group()
-def commands() -> None:
-    """Errors of the numerics, the fit of their laws, and what the errors rest on."""
-
-
-_output = click.option(
-    "--output",
-    type=FILE,
-    default=Path("results/accuracy"),
-    show_default=True,
-    help="Folder of the results.",
-)
+_output = output_option(default=Path("results/accuracy"), help="Folder of the results.")
 
 
 @commands.command(
@@ -117,7 +106,7 @@ def energies(scans: int, keep: bool) -> None:
 
 
 @commands.command(epilog=examples("python -m studies accuracy scans"))
-@click.option("--output", type=FILE, default=Path("examples/scans"), show_default=True)
+@output_option(default=Path("examples/scans"))
 def scans(output: Path) -> None:
     """Write the synthetic scans of nanodiamond that the examples read."""
     refuse_unwritable(output)

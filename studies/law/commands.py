@@ -26,24 +26,14 @@ from studies.law.spheres import (
     sphere_rows,
     sphere_table,
 )
-from studies.pages import keep_option, tell
+from studies.pages import keep_option, output_option, tell
 
 _FRONTS = "config/line.yaml config/line-weak.yaml"
 
-
-@click.group()
-def commands() -> None:
-    """The law of k: measure it on straight fronts, fit it, compare spheres with it."""
-
+commands = click.Group()
 
 _configurations = click.argument("configurations", nargs=-1, type=FILE)
-_output = click.option(
-    "--output",
-    type=FILE,
-    default=Path("results/law"),
-    show_default=True,
-    help="Folder of the results.",
-)
+_output = output_option(default=Path("results/law"), help="Folder of the results.")
 _tables = click.option(
     "--table",
     "tables",
@@ -115,7 +105,7 @@ def held_out(output: Path) -> None:
 
 @commands.command(epilog=examples("python -m studies law figure"))
 @_tables
-@click.option("--output", type=FILE, default=Path("docs/figures"), show_default=True)
+@output_option(default=Path("docs/figures"))
 def figure(tables: tuple[Path, ...], output: Path) -> None:
     """Draw the law of the package with what it is fitted to and with spheres, as law.png."""
     refuse_unwritable(output)

@@ -22,23 +22,13 @@ from crackfront.data.files import read_attributes, write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import save_figure, save_picture
-from studies.pages import keep_parts
+from studies.pages import keep_parts, output_option
 from studies.paper.drawing import save_animation
 from studies.paper.figure import FIGURES, SCALES, Figure, Result, checks_table, figure, load_figure
 
+commands = click.Group()
 
-@click.group()
-def commands() -> None:
-    """Figures of the paper: compute their data, draw them, compare them with the paper."""
-
-
-_output = click.option(
-    "--output",
-    type=FILE,
-    default=Path("results/figures"),
-    show_default=True,
-    help="Folder of all figures.",
-)
+_output = output_option(default=Path("results/figures"), help="Folder of all figures.")
 
 _PICTURES = Path("docs/experiments/figures")
 

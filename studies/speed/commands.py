@@ -8,12 +8,12 @@ from typing import Any, get_args
 
 import click
 
-from crackfront.cli.report import FILE, examples, refuse_unwritable
+from crackfront.cli.report import examples, refuse_unwritable
 from crackfront.data.files import write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import write_records
 from crackfront.simulate.run import compile_solver
-from studies.pages import keep_option, tell
+from studies.pages import keep_option, output_option, tell
 from studies.speed import costs as cost_model
 from studies.speed import needs as requests
 from studies.speed import scaling as sweeps
@@ -21,19 +21,9 @@ from studies.speed import solvers as pairs
 from studies.speed.machine import in_fresh_process
 from studies.speed.problems import PROBLEMS, Group
 
+commands = click.Group()
 
-@click.group()
-def commands() -> None:
-    """Solvers against the reference, what requests cost, how sweeps scale."""
-
-
-_output = click.option(
-    "--output",
-    type=FILE,
-    default=Path("results/benchmark"),
-    show_default=True,
-    help="Folder of the results.",
-)
+_output = output_option(default=Path("results/benchmark"), help="Folder of the results.")
 
 
 def _write(
