@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
@@ -68,6 +68,20 @@ def with_error(value: float, error: float) -> str:
         return f"{value:.6g} ± {error:.2g}"
     digits = max(0, 1 - int(np.floor(np.log10(error))))
     return f"{value:.{digits}f} ± {error:.{digits}f}"
+
+
+MISSING = "-"
+"""What stands where the data give no number."""
+
+
+def with_interval(estimate: Estimate[Any]) -> str:
+    """Value and 95% interval of one number, as far as there are any."""
+    value, _, low, high = astuple(estimate)
+    if not np.isfinite(value):
+        return MISSING
+    if not np.isfinite(low):
+        return f"{value:.2f} (no interval)"
+    return f"{value:.2f} ({low:.2f} to {high:.2f})"
 
 
 def normal_estimate(value: float, standard_error: float) -> Estimate[float]:

@@ -6,7 +6,7 @@ import math
 
 from scipy.optimize import brentq
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import with_interval
 from crackfront.analysis.law import (
     WEAKEST,
     law_value,
@@ -48,24 +48,19 @@ def finding(departure: str) -> str:
     s, low, high = crossing()
     weak = pinning_factor(WEAKEST, math.inf).factor
     strong = " and ".join(
-        f"{_with_interval(pinning_factor(STRONG, math.inf, breadth=breadth).factor)} for {name}"
+        f"{with_interval(pinning_factor(STRONG, math.inf, breadth=breadth).factor)} for {name}"
         for name, breadth in stated_breadths().items()
     )
     return (
         "The factor k of w_retr, w_appr = w_int - e_el ± k e_el is no constant: it falls with the "
         "disorder s = w_rms/w_int and rises with the size g, the length over which the contact "
         "holds its edge over the Larkin length of the roughness. In the infinite contact k is "
-        f"{_with_interval(weak)} at vanishing disorder, and at s = {STRONG:g}, the disorder of the "
+        f"{with_interval(weak)} at vanishing disorder, and at s = {STRONG:g}, the disorder of the "
         f"paper's experiment, {strong}. A finite contact has less. So k is {PAPER_FACTOR:g}, as "
         f"the paper has it, only along a line from g = {least_size():.1f} at vanishing disorder to "
         f"s = {s:.2f} ({low:.2f} to {high:.2f}) in the infinite contact. "
         f"The law was measured on straight fronts held by springs{departure}."
     )
-
-
-def _with_interval(k: Estimate[float]) -> str:
-    """A factor with its 95% interval."""
-    return f"{k.value:.2f} ({k.low:.2f} to {k.high:.2f})"
 
 
 def departure_of_spheres(rms: float, n_large: int, n_cell: int) -> str:

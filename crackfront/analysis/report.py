@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate, finite_mean, with_error
+from crackfront.analysis.estimate import MISSING, Estimate, finite_mean, with_error, with_interval
 from crackfront.analysis.finding import (
     PAPER_FACTOR,
     PERTURBATION_FACTOR,
@@ -18,9 +18,6 @@ from crackfront.analysis.finding import (
 from crackfront.analysis.law import LEAST_SIZE
 from crackfront.analysis.result import LawEstimates, SweepFit
 from crackfront.core.arrays import Array
-
-MISSING = "-"
-"""What stands where the data give no number."""
 
 ONSET = 0.5
 """A k below this part of the spectrum's largest counts as below the onset of hysteresis."""
@@ -53,7 +50,7 @@ def fit_table(fit: SweepFit) -> str:
         "k of the straight front at the same disorder and size g, from which nothing was "
         "adjusted to this sweep; and the measured k extrapolated by it to the infinite "
         f"contact, where g is {LEAST_SIZE:g} or more. In the limit of weak disorder that is "
-        f"k_0 = {_with_interval(fit.k_0, ())} on every surface.",
+        f"k_0 = {with_interval(fit.k_0)} on every surface.",
         _sizes_table(fit),
         "## What an experimenter would find",
         "Work of adhesion from a JKR fit of force against mean radius, less that of the front "
@@ -75,7 +72,7 @@ def fit_result(fit: SweepFit) -> str:
         f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el\n\n"
         f"- k of this sweep, {_n_simulation(fit)} simulations: {_pooled_entry(fit, 'factor')}\n"
         f"- k by the law: {'; '.join([pooled, *_apart(law)])}; k of the paper: {PAPER_FACTOR:g}\n"
-        f"- exponent of w_rms: {_with_interval(fit.pooled.exponent, ())}; of the paper: 2"
+        f"- exponent of w_rms: {with_interval(fit.pooled.exponent)}; of the paper: 2"
     )
 
 
@@ -107,12 +104,12 @@ def _law_table(fit: SweepFit) -> str:
 
 def _law_entries(law: LawEstimates, index: Any) -> tuple[str, ...]:
     """The fitted numbers of one row."""
-    return tuple(_with_interval(getattr(law, name), index) for name in _FITTED)
+    return tuple(with_interval(getattr(law, name).at(index)) for name in _FITTED)
 
 
 def _pooled_entry(fit: SweepFit, name: str) -> str:
     """A pooled k, which without the scatter of its spectra and its bias would say too much."""
-    pooled = _with_interval(getattr(fit.pooled, name), ())
+    pooled = with_interval(getattr(fit.pooled, name))
     return "; ".join([pooled, *pooled_limits(fit, getattr(fit.spectra, name))])
 
 
@@ -138,9 +135,9 @@ def _cell_table(fit: SweepFit) -> str:
     if np.any(np.isfinite(fit.size_slope.value)):
         header.append("change of k per doubling of the correlation length")
         for index, row in enumerate(rows):
-            row.append(_with_interval(fit.size_slope, index))
+            row.append(with_interval(fit.size_slope.at(index)))
         blank = [""] * fit.table.spectrum.size
-        rows.append(["mean over the range", *blank, _with_interval(fit.pooled_size_slope, ())])
+        rows.append(["mean over the range", *blank, with_interval(fit.pooled_size_slope)])
     return _markdown(header, rows)
 
 
@@ -152,7 +149,7 @@ def _sizes_table(fit: SweepFit) -> str:
         size = cells.size[cell]
         name, energy = fit.table.spectrum[cell[0]], fit.table.amplitude[cell[1]]
         estimates = cells.factor, cells.law_factor, cells.infinite_factor
-        factors = (_with_interval(estimate, cell) for estimate in estimates)
+        factors = (with_interval(estimate.at(cell)) for estimate in estimates)
         known = f"{size:.2g}" if np.isfinite(size) else MISSING
         rows.append((str(name), f"{energy:.4g}", known, *factors))
     return _markdown(header, rows)
@@ -192,19 +189,9 @@ def _force_table(fit: SweepFit) -> str:
     rows = []
     for index, name in enumerate(fit.table.spectrum):
         found = (f"{one:.4f}" if np.isfinite(one) else MISSING for one in differences[index])
-        rows.append((str(name), *found, _with_interval(fit.spectra.factor_from_force, index)))
+        rows.append((str(name), *found, with_interval(fit.spectra.factor_from_force.at(index))))
     pooled = _pooled_entry(fit, "factor_from_force")
     return _markdown(header.split("; "), [*rows, ("**pooled**", "", "", "", "", pooled)])
-
-
-def _with_interval(estimate: Estimate, index: Any) -> str:
-    """Value and interval at a place, as far as there are any."""
-    value, _, low, high = astuple(estimate.at(index))
-    if not np.isfinite(value):
-        return MISSING
-    if not np.isfinite(low):
-        return f"{value:.2f} (no interval)"
-    return f"{value:.2f} ({low:.2f} to {high:.2f})"
 
 
 def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crackfront.analysis.estimate import with_interval
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import Scales
@@ -76,7 +77,6 @@ def comparison_table(items: Iterable[Comparison]) -> str:
     """Predicted and simulated numbers in Markdown, a film a row."""
     rows = []
     for film, law, found in ((item.film, item.prediction, item.found) for item in items):
-        factors = law.factors.both, found.k
         works = law.w_appr, found.w_appr, law.w_retr, found.w_retr
         rows.append(
             (
@@ -84,7 +84,8 @@ def comparison_table(items: Iterable[Comparison]) -> str:
                 f"{1e6 * film.roll_off:g}",
                 f"{law.e_el.value / law.work_of_adhesion:.3f}",
                 f"{law.correlation_length / law.contact_radius:.4f}",
-                *(f"{k.value:.2f} ({k.low:.2f} to {k.high:.2f})" for k in factors),
+                with_interval(law.factors.both),
+                with_interval(found.k),
                 *(f"{1e3 * work.value:.1f}" for work in works),
             )
         )

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import Estimate, with_interval
 from crackfront.analysis.finding import (
     PAPER_FACTOR,
     STRONG,
@@ -72,8 +72,7 @@ def limit_part() -> str:
     for s in DISORDERS:
         found = [pinning_factor(s, math.inf, breadth=breadth) for breadth in breadths.values()]
         name = "0, k_0" if s == WEAKEST else f"{s:g}"
-        ks = (one.factor for one in found)
-        intervals = (f"{k.value:.2f} ({k.low:.2f} to {k.high:.2f})" for k in ks)
+        intervals = (with_interval(one.factor) for one in found)
         rows.append((name, *intervals, f"{found[0].negative_share:.1%}"))
     s, low, high = crossing()
     names = (f"k, {name} (beta {breadth:.2f})" for name, breadth in breadths.items())

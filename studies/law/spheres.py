@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crackfront.analysis.estimate import REACH, Estimate, with_error
+from crackfront.analysis.estimate import REACH, Estimate, with_error, with_interval
 from crackfront.analysis.law import spectral_breadth
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.core import jkr
@@ -175,7 +175,7 @@ def sphere_table(rows: Sequence[SphereRow]) -> str:
             f"{row.elastic_energy:.3g}",
             f"{row.contact_radius:.3g}",
             f"{law.size:.2g}",
-            f"{law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f})",
+            with_interval(law.both),
             with_error(row.both, row.both_error),
             f"{law.both.value / row.both - 1:+.1%}",
         )

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 from pydantic import Field
 
-from crackfront.analysis.estimate import REACH, with_error
+from crackfront.analysis.estimate import REACH, with_error, with_interval
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.analysis.steady import steady_adhesion
@@ -154,8 +154,8 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
     law = sphere_factors("roughness", spectrum, energy, radius)
     numbers = (
         f"k of this loop is {with_error(factor, error / (2 * energy))}, by the law at its size "
-        f"{law.both.value:.2f} ({law.both.low:.2f} to {law.both.high:.2f}); tolerance: "
-        f"what one digit of k leaves, {ONE_DIGIT:g} e_el, with {energy:.4f} w_int on the tile"
+        f"{with_interval(law.both)}; tolerance: what one digit of k leaves, {ONE_DIGIT:g} e_el, "
+        f"with {energy:.4f} w_int on the tile"
     )
     return (
         whole_cycle(loop.status),

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
-from crackfront.analysis.estimate import REACH, Estimate, slope, with_error
+from crackfront.analysis.estimate import REACH, slope, with_error, with_interval
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.report import pooled_limits
 from crackfront.analysis.result import SweepFit
@@ -111,7 +111,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"k of all spectra, e_el from {study.lowest_elastic_energy:g} to "
             f"{study.highest_elastic_energy:g} w_int: about 3",
             with_error(PAPER_FACTOR, ONE_DIGIT),
-            _interval(factor),
+            with_interval(factor),
             bool(abs(factor.value - PAPER_FACTOR) <= ONE_DIGIT),
             f"{', '.join(['95% interval', *pooled_limits(fit, fit.spectra.factor)])}; k grows with "
             "the size of the contact, and falls with disorder beyond the onset: panels b and c",
@@ -130,7 +130,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
         Check(
             "hysteresis in proportion to w_rms^2: exponent 2",
             "2 in the 95% interval",
-            _interval(exponent),
+            with_interval(exponent),
             bool(exponent.low <= 2 <= exponent.high),
             "over the range of the fit, where k falls with disorder",
             law=_said(float(exponent.value), *law.exponent),
@@ -184,11 +184,6 @@ def _by_law(fit: SweepFit) -> _ByLaw:
 def _said(found: float, value: float, reach: float, units: str = "") -> str:
     """The law's number where what was found agrees with it, else nothing."""
     return f"{with_error(value, reach)}{units}" if abs(found - value) <= reach else ""
-
-
-def _interval(estimate: Estimate) -> str:
-    """An estimate with its interval."""
-    return f"{estimate.value:.2f} ({estimate.low:.2f} to {estimate.high:.2f})"
 
 
 def _onsets(fit: SweepFit) -> Array:
