@@ -82,12 +82,8 @@ def report(output: Path, keep: bool) -> None:
 @keep_option
 def predictions(keep: bool) -> None:
     """Compare predictions from scans with simulations of the surfaces; print a table."""
-    tell(
-        "accuracy",
-        {"Predictions": films.comparison_table(films.comparisons())},
-        "studies.accuracy.predictions",
-        keep=keep,
-    )
+    parts = {"Predictions": films.comparison_table(films.comparisons())}
+    tell("accuracy", parts, "studies.accuracy.predictions", keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies accuracy energies --scans 12"))
@@ -97,12 +93,8 @@ def predictions(keep: bool) -> None:
 @keep_option
 def energies(scans: int, keep: bool) -> None:
     """Compare e_el of synthetic scans with that of their spectra; print a table."""
-    tell(
-        "accuracy",
-        {"Scans": synthetic.energy_table(synthetic.found_scans(scans))},
-        "studies.accuracy.energies",
-        keep=keep,
-    )
+    parts = {"Scans": synthetic.energy_table(synthetic.found_scans(scans))}
+    tell("accuracy", parts, "studies.accuracy.energies", keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies accuracy scans"))
@@ -119,9 +111,5 @@ def scans(output: Path) -> None:
 def energy_balance(keep: bool) -> None:
     """Compare the dissipated energy of cycles with the work of their steps; print a table."""
     announce_compilation()
-    tell(
-        "accuracy",
-        {"Energy balance": balance.energy_table()},
-        "studies.accuracy.energy_balance",
-        keep=keep,
-    )
+    parts = {"Energy balance": balance.energy_table()}
+    tell("accuracy", parts, "studies.accuracy.energy_balance", keep=keep)
