@@ -21,7 +21,9 @@ from crackfront.plots.style import BLACK, COLOURS, MARKERS
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.colors import Colormap
+    from matplotlib.ticker import Locator
 
 LATERAL_UNIT = r"$(3\pi w_\mathrm{int}R^2/4E')^{1/3}$"
 VERTICAL_UNIT = r"$(9\pi^2 w_\mathrm{int}^2 R/16E'^2)^{1/3}$"
@@ -177,13 +179,13 @@ def legend_entries(axes: Axes) -> tuple[list[Artist], list[str]]:
     return [handles[entry] for entry in order], [labels[entry] for entry in order]
 
 
-def label_decimals(axes: Axes) -> None:
-    """Label 1, 2 and 5 of every decade of the abscissa as decimal numbers."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+def label_decimals(axis: Axis, places: Locator | None = None) -> None:
+    """Label places of a logarithmic axis, by default 1, 2 and 5 of every decade, as decimals."""
+    from matplotlib.ticker import LogLocator, NullFormatter
 
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    axis.set_major_locator(places or LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter(NullFormatter())
 
 
 def spectrum_label(table: SweepTable, index: int) -> str:

@@ -132,7 +132,7 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
         label = spectrum_label(table, families.index(family))
         axes.plot([], [], spectrum_marker(family), color="0.4", label=label)
     axes.set(xscale="log", xlim=ends, ylabel=_FACTOR_LABEL)
-    label_decimals(axes)
+    label_decimals(axes.xaxis)
     axes.set_xlabel(r"size $g=L_\kappa/\ell$, springs over Larkin length")
     axes.legend(loc="upper left", ncols=2)
 
@@ -174,7 +174,7 @@ def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     draw_theory(axes, ends, ends / 2)
     axes.set(xscale="log", yscale="log", xlim=ends)
     if ends[1] < _DECIMALS * ends[0]:
-        label_decimals(axes)
+        label_decimals(axes.xaxis)
     axes.set_ylim(lowest, PERTURBATION_FACTOR / 2 * ends[1] * 4)
     axes.set_xlabel(r"disorder $(w_\mathrm{rms}/w_\mathrm{int})^2$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
@@ -229,7 +229,7 @@ def draw_factor_by_disorder(axes: Axes, fit: SweepFit) -> None:
     draw_fit(axes, fit)
     draw_theory(axes, ends)
     axes.set(xscale="log", xlim=ends, ylabel=_FACTOR_LABEL)
-    label_decimals(axes)
+    label_decimals(axes.xaxis)
     axes.set_xlabel(r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$")
 
 
@@ -249,7 +249,7 @@ def draw_factor_by_length(axes: Axes, fit: SweepFit) -> None:
     ends = _ends(length, 1.6)
     draw_theory(axes, ends)
     axes.set(xscale="log", xlim=ends)
-    label_decimals(axes)
+    label_decimals(axes.xaxis)
     axes.set_xlabel("correlation length of $w_\\mathrm{loc}$ (reduced length)")
     axes.set_title(
         rf"mean over ${fit.lowest_elastic_energy:g}\leq e_\mathrm{{el}}/w_\mathrm{{int}}"

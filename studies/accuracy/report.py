@@ -10,11 +10,12 @@ from typing import TypeVar
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator
 
 from crackfront.core.arrays import Array
 from crackfront.data.files import write_text
 from crackfront.plots import style
+from crackfront.plots.parts import label_decimals
 from studies.accuracy.averages import Coverage, Sample
 from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
@@ -283,10 +284,8 @@ def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
             zorder=3 if knob == "asked" else 2,
         )
     axes.set(xscale="log", yscale="log")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(NullFormatter())
+    label_decimals(axes.xaxis)
+    label_decimals(axes.yaxis, LogLocator())
     scene = study.scene
     axes.set_title(
         rf"{scene.shape}, $e_\mathrm{{el}} = {scene.elastic_energy:g}\,w_\mathrm{{int}}$"

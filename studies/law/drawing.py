@@ -27,6 +27,7 @@ from crackfront.plots.parts import label_decimals
 from crackfront.plots.style import BLACK, COLOURS, MARKERS, PAGE, blank_figure, explain, house_style
 from crackfront.plots.sweep import draw_infinite_law
 from studies.law.cells import LawCell
+from studies.paper.drawing import name_panels, write_beside
 
 _LARGE = 3.0
 """Size g above which points are extrapolated: their gain is small, and its error smaller."""
@@ -78,8 +79,7 @@ def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
         right.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
         right.legend(loc="lower left")
         figure.legend(*left.get_legend_handles_labels(), loc="outside upper center", ncols=6)
-        for axes, letter in ((left, "a"), (right, "b")):
-            axes.set_title(letter, loc="left", fontweight="bold")
+        name_panels((left, right), "ab")
         explain(
             figure,
             "bars: 95% intervals over surfaces; spheres, to which nothing was adjusted, are open "
@@ -133,17 +133,12 @@ def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]
             **style,
         )
     axes.axhline(k_0, color="0.5", linewidth=0.5, zorder=1)
-    axes.annotate(
-        rf"$k_0={k_0:.2f}$, weak disorder in the infinite contact",
-        (abscissa[0] * 1.1, k_0),
-        xytext=(0, 2),
-        textcoords="offset points",
-        fontsize=6,
-    )
+    name = rf"$k_0={k_0:.2f}$, weak disorder in the infinite contact"
+    write_beside(axes, name, (abscissa[0] * 1.1, k_0), (0, 2), fontsize=6)
     axes.set_xscale("log")
     axes.set_xlim(abscissa[0], abscissa[-1])
     axes.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
-    label_decimals(axes)
+    label_decimals(axes.xaxis)
     axes.set_xlabel(r"size $g\,(\beta_0/\beta)^f/\,(1+c\,s^d)$")
     axes.set_ylabel(r"$k\,(1+a\,s^b\,(\beta_0/\beta)^e)$")
 

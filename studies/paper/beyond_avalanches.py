@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from matplotlib.ticker import FixedLocator, LogLocator
+from matplotlib.ticker import FixedLocator
 
 from crackfront.analysis.estimate import with_error
 from crackfront.core.adhesion import force_correlation_length
@@ -18,10 +18,11 @@ from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive
+from crackfront.plots.parts import label_decimals
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
 from crackfront.simulate.instabilities import resolved_motion, swept_clusters
 from studies.paper import events as line_events
-from studies.paper.drawing import DASHED, ON_WHITE, THEORY, label_plain_numbers, name_panels
+from studies.paper.drawing import DASHED, ON_WHITE, THEORY, name_panels
 from studies.paper.figure import Check, Figure, Integers, Progress, values_of
 from studies.paper.power_law import PowerLaw, truncated_power_law
 from studies.paper.rough import (
@@ -268,9 +269,9 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
             axes.set(xscale="log", yscale="log")
         name_panels((*lines, *panels), "abcdef")
         # Less than two decades: powers of ten alone would be too few.
-        label_plain_numbers(lines[1].xaxis, FixedLocator(record.spring.tolist()))
+        label_decimals(lines[1].xaxis, FixedLocator(record.spring.tolist()))
         for axes in lines[1:]:
-            label_plain_numbers(axes.yaxis, LogLocator(subs=(1.0, 2.0, 5.0)))
+            label_decimals(axes.yaxis)
         # The last one is the law of the theory, which the panel names.
         handles, labels = (part[:-1] for part in lines[0].get_legend_handles_labels())
         title = "straight front on springs"

@@ -19,9 +19,9 @@ from scipy.fft import rfft
 from crackfront.analysis.estimate import with_error
 from crackfront.core.arrays import Array
 from crackfront.data.section import Count, Positive, refusal
-from crackfront.plots.parts import legend_entries
+from crackfront.plots.parts import label_decimals, legend_entries
 from crackfront.plots.style import BLUE, GREEN, PAGE, PURPLE, VERMILION, blank_figure, house_style
-from studies.paper.drawing import ON_WHITE, label_plain_numbers, name_panels
+from studies.paper.drawing import ON_WHITE, name_panels
 from studies.paper.figure import Check, Figure, Integers, Progress
 from studies.paper.front_spectra import (
     RoughnessFit,
@@ -254,7 +254,7 @@ def roughness_figure(record: RoughnessRecord) -> Drawing:
             axes.set(xscale="log", yscale="log")
         name_panels(panels, "abcd")
         for axes in panels[[1, 3]]:
-            label_plain_numbers(axes.yaxis, FixedLocator([0.1, 0.2, 0.3, 0.5, 1.0, 2.0]))
+            label_decimals(axes.yaxis, FixedLocator([0.1, 0.2, 0.3, 0.5, 1.0, 2.0]))
         handles, labels = legend_entries(panels[0])
         figure.legend(handles, labels, loc="outside upper center", ncols=4, columnspacing=1.2)
         return figure

@@ -11,10 +11,8 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, Locator, NullFormatter
 from PIL import Image
 
 from crackfront.data.files import replace_atomically
@@ -56,13 +54,6 @@ def name_panels(panels: Iterable[Axes], letters: str) -> None:
     """Bold letters on the upper left corners of panels."""
     for axes, letter in zip(panels, letters, strict=True):
         axes.set_title(letter, loc="left", fontweight="bold")
-
-
-def label_plain_numbers(axis: Axis, places: Locator) -> None:
-    """Label a logarithmic axis of few decades with numbers that are no powers of ten."""
-    axis.set_major_locator(places)
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())
 
 
 _FRAMES_PER_SECOND = 12
