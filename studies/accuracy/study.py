@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import asdict, dataclass, replace
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +21,6 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.steady import forward_circle
 from studies.accuracy.scenes import Progress, Scene, Setting
-
-BRANCHES: tuple[tuple[Direction, str], ...] = ((1, "approach"), (-1, "retraction"))
 
 _RUN, _BRANCH, _PER_CUTOFF = "realisation", "branch", "1 / short cutoff"
 
@@ -157,7 +156,7 @@ def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
     field = simulation_field(simulation)
     length = simulation.correlation_length
     adhesion, force, radius = [], [], []
-    for direction, _ in BRANCHES:
+    for direction in get_args(Direction):
         loads = scene.penetrations[::direction]
         first = float(loads[0])
         start = forward_circle(field, first, direction, jkr.equilibrium_radius(first), length)

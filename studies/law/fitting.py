@@ -51,7 +51,8 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
         coefficients = found.x
         model = _likeliest_model(coefficients, places, k, error)
     free = least_squares(residuals, [*coefficients, FINITE_SIZE_EXPONENT])
-    covariance = _covariance(free.jac)
+    # The residuals have unit variance.
+    covariance = np.linalg.pinv(free.jac.T @ free.jac)
     relative = law_value(coefficients, s, g, breadth)[g >= 1] / k[g >= 1] - 1
     numerical = [cell.numerical_error / cell.both for cell in used if cell.size >= 1]
     ranges = [(float(values[values > 0].min()), float(values.max())) for values in places]
@@ -80,11 +81,6 @@ def _pooled_error(size: Array, error: Array) -> Array:
     near = apart <= np.maximum(_NEAR, apart.min(axis=1, keepdims=True))
     # The median of the squares of normal numbers is 0.455 of their mean.
     return np.array([np.sqrt(np.median(error[known][row] ** 2) / 0.455) for row in near])
-
-
-def _covariance(jacobian: Array) -> Array:
-    """Covariance of parameters whose residuals have unit variance."""
-    return np.asarray(np.linalg.pinv(jacobian.T @ jacobian))
 
 
 def _likeliest_model(

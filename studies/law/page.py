@@ -17,13 +17,7 @@ from crackfront.analysis.finding import (
     finding,
     stated_breadths,
 )
-from crackfront.analysis.law import (
-    COEFFICIENTS,
-    WEAKEST,
-    Law,
-    pinning_factor,
-    shipped_law,
-)
+from crackfront.analysis.law import COEFFICIENTS, WEAKEST, Law, pinning_factor, shipped_law
 from studies.law.cells import HELD_OUT, LawCell, measured_cells
 from studies.law.spheres import SphereRow, departures, is_within, sphere_table
 from studies.pages import markdown_table

@@ -130,11 +130,6 @@ def roughness_record(parameters: RoughnessParameters, progress: Progress) -> Rou
     )
 
 
-def expected_seconds(parameters: RoughnessParameters) -> float:
-    """Processor time as measured with 64 surfaces, for any number of them (Units: s)."""
-    return 10.0 * parameters.n_surface
-
-
 def _tile(parameters: RoughnessParameters, line: LineParameters, realisation: int) -> _Surface:
     """Mean power of straight fronts on one tile."""
     pulled = line.front(line.spring, parameters.seed, realisation, _PRECISION)
@@ -379,5 +374,6 @@ FIGURE = Figure(
     compute=roughness_record,
     checks=roughness_checks,
     draw=roughness_figure,
-    seconds=expected_seconds,
+    # As measured with 64 surfaces.
+    seconds=lambda parameters: 10.0 * parameters.n_surface,
 )

@@ -121,11 +121,9 @@ def values_of(source: Any, *names: str) -> dict[str, Any]:
     return {name: getattr(source, name) for name in names or [one.name for one in fields(source)]}
 
 
-_GROUPS = ("main", "si", "beyond")
-
 FIGURES = tuple(
     path.stem.replace("_", "-")
-    for group in _GROUPS
+    for group in ("main", "si", "beyond")
     for path in sorted(Path(__file__).parent.glob(f"{group}_*.py"))
 )
 """Names of all figures, those of the main text first."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
 
+from crackfront.analysis.estimate import mean_estimate
 from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, LATERAL, variable
 from studies.paper.figure import Integers
@@ -80,12 +80,11 @@ def fitted_roughness(record: RoughnessRecord, index: int) -> RoughnessFit:
     # The logarithm of a few fronts' mean lies below that of the mean over all surfaces.
     freed = np.log(power.mean(axis=0)) - slopes.mean() * np.log(wavevector)
     level = np.average(freed, weights=weight**2)
-    exponents = -(1 + slopes) / 2
-    error = np.std(exponents, ddof=1) / np.sqrt(exponents.size)
+    exponent = mean_estimate(-(1 + slopes) / 2)[0].each(float)
     ends = wavevector[[0, -1]]
     return RoughnessFit(
-        exponent=float(exponents.mean()),
-        reach=float(student.ppf(0.975, exponents.size - 1) * error),
+        exponent=exponent.value,
+        reach=exponent.high - exponent.value,
         wavevector=ends,
         power=np.exp(level + slopes.mean() * np.log(ends)),
     )

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from pydantic import model_validator
 
@@ -138,30 +137,25 @@ def film_scales_figure(record: FilmScales) -> Drawing:
             densities.set_density_scales(axes, q)
         upper.plot(q, record.isotropic, color=style.BLACK)
         densities.draw_dominant_scales(upper, record.mean_square, record.shortest, record.longest)
-        _draw_roll_off(upper, record)
+        place, text = 2 * np.pi / record.roll_off, f"roll-off {1e6 * record.roll_off:.3g} µm"
+        # Up to the density, so that it crosses no bar and no name.
+        ends = upper.get_ylim()[0], record.isotropic[0]
+        upper.vlines(place, *ends, color="0.6", linewidth=0.6, zorder=1)
+        look = {"xycoords": upper.get_xaxis_transform(), "ha": "right", "color": "0.35"}
+        write_beside(upper, text, (place, 0.03), (-3, 0), **look)
         lower.plot(q, record.profile, color=style.BLACK, label="exact projection")
         lower.plot(q, record.converted, color=style.BLUE, dashes=(4, 2), label=CONVERTED_LABEL)
         if record.measured_wavevector.size:
             points, density = record.measured_wavevector, record.measured_profile
             upper.plot(points, np.pi / points * density, ".", color=style.VERMILION, markersize=2)
             lower.plot(points, density, ".", color=style.VERMILION, markersize=2, label="measured")
-        lower.axvline(2 * np.pi / record.roll_off, color="0.6", linewidth=0.6, zorder=1)
+        lower.axvline(place, color="0.6", linewidth=0.6, zorder=1)
         lower.legend(loc="upper right")
         upper.set_ylabel(densities.ISOTROPIC_LABEL)
         lower.set(xlabel=densities.WAVEVECTOR_LABEL, ylabel=densities.PROFILE_LABEL)
         densities.add_wavelengths(upper)
         style.explain(figure, "bars: scales of 80% of a mean square; grey: the roll-off")
         return figure
-
-
-def _draw_roll_off(axes: Axes, record: FilmScales) -> None:
-    """Line at the roll-off with its wavelength."""
-    place = 2 * np.pi / record.roll_off
-    # Up to the density, so that it crosses no bar and no name.
-    ends = axes.get_ylim()[0], record.isotropic[0]
-    axes.vlines(place, *ends, color="0.6", linewidth=0.6, zorder=1)
-    text, lower = f"roll-off {1e6 * record.roll_off:.3g} µm", axes.get_xaxis_transform()
-    write_beside(axes, text, (place, 0.03), (-3, 0), xycoords=lower, ha="right", color="0.35")
 
 
 FIGURE = Figure(
