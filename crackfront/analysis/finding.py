@@ -22,16 +22,14 @@ PAPER_FACTOR, PERTURBATION_FACTOR = 3.0, 4.0
 STRONG = 0.84
 """Disorder s of the paper's experiment, up to which the finding follows k."""
 
-STATED = {
-    "a flat spectrum": SelfAffineSpectrum(1.0, 1.0, 1.0),
-    "H = 0.8 over three octaves": SelfAffineSpectrum(1.0, 8.0, 0.8),
-}
-"""Spectra of roughness for which the limit of the infinite contact is quoted."""
-
 
 def stated_breadths() -> dict[str, float]:
-    """Breadths of these spectra by their names."""
-    return {name: spectral_breadth("roughness", shape) for name, shape in STATED.items()}
+    """Breadths of the spectra of roughness whose limit of the infinite contact is quoted."""
+    stated = {
+        "a flat spectrum": SelfAffineSpectrum(1.0, 1.0, 1.0),
+        "H = 0.8 over three octaves": SelfAffineSpectrum(1.0, 8.0, 0.8),
+    }
+    return {name: spectral_breadth("roughness", shape) for name, shape in stated.items()}
 
 
 def finding(departure: str) -> str:

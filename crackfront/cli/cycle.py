@@ -24,7 +24,6 @@ from crackfront.cli.report import (
     as_json,
     echo_answer,
     examples,
-    finite,
     refuse_unwritable,
 )
 from crackfront.core.solver import DEFAULT_TOLERANCE
@@ -201,10 +200,7 @@ def _content(recorder: Recorder, found: Dataset, output: Path) -> dict[str, obje
         f"end_{recorder.load_name}": recorder.load,
         "lowest_force": min(forces, default=None),
         "jump_in_force": next(iter(forces), None),
-        **{
-            name: finite(float(found.get(name, "nan")))
-            for name in ("w_appr", "w_retr", "hysteresis")
-        },
+        **{name: float(found.get(name, "nan")) for name in ("w_appr", "w_retr", "hysteresis")},
     }
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, as_json, echo_answer, examples, finite, table
+from crackfront.cli.report import FILE, as_json, echo_answer, examples, table
 
 
 @click.command(
@@ -106,8 +106,8 @@ def compare(one: Path, other: Path, tolerance: float, as_json: bool) -> None:
         "agree": agree,
         "in_bits": found.in_bits,
         "files": found.n_file,
-        "largest": finite(found.largest),
-        "variables": {name: finite(item.largest) for name, item in variables.items()},
+        "largest": found.largest,
+        "variables": {name: item.largest for name, item in variables.items()},
         "alone": found.alone,
     }
     lines = [

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any
 
 import click
 
 from crackfront.data.bounds import Range, in_time
+from crackfront.data.plain import plain
 
 FILE = click.Path(path_type=Path)
 """Type of a parameter that names a file or folder."""
@@ -76,20 +76,8 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
 
 
 def echo_json(content: object) -> None:
-    """Print one JSON value; a number that is none would be a defect."""
-    click.echo(json.dumps(content, indent=2, allow_nan=False, default=_plain))
-
-
-def _plain(value: Any) -> object:
-    """What JSON has for a record, a path, or a scalar of numpy."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return asdict(value)
-    return str(value) if isinstance(value, Path) else value.item()
-
-
-def finite(value: float) -> float | None:
-    """A number that JSON has: None where it is infinite or no number."""
-    return value if math.isfinite(value) else None
+    """Print one JSON value."""
+    click.echo(json.dumps(plain(content), indent=2, allow_nan=False))
 
 
 def announce_compilation(*, err: bool = False) -> None:

@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
@@ -17,6 +15,7 @@ from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import FIT_DEFINITION
 from crackfront.data.files import write_dataset, write_text
 from crackfront.data.labels import labelled
+from crackfront.data.plain import plain
 from crackfront.data.provenance import Provenance, utc_now
 
 
@@ -37,7 +36,7 @@ def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Pa
     columns = {item.name: labelled(item, values) for item, values in fit_columns(fit)}
     write_dataset(paths[0], xr.Dataset(columns, attrs=about), origin)
     entries = {
-        name: {"dims": dims, "values": _plain(values), **attributes}
+        name: {"dims": dims, "values": plain(values), **attributes}
         for name, (dims, values, attributes) in columns.items()
     }
     content = {
@@ -49,10 +48,3 @@ def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Pa
     write_text(paths[1], json.dumps(content, indent=1, allow_nan=False) + "\n", sealed=True)
     write_text(paths[2], fit_table(fit), sealed=True)
     return paths
-
-
-def _plain(values: Any) -> Any:
-    """Nested lists for JSON, with null where there is no number."""
-    array = np.asarray(values)
-    known = np.isfinite(array) if array.dtype.kind == "f" else True
-    return np.where(known, array, np.array(None)).tolist()

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
-from pathlib import Path
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.core.units import Scales
 from crackfront.core.variables import variables
+from crackfront.data.plain import plain
 from crackfront.data.written_units import prefixed
 from crackfront.topography.bands import BandLimit
 from crackfront.topography.cautions import measure_next, scan_notes, surface_doubts
@@ -130,26 +128,26 @@ def machine_readable(
         "spectrum": {
             "wavelength": list(joint.spectrum.wavelengths),
             "density": list(joint.spectrum.densities),
-            "measured": _plain(joint.density),
-            "share_of_e_el": _plain(joint.shares),
+            "measured": plain(joint.density),
+            "share_of_e_el": plain(joint.shares),
             "shortest": joint.shortest,
             "longest": joint.longest,
             "end": joint.spectrum.short_cutoff,
             "is_lower_bound": joint.is_lower_bound,
         },
         "continuation": {
-            **{name: _plain(number) for name, number, _ in _continuation(joint.fit)},
+            **{name: plain(number) for name, number, _ in _continuation(joint.fit)},
             "deviance_per_freedom": joint.fit.misfit,
             "has_roll_off": joint.fit.has_roll_off,
         },
-        "measures": _plain(surface.measures),
+        "measures": plain(surface.measures),
         "e_el": None if scales is None else _energy_entry(surface, scales.contact_modulus),
         "prediction": None if prediction is None else _prediction_entries(prediction),
-        "factors": None if prediction is None else _plain(prediction.factors),
-        "excess": None if prediction is None else _plain(prediction.excess),
+        "factors": None if prediction is None else plain(prediction.factors),
+        "excess": None if prediction is None else plain(prediction.excess),
         "verdict": None if ruling is None else _verdict_entry(ruling),
         "notes": _notes(surface, prediction),
-        "simulation": _plain(found),
+        "simulation": plain(found),
     }
 
 
@@ -159,10 +157,10 @@ def sample_row(
     """Row of a surface in a table: numbers and the ends of their 95% intervals, in SI units."""
     remarks = " ".join(ruling.reservations or ruling.remedies)
     numbers = {
-        f"rms_{_MEASURES[one.order][0].replace('-', '_')}": _plain(one.rms)
+        f"rms_{_MEASURES[one.order][0].replace('-', '_')}": plain(one.rms)
         for one in surface.measures
     }
-    numbers["e_el"] = _plain(surface.conformity_energy(scales.contact_modulus))
+    numbers["e_el"] = plain(surface.conformity_energy(scales.contact_modulus))
     numbers |= {} if prediction is None else _prediction_entries(prediction)
     heads = {"value": "", "low": "_low", "high": "_high"}
     return {"outcome": ruling.outcome, "remarks": remarks} | {
@@ -277,11 +275,11 @@ def _standing(item: Condition) -> str:
 def _verdict_entry(found: Verdict) -> dict[str, Any]:
     """A verdict with the standing of every condition."""
     conditions = [
-        _plain(item) | {"standing": item.standing, "margin": _plain(item.margin)}
+        plain(item) | {"standing": item.standing, "margin": plain(item.margin)}
         for item in found.conditions
     ]
     more = {"conditions": conditions, "remedies": found.remedies}
-    return {"outcome": found.outcome} | _plain(found) | more
+    return {"outcome": found.outcome} | plain(found) | more
 
 
 def _shown(unit: str, found: Number) -> str:
@@ -310,12 +308,12 @@ def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:
         item = one.measurement
         told = (entry.name for entry in fields(item) if entry.name != "heights")
         yield {
-            **{name: _plain(getattr(item, name)) for name in told},
+            **{name: plain(getattr(item, name)) for name in told},
             "points": list(item.heights.shape),
-            **_plain(one.band),
-            "density": _plain(one.trusted),
-            "profile_density": _plain(profile),
-            "level": _plain(joined.levels[index]),
+            **plain(one.band),
+            "density": plain(one.trusted),
+            "profile_density": plain(profile),
+            "level": plain(joined.levels[index]),
             "disagrees": joined.disagrees(index),
         }
 
@@ -323,27 +321,16 @@ def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:
 def _energy_entry(surface: MeasuredSurface, contact_modulus: float) -> dict[str, Any]:
     """e_el, of what is recorded and as estimated (Units: J / m^2)."""
     numbers = {"recorded": surface.recorded, "estimated": surface.estimated}
-    return _plain(surface.conformity_energy(contact_modulus)) | {
-        name: _plain(surface.conformity_energy(contact_modulus, square))
+    return plain(surface.conformity_energy(contact_modulus)) | {
+        name: plain(surface.conformity_energy(contact_modulus, square))
         for name, square in numbers.items()
     }
 
 
 def _prediction_entries(prediction: Prediction) -> dict[str, dict[str, Any]]:
     """Numbers of a prediction by name, with what they have of standard errors and intervals."""
-    items = [(item, _plain(getattr(prediction, item.name))) for item in variables(Prediction)]
+    items = [(item, plain(getattr(prediction, item.name))) for item in variables(Prediction)]
     return {
         item.name: (found if isinstance(found, dict) else {"value": found}) | item.attributes
         for item, found in items
     }
-
-
-def _plain(value: Any) -> Any:
-    """A value for JSON: records and arrays by their entries, null for what is not finite."""
-    if is_dataclass(value):
-        return {item.name: _plain(getattr(value, item.name)) for item in fields(value)}
-    if isinstance(value, (tuple, list, np.ndarray)):
-        return [_plain(one) for one in (value.tolist() if isinstance(value, np.ndarray) else value)]
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    return str(value) if isinstance(value, Path) else value
