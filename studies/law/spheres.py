@@ -111,14 +111,8 @@ SCENES = (
 def scene_rows(realisations: int = 3) -> Iterator[SphereRow]:
     """The scenes, simulated."""
     for scene in SCENES:
-        first = simulation_of(
-            scene.kind,
-            scene.spectrum,
-            scene.elastic_energy,
-            scene.schedule,
-            Numerics(0.015),
-            seed=20261122,
-        )
+        surface = scene.kind, scene.spectrum, scene.elastic_energy
+        first = simulation_of(*surface, scene.schedule, Numerics(0.015), seed=20261122)
         runs = [
             sweep_row(run_simulation(replace(first, realisation=number)))
             for number in range(realisations)

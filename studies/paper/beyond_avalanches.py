@@ -214,15 +214,13 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
     """Claims about one disorder."""
     chosen = record.disorder_index == index
     energy, extent = record.energy[chosen], record.extent[chosen]
-    law = size_law(record, index)
-    contained = (
-        "contains it" if law.low <= line_events.SIZE_EXPONENT <= law.high else "leaves it out"
-    )
+    law, expected = size_law(record, index), line_events.SIZE_EXPONENT
+    contained = "contains it" if law.low <= expected <= law.high else "leaves it out"
     yield Check(
         f"sphere, {name} disorder: exponent of the swept areas",
-        with_error(line_events.SIZE_EXPONENT, _TOLERANCE),
+        with_error(expected, _TOLERANCE),
         f"{law.exponent:.2f} ({law.low:.2f} to {law.high:.2f})",
-        abs(law.exponent - line_events.SIZE_EXPONENT) <= _TOLERANCE,
+        abs(law.exponent - expected) <= _TOLERANCE,
         f"{law.n_value} of {energy.size} avalanches; the 95% interval of a bootstrap over "
         f"avalanches {contained}; from {law.smallest:.2g} to the cut-off at {law.cutoff:.2g}, "
         f"{np.log10(law.cutoff / law.smallest):.1f} decades; an effective exponent where these are "

@@ -21,7 +21,7 @@ from crackfront.core.arrays import Array
 from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.parts import label_decimals, legend_entries
 from crackfront.plots.style import BLUE, GREEN, PAGE, PURPLE, VERMILION, blank_figure, house_style
-from studies.paper.drawing import ON_WHITE, name_panels
+from studies.paper.drawing import ON_WHITE, THEORY, name_panels
 from studies.paper.figure import Check, Figure, Integers, Progress
 from studies.paper.front_spectra import (
     RoughnessFit,
@@ -349,15 +349,9 @@ def _draw_points(
 
 def _draw_law(axes: Axes, index: int, abscissa: Array, ordinate: Array, zorder: float = 2) -> None:
     """Power law of the theory of one disorder."""
-    axes.plot(
-        abscissa,
-        ordinate,
-        color="0.35",
-        linewidth=0.7,
-        dashes=(4, 2) if index == STRONG else (None, None),
-        zorder=zorder,
-        label=rf"$\zeta = {_EXPONENTS[index]:g}$",
-    )
+    style = THEORY if index == STRONG else THEORY | {"dashes": (None, None)}
+    label = rf"$\zeta = {_EXPONENTS[index]:g}$"
+    axes.plot(abscissa, ordinate, zorder=zorder, label=label, **style)
 
 
 _AT_LENGTH: dict[str, Any] = {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "zorder": 0}

@@ -315,13 +315,8 @@ def _draw_shortest(axes: Axes, record: InstabilityRecord, index: int) -> None:
     radius = 1.06 * record.before.max()
     middle = np.pi / 2 - side * 0.3 * np.pi
     angle = middle + np.linspace(-0.5, 0.5, 20) * length / radius
-    axes.plot(
-        side * _GAP + radius * np.cos(angle),
-        radius * np.sin(angle),
-        color=VERMILION,
-        linewidth=2.5,
-        solid_capstyle="butt",
-    )
+    bar = side * _GAP + radius * np.cos(angle), radius * np.sin(angle)
+    axes.plot(*bar, color=VERMILION, linewidth=2.5, solid_capstyle="butt")
     place = side * _GAP + radius * np.cos(middle), radius * np.sin(middle)
     write_beside(axes, r"$\ell_0$", place, (6 * side, 4), ha="center", color=VERMILION)
 
