@@ -47,9 +47,7 @@ def draw_field(
     units.name(bar.ax.yaxis, "local work of adhesion", "adhesion")
 
 
-def draw_heights(
-    axes: Axes, x: Array, y: Array, heights: Array, units: AxisUnits = REDUCED
-) -> None:
+def draw_heights(axes: Axes, x: Array, y: Array, heights: Array, units: AxisUnits) -> None:
     """Heights in colours, peaks bright, with a colour bar; arrays as of :func:`draw_field`."""
     image = _draw_image(axes, x, y, units.vertical * heights.T, units)
     bar = axes.figure.colorbar(image, ax=axes, pad=0.02)

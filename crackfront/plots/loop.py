@@ -107,10 +107,8 @@ def steady_loop_figure(
         draw_loop(
             right, states, works, window, elastic_energy=elastic_energy, kind=kind, arrows=False
         )
-        entries = zip(
-            right.get_legend_handles_labels(), left.get_legend_handles_labels(), strict=True
-        )
-        handles, labels = (one + other for one, other in entries)
+        legends = (axes.get_legend_handles_labels() for axes in (right, left))
+        handles, labels = (one + other for one, other in zip(*legends, strict=True))
         right.get_legend().remove()
         figure.legend(handles, labels, loc="outside upper center", ncols=4)
         for axes, letter in ((left, "a"), (right, "b")):

@@ -211,13 +211,5 @@ def spectrum_marker(index: int) -> str:
 
 def label_panel(axes: Axes, name: str, left: float = 4.0) -> None:
     """Bold letter of a panel above its upper left corner, so many points to the left of it."""
-    axes.annotate(
-        name,
-        xy=(0, 1),
-        xytext=(-left, 4),
-        xycoords="axes fraction",
-        textcoords="offset points",
-        fontsize=9,
-        fontweight="bold",
-        ha="right",
-    )
+    look: dict[str, Any] = {"fontsize": 9, "fontweight": "bold", "ha": "right"}
+    axes.annotate(name, (0, 1), (-left, 4), "axes fraction", "offset points", **look)

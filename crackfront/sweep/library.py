@@ -34,10 +34,7 @@ def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Prov
 
 
 def sweep_table(
-    configuration: str | PathLike[str],
-    output: str | PathLike[str] | None = None,
-    *,
-    progress: bool = True,
+    configuration: str | PathLike[str], output: str | PathLike[str] | None, *, progress: bool
 ) -> Dataset:
     """The table that :func:`crackfront.sweep` returns."""
     for name, given in (("configuration", configuration), ("output", output or "")):

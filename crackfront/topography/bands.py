@@ -252,10 +252,8 @@ def _cliff(density: Density) -> tuple[float, float]:
     if not falls.size:
         return 0.0, 0.0
     first = falls[0]
-    return (
-        float(2 * np.pi / density.wavevector[first]),
-        float(2 * np.pi / density.wavevector[first + 1]),
-    )
+    before, behind = (2 * np.pi / density.wavevector[first : first + 2]).tolist()
+    return before, behind
 
 
 def _form(density: Density, alternatives: Sequence[Density], longest: float) -> float:

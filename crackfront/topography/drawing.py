@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -140,17 +141,10 @@ def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
             axes.axvline(place, color=colour, linewidth=0.5, dashes=(2, 2), zorder=1)
             is_last = place > _LAST * axes.get_xlim()[1]
             if named:
-                axes.annotate(
-                    limit.cause,
-                    (place, 1.0),
-                    xycoords=("data", "axes fraction"),
-                    xytext=(-1.5 if is_last else 1.5, -2 - 6 * index),
-                    textcoords="offset points",
-                    ha="right" if is_last else "left",
-                    va="top",
-                    fontsize=5,
-                    color=colour,
-                )
+                side, aside = ("right", -1.5) if is_last else ("left", 1.5)
+                beside = (aside, -2 - 6 * index), ("data", "axes fraction"), "offset points"
+                look: dict[str, Any] = {"ha": side, "va": "top", "fontsize": 5, "color": colour}
+                axes.annotate(limit.cause, (place, 1.0), *beside, **look)
 
 
 def _draw_profiles(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:

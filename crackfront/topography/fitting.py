@@ -244,13 +244,8 @@ def fitted_model(densities: Sequence[tuple[Density, Instrument]]) -> Fit:
     walkers[:, 1:] = np.clip(walkers[:, 1:], limits[1:, 0] + 1e-3, limits[1:, 1] - 1e-3)
     walkers[:, 4] = np.minimum(walkers[:, 4], walkers[:, 3])
     states = _chain(deviance, walkers, rng)
-    least = float(np.min(deviance(states)))
-    return Fit(
-        states[:, :_SHAPE],
-        models.instruments(states),
-        math.exp(low),
-        least / max(count - start.size, 1),
-    )
+    misfit = float(np.min(deviance(states))) / max(count - start.size, 1)
+    return Fit(states[:, :_SHAPE], models.instruments(states), math.exp(low), misfit)
 
 
 def _limits(low: float, high: float) -> tuple[tuple[float, float], ...]:

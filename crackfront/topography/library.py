@@ -34,13 +34,9 @@ File = str | PathLike[str]
 
 def _taking(*records: type[Any]) -> Callable[[Function], Function]:
     """Give a function the options of records: as keywords, in its signature and its docstring."""
+    kind = inspect.Parameter.KEYWORD_ONLY
     keywords = [
-        inspect.Parameter(
-            one.name,
-            inspect.Parameter.KEYWORD_ONLY,
-            default=one.default,
-            annotation=one.kind.accepts,
-        )
+        inspect.Parameter(one.name, kind, default=one.default, annotation=one.kind.accepts)
         for one in declared(*records)
     ]
 
