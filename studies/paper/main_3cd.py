@@ -215,7 +215,7 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
     return (
         *checks,
         close_to(
-            "<a w_loc> = <a G> on both fronts: the line's elasticity cancels in the mean",
+            "means of a w_loc and of a G are equal on both fronts: the line's elasticity cancels",
             float(imbalance),
             0.0,
             1e-3,
