@@ -1,7 +1,6 @@
 """Spectral densities of measurements, held against spectra and other implementations."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,24 +9,14 @@ from scipy.signal import get_window
 from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.densities import cosine_window, periodogram
 from crackfront.topography.instruments import surface_library
-from crackfront.topography.reading import Measurement
 from studies.paper.si_6 import profile_periodogram
-from tests.topography.made import SIDE, SPECTRUM, map_heights
+from tests.topography.made import SIDE, SPECTRUM, map_heights, periodic_measurement
 
 
 @pytest.mark.parametrize("name", ["hann", "blackman"])
 def test_windows_are_those_of_scipy_to_the_bit(name):
     for count in (8, 9, 144, 1000):
         assert np.array_equal(cosine_window(name, count), get_window(name, count))
-
-
-def periodic_measurement(heights, side=SIDE, shortest=None):
-    """A map that is one period of its surface, all waves trusted down to two pixels."""
-    pixel = side / len(heights)
-    shortest = 2 * pixel if shortest is None else shortest
-    return Measurement(
-        Path("periodic"), "", "", "", (side, side), heights, True, 0.0, shortest, side * (1 + 1e-9)
-    )
 
 
 def test_our_density_of_profiles_is_the_librarys(rng):
