@@ -38,6 +38,7 @@ class CaseSection(Section):
     hurst: Annotated[float, Field(gt=0, le=1)] = 1.0
     # Their seeds are drawn from that of the file; by default one surface with that seed.
     surfaces: Count | None = None
+    skipped: Annotated[int, Field(ge=0)] = 0  # surfaces before the first
 
 
 class ValidationParameters(Section):
@@ -95,7 +96,8 @@ def validation_cases(parameters: ValidationParameters) -> tuple[Case, ...]:
     listed = []
     for given in parameters.cases:
         for energy in given.elastic_energies:
-            for surface in range((given.surfaces if energy else None) or 1):
+            count = (given.surfaces if energy else None) or 1
+            for surface in range(given.skipped, given.skipped + count):
                 seeds = np.random.SeedSequence(parameters.seed, spawn_key=(surface,))
                 drawn = int(seeds.generate_state(1)[0])
                 case = Case(

@@ -17,13 +17,16 @@ def test_every_configuration_of_the_validation_is_valid(path):
 
 
 def test_cases_are_smooth_spheres_and_then_surface_after_surface(branches):
-    cases = validation_cases(load_validation(branches))
+    given = load_validation(branches)
+    cases = validation_cases(given)
     listed = [(case.n_point, case.elastic_energy, case.roll_off) for case in cases]
     first, second = (48, 0.4, 0.6), (48, 0.4, 0.9)
     assert listed == [(48, 0, 0.6), first, second, (64, 0.4, 0.6), first, second]
     seeds = [case.seed for case in cases]
     assert len({*seeds[:4]}) == len({*seeds[4:]}) == 1
     assert seeds[3] != seeds[4]
+    second = given.cases[1].model_copy(update={"surfaces": 1, "skipped": 1})
+    assert validation_cases(given.model_copy(update={"cases": (second,)})) == cases[5:]
 
 
 def test_a_surface_that_is_not_counted_has_the_seed_of_the_file(loops):
