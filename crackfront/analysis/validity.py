@@ -1,8 +1,8 @@
 """How much more hysteresis a crack front has than boundary elements on the same surfaces.
 
-`python -m studies boundary-elements validate` computes both and writes `validity.csv`, which is
-kept here. What the front leaves out of linear elasticity is of second order in the disorder, w_rms
-over w_int, so that the logarithm of the ratio is fitted by c e_el / w_int.
+`python -m studies boundary-elements validate` computes both, and `numbers --keep` there writes
+`validity.csv`. What the front leaves out of linear elasticity is of second order in the disorder,
+w_rms over w_int, so that the logarithm of the ratio is fitted by c e_el / w_int.
 """
 
 from __future__ import annotations
@@ -19,13 +19,14 @@ from typing import get_type_hints
 import numpy as np
 
 from crackfront.analysis.estimate import REACH, Estimate
+from crackfront.core.arrays import Array
 
 _MODEL_ERROR = 0.05
 """Standard error of the logarithm that the form of the law leaves: half of what powers of the
 disorder from 2 to 4 differ by between the measured amplitudes."""
 
 _FURTHER = 1.5
-"""How far beyond the measured sizes and energies the law is used, as a factor."""
+"""How far beyond the measured energies the law is used, as a factor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +61,7 @@ class Excess:
     """What the front's hysteresis is divided by, and its interval: where the ratio was not
     measured, 1 with an interval that reaches to what the law says."""
     is_measured: bool
-    """Whether the amplitude and the size are among those that were measured."""
+    """Whether the amplitude is among those that were measured."""
     sentence: str
     """Both as a sentence."""
 
@@ -97,10 +98,30 @@ def excess_coefficient(rows: Sequence[ValidityRow]) -> tuple[float, float]:
     >>> round(c, 12), round(error, 3)
     (2.0, 0.447)
     """
-    known = [row for row in rows if math.isfinite(row.error)]
-    energy, ratio, error = np.array([(r.elastic_energy, r.ratio, r.error) for r in known]).T
+    energy, _, ratio, error = _columns(rows)
     information = float(np.sum((energy / error) ** 2))
     return float(np.sum(energy * np.log(ratio) / error**2)) / information, information**-0.5
+
+
+def size_error(rows: Sequence[ValidityRow]) -> float:
+    """Standard error of the change of c with the logarithm of g, which the law has as none.
+
+    Examples
+    --------
+    >>> rows = [ValidityRow(1, 1, 0.1, size, 1.2, 0.1, 4, 4, 512) for size in (1.0, math.e)]
+    >>> round(size_error(rows), 3)
+    1.414
+    """
+    energy, size, _, error = _columns(rows)
+    weight = (energy / error) ** 2
+    apart = np.log(size) - np.average(np.log(size), weights=weight)
+    return float(np.sum(weight * apart**2)) ** -0.5
+
+
+def _columns(rows: Sequence[ValidityRow]) -> Array:
+    """Energies, sizes, ratios and errors of the rows that have an error, (4, rows)."""
+    known = [row for row in rows if math.isfinite(row.error)]
+    return np.array([(r.elastic_energy, r.size, r.ratio, r.error) for r in known]).T
 
 
 def front_excess(energy: float, size: float, rows: Sequence[ValidityRow] | None = None) -> Excess:
@@ -108,26 +129,29 @@ def front_excess(energy: float, size: float, rows: Sequence[ValidityRow] | None 
 
     Examples
     --------
-    >>> rows = [ValidityRow(1, 1, e, 1, math.exp(2 * e), 0.01, 4, 4, 512) for e in (0.1, 0.2)]
+    >>> rows = [ValidityRow(1, 1, 0.1, size, 1.2, 0.01, 4, 4, 512) for size in (0.3, 1.0)]
     >>> front_excess(0.1, 1.0, rows).sentence.split(" times")[0]
-    'A front has 1.22 (1.11 to 1.35)'
-    >>> near, far = (front_excess(0.1, size, rows).ratio for size in (1.0, 100.0))
-    >>> round(near.value, 2), far.value, round(far.high, 2)
-    (1.22, 1.0, 1.35)
+    'A front has 1.20 (1.09 to 1.32)'
+    >>> round(front_excess(0.1, 100.0, rows).ratio.high, 2)
+    1.39
     """
     rows = shipped_validity() if rows is None else rows
     slope, error = excess_coefficient(rows)
-    logarithm, reach = slope * energy, REACH * math.hypot(error * energy, _MODEL_ERROR)
     strongest = max(row.elastic_energy for row in rows)
     largest = max(row.size for row in rows)
+    grown = size_error(rows) * math.log(max(1.0, size / largest))
+    logarithm = slope * energy
+    reach = REACH * math.hypot(error * energy, grown * energy, _MODEL_ERROR)
     law = Estimate(logarithm, math.nan, logarithm - reach, logarithm + reach).each(math.exp)
     told = f"{law.value:.2f} ({law.low:.2f} to {law.high:.2f}) times the hysteresis that boundary "
-    if energy <= _FURTHER * strongest and size <= _FURTHER * largest:
+    compared = f"compared up to e_el/w_int = {strongest:.2g} and g = {largest:.2g}"
+    here = f"here they are {energy:.2g} and {size:.3g}"
+    if energy <= _FURTHER * strongest:
+        wider = f" Both were {compared}; {here}, and the interval is wider." if grown else ""
         sentence = f"A front has {told}elements have at this e_el, and is divided by it here."
-        return Excess(law, True, sentence)
+        return Excess(law, True, sentence + wider)
     sentence = (
-        f"A front may have {told}elements have at this e_el, which were compared up to e_el/w_int "
-        f"= {strongest:.2g} and g = {largest:.2g}; here they are {energy:.2g} and {size:.3g}: it "
+        f"A front may have {told}elements have at this e_el, which were {compared}; {here}: it "
         "is not divided, but its interval reaches as far."
     )
     ends = math.exp(-REACH * _MODEL_ERROR), max(law.high, math.exp(REACH * _MODEL_ERROR))

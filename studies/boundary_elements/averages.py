@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from operator import attrgetter
@@ -30,6 +30,9 @@ two whose difference is the error of the extrapolation.
 Measured, docs/experiments/boundary-elements.md: where a range was halved twice, the second changed
 the hysteresis by a third of the first. The length of the cohesive zone would suggest its square.
 """
+
+ZONE = 0.26
+"""Length of the cohesive zone over the square of the range."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +66,11 @@ class Setting:
         return self._estimate(logarithm, *models)
 
     def _estimate(self, function: Callable[..., float], *values: Value) -> Estimate:
-        """Function of means, with the standard error of the jackknife over the surfaces."""
+        """Function of means, with the standard error of the jackknife over the surfaces.
+
+        Its degrees of freedom are Welch's and Satterthwaite's, of surfaces with and without a
+        shorter range.
+        """
         # Extrapolated: the mean of the longer range over all surfaces, and that of what changes.
         fine, coarse = (
             {row.seed: np.array([value(row) for value in values]) for row in rows}
@@ -77,10 +84,13 @@ class Setting:
 
         if len(fine) < 2:
             return student_estimate(found(), math.nan, 0)
-        count = self.surfaces
+        count, both = self.surfaces, len(fine)
         changed = np.array([found(seed) for seed in {**fine, **coarse}])
-        error = math.sqrt((count - 1) / count * float(np.sum((changed - np.mean(changed)) ** 2)))
-        return student_estimate(found(), error, len(fine) - 1)
+        squares = (changed - np.mean(changed)) ** 2
+        error = math.sqrt((count - 1) / count * float(np.sum(squares)))
+        parts = float(np.sum(squares[:both])), float(np.sum(squares[both:]))
+        apart = parts[0] ** 2 / (both - 1) + parts[1] ** 2 / max(1, count - both)
+        return student_estimate(found(), error, sum(parts) ** 2 / apart if apart else both - 1)
 
 
 def settings(rows: Iterable[Hysteresis]) -> tuple[Setting, ...]:
@@ -133,23 +143,58 @@ def rough_settings(found: Iterable[Setting]) -> list[Setting]:
     return [one for one in found if one.rows[0].asked_energy > 0]
 
 
-def validity_rows(rows: Sequence[Hysteresis], short_cutoff: float) -> list[ValidityRow]:
-    """How far the front is right, at every spectrum and amplitude that has a limit of no range."""
-    by_order = [limit_settings(rows, order) for order in ORDERS]
-    smooth = [
-        [float(one.mean(_DIFFERENCE).value) for one in found if not one.rows[0].asked_energy]
-        for found in by_order
-    ]
-    logarithms = [
-        [one.excess(max(lost, default=0.0)) for one in rough_settings(found)]
-        for found, lost in zip(by_order, smooth, strict=True)
-    ]
-    low, middle, high = logarithms
-    limits = rough_settings(by_order[1])
+def rows_by_zone(
+    rows: Sequence[Hysteresis], short_cutoff: float
+) -> dict[tuple[float, ...], ValidityRow]:
+    """How far the front is right, at every spectrum, amplitude, and range, and at none.
+
+    The keys are roll-off over cutoff, Hurst exponent, amplitude, and the length of the cohesive
+    zone over the cutoff.
+    """
+    found, smooth = {}, _smooth_loss(rows)
+    for one in sorted(rough_settings(settings(rows)), key=attrgetter("surfaces")):
+        row = _validity_row(one, one.excess(smooth), 0.0, short_cutoff)
+        found[_zone_key(one, short_cutoff)] = row
+    for one, (near, excess, far) in excess_by_order(rows):
+        apart = abs(float(far.value - near.value)) / 2
+        found[_zone_key(one, short_cutoff)] = _validity_row(one, excess, apart, short_cutoff)
+    return found
+
+
+def excess_by_order(rows: Sequence[Hysteresis]) -> list[tuple[Setting, tuple[Estimate, ...]]]:
+    """Settings with a limit of no range, and the logarithms of their ratios by all powers."""
+    smooth = _smooth_loss(rows)
+    by_order = [rough_settings(limit_settings(rows, order)) for order in ORDERS]
     return [
-        _validity_row(setting, found, abs(float(far.value - near.value)) / 2, short_cutoff)
-        for setting, near, found, far in zip(limits, low, middle, high, strict=True)
+        (alike[ORDERS.index(ORDER)], tuple(one.excess(smooth) for one in alike))
+        for alike in zip(*by_order, strict=True)
     ]
+
+
+def _zone_key(setting: Setting, short_cutoff: float) -> tuple[float, ...]:
+    """Key of a setting in the table by zone."""
+    row = setting.rows[0]
+    zone = ZONE * row.interaction_range**2 / short_cutoff
+    return round(row.roll_off / short_cutoff, 2), row.hurst, row.asked_energy, round(zone, 2)
+
+
+def brought_to_no_range(
+    rows: Mapping[tuple[float, ...], ValidityRow], others: Mapping[tuple[float, ...], ValidityRow]
+) -> Iterator[ValidityRow]:
+    """Rows of one range in the limit of none, by what the range changes on others of equal keys.
+
+    The errors of all three are taken as independent.
+    """
+    for (*scene, zone), row in rows.items():
+        same, limit = others.get((*scene, zone)), others.get((*scene, 0.0))
+        if zone and same and limit and math.isfinite(row.error):
+            error = math.hypot(row.error, same.error, limit.error)
+            yield replace(row, ratio=row.ratio * limit.ratio / same.ratio, error=error)
+
+
+def _smooth_loss(rows: Iterable[Hysteresis]) -> float:
+    """Hysteresis of boundary elements on the smooth sphere (Units: w_int)."""
+    return max((_DIFFERENCE(row) for row in rows if not row.asked_energy), default=0.0)
 
 
 def _validity_row(

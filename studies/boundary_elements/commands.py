@@ -52,8 +52,16 @@ def validate(configuration: Path, output: Path | None) -> None:
 @commands.command(epilog=examples("python -m studies boundary-elements numbers --keep"))
 @keep_option
 def numbers(keep: bool) -> None:
-    """Print the comparisons of docs/reference/validation that stand in the pages."""
-    from studies.boundary_elements.page import page_parts
+    """Print the comparisons of docs/reference/validation that stand in the pages.
 
+    What is kept holds the table of the package as well.
+    """
+    from crackfront.analysis.validity import validity_text
+    from crackfront.data.files import write_text
+    from studies.boundary_elements.page import kept_surfaces, kept_validity, page_parts
+
+    if keep:
+        table = validity_text(kept_validity(kept_surfaces()))
+        write_text(Path("crackfront/analysis/validity.csv"), table)
     for parts, data in page_parts():
         tell("boundary-elements", parts, "studies.boundary_elements.page", keep=keep, data=data)

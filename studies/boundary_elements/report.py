@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from operator import attrgetter
 from typing import Any
@@ -20,21 +20,17 @@ _PULL_OFF = 1.5
 """Magnitude of the pull-off force of a smooth sphere (Units: pi w_int R)."""
 
 
-def validation_report(
-    rows: Sequence[Hysteresis], loops: Sequence[Differences], short_cutoff: float
-) -> str:
+def validation_report(rows: Sequence[Hysteresis], loops: Sequence[Differences]) -> str:
     """Markdown tables of the finished cases, and of those that are whole loops."""
-    tables = *surface_tables(rows, short_cutoff).values(), *loop_tables(loops).values()
+    tables = *surface_tables(rows).values(), *loop_tables(loops).values()
     return "\n\n".join(["# Crack front against boundary elements", *filter(None, tables), ""])
 
 
-def surface_tables(rows: Sequence[Hysteresis], short_cutoff: float) -> dict[str, str]:
+def surface_tables(rows: Sequence[Hysteresis]) -> dict[str, str]:
     """Tables of both hystereses, empty ones where there is nothing to show."""
-    found, limits = averages.settings(rows), averages.limit_settings(rows)
     return {
-        "ratios": _excess_table(averages.validity_rows(rows, short_cutoff)),
-        "averages": _hysteresis_table(limits),
-        "settings": _hysteresis_table(found),
+        "averages": _hysteresis_table(averages.limit_settings(rows)),
+        "settings": _hysteresis_table(averages.settings(rows)),
     }
 
 
@@ -82,25 +78,63 @@ def _shown(found: Estimate) -> str:
     return f"{value:.4f}" + (f" ({error:.4f})" if math.isfinite(error) else "")
 
 
-def _excess_table(told: Sequence[ValidityRow]) -> str:
+def ratio_table(told: Sequence[ValidityRow]) -> str:
     """Ratios of the hystereses at a vanishing range, and the law through them."""
     if not any(math.isfinite(row.error) for row in told):
         return ""
     slope, error = excess_coefficient(told)
     return _table(
         "Hysteresis of the front over that of boundary elements at a vanishing range, without what "
-        "these lose on the smooth sphere; 68% intervals by Student's t over the surfaces that have "
-        "both ranges, and half of what extrapolation by the second and by the fourth power differ "
-        f"by. The law through them is ln(ratio) = c e_el / w_int, c = {slope:.2f} ± {error:.2f}.",
-        "roll-off / cutoff | H | e_el | g | ratio | interval | law | surfaces | with both ranges",
+        "these lose on the smooth sphere; 68% intervals by Student's t over the surfaces, and half "
+        "of what extrapolation by the second and by the fourth power differ by. The law through "
+        f"them is ln(ratio) = c e_el / w_int, c = {slope:.2f} ± {error:.2f}.",
+        "roll-off / cutoff | H | e_el | g | ratio | interval | law | surfaces | on the finest grid",
         (
             f"{row.roll_off:g} | {row.hurst:g} | {row.elastic_energy:.4f} | {row.size:.2g} | "
-            f"{row.ratio:.2f} | {row.ratio * math.exp(-row.error):.2f} to "
-            f"{row.ratio * math.exp(row.error):.2f} | {math.exp(slope * row.elastic_energy):.2f} | "
+            f"{row.ratio:.2f} | {_interval(row)} | {math.exp(slope * row.elastic_energy):.2f} | "
             f"{row.surfaces} | {row.fine}"
             for row in told
         ),
     )
+
+
+def order_table(rows: Sequence[Hysteresis]) -> str:
+    """Ratios of the hystereses at a vanishing range, by the power of the extrapolation."""
+    powers = " | ".join(f"power {order:g}" for order in averages.ORDERS)
+    return _table(
+        "The ratio at a vanishing range, by the power of the range that extrapolates to it.",
+        f"roll-off | H | e_el | {powers}",
+        (
+            " | ".join(
+                [f"{value:g}" for value in one.rows[0].scene]
+                + [f"{math.exp(float(found.value)):.2f}" for found in logarithms]
+            )
+            for one, logarithms in averages.excess_by_order(rows)
+        ),
+    )
+
+
+def size_table(tables: Sequence[Mapping[tuple[float, ...], ValidityRow]]) -> str:
+    """Ratios of surfaces that differ in their size g alone, not in amplitude, shape or zone."""
+    keys = sorted(set.intersection(*({*table} for table in tables)))
+    return _table(
+        "Hysteresis of the front over that of boundary elements where amplitude, shape and length "
+        "of the cohesive zone over the cutoff are the same; 68% intervals by Student's t.",
+        "roll-off / cutoff | H | e_el | zone / cutoff | g | ratio | interval | surfaces",
+        (
+            f"{row.roll_off:g} | {row.hurst:g} | {row.elastic_energy:.4f} | {zone:g} | "
+            f"{row.size:.2g} | {row.ratio:.2f} | {_interval(row)} | {row.surfaces}"
+            for *scene, zone in keys
+            for row in (table[*scene, zone] for table in tables)
+        ),
+    )
+
+
+def _interval(row: ValidityRow) -> str:
+    """Interval of 68% of a ratio, none of a single surface."""
+    if not math.isfinite(row.error):
+        return ""
+    return f"{row.ratio * math.exp(-row.error):.2f} to {row.ratio * math.exp(row.error):.2f}"
 
 
 _CRACK = "points | range | e_el | crack"

@@ -6,13 +6,12 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
-from crackfront.analysis.validity import validity_text
 from crackfront.data.files import write_text
 from crackfront.data.optional_libraries import MissingExtraError
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import read_record, write_record, write_records
 from crackfront.plots.style import save_figure
-from studies.boundary_elements.averages import validity_rows
+from studies.boundary_elements.averages import limit_settings
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import RUNNING, BoundaryCycle, boundary_cycle
 from studies.boundary_elements.differences import Differences, differences
@@ -74,7 +73,7 @@ def write_validation(
         elif case.elastic_energy:
             edges.append(edge_forces(case, boundary, front(case)))
             write_records(folder / "edges.nc", edges, "case", origin)
-        report = validation_report(rows, loops, parameters.short_cutoff)
+        report = validation_report(rows, loops)
         write_text(folder / "validation.md", report, sealed=True)
         rank = case.elastic_energy, -case.roll_off, case.n_point
         if case.elastic_energy and rank > pictured:
@@ -88,9 +87,8 @@ def write_validation(
         )
     if edges:
         save_figure(edge_figure(edges), folder / "edges")
-    if told := validity_rows(rows, parameters.short_cutoff):
+    if limit_settings(rows):
         save_figure(hysteresis_figure(rows), folder / "hysteresis")
-        write_text(folder / "validity.csv", validity_text(told))
     progress(f"tables: {folder / 'validation.md'}")
 
 

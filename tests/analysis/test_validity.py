@@ -2,9 +2,15 @@
 
 import math
 
+import numpy as np
 import pytest
 
-from crackfront.analysis.validity import ValidityRow, excess_coefficient, front_excess
+from crackfront.analysis.validity import (
+    ValidityRow,
+    excess_coefficient,
+    front_excess,
+    size_error,
+)
 
 
 def row(energy, ratio, size=1.0, error=0.05):
@@ -18,12 +24,17 @@ def test_the_coefficient_weighs_amplitudes_by_their_errors():
     assert excess_coefficient([*rows, row(0.2, 9.0, error=math.nan)]) == (both, error)
 
 
-def test_a_hysteresis_is_divided_where_both_were_compared_and_else_its_interval_reaches_there():
+def test_a_hysteresis_is_divided_at_any_size_and_up_to_amplitudes_that_were_compared():
     rows = [row(0.05, 1.1, 0.5), row(0.18, 1.5, 1.3)]
-    inside, larger, stronger = (
-        front_excess(*scene, rows) for scene in ((0.1, 1.0), (0.1, 10.0), (0.4, 1.0))
-    )
-    assert inside.is_measured
-    assert inside.ratio.value == pytest.approx(math.exp(0.1 * excess_coefficient(rows)[0]))
-    for outside in (larger, stronger):
-        assert (outside.is_measured, outside.ratio.value) == (False, 1)
+    within, *beyond = (front_excess(0.1, size, rows) for size in (1.0, 10.0, 100.0))
+    expected = math.exp(0.1 * excess_coefficient(rows)[0])
+    reach, *reaches = (math.log(one.ratio.high / expected) for one in (within, *beyond))
+    for found in (within, *beyond):
+        assert (found.is_measured, found.ratio.value) == (True, pytest.approx(expected))
+    # What is not known of the size adds in quadrature, by the logarithm of the size.
+    added = 1.96 * 0.1 * size_error(rows) * np.log([10 / 1.3, 100 / 1.3])
+    assert np.sqrt(np.square(reaches) - reach**2) == pytest.approx(added)
+    assert "g = 1.3; here they are 0.1 and 100" in beyond[1].sentence
+    stronger = front_excess(0.4, 1.0, rows)
+    assert (stronger.is_measured, stronger.ratio.value) == (False, 1)
+    assert stronger.ratio.high > 1.5
