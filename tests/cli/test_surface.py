@@ -136,7 +136,7 @@ def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
     result = predict("--long", drawn=True)
     short = result.output.split("\n\n")[0].splitlines()
     assert 8 <= len(short) <= 12
-    assert short[0].startswith("hysteresis        37.")
+    assert short[0].startswith("hysteresis        25.")
     assert result.exit_code == 0, result.output
     assert predict("--no-figure").output.splitlines() == short
     for text in (

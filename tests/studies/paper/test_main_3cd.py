@@ -43,7 +43,7 @@ def test_the_loop_of_k_3_passes_the_checks_of_the_paper(loop):
 def test_fronts_that_sample_the_wrong_places_fail_their_checks(loop):
     swapped = replace(loop, front_adhesion=loop.front_adhesion[[1, 0, 2]])
     claims = " ".join(failed(swapped))
-    for words in ("approach: below", "retraction: above", "<a G>"):
+    for words in ("approach: below", "retraction: above", "of a G"):
         assert words in claims
     rigid = replace(loop, front_adhesion=loop.front_adhesion[[0, 1, 0]])
     assert "rigid circle: at" in " ".join(failed(rigid))
