@@ -109,12 +109,16 @@ def utc_now() -> str:
 
 @functools.cache
 def git_commit() -> str:
-    """Commit of the sources, with "-dirty" where they were changed since; or "unknown"."""
-    # Without the tags, whose names would stand for the commit.
-    options = "--always", "--dirty", "--abbrev=40", "--exclude=*"
-    command = "git", "-C", str(PACKAGE), "describe", *options
+    """Commit of the sources, "-dirty" where files outside docs were changed; or "unknown"."""
+    git = "git", "-C", str(PACKAGE)
+    change = "diff", "--quiet", "HEAD", "--", ":/", ":(top,exclude)docs"
     try:
-        result = subprocess.run(command, capture_output=True, text=True, timeout=10, check=False)
+        head, changed = (
+            subprocess.run([*git, *words], capture_output=True, text=True, timeout=10, check=False)
+            for words in (("rev-parse", "HEAD"), change)
+        )
     except (OSError, subprocess.TimeoutExpired):
         return "unknown"
-    return result.stdout.strip() if result.returncode == 0 else "unknown"
+    if head.returncode:
+        return "unknown"
+    return head.stdout.strip() + ("-dirty" if changed.returncode else "")

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from unittest.mock import Mock
 
 import pytest
 
@@ -35,10 +36,7 @@ def test_the_origin_names_version_sources_and_configuration():
 
 @pytest.mark.parametrize("error", [FileNotFoundError("git"), subprocess.TimeoutExpired("git", 10)])
 def test_without_git_the_commit_is_unknown(monkeypatch, error):
-    def fail(*_, **__):
-        raise error
-
-    monkeypatch.setattr(subprocess, "run", fail)
+    monkeypatch.setattr(subprocess, "run", Mock(side_effect=error))
     assert git_commit() == "unknown"
 
 
@@ -48,17 +46,18 @@ def test_outside_of_a_repository_the_commit_is_unknown(monkeypatch, tmp_path):
     assert git_commit() == "unknown"
 
 
-def test_a_commit_is_named_in_full_and_changes_are_told(monkeypatch, tmp_path):
+def test_a_commit_is_named_in_full_and_changes_but_those_of_pages(monkeypatch, tmp_path):
     git = ["git", "-C", str(tmp_path), "-c", "user.name=a", "-c", "user.email=a@b"]
-    (tmp_path / "a.py").write_text("1\n")
-    for command in (["init", "-q"], ["add", "a.py"], ["commit", "-qm", "a"]):
-        subprocess.run([*git, *command], check=True, capture_output=True)
     monkeypatch.setattr(module, "PACKAGE", tmp_path)
+    (tmp_path / "docs").mkdir()
+    pages, source = tmp_path / "docs" / "a.md", tmp_path / "a.py"
+    pages.write_text("1\n")
+    source.write_text("1\n")
+    for command in (["init", "-q"], ["add", "."], ["commit", "-qm", "a"], ["tag", "-am", "b", "v"]):
+        subprocess.run([*git, *command], check=True, capture_output=True)
+    pages.write_text("what the sources gave\n")
     clean = git_commit()
-    (tmp_path / "a.py").write_text("2\n")
-    git_commit.cache_clear()
     assert len(clean) == 40
-    assert git_commit() == f"{clean}-dirty"
-    subprocess.run([*git, "tag", "-a", "-m", "first", "v1.0"], check=True, capture_output=True)
+    source.write_text("2\n")
     git_commit.cache_clear()
     assert git_commit() == f"{clean}-dirty"
