@@ -53,7 +53,7 @@ SOLVER   = numpy|scipy|numba|llvmlite|rocket-fft|click|pyyaml
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test test-cluster nightly accuracy validate benchmark timings reproduce reproduce-boundary figures report docs \
+.PHONY: all env test test-cluster nightly law accuracy validate benchmark timings reproduce reproduce-boundary figures report docs \
   lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
@@ -134,6 +134,7 @@ timings: env  ## What depends on the machine, for the pages (40 minutes)
 
 # All of it resumes: rules that are done are not run again, and boundary elements keep every load step.
 reproduce: env  ## The numbers and figures of the pages, but for timings and reproduce-boundary (3 core hours)
+	$(MAKE) --no-print-directory law
 	$(MAKE) --no-print-directory figures SCALE=paper
 	$(MAKE) --no-print-directory accuracy
 	$(MAKE) --no-print-directory validate VALIDATION=config/validation.yaml
@@ -156,6 +157,14 @@ reproduce: env  ## The numbers and figures of the pages, but for timings and rep
 	  --radius 1.25mm --work-of-adhesion 63mJ/m2 --figure docs/figures/prediction.png
 	$(IN_ENV) .venv/bin/python -m studies pages
 
+law: env  ## The law of k, from its straight fronts (half an hour, two cores)
+	set -e; for name in $(FRONTS_OF_LAW); do $(MAKE) --no-print-directory SWEEP=config/$$name.yaml; done
+	$(IN_ENV) .venv/bin/python -m studies law fit $(FRONTS_OF_LAW:%=config/%.yaml)
+	cp results/law/law.csv studies/law/
+	cp results/law/law.json crackfront/analysis/
+
+FRONTS_OF_LAW = line line-strong line-long line-long-strong line-chemical line-chemical-strong line-weak \
+  line-weak-long line-held-out
 KEPT = docs/reference
 PAPER = main-3cd main-5bc si-5 beyond-avalanches beyond-roughness
 LARGE = 512 1024 series strong fine edges
