@@ -1,4 +1,4 @@
-"""What was found about k, in five sentences that README, fits and reports open with."""
+"""What was found about k, in the sentences that README, fits and reports open with."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def stated_breadths() -> dict[str, float]:
 
 
 def finding(departure: str) -> str:
-    """The five sentences, with the numbers of the shipped law.
+    """The sentences, with the numbers of the shipped law.
 
     The departure says how far whose k are from the law. It follows "The law was measured on
     straight fronts held by springs".
@@ -41,7 +41,7 @@ def finding(departure: str) -> str:
     Examples
     --------
     >>> finding("; no sphere was held against it").count(". ")
-    4
+    6
     """
     s, low, high = crossing()
     weak = pinning_factor(WEAKEST, math.inf).factor
@@ -50,12 +50,12 @@ def finding(departure: str) -> str:
         for name, breadth in stated_breadths().items()
     )
     return (
-        "The factor k of w_retr, w_appr = w_int - e_el ± k e_el is no constant: it falls with the "
-        "disorder s = w_rms/w_int and rises with the size g, the length over which the contact "
-        "holds its edge over the Larkin length of the roughness. In the infinite contact k is "
-        f"{with_interval(weak)} at vanishing disorder, and at s = {STRONG:g}, the disorder of the "
-        f"paper's experiment, {strong}. A finite contact has less. So k is {PAPER_FACTOR:g}, as "
-        f"the paper has it, only along a line from g = {least_size():.1f} at vanishing disorder to "
+        "The factor k of w_retr, w_appr = w_int - e_el ± k e_el is no constant. It falls with the "
+        "disorder s = w_rms/w_int and rises with the size g, which is the length on which the "
+        "contact holds its edge, divided by the Larkin length of the roughness. In the infinite "
+        f"contact k is {with_interval(weak)} at vanishing disorder. At s = {STRONG:g}, that of the "
+        f"paper's experiment, it is {strong}. A finite contact has less. So k is {PAPER_FACTOR:g}, "
+        f"as in the paper, only along a line from g = {least_size():.1f} at vanishing disorder to "
         f"s = {s:.2f} ({low:.2f} to {high:.2f}) in the infinite contact. "
         f"The law was measured on straight fronts held by springs{departure}."
     )
@@ -64,8 +64,8 @@ def finding(departure: str) -> str:
 def departure_of_spheres(rms: float, n_large: int, n_cell: int) -> str:
     """End of the finding where simulated spheres were held against the law."""
     return (
-        "; simulated spheres, to which nothing was adjusted, have the k that it gives within "
-        f"{rms:.1%} rms where g is above 1 ({n_large} of {n_cell} spectra and amplitudes)"
+        f". No sphere entered it; simulated spheres have its k within {rms:.1%} rms where g is "
+        f"above 1 ({n_large} of {n_cell} spectra and amplitudes)"
     )
 
 

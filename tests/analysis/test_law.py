@@ -174,9 +174,9 @@ def test_what_has_no_k_is_refused(call, sentence):
         call()
 
 
-def test_the_finding_is_five_sentences_with_the_numbers_of_the_law(law):
+def test_the_finding_is_eight_sentences_with_the_numbers_of_the_law(law):
     text = finding(departure_of_spheres(0.0251, 65, 87))
-    assert len(re.findall(r"\.(?= [A-Z]|$)", text)) == 5
+    assert len(re.findall(r"\.(?= [A-Z]|$)", text)) == 8
     k_0 = pinning_factor(WEAKEST, np.inf).factor
     assert f"k is {k_0.value:.2f} ({k_0.low:.2f} to {k_0.high:.2f}) at vanishing" in text
     assert float(law_value(law.coefficients, 0.0, least_size())) == pytest.approx(3)
