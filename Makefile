@@ -183,17 +183,17 @@ reproduce-boundary: env  ## The same of large boundary elements (a day of one co
 	$(IN_ENV) .venv/bin/python -m studies boundary-elements numbers --keep
 	$(IN_ENV) .venv/bin/python -m studies pages
 
-accuracy: env  ## Errors of all numerics of docs/experiments/numerics.md (half an hour, two cores)
+accuracy: env  ## Errors of all numerics of docs/experiments/numerics.md (45 minutes, two cores)
 	$(if $(wildcard results/accuracy),@$(REPAIR) results/accuracy)
 	$(SNAKE) accuracy
 	@echo "Results: results/accuracy/"
 
-validate: env  ## The model against boundary elements (15 minutes); VALIDATION=config/validation-512.yaml
+validate: env  ## The model against boundary elements (6 minutes); VALIDATION=config/validation-512.yaml
 	$(if $(wildcard $(VALIDATED)),@$(REPAIR) $(VALIDATED))
 	$(SNAKE) --config validation=$(VALIDATION) -- validation
 	@echo "Results: $(VALIDATED)validation.md"
 
-figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=paper (15)
+figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=paper (25)
 	@$(REPAIR) $(wildcard results/figures) config/$(if $(filter paper,$(SCALE)),paper,default).yaml
 	$(SNAKE) --config scale=$(SCALE) -- figures
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"

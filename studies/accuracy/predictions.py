@@ -74,10 +74,9 @@ def _scanned(film: Film, rng: np.random.Generator) -> MeasuredSurface:
 
 
 def comparison_table(items: Iterable[Comparison]) -> str:
-    """Predicted and simulated numbers in Markdown, a film a row."""
+    """Numbers of the front, predicted and simulated, in Markdown, a film a row."""
     rows = []
     for film, law, found in ((item.film, item.prediction, item.found) for item in items):
-        works = law.w_appr, found.w_appr, law.w_retr, found.w_retr
         rows.append(
             (
                 f"{film.hurst:g}",
@@ -86,11 +85,12 @@ def comparison_table(items: Iterable[Comparison]) -> str:
                 f"{law.correlation_length / law.contact_radius:.4f}",
                 with_interval(law.factors.both),
                 with_interval(found.k),
-                *(f"{1e3 * work.value:.1f}" for work in works),
+                with_interval(law.front_hysteresis.each(lambda work: 1e3 * work)),
+                with_interval(found.hysteresis.each(lambda work: 1e3 * work)),
             )
         )
     return markdown_table(
         "H | roll-off, um | e_el/w_int | correlation length / contact radius | k predicted | "
-        "k simulated | w_appr predicted, mJ/m2 | simulated | w_retr predicted, mJ/m2 | simulated",
+        "k simulated | hysteresis of the front predicted, mJ/m2 | simulated",
         rows,
     )
