@@ -75,7 +75,7 @@ def report(output: Path, keep: bool) -> None:
     tables = write_report(output, click.echo)
     if keep:
         sources = "studies.accuracy.report", "studies.accuracy.files"
-        page = Path("docs/experiments/numerics.md").read_text("utf-8")
+        page = (Path(__file__).parents[2] / "docs/experiments/numerics.md").read_text("utf-8")
         shown = {name: text for name, text in tables.items() if f"accuracy: {name} -->" in page}
         keep_parts("accuracy", shown, *sources, data=read_attributes(min(output.glob("*.nc"))))
 
