@@ -347,6 +347,7 @@ def plain_cycles():
     return found
 
 
+@pytest.mark.slow
 def test_kernels_in_plain_python_raise_no_floating_point_error_and_find_the_compiled_fronts():
     # Compiled code does not raise: a division by zero or an overflow would pass unseen.
     done = subprocess.run(
