@@ -19,15 +19,22 @@ KERNEL = "crackfront/core/solver/monotone.py"
 RULES = Path(module.ROOT, "workflow/rules")
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder for copies of the sources, of which those are parsed once that no test changes."""
+    return tmp_path_factory.mktemp("sources")
+
+
 @pytest.fixture
-def sources(tmp_path, monkeypatch):
+def sources(folder, monkeypatch):
     """A copy of the sources, whose fingerprints are taken instead."""
     for name in ("crackfront", "studies"):
         ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(module.ROOT / name, tmp_path / name, ignore=ignored)
-    monkeypatch.setattr(module, "ROOT", tmp_path)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    return tmp_path
+        shutil.rmtree(folder / name, ignore_errors=True)
+        shutil.copytree(module.ROOT / name, folder / name, ignore=ignored)
+    monkeypatch.setattr(module, "ROOT", folder)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
+    return folder
 
 
 def edited(path, *changes):
