@@ -1,11 +1,17 @@
-"""Commands as tests run them, in their own process."""
+"""Commands as tests run them, in their own process, and parameters that run at night."""
 
+import functools
+
+import pytest
 import xarray as xr
 from click.testing import CliRunner
 
 from crackfront.cli import main
 from crackfront.data.packs import members
 from crackfront.sweep.journal import pack_paths
+
+slow = functools.partial(pytest.param, marks=pytest.mark.slow)
+"""Parameters whose test is left to the night."""
 
 
 def run(*arguments):

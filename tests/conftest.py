@@ -26,9 +26,10 @@ atexit.register(gc.freeze)
 
 SEED = 20240229
 
-hypothesis.settings.register_profile("local", deadline=None)
-hypothesis.settings.register_profile("reproducible", deadline=None, derandomize=True)
-hypothesis.settings.load_profile("reproducible" if os.environ.get("CI") else "local")
+hypothesis.settings.register_profile(
+    "ours", deadline=None, max_examples=50, derandomize=bool(os.environ.get("CI"))
+)
+hypothesis.settings.load_profile("ours")
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -107,6 +107,7 @@ def test_planted_trends_with_disorder_and_size_are_recovered(rng):
     np.testing.assert_allclose(fit.pooled.factor.value, np.mean(fit.cells.factor.value))
 
 
+@pytest.mark.slow
 def test_intervals_cover_the_truth_as_often_as_they_say(rng):
     n_table = 200
     hits = dict.fromkeys(LAW, 0.0)

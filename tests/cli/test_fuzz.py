@@ -619,7 +619,7 @@ def test_no_generated_input_ends_in_a_traceback_a_hang_or_a_wrong_result(
     monkeypatch.setattr("crackfront.topography.fitting._STEPS", 60)
     monkeypatch.setattr("crackfront.topography.joining._DRAWS", 50)
     with np.errstate(all="warn", under="ignore"):
-        assert faults(kind, range(100), tmp_path) == {}
+        assert faults(kind, range(50), tmp_path) == {}
         # What libraries leave open warns here, and not amid another test.
         gc.collect()
 
@@ -631,4 +631,4 @@ def test_no_generated_input_ends_in_a_traceback_a_hang_or_a_wrong_result(
 @pytest.mark.parametrize("kind", CASES)
 def test_no_generated_input_of_twenty_times_as_many_does(kind, tmp_path):
     with np.errstate(all="warn", under="ignore"):
-        assert faults(kind, range(100, 2000), tmp_path) == {}
+        assert faults(kind, range(50, 2000), tmp_path) == {}

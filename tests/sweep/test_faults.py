@@ -15,7 +15,7 @@ import xarray as xr
 from crackfront.data.provenance import provenance
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.store import Store
-from tests.commands import curves, datasets
+from tests.commands import curves, datasets, slow
 from tests.commands import run as run_command
 
 ROOT = Path(__file__).parents[2]
@@ -134,9 +134,7 @@ def copied(undisturbed, tmp_path):
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(
-    ("victim", "again"), [("rank", "1"), pytest.param("launcher", "2", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("victim", "again"), [("rank", "1"), slow("launcher", "2")])
 def test_a_killed_rank_or_launcher_ends_the_job_and_costs_what_was_running(
     configuration, same, tmp_path, victim, again
 ):
@@ -157,6 +155,7 @@ def test_a_killed_rank_or_launcher_ends_the_job_and_costs_what_was_running(
 
 
 @pytest.mark.mpi
+@pytest.mark.slow
 def test_ranks_end_with_the_command_that_started_them_and_nothing_is_computed_twice(
     configuration, same, tmp_path
 ):
@@ -185,16 +184,12 @@ def test_two_controllers_at_the_same_shard_do_no_harm(configuration, same, tmp_p
     assert same(tmp_path)
 
 
+@pytest.mark.mpi
 @pytest.mark.usefixtures("_heeded_signals")
 @pytest.mark.parametrize(
     ("ranks", "told"),
-    [
-        pytest.param(1, signal.SIGTERM, marks=pytest.mark.slow),
-        (1, signal.SIGINT),
-        pytest.param(2, signal.SIGTERM, marks=pytest.mark.mpi),
-        pytest.param(2, signal.SIGINT, marks=[pytest.mark.mpi, pytest.mark.slow]),
-        pytest.param(2, signal.SIGHUP, marks=[pytest.mark.mpi, pytest.mark.slow]),
-    ],
+    [(1, signal.SIGINT), slow(1, signal.SIGTERM)]
+    + [slow(2, told) for told in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)],
 )
 def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_path, ranks, told):
     with running(configuration, tmp_path, "--ranks", str(ranks)) as process:
@@ -217,7 +212,7 @@ def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_pat
 
 
 def test_a_killed_process_goes_on_from_its_last_checkpoint(configuration, same, tmp_path):
-    with running(configuration, tmp_path, "--checkpoint", "0") as process:
+    with running(configuration, tmp_path, "--checkpoint", "0", until=1) as process:
         while not any((tmp_path / "checkpoints").glob("[!.]*.nc")):
             time.sleep(0.01)
         os.kill(process.pid, signal.SIGSTOP)
@@ -260,6 +255,7 @@ def test_a_full_disk_ends_the_run_and_room_lets_it_go_on(configuration, same, sm
     assert same(small_disk / "out")
 
 
+@pytest.mark.slow
 def test_a_folder_that_is_read_only_is_refused_before_anything_runs(
     configuration, same, small_disk
 ):
@@ -309,8 +305,14 @@ def finished(undisturbed, tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize("harm", HARM)
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize(
+    ("name", "harm"),
+    [
+        (slow if (i + j) % 3 or "pdf" in name else pytest.param)(name, harm)
+        for i, name in enumerate(FILES)
+        for j, harm in enumerate(HARM)
+    ],
+)
 def test_a_file_that_lost_its_content_is_found_not_archived_and_made_anew(
     configuration, finished, tmp_path, name, harm
 ):
@@ -327,7 +329,12 @@ def test_a_file_that_lost_its_content_is_found_not_archived_and_made_anew(
     # What the workflow does before it plans, and the command of the file then.
     assert any(str(path) in told for told in renewed(configuration, folder))
     command = {"curves": "simulate", "shards": "simulate"}
-    command |= {"fit": "fit", "hysteresis": "aggregate", "summary": "summary"}
+    command |= {
+        "fit": "fit",
+        "configuration": "fit",
+        "hysteresis": "aggregate",
+        "summary": "summary",
+    }
     made_by = command.get(path.relative_to(folder).parts[0].partition(".")[0], "figures")
     assert run_command(made_by, configuration, "--output", folder).exit_code == 0
     assert run_command("verify", folder).exit_code == 0
@@ -342,7 +349,7 @@ def test_an_archive_without_content_is_damaged(tmp_path, content):
     assert "damaged: sweep.zip" in found.output
 
 
-@pytest.mark.parametrize("moment", [pytest.param(0, marks=pytest.mark.slow), 4e9])
+@pytest.mark.parametrize("moment", [slow(0), 4e9])
 def test_a_clock_that_jumps_makes_nothing_older_or_newer(configuration, same, copied, moment):
     for path in copied.rglob("*"):
         os.utime(path, (moment, moment))

@@ -16,7 +16,7 @@ import xarray as xr
 import yaml
 
 import crackfront as cf
-from tests.commands import curves, datasets
+from tests.commands import curves, slow
 
 ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
@@ -57,22 +57,13 @@ def states(folder):
 
 
 @pytest.fixture(scope="module")
-def serial(tmp_path_factory):
+def whole(tmp_path_factory):
     """Folder of a whole run without MPI."""
-    folder = tmp_path_factory.mktemp("serial")
+    folder = tmp_path_factory.mktemp("whole")
     done = snakemake(folder, ranks=1)
     assert done.returncode == 0, done.stderr
     assert str(Path("results/test/fit.md")) in done.stdout
     return folder
-
-
-@pytest.mark.mpi
-def test_the_workflow_gives_the_same_with_one_rank_and_with_two(tmp_path, serial):
-    done = snakemake(tmp_path, "--", "results/test/shards/flat.json", ranks=2)
-    assert done.returncode == 0, done.stderr
-    two, one = (datasets(folder / "results/test") for folder in (tmp_path, serial))
-    assert len(two) == 4
-    assert all(found.equals(one[name]) for name, found in two.items())
 
 
 def contents(folder):
@@ -81,10 +72,12 @@ def contents(folder):
 
 
 @pytest.mark.parametrize(
-    "verb", ["--dry-run", "--list-rules", "--lint", "--dag", "--summary", "--report=report.html"]
+    "verb",
+    ["--dry-run"]
+    + [slow(f"--{verb}") for verb in ("list-rules", "lint", "dag", "summary", "report=a.html")],
 )
-def test_reading_the_workflow_changes_nothing_even_where_files_are_damaged(tmp_path, serial, verb):
-    shutil.copytree(serial / "results", tmp_path / "results")
+def test_reading_the_workflow_changes_nothing_even_where_files_are_damaged(tmp_path, whole, verb):
+    shutil.copytree(whole / "results", tmp_path / "results")
     for name in ("fit.json", "figures/loop.pdf", "shards/flat.json"):
         (tmp_path / "results/test" / name).write_bytes(b"{")
     date(2096, tmp_path / "results/test/summary.html")
@@ -93,6 +86,7 @@ def test_reading_the_workflow_changes_nothing_even_where_files_are_damaged(tmp_p
     assert contents(tmp_path / "results") == before
 
 
+@pytest.mark.slow
 def test_a_million_simulations_are_planned(tmp_path):
     sweep = tmp_path / "sweep.yaml"
     text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
@@ -119,20 +113,20 @@ def seen_in_browser(page, profile):
 
 
 @pytest.mark.skipif(not shutil.which("chromium"), reason="needs chromium: apt-get install chromium")
-def test_the_report_is_one_page_that_a_browser_shows_without_a_network(tmp_path, serial):
+def test_the_report_is_one_page_that_a_browser_shows_without_a_network(tmp_path, whole):
     report = tmp_path / "report.html"
-    done = snakemake(serial, "--report", str(report), ranks=1)
+    done = snakemake(whole, "--report", str(report), ranks=1)
     assert done.returncode == 0, done.stderr
     text = report.read_text(encoding="utf-8")
     for name in ("figures/hysteresis.png", "figures/loop.png", "figures/factor.png"):
-        content = (serial / "results/test" / name).read_bytes()
+        content = (whole / "results/test" / name).read_bytes()
         assert base64.b64encode(content).decode() in text
     seen = seen_in_browser(report, tmp_path / "profile")
     for words in ("a crack front pinned by the roughness", "Figures", "Fit, configuration and"):
         assert words in " ".join(seen.split())
-    summary = seen_in_browser(serial / "results/test/summary.html", tmp_path / "profile")
+    summary = seen_in_browser(whole / "results/test/summary.html", tmp_path / "profile")
     # Both open on the sentences of the fit, and on its figures.
-    fit = (serial / "results/test/fit.md").read_text(encoding="utf-8")
+    fit = (whole / "results/test/fit.md").read_text(encoding="utf-8")
     first = re.search(r"The factor k of .*? is no constant", fit)
     assert first
     for page in (seen, summary):
@@ -160,8 +154,8 @@ def date(moment, *paths):
         os.utime(path, (seconds, seconds))
 
 
-def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path, serial):
-    shutil.copytree(serial, tmp_path, dirs_exist_ok=True)
+def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path, whole):
+    shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
     sweep = Path(shutil.copy(ROOT / "config/test.yaml", tmp_path))
     results = tmp_path / "results/test"
     before = states(results)
@@ -185,11 +179,12 @@ def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path, s
     assert xr.load_dataset(results / "hysteresis.nc").sizes["realisation"] == 3
 
 
+@pytest.mark.mpi
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
 def test_a_changed_fit_is_fitted_and_a_remark_is_not_whatever_the_dates(tmp_path):
     sweep = flat_sweep(tmp_path)
-    assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
+    assert snakemake(tmp_path, sweep=sweep, ranks=2).returncode == 0
     results = tmp_path / "results/sweep"
     sweep.write_text("# a remark\n" + sweep.read_text())
     before = states(results)
@@ -293,9 +288,9 @@ def test_a_clone_may_stand_under_a_name_with_quotes_and_braces(tmp_path):
     ("name", "hurst", "settings", "sentence"),
     [
         ("sweep", 1.8, (), "spectra[1].hurst is 1.8; it must be"),
-        ("a; rm -rf b", 0.8, (), "the results are named after 'a; rm -rf b.yaml'"),
-        ("sweep", 0.8, ("rank=2",), "--config knows no rank; its keys are sweep (a file), ranks"),
-        ("sweep", 0.8, ("scale=coarse",), "scale is 'coarse'; choose one of quick, paper"),
+        slow("sweep", 0.8, ("rank=2",), "--config knows no rank; its keys are sweep (a file)"),
+        slow("a; rm -rf b", 0.8, (), "the results are named after 'a; rm -rf b.yaml'"),
+        slow("sweep", 0.8, ("scale=coarse",), "scale is 'coarse'; choose one of quick, paper"),
     ],
 )
 def test_the_workflow_refuses_what_is_wrong_before_it_starts(
@@ -324,6 +319,7 @@ use rule * from crackfront as cf_*
 """
 
 
+@pytest.mark.slow
 def test_another_workflow_takes_the_rules_under_names_and_in_a_folder_of_its_own(tmp_path):
     flat_sweep(tmp_path)
     (tmp_path / "Snakefile").write_text(OTHER.format(snakefile=str(ROOT / "Snakefile")))
@@ -335,6 +331,7 @@ def test_another_workflow_takes_the_rules_under_names_and_in_a_folder_of_its_own
     assert shards == {"flat.0-0", "flat.1-1"}
 
 
+@pytest.mark.slow
 def test_a_killed_snakemake_costs_nothing_that_is_stored(tmp_path):
     sweep = flat_sweep(tmp_path)
     text = sweep.read_text()
@@ -361,14 +358,6 @@ def test_a_killed_snakemake_costs_nothing_that_is_stored(tmp_path):
     assert found.equals(undisturbed)
 
 
-def test_the_workflow_makes_a_figure_of_the_paper(tmp_path):
-    arguments = [*command(tmp_path), "--", "results/figures/quick/main-1d.pdf"]
-    done = subprocess.run(arguments, capture_output=True, text=True, timeout=240, check=False)
-    assert done.returncode == 0, done.stderr
-    made = {path.name for path in (tmp_path / "results/figures/quick").glob("*.*")}
-    assert made == {"main-1d.nc", "main-1d.pdf", "main-1d.png"}
-
-
 VALIDATION = """
 seed: 5
 short_cutoff: 0.6
@@ -381,11 +370,14 @@ cases:
 """
 
 
-def test_the_workflow_validates_the_model_by_boundary_elements(tmp_path):
+def test_the_workflow_makes_a_figure_of_the_paper_and_validates_the_model(tmp_path):
     configuration = tmp_path / "tiny.yaml"
     configuration.write_text(VALIDATION)
-    done = snakemake(tmp_path, f"validation={configuration}", "--", "validation")
+    targets = "validation", "results/figures/quick/main-1d.pdf"
+    done = snakemake(tmp_path, f"validation={configuration}", "--", *targets)
     assert done.returncode == 0, done.stderr
+    figure = {path.name for path in (tmp_path / "results/figures/quick").glob("*.*")}
+    assert figure == {"main-1d.nc", "main-1d.pdf", "main-1d.png"}
     made = {path.name for path in (tmp_path / "results/tiny").iterdir()}
     assert {"validation.md", "validation.pdf", "hysteresis.nc", "picture.nc"} <= made
     assert sum(name.startswith("n48-g0.7-e0.02-") for name in made) == 1

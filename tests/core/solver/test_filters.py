@@ -27,6 +27,7 @@ def test_a_filter_is_what_it_does_to_every_mode(count, kind):
     assert np.allclose(found, front, rtol=0, atol=4000 * digit)
 
 
+@pytest.mark.slow
 def test_a_large_front_of_an_odd_number_of_sites_comes_to_rest():
     patches = np.repeat(np.random.default_rng(5).standard_normal((40, 257)), 64, axis=1)
     adhesion = (1 + 0.5 * patches[:, :16385]) / np.pi

@@ -13,6 +13,7 @@ from studies.law.cells import MEASURED, LawCell, measured_cells
 from studies.law.fitting import fitted_law
 
 
+@pytest.mark.slow
 def test_the_fit_finds_the_law_that_was_planted(rng):
     truth = (3.6, 0.5, 0.1, 0.05, 1.0, 1.2, 2.0, 1.2, 0.2, 0.05)
     template = measured_cells()[0]

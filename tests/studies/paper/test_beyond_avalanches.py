@@ -10,24 +10,15 @@ from pydantic import ValidationError
 from studies.paper.beyond_avalanches import AvalancheRecord
 from studies.paper.events import cutoff_slope, depth_slope, event_law, event_record
 from studies.paper.figure import figure
-from studies.paper.power_law import joint_power_law
 from tests.studies.paper.made import computed, failed, is_labelled, parameters
 
 SCENE = figure("beyond-avalanches")
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _each_fit_once():
-    """Most records differ in other things than their events, whose fits take two seconds."""
-    known = {}
-
-    def fitted(samples, smallest, rng):
-        given = *(sample.tobytes() for sample in samples), smallest, str(rng.bit_generator.state)
-        if given not in known:
-            known[given] = joint_power_law(samples, smallest, rng)
-        return known[given]
-
-    with mock.patch("studies.paper.events.joint_power_law", fitted):
+def _few_draws():
+    """Intervals from a quarter of the draws."""
+    with mock.patch.multiple("studies.paper.power_law", _N_BOOTSTRAP=50, _N_JOINT_BOOTSTRAP=25):
         yield
 
 
@@ -154,6 +145,7 @@ def test_whole_events_sweep_the_way_of_the_load(record):
     assert 20 < record.event_extent.max() * record.sites_per_larkin_length < 200
 
 
+@pytest.mark.slow
 def test_a_finer_precision_finds_the_same_whole_events():
     line = parameters("beyond-avalanches").line.model_copy(update={"length": 5.0})
     coarse, fine = (

@@ -30,6 +30,7 @@ def test_it_recovers_the_law_of_its_values(rng, exponent, cutoff):
         assert law.cutoff == pytest.approx(3 * cutoff, rel=0.3)
 
 
+@pytest.mark.slow
 def test_its_interval_covers_the_exponent_about_as_often_as_it_says(rng):
     laws = [truncated_power_law(drawn(rng, 1.28, 50.0, 150), 1.0, rng) for _ in range(8)]
     assert sum(law.low <= 1.28 <= law.high for law in laws) >= 6

@@ -37,7 +37,8 @@ def test_a_rank_hands_out_tasks_and_stores_their_curves():
     assert 0 < scaling.hand_out_seconds(2, 50) < np.inf
 
 
-@pytest.mark.parametrize("n_simulation", [2_000, pytest.param(100_000, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("n_simulation", [2_000, 100_000])
 def test_what_follows_the_simulations_has_the_memory_that_is_asked_for(tmp_path, n_simulation):
     path = scaling.synthetic(tmp_path, n_simulation)
     for name, cost in late_needs(load_configuration(path)).items():

@@ -1,11 +1,13 @@
 """Both solvers on the same problems: their fronts are equal, and the table says what they took."""
 
+import pytest
 import xarray as xr
 from click.testing import CliRunner
 
 from studies.__main__ import main
 
 
+@pytest.mark.slow
 def test_the_smoke_benchmark_reports_equal_fronts(tmp_path):
     command = ["speed", "solvers", "--group", "smoke", "--repeats", "1", "--output", str(tmp_path)]
     done = CliRunner().invoke(main, command)
