@@ -119,14 +119,14 @@ nightly: env  ## Run all tests, the slow ones too
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT)
 
-benchmark: env  ## Solvers against the reference, what requests cost, how sweeps scale (40 minutes)
+benchmark: env  ## Solvers against the reference, what requests cost, how sweeps scale (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers
 	$(IN_ENV) .venv/bin/python -m studies speed needs
 	$(IN_ENV) .venv/bin/python -m studies speed costs
 	$(IN_ENV) .venv/bin/python -m studies speed scaling
 	@echo "Results: results/benchmark/"
 
-timings: env  ## What depends on the machine, for the pages (40 minutes)
+timings: env  ## What depends on the machine, for the pages (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers --keep
 	$(IN_ENV) .venv/bin/python -m studies speed needs --keep
 	$(IN_ENV) .venv/bin/python -m studies speed scaling --keep
