@@ -629,6 +629,6 @@ def test_no_generated_input_ends_in_a_traceback_a_hang_or_a_wrong_result(
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.filterwarnings("default")
 @pytest.mark.parametrize("kind", CASES)
-def test_no_generated_input_of_twenty_times_as_many_does(kind, tmp_path):
+def test_no_generated_input_of_forty_times_as_many_does(kind, tmp_path):
     with np.errstate(all="warn", under="ignore"):
         assert faults(kind, range(50, 2000), tmp_path) == {}

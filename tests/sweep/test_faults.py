@@ -184,12 +184,14 @@ def test_two_controllers_at_the_same_shard_do_no_harm(configuration, same, tmp_p
     assert same(tmp_path)
 
 
-@pytest.mark.mpi
 @pytest.mark.usefixtures("_heeded_signals")
 @pytest.mark.parametrize(
     ("ranks", "told"),
     [(1, signal.SIGINT), slow(1, signal.SIGTERM)]
-    + [slow(2, told) for told in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)],
+    + [
+        pytest.param(2, told, marks=[pytest.mark.mpi, pytest.mark.slow])
+        for told in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+    ],
 )
 def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_path, ranks, told):
     with running(configuration, tmp_path, "--ranks", str(ranks)) as process:
@@ -328,13 +330,8 @@ def test_a_file_that_lost_its_content_is_found_not_archived_and_made_anew(
     assert f"the first is {path}" in archived.stderr
     # What the workflow does before it plans, and the command of the file then.
     assert any(str(path) in told for told in renewed(configuration, folder))
-    command = {"curves": "simulate", "shards": "simulate"}
-    command |= {
-        "fit": "fit",
-        "configuration": "fit",
-        "hysteresis": "aggregate",
-        "summary": "summary",
-    }
+    command = {"curves": "simulate", "shards": "simulate", "configuration": "fit"}
+    command |= {"fit": "fit", "hysteresis": "aggregate", "summary": "summary"}
     made_by = command.get(path.relative_to(folder).parts[0].partition(".")[0], "figures")
     assert run_command(made_by, configuration, "--output", folder).exit_code == 0
     assert run_command("verify", folder).exit_code == 0
