@@ -6,7 +6,6 @@ what can be recorded; all but the rings are on one surface.
 
 from __future__ import annotations
 
-import functools
 import tempfile
 import time
 from dataclasses import asdict, astuple, dataclass, replace
@@ -129,7 +128,7 @@ def ring_field(scene: Scene, rays: int) -> Field:
 
 
 def measured(scene: Scene, need: Need) -> Row:
-    """Cost of one request and its file; compiled kernels are loaded before."""
+    """Cost of one request, kernels loaded; then its file, whose dataset first imports xarray."""
     compile_solver("newton")
     run_cycle(ring_field(SMALL, 1), LoadSchedule(0.0, 1.0))
     before, start = restart_peak(), time.process_time()
@@ -137,17 +136,18 @@ def measured(scene: Scene, need: Need) -> Row:
     if need.rays:
         field = ring_field(scene, need.rays)
         record = run_cycle(field, scene.cycle, Newton(TOLERANCE))
-        write = functools.partial(write_dataset, dataset=cycle_dataset(record))
     else:
         result = run_simulation(simulation(scene, need))
         record = result.record
-        write = functools.partial(write_dataset, dataset=simulation_dataset(result))
     seconds, peak = time.process_time() - start, peak_memory() - before
-    if not need.rays:
+    if need.rays:
+        dataset = cycle_dataset(record)
+    else:
+        dataset = simulation_dataset(result)
         field = simulation_field(simulation(scene, need))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.nc"
-        write(path, origin=provenance())
+        write_dataset(path, dataset, provenance())
         size = path.stat().st_size
     return Row(
         name=need.name,
