@@ -53,7 +53,7 @@ SOLVER   = numpy|scipy|numba|llvmlite|rocket-fft|click|pyyaml
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 .DEFAULT_GOAL := all
-.PHONY: all env test test-cluster nightly law accuracy validate benchmark timings reproduce reproduce-boundary figures report docs \
+.PHONY: all env test test-portable test-cluster nightly law accuracy validate benchmark timings reproduce reproduce-boundary figures report docs \
   lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
@@ -110,6 +110,13 @@ test: env  ## Run the tests that are not slow
 	@mkdir -p $(dir $(REPORT))
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" --junitxml=$(REPORT)
+
+# What another processor computes: no vector units beyond SSE3, kernels for any x86, three threads.
+PORTABLE = NPY_DISABLE_CPU_FEATURES="AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR AVX2 FMA3" \
+  OPENBLAS_CORETYPE=Nehalem OPENBLAS_NUM_THREADS=3 NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= PYTHONWARNINGS=ignore
+
+test-portable: env  ## Run the tests of predictions as on another processor (two minutes)
+	@$(IN_ENV) $(PORTABLE) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" tests/topography
 
 test-cluster: env  ## Run the tests that need a Slurm, on one started for them (5 minutes)
 	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm tests/cluster

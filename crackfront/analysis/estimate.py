@@ -54,6 +54,18 @@ class Estimate(Generic[Number]):
         return self.each(lambda values: np.where(known, values, np.nan))
 
 
+def quantiles(values: Array, weight: Array, part: ArrayLike) -> Array:
+    """Quantiles along the first axis of values with weights, one after the other in a new axis.
+
+    Examples
+    --------
+    >>> quantiles(np.array([3.0, 1.0, 2.0]), np.array([0.5, 0.25, 0.25]), (0.3, 0.9)).tolist()
+    [2.0, 3.0]
+    """
+    parts = np.asarray(part, float)
+    return np.asarray(np.quantile(values, parts, axis=0, weights=weight, method="inverted_cdf"))
+
+
 def with_error(value: float, error: float) -> str:
     """Number and error in equal digits, two of which are the error's; of a tiny one six in all.
 

@@ -25,8 +25,8 @@ _MODEL_ERROR = 0.05
 """Standard error of the logarithm that the form of the law leaves: half of what powers of the
 disorder from 2 to 4 differ by between the measured amplitudes."""
 
-_FURTHER = 1.5
-"""How far beyond the measured energies the law is used, as a factor."""
+_EXTRAPOLATION = 0.5
+"""Relative standard error of what the law says beyond the measured energies."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +58,8 @@ class Excess:
     """Hysteresis of the front over that of boundary elements for a surface."""
 
     ratio: Estimate[float]
-    """What the front's hysteresis is divided by, and its interval: where the ratio was not
-    measured, 1 with an interval that reaches to what the law says."""
+    """What the front's hysteresis is divided by, and its interval, which grows beyond the
+    amplitudes and sizes that were measured."""
     is_measured: bool
     """Whether the amplitude is among those that were measured."""
     sentence: str
@@ -140,19 +140,17 @@ def front_excess(energy: float, size: float, rows: Sequence[ValidityRow] | None 
     strongest = max(row.elastic_energy for row in rows)
     largest = max(row.size for row in rows)
     grown = size_error(rows) * math.log(max(1.0, size / largest))
+    beyond = _EXTRAPOLATION * slope * max(0.0, energy - strongest)
     logarithm = slope * energy
-    reach = REACH * math.hypot(error * energy, grown * energy, _MODEL_ERROR)
+    reach = REACH * math.hypot(error * energy, grown * energy, beyond, _MODEL_ERROR)
     law = Estimate(logarithm, math.nan, logarithm - reach, logarithm + reach).each(math.exp)
-    told = f"{law.value:.2f} ({law.low:.2f} to {law.high:.2f}) times the hysteresis that boundary "
-    compared = f"compared up to e_el/w_int = {strongest:.2g} and g = {largest:.2g}"
-    here = f"here they are {energy:.2g} and {size:.3g}"
-    if energy <= _FURTHER * strongest:
-        wider = f" Both were {compared}; {here}, and the interval is wider." if grown else ""
-        sentence = f"A front has {told}elements have at this e_el, and is divided by it here."
-        return Excess(law, True, sentence + wider)
     sentence = (
-        f"A front may have {told}elements have at this e_el, which were {compared}; {here}: it "
-        "is not divided, but its interval reaches as far."
+        f"A front has {law.value:.2f} ({law.low:.2f} to {law.high:.2f}) times the hysteresis that "
+        "boundary elements have at this e_el, and is divided by it here."
     )
-    ends = math.exp(-REACH * _MODEL_ERROR), max(law.high, math.exp(REACH * _MODEL_ERROR))
-    return Excess(Estimate(1.0, math.nan, *ends), False, sentence)
+    if grown or beyond:
+        sentence += (
+            f" Both were compared up to e_el/w_int = {strongest:.2g} and g = {largest:.2g}; here "
+            f"they are {energy:.2g} and {size:.3g}, and the interval is wider."
+        )
+    return Excess(law, not beyond, sentence)

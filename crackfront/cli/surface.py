@@ -37,6 +37,7 @@ from crackfront.topography.options import (
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
     from crackfront.topography.measures import MeasuredSurface
+    from crackfront.topography.prediction import Prediction
     from crackfront.topography.simulated import Simulated
 
 Command = Callable[..., None]
@@ -155,9 +156,10 @@ def predict(
     the surface or several. Works of adhesion are w_int - e_el -+ k e_el, with k by the law of
     `crackfront law`.
 
-    Exit code 0: a prediction, with reservations where there are any (3 with --strict). 4: the
-    theory does not apply; nothing is predicted, and the output says which modulus, radius or
-    roughness would meet it. With --csv the largest of all samples; an unusable scan counts as 4.
+    Exit code 0: a prediction, with reservations where there are any or where it cannot be decided
+    whether the theory applies (3 with --strict). 4: the theory does not apply; nothing is
+    predicted, and the output says which modulus, radius or roughness would meet it. With --csv the
+    largest of all samples; an unusable scan counts as 4.
     """
     from crackfront.topography.prediction import judged
     from crackfront.topography.report import machine_readable, prediction_page, report_text
@@ -187,7 +189,7 @@ def predict(
             say(f"figure: {path}")
     if prediction is not None and simulate:
         announce_compilation(err=as_json)
-        outcome = _simulated(surface, scales, realisations, seed, say)
+        outcome = _simulated(prediction, scales, realisations, seed, say)
     if as_json:
         echo_json(machine_readable(surface, scales, ruling, prediction, outcome))
     context.exit(_exit_code(ruling.outcome, strict))
@@ -195,7 +197,9 @@ def predict(
 
 def _exit_code(outcome: str, strict: bool) -> int:
     """Exit code of what came of a surface: 3 of reservations if strict, 4 without a prediction."""
-    return {"applies": 0, "applies with reservations": 3 if strict else 0}.get(outcome, 4)
+    if outcome in ("does not apply", "refused"):
+        return 4
+    return 3 if strict and outcome != "applies" else 0
 
 
 def _write_samples(
@@ -229,18 +233,18 @@ def _write_samples(
 
 
 def _simulated(
-    surface: MeasuredSurface, scales: Scales, realisations: int, seed: int, say: Say
+    prediction: Prediction, scales: Scales, realisations: int, seed: int, say: Say
 ) -> Simulated:
-    """What simulations of a surface find, which is announced and said."""
+    """What simulations of a predicted surface find, which is announced and said."""
     from crackfront.topography.report import simulation_text
     from crackfront.topography.simulated import prediction_plan, simulated
 
-    plan = prediction_plan(surface, scales, realisations, seed)
+    plan = prediction_plan(prediction.surface, scales, realisations, seed)
     seconds = in_time(plan.expected_seconds)
     about = f"simulating {realisations} surface(s), about {seconds} ..."
     say("\n".join(filter(None, (plan.remark, about))))
     outcome = simulated(plan, scales)
-    say(simulation_text(outcome))
+    say(simulation_text(outcome, prediction))
     return outcome
 
 

@@ -15,8 +15,15 @@ _MOST_ANISOTROPY = 1.25
 _MOST_UNMEASURED = 0.1
 """Ratio of slopes and parts of e_el from which on they are doubts."""
 
+_LEAST_MEASURED, _MOST_UNSETTLED = 0.5, 0.015
+"""Part of e_el that is measured, and standard error of the ends of intervals over their width, from
+which on this is said."""
+
 _MOST_UNSURE = 0.5
 """How far the interval of e_el may reach above it before another scan is asked for, relative."""
+
+_LEAST_UNEVEN = 0.02
+"""Relative standard error of e_el from which on it is said that a surface is not Gaussian."""
 
 _EDGE, _MATTERS = 0.05, 0.1
 """Distance of a Hurst exponent from 0 and 1, and continued part of e_el, that make it a doubt."""
@@ -45,7 +52,7 @@ def scan_notes(scans: Iterable[Scan], contact_radius: float | None = None) -> It
                 f"{item.path}: valleys are deep; by what the tip does not reach in narrow ones "
                 f"e_el may be {np.exp(most):.1g} times as large, which its interval holds."
             )
-        if one.unevenness:
+        if one.unevenness > _LEAST_UNEVEN:
             yield (
                 f"{item.path}: parts of it differ more than those of a Gaussian surface, so that "
                 f"e_el is known to {one.unevenness:.1%} at best."
@@ -67,15 +74,15 @@ def measure_next(surface: MeasuredSurface) -> str:
     """What another scan would change."""
     shares, joint = surface.joint.shares, surface.joint
     short, long = prefixed("m", joint.shortest), prefixed("m", joint.longest)
-    shorter = max(shares.missing_short, shares.continued)
+    shorter = max(shares.missing_short, shares.continued - shares.continued_long)
     unsure = surface.half_derivative.high / surface.half_derivative.value - 1
-    if max(shorter, shares.missing_long) < _MATTERS and unsure < _MOST_UNSURE:
+    if max(shorter, shares.continued_long) < _MATTERS and unsure < _MOST_UNSURE:
         return f"A finer or larger scan changes e_el by less than {_MATTERS:.0%}: not needed."
     # What is neither continued nor missing is unsure for its few long waves.
-    if shorter >= max(shares.missing_long, _MATTERS):
+    if shorter >= max(shares.continued_long, _MATTERS):
         factor, waves = 1 + shorter, f"shorter than {short}"
     else:
-        factor, waves = 1 + max(unsure, shares.missing_long), f"longer than {long}"
+        factor, waves = 1 + max(unsure, shares.continued_long), f"longer than {long}"
     return f"Measure next: waves {waves}, by which e_el may be up to {factor:.3g} times as large."
 
 
@@ -106,10 +113,16 @@ def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
                 f"({level.low:.2g} to {level.high:.2g}) times theirs where they overlap; the "
                 "intervals hold that."
             )
-    if joint.is_lower_bound:
+    if joint.shares.measured < _LEAST_MEASURED:
         yield (
-            "Most of e_el is not measured: what is recorded is a lower bound, and the interval "
-            "reaches to what a model continues; add a scan of the waves that are missing."
+            f"Only {joint.shares.measured:.0%} of e_el is measured, the rest is continued by a "
+            "model; add a scan of the waves that are missing."
+        )
+    if joint.draws.unsettled > _MOST_UNSETTLED:
+        yield (
+            f"The ends of the intervals are known to {joint.draws.unsettled:.0%} of their width "
+            f"alone: the {len(joint.draws.weight)} spectra that were drawn say as much as "
+            f"{joint.draws.effective:.0f} of equal weight."
         )
     hurst = joint.fit.hurst.value
     if min(hurst, 1 - hurst) < _EDGE and joint.shares.continued > _MATTERS:
@@ -120,11 +133,11 @@ def surface_doubts(surface: MeasuredSurface) -> Iterator[str]:
         )
     if not joint.fit.has_roll_off:
         yield (
-            "The density shows no plateau within the trusted wavelengths: it is taken as flat "
-            f"above, longer waves would add about {joint.shares.missing_long:.0%} to e_el, and its "
-            "interval holds roll-offs of up to four sides of the scan; add a larger scan."
+            "The density shows no plateau within the trusted wavelengths: longer waves have about "
+            f"{joint.shares.continued_long:.0%} of e_el, and its interval holds roll-offs of up to "
+            "four sides of the scan; add a larger scan."
         )
-    if joint.shares.missing_short > _MOST_UNMEASURED and not joint.is_lower_bound:
+    if joint.shares.missing_short > _MOST_UNMEASURED:
         yield (
             "Waves shorter than the points hold are left out: two more decades of the power law "
             f"would add {joint.shares.missing_short:.0%} to e_el; add a finer scan."

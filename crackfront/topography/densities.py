@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,9 +35,9 @@ similar waves where it is periodic: powers of random surfaces are distributed ex
 _PARTS, _EDGE = 4, 24
 """Parts along a side whose e_el is compared, and which part of a side is left out at its ends."""
 
-_PHASES = np.random.SeedSequence(20240229, spawn_key=(0x9A5E,))
-_SURROGATES, _UNEVEN = 4, 2.0
-"""Gaussian surfaces of the same waves, and ratio of the variances from which on one is not."""
+_UNEVEN = (1.5, 2.5)
+"""Ratios of the variance between parts to that of a Gaussian surface between which what is more
+begins to count."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,22 +216,36 @@ def anisotropy(waves: Periodogram, shortest: float) -> float:
 
 
 def unevenness(measurement: Measurement) -> float:
-    """Relative standard error of e_el where parts differ more than at random phases; else 0."""
+    """Relative standard error of e_el where parts differ more than Gaussian ones; else 0.
+
+    The variance of the square of a Gaussian field of the covariance R is twice the integral of R^2
+    (Isserlis' theorem), over the places that two parts have apart.
+    """
     shape = measurement.heights.shape
     *others, last = zip(shape, measurement.pixels, strict=True)
     waves = np.ix_(*(fftfreq(*one) for one in others), rfftfreq(*last))
     root = np.sqrt(np.sqrt(sum(one**2 for one in waves)))
     transform = root * rfftn(measurement.heights)
+    energy, same, every = irfftn(transform, shape) ** 2, np.ones(1), np.ones(1)
+    for axis, count in enumerate(shape):
+        inner = np.arange(count // _EDGE, count - count // _EDGE)
+        parts = np.array_split(inner, _PARTS)
+        energy = np.stack([np.mean(np.take(energy, part, axis), axis) for part in parts], axis)
+        one, whole = _overlaps(parts, count)
+        same, every = np.multiply.outer(same, one), np.multiply.outer(every, whole)
+    found = float(np.var(energy, ddof=1) / np.mean(energy) ** 2 / energy.size)
+    covariance = irfftn(np.abs(transform) ** 2, shape)
+    excess = np.sum((covariance / covariance.flat[0]) ** 2 * (same - every)[0])
+    gaussian = 2 * float(excess) / (energy.size - 1)
+    counted = np.interp(found / gaussian, _UNEVEN, (0.0, 1.0))
+    return math.sqrt(counted * max(0.0, found - gaussian))
 
-    def scatter(turns: Array | float) -> float:
-        energy = irfftn(transform * np.exp(2j * np.pi * turns), shape) ** 2
-        for axis, count in enumerate(shape):
-            inner = np.arange(count // _EDGE, count - count // _EDGE)
-            parts = np.array_split(np.take(energy, inner, axis), _PARTS, axis)
-            energy = np.stack([np.mean(part, axis) for part in parts], axis)
-        return float(np.var(energy, ddof=1) / np.mean(energy) ** 2 / energy.size)
 
-    rng = np.random.default_rng(_PHASES)
-    found = scatter(0.0)
-    gaussian = np.mean([scatter(rng.random(transform.shape)) for _ in range(_SURROGATES)])
-    return math.sqrt(found - gaussian) if found > _UNEVEN * gaussian else 0.0
+def _overlaps(parts: Sequence[NDArray[np.int64]], count: int) -> tuple[Array, Array]:
+    """Probabilities of the distances of two points along a period, both in one part or in any."""
+    inside = np.zeros((len(parts) + 1, count))
+    for row, part in zip(inside, [*parts, np.concatenate(parts)], strict=True):
+        row[part] = 1 / part.size
+    power = np.abs(rfftn(inside, axes=[1])) ** 2
+    found = irfftn(power, [count], axes=[1])
+    return np.mean(found[:-1], axis=0), found[-1]

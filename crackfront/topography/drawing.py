@@ -116,11 +116,10 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None
             axes.plot(
                 whole.wavevector, whole.value, color=colour, linewidth=0.5, alpha=0.6, zorder=2
             )
-    # Draws that end before the spectrum have no density up to its end.
-    reaching = (one for one in surface.joint.draws if one.short_cutoff <= spectrum.short_cutoff)
-    logarithms = np.log([one.density(shown) for one in reaching])
-    low, high = np.exp(np.quantile(logarithms, (0.025, 0.975), axis=0))
-    axes.fill_between(shown, low, high, color="0.8", linewidth=0, zorder=1)
+    draws = surface.joint.draws
+    inside = (draws.wavevector >= shown[0]) & (draws.wavevector <= shown[-1] * (1 + 1e-9))
+    low, high = draws.low[inside], draws.high[inside]
+    axes.fill_between(draws.wavevector[inside], low, high, color="0.8", linewidth=0, zorder=1)
     label = "spectrum, with its 95% interval"
     axes.plot(shown, spectrum.density(shown), color=BLACK, label=label, zorder=4)
     axes.set_ylim(0.02 * np.min(low), 5 * np.max(high))

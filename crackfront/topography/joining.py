@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate, normal_estimate
+from crackfront.analysis.estimate import Estimate, normal_estimate, quantiles
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.bands import NYQUIST, Scan
 from crackfront.topography.densities import Density, bin_numbers
-from crackfront.topography.fitting import Fit, fitted_model
+from crackfront.topography.draws import Draws, Measured, batches, draws
+from crackfront.topography.fitting import Fit, quadrature_of
 from crackfront.topography.levelling import Array
-
-_DRAWS = 400
-_SEEDS = [np.random.SeedSequence(20240229, spawn_key=(key,)) for key in (0xD4A3, 0xD4A4)]
 
 _CONTINUED_BINS = 6
 """Points a decade of a continuation."""
@@ -25,18 +24,8 @@ _CONTINUED_BINS = 6
 _FLAT = 32.0
 """How far beyond the longest waves a continuation goes: all roll-offs that are looked for."""
 
-_BAND_OCTAVES = 0.5
-"""By how much the shortest trusted wavelength varies in the draws."""
-
-_FIRST_BINS = 3
-"""Of how many of the longest bins some are left out in the draws."""
-
 _DECADES = 2
 """Decades below the pixels over which the model is continued, to see what is missing."""
-
-_MOST_CONTINUED, _MOST_MISSING = 0.5, 1.0
-"""Part of e_el that is not recorded, and what two more decades would add to it, above which no
-estimate is given but a lower bound."""
 
 _LEVEL_SIGMA, _LEVEL = 3.0, math.log(1.25)
 """Standard errors, and ratio of densities, from which on a scan disagrees with the others."""
@@ -74,34 +63,25 @@ class Shares:
     """Parts of e_el in the measured bands, and in the continuation; their sum is 1."""
     missing_short: float
     """What two more decades of shorter waves would add by the model, relative to e_el."""
-    missing_long: float
-    """What longer waves would add by the model where it has not found the plateau, else 0."""
+    continued_long: float
+    """Part in waves longer than all that are measured, which the model continues."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointSpectrum:
     """Spectrum of a surface, measured where it can be and continued beyond."""
 
-    estimated: TabulatedSpectrum
+    spectrum: TabulatedSpectrum
     """Measured over the bands; by the model to the shortest wave that pixels and instrument hold,
-    and to the plateau where this is seen; else flat above the longest measured wave. (Units: m)"""
+    and to the plateau. (Units: m)"""
     recorded: TabulatedSpectrum
     """As measured, and below the band what the finest scan holds down to its pixels, without its
     noise but as weak as its instrument made it. (Units: m)"""
-    draws: tuple[TabulatedSpectrum, ...]
-    recorded_draws: tuple[TabulatedSpectrum, ...]
-    """Spectra that agree as well with what was measured: noise of the modes, scatter of scans,
-    window and levelling, ends of the band, and continuation."""
-    is_lower_bound: bool
-    """Whether too little of e_el is recorded for an estimate: then what is recorded counts."""
+    draws: Draws
+    """Spectra that agree as well with what was measured."""
     density: JointDensity
     fit: Fit
     shares: Shares
-
-    @property
-    def spectrum(self) -> TabulatedSpectrum:
-        """The estimated spectrum, or the recorded one where that is a lower bound (Units: m)."""
-        return self.recorded if self.is_lower_bound else self.estimated
 
     @property
     def shortest(self) -> float:
@@ -113,68 +93,50 @@ class JointSpectrum:
         """Longest wavelength that is measured (Units: m)."""
         return float(2 * np.pi / self.density.wavevector[0])
 
-    def estimate(self, quantity: Callable[[TabulatedSpectrum], float]) -> Estimate[float]:
-        """Median of a positive quantity over the draws of the spectrum, with its 95% interval.
 
-        That of a lower bound reaches from what is recorded to what the model continues.
-        """
-        recorded, estimated = self.both(quantity)
-        if not self.is_lower_bound:
-            return estimated
-        return replace(recorded, high=max(recorded.high, estimated.high))
+def joint_spectrum(scans: Sequence[Scan], seed: int | None = None) -> JointSpectrum:
+    """Spectrum of all scans of a surface, refused where their densities do not determine one.
 
-    def both(
-        self, quantity: Callable[[TabulatedSpectrum], float]
-    ) -> tuple[Estimate[float], Estimate[float]]:
-        """A quantity of what is recorded, and of what is estimated, as :meth:`estimate`."""
-        found = []
-        for spectra in (self.recorded_draws, self.draws):
-            drawn = np.array([quantity(item) for item in spectra])
-            low, value, high = np.quantile(drawn, (0.025, 0.5, 0.975)).tolist()
-            found.append(Estimate(value, value * float(np.std(np.log(drawn))), low, high))
-        return found[0], found[1]
-
-
-def joint_spectrum(scans: Sequence[Scan]) -> JointSpectrum:
-    """Spectrum of all scans of a surface, refused where their densities do not determine one."""
-    fit = fitted_model([(one.informative, one.band.instrument) for one in scans])
+    The seed is that of the draws, :data:`crackfront.topography.draws.SEED` where none is given;
+    intervals hardly depend on it.
+    """
+    model, quadrature = quadrature_of([(one.informative, one.band.instrument) for one in scans])
+    states = batches(model, quadrature, seed)
+    first = next(states)
+    fit = first.fit
     trusted = [one.trusted for one in scans]
-    logarithms = [fit.isotropic(item, index) for index, item in enumerate(trusted)]
     isotropic = [
-        replace(item, value=np.exp(np.median(found, axis=0)), is_profile=False)
-        for item, found in zip(trusted, logarithms, strict=True)
+        replace(
+            item,
+            value=np.exp(quantiles(fit.isotropic(item, index), fit.weight, 0.5)),
+            is_profile=False,
+        )
+        for index, item in enumerate(trusted)
     ]
     scatter, levels = _levels(isotropic)
-    density = JointDensity(*_joined(isotropic, [0.0] * len(scans), scatter), scatter, levels)
-    measured, end = (density.wavevector, density.value), min(one.band.end for one in scans)
-    longer = spectrum = _continued(*measured, fit.median, fit.lowest, end)
-    if not fit.has_roll_off:
-        spectrum = _continued(*measured, fit.median, None, end)
-    shares = _shares(spectrum, longer, density.wavevector, fit.median)
+    density = JointDensity(*_joined(isotropic, scatter), scatter, levels)
+    end = min(one.band.end for one in scans)
+    spectrum = _continued(density, fit, end)
     rest = _beyond(scans, fit)
-    draws, recorded_draws = _draws(scans, trusted, logarithms, scatter, fit, rest)
+    finest = min(end, *(one.band.finest for one in scans))
+    measured = Measured(
+        scans,
+        trusted,
+        scatter,
+        model.departure,
+        density.wavevector,
+        density.value,
+        rest,
+        np.sort(np.append(density.wavevector, _gaps(density.wavevector, fit.lowest, finest))),
+    )
     return JointSpectrum(
-        estimated=spectrum,
-        recorded=_recorded(*measured, rest),
-        draws=draws,
-        recorded_draws=recorded_draws,
-        is_lower_bound=_is_unknown(draws, recorded_draws, shares.missing_short),
+        spectrum=spectrum,
+        recorded=_recorded(density, rest),
+        draws=draws(measured, itertools.chain([first], states)),
         density=density,
         fit=fit,
-        shares=shares,
+        shares=_shares(spectrum, density.wavevector, fit),
     )
-
-
-def _is_unknown(
-    draws: Sequence[TabulatedSpectrum], recorded: Sequence[TabulatedSpectrum], missing: float
-) -> bool:
-    """Whether e_el is mostly not recorded, by its draws and by what shorter waves would add."""
-    whole, part = ([item.mean_square(0.5) for item in every] for every in (draws, recorded))
-    measured = float(np.median(part))
-    if measured < (1 - _MOST_CONTINUED) * float(np.median(whole)):
-        return True
-    # What is recorded beyond all draws is no surface.
-    return missing > _MOST_MISSING and measured < float(np.quantile(whole, 0.975))
 
 
 def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float], ...]]:
@@ -207,14 +169,10 @@ def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float],
     )
 
 
-def _joined(
-    densities: Sequence[Density], levels: Sequence[float], scatter: float
-) -> tuple[Array, Array, Array]:
-    """Wavevectors, densities and their relative errors, of scans multiplied by exp(level)."""
+def _joined(densities: Sequence[Density], scatter: float) -> tuple[Array, Array, Array]:
+    """Wavevectors, densities and their relative errors, of all scans."""
     places = np.concatenate([bin_numbers(one.wavevector) for one in densities])
-    values = np.concatenate(
-        [one.value * math.exp(level) for one, level in zip(densities, levels, strict=True)]
-    )
+    values = np.concatenate([one.value for one in densities])
     wavevector = np.log(np.concatenate([one.wavevector for one in densities]))
     modes = np.concatenate([one.modes for one in densities])
     weight = 1 / (1 / modes + scatter**2)
@@ -234,46 +192,38 @@ def _beyond(scans: Sequence[Scan], fit: Fit) -> Density:
     return replace(rest, value=np.exp(np.median(logarithms, axis=0)), is_profile=False)
 
 
-def _recorded(wavevector: Array, value: Array, rest: Density) -> TabulatedSpectrum:
+def _recorded(density: JointDensity, rest: Density) -> TabulatedSpectrum:
     """Table of measured values and of what lies below their waves."""
-    shorter = rest.wavevector > wavevector[-1]
-    waves = 2 * np.pi / np.append(wavevector, rest.wavevector[shorter])
-    return TabulatedSpectrum(
-        tuple(waves.tolist()), tuple(np.append(value, rest.value[shorter]).tolist())
-    )
+    shorter = rest.wavevector > density.wavevector[-1]
+    waves = 2 * np.pi / np.append(density.wavevector, rest.wavevector[shorter])
+    values = np.append(density.value, rest.value[shorter])
+    return TabulatedSpectrum(tuple(waves.tolist()), tuple(values.tolist()))
 
 
-def _continued(
-    wavevector: Array,
-    value: Array,
-    model: Callable[[Array], Array],
-    lowest: float | None,
-    end: float,
-) -> TabulatedSpectrum:
-    """Table of values, continued by a model over gaps, to an end, and below `lowest` if given."""
-    last = max(2 * math.pi / end, float(wavevector[-1]) * (1 + 1e-6))
-    first = [] if lowest is None else [lowest / _FLAT]
-    between = []
-    for one, other in pairwise([*first, *wavevector.tolist(), last]):
-        number = math.ceil(math.log10(other / one) * _CONTINUED_BINS)
-        if number > 1:
-            between.append(one * (other / one) ** (np.arange(1, number) / number))
-    extra = np.concatenate([first, *between, [last]])
-    every = np.concatenate([wavevector, extra])
-    table = np.concatenate([value, model(extra)])
+def _continued(density: JointDensity, fit: Fit, end: float) -> TabulatedSpectrum:
+    """Table of what is measured, continued over gaps, to longer waves, and to an end."""
+    extra = _gaps(density.wavevector, fit.lowest, end)
+    every = np.concatenate([density.wavevector, extra])
+    table = np.concatenate([density.value, fit.median(extra)])
     order = np.argsort(every)
     return TabulatedSpectrum(
         tuple((2 * np.pi / every[order]).tolist()), tuple(table[order].tolist())
     )
 
 
-def _shares(
-    spectrum: TabulatedSpectrum,
-    longer: TabulatedSpectrum,
-    wavevector: Array,
-    model: Callable[[Array], Array],
-) -> Shares:
-    """Where e_el comes from; `longer` is the spectrum with the longest waves by the model."""
+def _gaps(wavevector: Array, lowest: float, end: float) -> Array:
+    """Wavevectors in the gaps between others, below them, and to an end (Units: 1 / m)."""
+    last = max(2 * math.pi / end, float(wavevector[-1]) * (1 + 1e-6))
+    found = [np.array([lowest / _FLAT])]
+    for one, other in pairwise([lowest / _FLAT, *wavevector.tolist(), last]):
+        number = math.ceil(math.log10(other / one) * _CONTINUED_BINS)
+        if number > 1:
+            found.append(one * (other / one) ** (np.arange(1, number) / number))
+    return np.concatenate([*found, [last]])
+
+
+def _shares(spectrum: TabulatedSpectrum, wavevector: Array, fit: Fit) -> Shares:
+    """Where e_el comes from."""
     total = spectrum.mean_square(0.5)
     # Neighbours further apart than this have a continuation between them.
     apart = np.diff(np.log10(wavevector)) > 1 / _CONTINUED_BINS
@@ -281,55 +231,8 @@ def _shares(
     parts = [spectrum.mean_square_between(0.5, group[-1], group[0]) for group in groups]
     measured = sum(parts) / total
     finer = np.geomspace(1, 10**_DECADES, 20) * 2 * np.pi / spectrum.short_cutoff
-    tail = TabulatedSpectrum(tuple((2 * np.pi / finer).tolist()), tuple(model(finer).tolist()))
+    tail = TabulatedSpectrum(tuple((2 * np.pi / finer).tolist()), tuple(fit.median(finer).tolist()))
     beyond = tail.mean_square_between(0.5, tail.short_cutoff, spectrum.short_cutoff)
-    return Shares(measured, 1 - measured, beyond / total, longer.mean_square(0.5) / total - 1)
-
-
-def _draws(
-    scans: Sequence[Scan],
-    densities: Sequence[Density],
-    logarithms: Sequence[Array],
-    scatter: float,
-    fit: Fit,
-    rest: Density,
-) -> tuple[tuple[TabulatedSpectrum, ...], tuple[TabulatedSpectrum, ...]]:
-    """Spectra by the states of the fit, continued by the model and by what is recorded."""
-    finest = math.log(min(one.band.finest for one in scans))
-    coarsest = math.log(min(one.band.coarsest for one in scans))
-    rng, apart = map(np.random.default_rng, _SEEDS)
-    choices = [_choices(one, density) for one, density in zip(scans, densities, strict=True)]
-    hidden = max(one.measurement.hidden for one in scans)
-    drawn, recorded = [], []
-    for state in rng.integers(len(fit.surface), size=_DRAWS):
-        parts = []
-        for one, item, options, every in zip(scans, densities, choices, logarithms, strict=True):
-            logarithm = every[state] + options[rng.integers(len(options))]
-            logarithm = logarithm + rng.standard_normal(item.value.size) / np.sqrt(item.modes)
-            logarithm += one.measurement.missing * rng.uniform(0, 1)
-            if one.unevenness:
-                logarithm += one.unevenness * apart.standard_normal()
-            first = rng.integers(_FIRST_BINS)
-            highest = 2 * np.pi / one.band.shortest.wavelength * 2 ** -rng.uniform(0, _BAND_OCTAVES)
-            kept = (np.arange(item.value.size) >= first) & (item.wavevector <= highest)
-            if not np.any(kept):
-                kept[:] = True
-            parts.append(
-                Density(item.wavevector[kept], np.exp(logarithm[kept]), item.modes[kept], False)
-            )
-        levels = (scatter * rng.standard_normal(len(parts))).tolist()
-        wavevector, value, _ = _joined(parts, levels, scatter)
-        shortest = min(math.log(2 * np.pi / wavevector[-1]), coarsest)
-        last = math.exp(rng.uniform(min(finest, shortest), shortest))
-        whole = value * math.exp(hidden * apart.uniform(0, 1)) if hidden else value
-        drawn.append(_continued(wavevector, whole, fit.of_state(state), fit.lowest, last))
-        recorded.append(_recorded(wavevector, value, rest))
-    return tuple(drawn), tuple(recorded)
-
-
-def _choices(one: Scan, density: Density) -> list[Array]:
-    """Logarithms of what other windows and levellings make of a density, relative to it."""
-    mine = np.searchsorted(bin_numbers(one.density.wavevector), bin_numbers(density.wavevector))
-    others = [np.log(item.value / one.density.value)[mine] for item in one.alternatives]
-    # What was chosen counts as much as all else together.
-    return [np.zeros(len(mine))] * max(1, len(others)) + others
+    longest = 2 * np.pi / float(wavevector[0])
+    shorter = spectrum.mean_square_between(0.5, spectrum.short_cutoff, longest)
+    return Shares(measured, 1 - measured, beyond / total, 1 - shorter / total)

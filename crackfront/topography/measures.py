@@ -7,16 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from crackfront.analysis.estimate import Estimate
-from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.bands import Scan, scan
 from crackfront.topography.densities import Density, periodogram
+from crackfront.topography.draws import ORDERS
 from crackfront.topography.joining import JointSpectrum, joint_spectrum
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import Measurement, read_measurements
-
-_ORDERS = (0.0, 0.5, 1.0)
-"""Orders of the derivatives: heights, half-derivatives, slopes."""
 
 _SHARE = 0.8
 """Part of a mean square that lies within the scales that dominate it."""
@@ -49,8 +48,7 @@ class MeasuredSurface:
     half_derivative: Estimate[float]
     """Mean square of the half-derivative of the joint spectrum. (Units: m)"""
     recorded: Estimate[float]
-    estimated: Estimate[float]
-    """That of what the scans hold, and that with what the model continues. (Units: m)"""
+    """That of what the scans hold. (Units: m)"""
 
     @property
     def checksum(self) -> str:
@@ -79,11 +77,6 @@ def measured_surface(
     """
     scans = tuple(scan(item, shortest, longest) for item in measurements)
     joint = joint_spectrum(scans)
-
-    def square(spectrum: TabulatedSpectrum) -> float:
-        return spectrum.mean_square(0.5)
-
-    recorded, estimated = joint.both(square)
     return MeasuredSurface(
         scans=scans,
         profiles=tuple(
@@ -91,10 +84,9 @@ def measured_surface(
             for one in scans
         ),
         joint=joint,
-        measures=tuple(_measure(order, joint) for order in _ORDERS),
-        half_derivative=joint.estimate(square),
-        recorded=recorded,
-        estimated=estimated,
+        measures=tuple(_measure(order, joint) for order in ORDERS),
+        half_derivative=joint.draws.mean_square(0.5),
+        recorded=joint.draws.recorded_mean_square(0.5),
     )
 
 
@@ -110,5 +102,6 @@ def read_surface(paths: Sequence[Path], options: Sequence[ReadingOptions]) -> Me
 
 def _measure(order: float, joint: JointSpectrum) -> RmsMeasure:
     """Measure of one order."""
-    rms = joint.estimate(lambda spectrum: spectrum.mean_square(order) ** 0.5)
+    draws = joint.draws
+    rms = draws.estimate(np.sqrt(draws.estimated[ORDERS.index(order)]))
     return RmsMeasure(order, rms, *joint.spectrum.dominant_wavelengths(order, _SHARE))

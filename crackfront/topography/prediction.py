@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from scipy.optimize import brentq
 
@@ -21,7 +21,7 @@ from crackfront.topography.cautions import scan_notes
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.options import PredictionOptions
 from crackfront.topography.tile import zero_load_radius
-from crackfront.topography.verdict import Verdict, verdict
+from crackfront.topography.verdict import LARGEST_ENERGY, Verdict, verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +95,46 @@ def repelled_note(prediction: Prediction) -> Iterator[str]:
         )
 
 
+@dataclass(frozen=True, slots=True)
+class Adhesions:
+    """Works of adhesion (Units: J / m^2)."""
+
+    w_appr: Estimate[float]
+    w_retr: Estimate[float]
+    hysteresis: Estimate[float]
+
+
+class FrontWorks(Protocol):
+    """Works of adhesion of simulated fronts (Units: J / m^2)."""
+
+    @property
+    def w_appr(self) -> Estimate[float]:
+        """That of the approach."""
+
+    @property
+    def w_retr(self) -> Estimate[float]:
+        """That of the retraction."""
+
+    @property
+    def hysteresis(self) -> Estimate[float]:
+        """Their difference."""
+
+
+def corrected_works(found: FrontWorks, prediction: Prediction) -> Adhesions:
+    """Works of adhesion of fronts, divided as the prediction divides its own.
+
+    What lies on either side of w_int - e_el is divided; without an interval of the ratio, which
+    stands in the prediction.
+    """
+    middle = prediction.work_of_adhesion - prediction.e_el.value
+    ratio = prediction.excess.ratio.value
+    appr, retr = (
+        work.each(lambda number: middle + (number - middle) / ratio)
+        for work in (found.w_appr, found.w_retr)
+    )
+    return Adhesions(appr, retr, found.hysteresis.each(lambda number: number / ratio))
+
+
 def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSpectrum:
     """A spectrum of heights in metres in reduced units: its `elastic_energy` is e_el / w_int."""
     unit = (scales.vertical * scales.lateral) ** 2
@@ -112,10 +152,26 @@ class _Works(NamedTuple):
 
 
 def surface_spectrum(surface: MeasuredSurface, scales: Scales) -> TabulatedSpectrum:
-    """The spectrum of a surface in reduced units, with its e_el: the median over its draws."""
+    """The spectrum of a surface in reduced units, with the e_el of :func:`energy_of_theory`."""
     shape = reduced_spectrum(surface.joint.spectrum, scales)
-    energy = surface.conformity_energy(scales.contact_modulus).value / scales.work_of_adhesion
+    energy = energy_of_theory(surface, scales).value / scales.work_of_adhesion
     return shape.amplified(energy / shape.elastic_energy)
+
+
+def energy_of_theory(surface: MeasuredSurface, scales: Scales) -> Estimate[float]:
+    """The e_el of a surface where the theory applies, at most the largest for which it does.
+
+    Units: J / m^2, as scales in SI units. ValueError if even the least is larger than w_int.
+    """
+    energy, adhesion = surface.conformity_energy(scales.contact_modulus), scales.work_of_adhesion
+    if not energy.low < adhesion:
+        raise ValueError(
+            f"e_el is {energy.value / adhesion:.3g} w_int, so that no contact conforms fully and "
+            "the theory does not apply; a softer sphere, a stronger adhesion or a smoother "
+            "surface would"
+        )
+    value = min(energy.value, LARGEST_ENERGY * adhesion)
+    return replace(energy, value=value, low=min(energy.low, value))
 
 
 def judged(
@@ -139,7 +195,7 @@ def predicted(
 
     The range of attraction (Units: m) is that of van der Waals forces where none is given. A
     measured pull-off force (Units: N) gives the w_int that it implies. ValueError if no contact
-    conforms, e_el >= w_int.
+    conforms.
     """
     energy, factors, excess, appr, retr = _works(surface, scales)
     radius, adhesion = zero_load_radius(scales), scales.work_of_adhesion
@@ -184,13 +240,8 @@ def predicted(
 
 def _works(surface: MeasuredSurface, scales: Scales) -> _Works:
     """Works of adhesion by the law of k, divided by what the front has more than others."""
-    energy, adhesion = surface.conformity_energy(scales.contact_modulus), scales.work_of_adhesion
+    adhesion, energy = scales.work_of_adhesion, energy_of_theory(surface, scales)
     relative = energy.value / adhesion
-    if not relative < 1:
-        raise ValueError(
-            f"e_el is {relative:.3g} w_int, so that no contact conforms fully and the theory "
-            "does not apply; a softer sphere, a stronger adhesion or a smoother surface would"
-        )
     radius = zero_load_radius(scales) / scales.lateral
     factors = sphere_factors("roughness", surface_spectrum(surface, scales), relative, radius)
     excess = front_excess(relative, factors.size)
@@ -205,7 +256,8 @@ def _implied_work_of_adhesion(
     surface: MeasuredSurface, scales: Scales, measured: float
 ) -> Estimate[float]:
     """The w_int at which the predicted w_retr is the measured one; NaN if none (Units: J / m^2)."""
-    least = 1.001 * surface.conformity_energy(scales.contact_modulus).value
+    energy = surface.conformity_energy(scales.contact_modulus)
+    least = 1.001 * max(energy.low, energy.value * LARGEST_ENERGY)
 
     def solved(end: str) -> float:
         def apart(adhesion: float) -> float:

@@ -17,8 +17,13 @@ from crackfront.topography.bands import BandLimit
 from crackfront.topography.cautions import measure_next, scan_notes, surface_doubts
 from crackfront.topography.fitting import Fit
 from crackfront.topography.measures import MeasuredSurface
-from crackfront.topography.prediction import Prediction, prediction_notes, repelled_note
-from crackfront.topography.verdict import Condition, Verdict
+from crackfront.topography.prediction import (
+    Prediction,
+    corrected_works,
+    prediction_notes,
+    repelled_note,
+)
+from crackfront.topography.verdict import Condition, Outcome, Verdict
 
 if TYPE_CHECKING:
     from crackfront.topography.simulated import Simulated
@@ -65,11 +70,9 @@ def prediction_page(prediction: Prediction) -> str:
     """What an experimenter wants first: numbers, how far to trust them, what to measure next."""
     surface, e_el = prediction.surface, prediction.e_el
     joint, smallest = surface.joint, shipped_law().size[0]
-    bound = "at least " if joint.is_lower_bound else ""
-    hysteresis = bound + _shown(_ENERGY, prediction.hysteresis)
+    hysteresis = _shown(_ENERGY, prediction.hysteresis)
     if prediction.size < smallest:
-        most = prefixed(_ENERGY, prediction.hysteresis.high)
-        hysteresis = f"none expected, less than {most}: g {prediction.size:.2g} is below {smallest}"
+        hysteresis += f"; none expected: g {prediction.size:.2g} is below {smallest:.2g}"
     smooth = prefixed("N", prediction.pull_off_force_smooth)
     relative = e_el.value / prediction.work_of_adhesion
     recorded = surface.conformity_energy(prediction.contact_modulus, surface.recorded)
@@ -78,14 +81,14 @@ def prediction_page(prediction: Prediction) -> str:
         ("hysteresis", hysteresis),
         *((name, _shown(_ENERGY, getattr(prediction, name))) for name in ("w_appr", "w_retr")),
         ("pull-off force", f"{_shown('N', prediction.pull_off_force)}; smooth sphere {smooth}"),
-        ("e_el", f"{bound}{_shown(_ENERGY, e_el)} = {relative:.3g} w_int"),
+        ("e_el", f"{_shown(_ENERGY, e_el)} = {relative:.3g} w_int"),
         ("recorded of it", f"{prefixed(_ENERGY, recorded.value)}; trusted waves from {waves}"),
     ]
     if math.isfinite(prediction.implied_work_of_adhesion.value):
         implied = _shown(_ENERGY, prediction.implied_work_of_adhesion)
         rows.insert(4, ("w_int by pull-off", implied))
     doubts = prediction.verdict.reservations
-    trust = f"The theory applies; {len(doubts)} reservation(s)" if doubts else "The theory applies"
+    trust = _heading(prediction.verdict)
     return "\n".join(
         [
             *(f"{name:18}{text}" for name, text in rows),
@@ -103,11 +106,23 @@ def _notes(surface: MeasuredSurface, prediction: Prediction | None) -> list[str]
     return list(scan_notes(surface.scans) if prediction is None else prediction_notes(prediction))
 
 
-def simulation_text(found: Simulated) -> str:
-    """What simulations found."""
-    lines = [f"Simulated on {found.realisations} synthesised surface(s)"]
-    lines += [f"  {name:22}{_shown(_ENERGY, getattr(found, name))}" for name in _ADHESIONS]
-    lines.append(f"  {'k':22}{_shown('1', found.k)}, numerical error {found.numerical_error:.2g}")
+def simulation_text(found: Simulated, prediction: Prediction) -> str:
+    """What simulations found beside what is predicted: of the front itself, and corrected."""
+    several = "s" if found.realisations > 1 else ""
+    lines = [
+        f"Simulated on {found.realisations} synthesised surface{several}, beside the prediction"
+    ]
+    front = _shown(_ENERGY, found.hysteresis), _shown(_ENERGY, prediction.front_hysteresis)
+    lines.append(f"  {'front, not corrected':22}{front[0]}; predicted {front[1]}")
+    corrected = corrected_works(found, prediction)
+    for name in _ADHESIONS:
+        ours, theirs = getattr(corrected, name), getattr(prediction, name)
+        lines.append(f"  {name:22}{_shown(_ENERGY, ours)}; predicted {_shown(_ENERGY, theirs)}")
+    law = _shown("1", prediction.factors.both)
+    lines.append(
+        f"  {'k of the front':22}{_shown('1', found.k)}, numerical error "
+        f"{found.numerical_error:.2g}; predicted {law}"
+    )
     if found.remark:
         lines.append(f"  {found.remark}")
     lines += [f"  Without a value: {sentence}" for sentence in found.failed]
@@ -133,7 +148,11 @@ def machine_readable(
             "shortest": joint.shortest,
             "longest": joint.longest,
             "end": joint.spectrum.short_cutoff,
-            "is_lower_bound": joint.is_lower_bound,
+            "draws": {
+                "number": len(joint.draws.weight),
+                "effective": joint.draws.effective,
+                "unsettled": joint.draws.unsettled,
+            },
         },
         "continuation": {
             **{name: plain(number) for name, number, _ in _continuation(joint.fit)},
@@ -147,8 +166,17 @@ def machine_readable(
         "excess": None if prediction is None else plain(prediction.excess),
         "verdict": None if ruling is None else _verdict_entry(ruling),
         "notes": _notes(surface, prediction),
-        "simulation": plain(found),
+        "simulation": None
+        if found is None or prediction is None
+        else _simulation(found, prediction),
     }
+
+
+def _simulation(found: Simulated | None, prediction: Prediction | None) -> dict[str, Any] | None:
+    """What simulations found: of the front itself, and corrected as the prediction is."""
+    if found is None or prediction is None:
+        return None
+    return plain(found) | {"corrected": plain(corrected_works(found, prediction))}
 
 
 def sample_row(
@@ -212,7 +240,7 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
         yield f"    {name:20}{_shown(units, found)}{', not resolved' if unsure else ''}"
     yield (
         f"  {'missing':22}two more decades of short waves would add {shares.missing_short:.0%} "
-        f"to e_el, longer ones {shares.missing_long:.0%}"
+        f"to e_el; waves above {prefixed('m', joint.longest)} have {shares.continued_long:.0%}"
     )
     yield ""
     yield "Measures of the spectrum, and the scales of 80% of their mean squares"
@@ -242,12 +270,7 @@ def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
 
 def _verdict_lines(found: Verdict) -> Iterator[str]:
     """Lines on whether the theory applies, with conditions, remedies and reservations."""
-    if found.outcome == "does not apply":
-        yield "THE THEORY DOES NOT APPLY"
-    else:
-        count = len(found.reservations)
-        several = f" with {count} reservation{'s' if count > 1 else ''}"
-        yield f"The theory applies{several if count else ''}"
+    yield _heading(found)
     for item in found.conditions:
         yield f"  {item.name}: {item.found}, {_standing(item)}"
     if found.remedies:
@@ -260,16 +283,30 @@ def _verdict_lines(found: Verdict) -> Iterator[str]:
         yield f"Assumed\n  {found.assumption}"
 
 
+def _heading(found: Verdict) -> str:
+    """Whether the theory applies."""
+    count = len(found.reservations)
+    headings: dict[Outcome, str] = {
+        "applies": "The theory applies",
+        "applies with reservations": (
+            f"The theory applies with {count} reservation{'s' if count > 1 else ''}"
+        ),
+        "cannot be decided": (
+            "WHETHER THE THEORY APPLIES CANNOT BE DECIDED; the numbers hold if it does"
+        ),
+        "does not apply": "THE THEORY DOES NOT APPLY",
+    }
+    return headings[found.outcome]
+
+
 def _standing(item: Condition) -> str:
     """By what factor a condition holds, or where it comes into doubt or fails."""
     if item.standing == "holds":
         factor = f"inside by a factor of {float(f'{item.margin:.2g}'):g}"
         return factor if item.margin < _FAR else "far inside"
-    word, end = ("FAILS", item.limit) if item.standing == "fails" else ("IN DOUBT", item.doubtful)
-    # As what was found is written.
-    number = f"{end:.2%}" if "%" in item.found else f"{end:.3g}"
-    shown = number if item.units == "1" else prefixed(item.units, end)
-    return f"{word} {'below' if item.rising else 'above'} {shown}"
+    words = {"in doubt": "IN DOUBT", "undecided": "UNDECIDED", "fails": "FAILS"}
+    end = item.doubtful if item.standing == "in doubt" else item.limit
+    return f"{words[item.standing]} {'below' if item.rising else 'above'} {item.shown(end)}"
 
 
 def _verdict_entry(found: Verdict) -> dict[str, Any]:
@@ -319,11 +356,9 @@ def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:
 
 
 def _energy_entry(surface: MeasuredSurface, contact_modulus: float) -> dict[str, Any]:
-    """e_el, of what is recorded and as estimated (Units: J / m^2)."""
-    numbers = {"recorded": surface.recorded, "estimated": surface.estimated}
+    """e_el, and that of what is recorded (Units: J / m^2)."""
     return plain(surface.conformity_energy(contact_modulus)) | {
-        name: plain(surface.conformity_energy(contact_modulus, square))
-        for name, square in numbers.items()
+        "recorded": plain(surface.conformity_energy(contact_modulus, surface.recorded))
     }
 
 

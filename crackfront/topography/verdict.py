@@ -18,8 +18,8 @@ from crackfront.topography.cautions import channel_doubts, surface_doubts
 from crackfront.topography.measures import MeasuredSurface, RmsMeasure
 from crackfront.topography.tile import zero_load_radius
 
-Standing = Literal["holds", "in doubt", "fails"]
-Outcome = Literal["applies", "applies with reservations", "does not apply"]
+Standing = Literal["holds", "in doubt", "undecided", "fails"]
+Outcome = Literal["applies", "applies with reservations", "cannot be decided", "does not apply"]
 
 ASSUMED_RANGE = 0.5e-9
 """Range of van der Waals attraction, where no other is named (Units: m)."""
@@ -38,6 +38,14 @@ _MOST_PERIODIC = 0.5
 
 _MOST_NEGATIVE = 0.25
 """Part of the surface where w_loc is negative at the strongest disorder of the law."""
+
+_DEVIATE = float(ndtri(_MOST_NEGATIVE))
+
+LARGEST_ENERGY = (_DEVIATE + math.sqrt(_DEVIATE**2 + 1)) ** 2
+"""The e_el at which w_loc is negative on the largest part of the surface. (Units: w_int)"""
+
+_BORDER = 1.1
+"""Factor by which a limit is known: beyond it by less than that, nothing is decided."""
 
 _MOST_UNSURE = 2.0
 """Ends of the interval of e_el over each other from which on it is said."""
@@ -63,13 +71,26 @@ class Condition:
     """Whether the value must be above the limit, not below."""
     remedies: tuple[str, ...] = ()
     """What would bring the value to the limit, one change alone; empty where it holds."""
+    reach: float = 1.0
+    """Factor to the end of the interval of the value that meets the condition best."""
 
     @property
     def standing(self) -> Standing:
-        """Whether it holds."""
-        if self._margin(self.limit) <= 1:
-            return "fails"
+        """Whether it holds.
+
+        Undecided where the value fails, but its interval or the border of the limit holds values
+        that do not.
+        """
+        margin = self._margin(self.limit)
+        if margin <= 1:
+            return "fails" if margin * max(self.reach, _BORDER) <= 1 else "undecided"
         return "holds" if self.margin > 1 else "in doubt"
+
+    def shown(self, number: float) -> str:
+        """A number as what was found is written."""
+        if self.units != "1":
+            return prefixed(self.units, number)
+        return f"{number:.2%}" if "%" in self.found else f"{number:.3g}"
 
     @property
     def margin(self) -> float:
@@ -97,17 +118,20 @@ class Verdict:
     @property
     def outcome(self) -> Outcome:
         """What follows from all of them."""
-        if any(item.standing == "fails" for item in self.conditions):
+        standings = {item.standing for item in self.conditions}
+        if "fails" in standings:
             return "does not apply"
+        if "undecided" in standings:
+            return "cannot be decided"
         return "applies with reservations" if self.reservations else "applies"
 
     @property
     def remedies(self) -> tuple[str, ...]:
-        """What would make the theory apply, for every condition that fails."""
+        """What would make the theory apply, for every condition that is not met."""
         return tuple(
             f"{item.name}: {', or '.join(item.remedies)}"
             for item in self.conditions
-            if item.standing == "fails"
+            if item.standing in ("undecided", "fails")
         )
 
 
@@ -129,10 +153,10 @@ def verdict(
         *_range_conditions(surface, scales, reach),
         *_roughness_conditions(surface),
     )
-    unsure = (item for item in conditions if item.standing == "in doubt")
     doubts = [
         *channel_doubts(surface),
-        *(f"{item.name}: {item.found}; {item.reason}." for item in unsure),
+        *(_undecided(item) for item in conditions if item.standing == "undecided"),
+        *(_unsure(item) for item in conditions if item.standing == "in doubt"),
         *_energy_doubts(surface, scales),
         *surface_doubts(surface),
     ]
@@ -147,10 +171,24 @@ def verdict(
     return Verdict(conditions, tuple(dict.fromkeys(doubts)), assumption)
 
 
+def _undecided(item: Condition) -> str:
+    """Why a condition may hold, though the value fails it."""
+    return (
+        f"{item.name} cannot be decided: {item.found}, and the limit of {item.shown(item.limit)} "
+        f"lies within what is known of them; beyond it {item.reason}."
+    )
+
+
+def _unsure(item: Condition) -> str:
+    """Why a condition is in doubt."""
+    return f"{item.name}: {item.found}; {item.reason}."
+
+
 def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Condition]:
     """Conditions on e_el against w_int."""
     w_int = scales.work_of_adhesion
-    e_el = surface.conformity_energy(scales.contact_modulus).value
+    energy = surface.conformity_energy(scales.contact_modulus)
+    e_el = energy.value
     yield Condition(
         "full conformity",
         f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', w_int)}",
@@ -160,10 +198,9 @@ def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Con
         w_int,
         "J/m2",
         remedies=_softer(scales, e_el / w_int),
+        reach=e_el / energy.low,
     )
-    share, deviate = _negative_share(e_el / w_int), ndtri(_MOST_NEGATIVE)
-    # The e_el over w_int at which w_loc is negative on the largest part.
-    largest = float((deviate + math.sqrt(deviate**2 + 1)) ** 2)
+    share, least = (_negative_share(one / w_int) for one in (e_el, energy.low))
     yield Condition(
         "attraction nearly everywhere",
         f"w_loc negative on {share:.2%} of the surface",
@@ -173,7 +210,8 @@ def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Con
         _negative_share(max(row.elastic_energy for row in shipped_validity())),
         _MOST_NEGATIVE,
         "1",
-        remedies=_softer(scales, e_el / w_int / largest),
+        remedies=_softer(scales, e_el / w_int / LARGEST_ENERGY),
+        reach=share / least if least > 0 else math.inf,
     )
 
 
@@ -250,7 +288,8 @@ def _waves(surface: MeasuredSurface) -> tuple[RmsMeasure, str]:
 
 def _roughness_conditions(surface: MeasuredSurface) -> Iterator[Condition]:
     """Conditions on the rms slope, and on waves that stand out, as grooves do."""
-    slope = surface.measures[2].rms.value
+    rms = surface.measures[2].rms
+    slope = rms.value
     yield Condition(
         "small slopes",
         f"rms slope of {slope:.3g}",
@@ -259,6 +298,7 @@ def _roughness_conditions(surface: MeasuredSurface) -> Iterator[Condition]:
         *_SLOPES,
         "1",
         remedies=(f"slopes lower by a factor of {slope / _SLOPES[1]:.3g}",),
+        reach=slope / rms.low,
     )
     part, wavelength = max(one.band.periodic for one in surface.scans)
     found = f"the wave of {prefixed('m', wavelength)} alone has {part:.0%} of e_el"

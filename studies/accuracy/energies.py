@@ -189,7 +189,7 @@ def found_scan(kind: Kind, number: int) -> Found:
     key = (KINDS.index(kind), number)
     rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=key))
     surface = (_lines if kind.is_line else _map)(kind, rng)
-    found = surface.joint.estimate(lambda spectrum: spectrum.mean_square(0.5))
+    found = surface.half_derivative
     return Found(found.each(lambda number: number / MEAN_SQUARE), surface)
 
 

@@ -24,7 +24,7 @@ def test_the_coefficient_weighs_amplitudes_by_their_errors():
     assert excess_coefficient([*rows, row(0.2, 9.0, error=math.nan)]) == (both, error)
 
 
-def test_a_hysteresis_is_divided_at_any_size_and_up_to_amplitudes_that_were_compared():
+def test_a_hysteresis_is_divided_everywhere_with_an_interval_that_grows_beyond_what_was_compared():
     rows = [row(0.05, 1.1, 0.5), row(0.18, 1.5, 1.3)]
     within, *beyond = (front_excess(0.1, size, rows) for size in (1.0, 10.0, 100.0))
     expected = math.exp(0.1 * excess_coefficient(rows)[0])
@@ -36,5 +36,11 @@ def test_a_hysteresis_is_divided_at_any_size_and_up_to_amplitudes_that_were_comp
     assert np.sqrt(np.square(reaches) - reach**2) == pytest.approx(added)
     assert "g = 1.3; here they are 0.1 and 100" in beyond[1].sentence
     stronger = front_excess(0.4, 1.0, rows)
-    assert (stronger.is_measured, stronger.ratio.value) == (False, 1)
-    assert stronger.ratio.high > 1.5
+    coefficient = excess_coefficient(rows)[0]
+    assert not stronger.is_measured
+    assert stronger.ratio.value == pytest.approx(math.exp(0.4 * coefficient))
+    assert stronger.ratio.low < math.exp(0.18 * coefficient) * 1.2
+    # Nothing jumps where the comparison ends.
+    last, next_one = (front_excess(energy, 1.0, rows).ratio for energy in (0.18, 0.18001))
+    for end in ("low", "value", "high"):
+        assert getattr(next_one, end) == pytest.approx(getattr(last, end), rel=1e-3)

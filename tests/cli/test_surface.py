@@ -136,7 +136,7 @@ def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
     result = predict("--long", drawn=True)
     short = result.output.split("\n\n")[0].splitlines()
     assert 8 <= len(short) <= 12
-    assert short[0].startswith("hysteresis        25.")
+    assert short[0].startswith("hysteresis        2")
     assert result.exit_code == 0, result.output
     assert predict("--no-figure").output.splitlines() == short
     for text in (
@@ -203,9 +203,17 @@ def test_simulations_find_what_is_predicted(predict):
     own = (k["high"] - k["low"]) / 2
     assert abs(k["value"] - both["value"]) < np.hypot(own, (both["high"] - both["low"]) / 2)
     assert law["k_appr"]["value"] == content["factors"]["approach"]["factor"]["value"]
-    assert found["hysteresis"]["value"] == pytest.approx(
-        found["w_retr"]["value"] - found["w_appr"]["value"]
-    )
+    for works in (found, found["corrected"]):
+        appr, retr, lost = (works[name]["value"] for name in ("w_appr", "w_retr", "hysteresis"))
+        assert lost == pytest.approx(retr - appr)
+    ratio = content["excess"]["ratio"]["value"]
+    assert found["hysteresis"]["value"] == pytest.approx(ratio * lost)
+    # The front beside the front, what is corrected beside the headline.
+    for simulated, prediction in (
+        (found, law["front_hysteresis"]),
+        (found["corrected"], law["hysteresis"]),
+    ):
+        assert prediction["low"] < simulated["hysteresis"]["value"] < prediction["high"]
 
 
 def test_a_single_simulation_has_no_interval(predict):
@@ -215,8 +223,9 @@ def test_a_single_simulation_has_no_interval(predict):
     assert content["simulation"]["w_appr"]["low"] is None
     text = predict(*more, **options).output
     assert "simulating 1 surface(s), about" in text
-    value = 1e3 * content["simulation"]["w_appr"]["value"]
-    assert f"w_appr                {value:.3g} mJ/m2\n" in text
+    corrected = content["simulation"]["corrected"]["w_appr"]
+    assert corrected["low"] is None
+    assert f"w_appr                {1e3 * corrected['value']:.3g} mJ/m2; predicted " in text
 
 
 @pytest.fixture(scope="module")

@@ -28,7 +28,7 @@ SHIPPED = tuple(sorted((Path(__file__).parents[2] / "examples/scans").glob("*.al
 
 def half(surface):
     """Mean square half-derivative of a surface's spectrum, with its standard error."""
-    return surface.joint.estimate(lambda spectrum: spectrum.mean_square(0.5))
+    return surface.half_derivative
 
 
 def test_the_spectrum_of_the_shipped_scans_is_that_of_nanodiamond():
