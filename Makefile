@@ -111,9 +111,10 @@ test: env  ## Run the tests that are not slow
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" --junitxml=$(REPORT)
 
-# What another processor computes: no vector units beyond SSE3, kernels for any x86, three threads.
-PORTABLE = NPY_DISABLE_CPU_FEATURES="AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR AVX2 FMA3" \
-  OPENBLAS_CORETYPE=Nehalem OPENBLAS_NUM_THREADS=3 NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= PYTHONWARNINGS=ignore
+# What another processor computes: numpy, its BLAS and numba without vector units, three threads.
+DISPATCHED = from numpy._core._multiarray_umath import __cpu_dispatch__ as names; print(*names)
+PORTABLE = NPY_DISABLE_CPU_FEATURES="$$(.venv/bin/python -c '$(DISPATCHED)')" \
+  OPENBLAS_CORETYPE=Nehalem OPENBLAS_NUM_THREADS=3 NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES=
 
 test-portable: env  ## Run the tests of predictions as on another processor (two minutes)
 	@$(IN_ENV) $(PORTABLE) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" tests/topography

@@ -15,7 +15,7 @@ _MOST_ANISOTROPY = 1.25
 _MOST_UNMEASURED = 0.1
 """Ratio of slopes and parts of e_el from which on they are doubts."""
 
-_LEAST_MEASURED, _MOST_UNSETTLED = 0.5, 0.015
+_LEAST_MEASURED, _MOST_UNSETTLED = 0.5, 0.0125
 """Part of e_el that is measured, and standard error of the ends of intervals over their width, from
 which on this is said."""
 

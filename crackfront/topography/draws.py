@@ -30,7 +30,7 @@ SEED = 20240229
 BATCH, BATCHES = 2**13, (4, 8, 16, 32)
 """Draws of a batch, and numbers of batches at which it is asked whether they are enough."""
 
-SETTLED = 0.008
+SETTLED = 0.006
 """Standard error of the median and of both ends of an interval, as a part of its width, from which
 on there are enough draws."""
 
