@@ -213,8 +213,8 @@ def batches(model: Continuation, quadrature: Quadrature, seed: int | None) -> It
         yield States(fit_of(model, quadrature, states), states.logarithm, chance)
 
 
-def draws(measured: Measured, states: Iterator[States]) -> Draws:
-    """As many draws as the median and the ends of e_el need, or the most."""
+def draws(measured: Measured, states: Iterator[States], numbers: Sequence[int]) -> Draws:
+    """As many draws as the median and the ends of e_el need, in one of some numbers of batches."""
     found: list[_Drawn] = []
     logarithms: list[Array] = []
     for fit, logarithm, chance in states:
@@ -222,7 +222,7 @@ def draws(measured: Measured, states: Iterator[States]) -> Draws:
         logarithms.append(logarithm)
         if len(found) == 1:
             low, high = _interval(measured.grid, found[0], fit.weight)
-        if len(found) not in BATCHES:
+        if len(found) not in numbers:
             continue
         weight = np.exp(np.concatenate(logarithms) - np.max(logarithms))
         result = Draws(
@@ -233,7 +233,7 @@ def draws(measured: Measured, states: Iterator[States]) -> Draws:
             low=low,
             high=high,
         )
-        if len(found) == BATCHES[-1] or result.unsettled < SETTLED:
+        if len(found) == numbers[-1] or result.unsettled < SETTLED:
             break
     return result
 
