@@ -40,6 +40,9 @@ _BAND_OCTAVES = 0.5
 _FIRST_BINS = 3
 """Of how many of the longest bins some are left out."""
 
+_HIDDEN = 0.2
+"""Part of a density that a tip takes at most where it ends the band, as much as an optic may."""
+
 _RARE = 1.5
 """Standard error of e_el over that which a scan shows where its parts differ: it holds few of the
 rare places that matter."""
@@ -171,6 +174,8 @@ class Measured:
         options = _choices(one, item)
         found = options[chance.integers(len(options), size=count)]
         found += one.measurement.missing * chance.uniform(0, 1, (count, 1))
+        if one.band.shortest.cause == "tip":
+            found -= math.log(1 - _HIDDEN) * chance.uniform(0, 1, (count, 1))
         found += _RARE * one.unevenness * chance.standard_normal((count, 1))
         return found
 

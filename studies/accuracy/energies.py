@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +36,12 @@ MEAN_SQUARE = 1e-9
 
 _LINE_POINTS, _LINES = 600, 3
 
+ANYWHERE = 1e-3 * PIXEL
+"""Short cutoff that stands for an end at any of many wavelengths."""
+
+_ENDS, _FINER = (1.0, 4.0), 2
+"""Points in the shortest waves, and points of a surface for one of its scan, which holds them."""
+
 
 @dataclass(frozen=True, slots=True)
 class Kind:
@@ -57,10 +63,16 @@ class Kind:
     tip_radius: float | None = None
     shaped: Callable[[Array], Array] | None = None
 
-    @property
-    def truth(self) -> Spectrum:
-        """The spectrum with its amplitude."""
-        return self.spectrum.amplified(MEAN_SQUARE / self.spectrum.mean_square(0.5))
+    def truth(self, rng: np.random.Generator) -> Spectrum:
+        """The spectrum of a scan, of the same e_el for all.
+
+        A self-affine one without an end of its own ends anywhere that a prediction allows.
+        """
+        spectrum = self.spectrum
+        if isinstance(spectrum, SelfAffineSpectrum) and spectrum.short_cutoff == ANYWHERE:
+            end = PIXEL * math.exp(rng.uniform(*np.log(_ENDS)))
+            spectrum = replace(spectrum, short_cutoff=end)
+        return spectrum.amplified(MEAN_SQUARE / spectrum.mean_square(0.5))
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,9 +172,9 @@ def _two_slopes(first: float, then: float) -> TabulatedSpectrum:
     return TabulatedSpectrum(lengths, (1.0, middle, last))
 
 
-def _self_affine(hurst: float, roll_off: float = SIDE / 8, cutoff: float = 2.0) -> Spectrum:
-    """A self-affine spectrum that ends at some pixels."""
-    return SelfAffineSpectrum(cutoff * PIXEL, roll_off, hurst)
+def _self_affine(hurst: float, roll_off: float = SIDE / 8, points: float | None = None) -> Spectrum:
+    """A self-affine spectrum whose shortest waves have some points, or any number."""
+    return SelfAffineSpectrum(points * PIXEL if points else ANYWHERE, roll_off, hurst)
 
 
 FILM = _self_affine(0.8)
@@ -174,7 +186,7 @@ KINDS = (
     Kind("two slopes, H = 0.3 and 0.9", _two_slopes(0.3, 0.9)),
     Kind("roll-off at the side", _self_affine(0.8, SIDE), tile=4, resolved=False),
     Kind("roll-off outside", _self_affine(0.8, 2 * SIDE), tile=6, resolved=False),
-    Kind("end at four pixels", _self_affine(0.8, cutoff=4.0)),
+    Kind("end at four pixels", _self_affine(0.8, points=4.0)),
     Kind("optic, Gaussian", FILM, _filtered(_gaussian)),
     Kind("optic, circular pupil", FILM, _filtered(_pupil), resolved=False),
     Kind("tip of 1 um", FILM, tip_radius=1e-6),
@@ -183,7 +195,7 @@ KINDS = (
     Kind("tilt and bow", FILM, _bow),
     Kind("form that is left", FILM, _form),
     Kind("missing points", FILM, _holes),
-    Kind("oblong pixels", _self_affine(0.8, cutoff=4.0), oblong=True),
+    Kind("oblong pixels", _self_affine(0.8, points=4.0), oblong=True),
     Kind("three line scans", _self_affine(0.8), is_line=True),
     Kind("tip of 3 um, H = 0.4", _self_affine(0.4), resolved=False, tip_radius=3e-6),
     Kind("tip of 10 um, H = 0.4", _self_affine(0.4), resolved=False, tip_radius=10e-6),
@@ -245,8 +257,8 @@ def _key(kind: Kind, number: int) -> tuple[int, ...]:
 
 def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     """Measured surface of a distorted map, cut from a larger one."""
-    whole = kind.tile * N_POINT
-    heights = gaussian_field(kind.truth, whole, kind.tile * SIDE, rng)
+    whole = _FINER * kind.tile * N_POINT
+    heights = gaussian_field(kind.truth(rng), whole, kind.tile * SIDE, rng)[::_FINER, ::_FINER]
     if kind.shaped:
         shaped = kind.shaped(heights / heights.std())
         asked, found = (rough_adhesion(1e-9 * one, SIDE).e_el for one in (heights, shaped))
@@ -264,7 +276,8 @@ def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
 def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     """Measured surface of parallel line scans."""
     whole = 2 * _LINE_POINTS
-    heights = gaussian_field(kind.truth, whole, whole * PIXEL, rng)[:_LINE_POINTS]
+    heights = gaussian_field(kind.truth(rng), _FINER * whole, whole * PIXEL, rng)
+    heights = heights[: _FINER * _LINE_POINTS : _FINER, ::_FINER]
     places = PIXEL * np.arange(_LINE_POINTS)
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder) / f"{number}.xyz" for number in range(_LINES)]
