@@ -35,8 +35,8 @@ from crackfront.data.provenance import __version__
 from crackfront.simulate.cases import Problem, StraightFront, load_values, problem_of
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
+from crackfront.simulate.numerics import stated_error
 from crackfront.simulate.run import compile_solver
-from crackfront.simulate.simulation import stated_error
 
 _KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
 

@@ -40,8 +40,9 @@ from crackfront.data.fingerprint import fingerprint
 from crackfront.data.labels import flag_words, labelled_fields
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import Block, write_records_in_blocks
+from crackfront.simulate.numerics import stated_error
 from crackfront.simulate.run import SimulationResult
-from crackfront.simulate.simulation import Simulation, stated_error
+from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sweep import Sweep
 
 ROWS_AT_ONCE = 4096
