@@ -25,11 +25,11 @@ from crackfront.core.adhesion import (
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.field.fields import Interpolation, TileField
+from crackfront.core.fingerprint import fingerprint
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
-from crackfront.data.fingerprint import fingerprint
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,5 +195,4 @@ def _digest(content: Any) -> str:
 @functools.cache
 def simulation_fingerprint(kind: type[Schedule] = LoadSchedule) -> str:
     """Twelve hexadecimal digits that change with what determines a simulation of a kind of load."""
-    schedule = f"{kind.__module__}.{kind.__qualname__}"
-    return fingerprint("crackfront.simulate.run.run_simulation", schedule)
+    return fingerprint("crackfront.simulate.run", kind.__module__)
