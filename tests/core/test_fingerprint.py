@@ -54,7 +54,7 @@ def parameters():
         for rule, body in re.findall(r"^rule (\w+):\n((?:[ #].*\n|\n)+)", path.read_text(), re.M):
             if names := re.search(r"sources=fingerprint\(([^)]*)\)", body):
                 found[rule] = fingerprint(*re.findall(r'"([^"]+)"', names[1]))
-    for name in ("main-2", "main-3ab"):
+    for name in ("main-2", "main-3ab", "beyond-roughness"):
         found[f"{name} data"] = figure_fingerprint.__wrapped__(name)
         found[f"{name} drawing"] = drawing_fingerprint.__wrapped__(name)
     return found | {"figure_checks": checks_fingerprint()}
@@ -180,9 +180,13 @@ def test_what_shows_plans_stores_or_evaluates_simulations_is_no_part_of_them(kin
 
 
 MAIN_3AB = {"main-3ab data", "main-3ab drawing", "figure_checks"}
+BEYOND = {"beyond-roughness data", "beyond-roughness drawing"}
 REPORTS = {"accuracy_report", "validate"}
-DRAWN = {"sweep_figures", "accuracy_report", "validate", "main-2 drawing", "main-3ab drawing"}
-LAWS = {"accuracy_study", "row", "aggregate", "fit", *REPORTS, *MAIN_3AB}
+DRAWN = {"sweep_figures", "accuracy_report", "validate", "main-2 drawing", "main-3ab drawing"} | {
+    "beyond-roughness drawing"
+}
+LAWS = {"accuracy_study", "row", "aggregate", "fit", *REPORTS, *MAIN_3AB, *BEYOND}
+ROUGHNESS, COMPUTED = {"beyond-roughness drawing", "figure_checks"}, {"beyond-roughness data"}
 MAIN_2 = {"main-2 data", "main-2 drawing", "figure_checks"}
 
 
@@ -197,6 +201,8 @@ MAIN_2 = {"main-2 data", "main-2 drawing", "figure_checks"}
         ("studies/accuracy/report.py", ("laws.csv", "law.csv"), {"accuracy_report"}),
         ("studies/paper/rings.py", ("^_PATH = 257", "_PATH = 513"), MAIN_2),
         ("studies/paper/main_2.py", (r"0\.8 \* style", "0.9 * style"), MAIN_2),
+        ("studies/paper/beyond_roughness.py", ("disorder, ", "disorder: "), ROUGHNESS),
+        ("studies/paper/roughness.py", ("^_N_LAG = 60", "_N_LAG = 61"), ROUGHNESS | COMPUTED),
     ],
 )
 def test_a_change_makes_stale_what_comes_from_its_module_and_nothing_else(
