@@ -1,8 +1,9 @@
 """Fingerprints of sources: the modules that a result comes from, and a digest of each.
 
 A module comes into a fingerprint when one that is in it imports it, anywhere in its source.
-Docstrings, comments and the layout of lines do not count. The file of data that has a module's
-name, `laws.csv` beside `laws.py`, counts with the module.
+Docstrings, comments and the layout of lines do not count, nor does what is imported for annotations
+alone, under `if TYPE_CHECKING`. The file of data that has a module's name, `laws.csv` beside
+`laws.py`, counts with the module.
 """
 
 from __future__ import annotations
@@ -128,7 +129,7 @@ def _module_of(imported: str) -> str | None:
 
 @functools.lru_cache(maxsize=512)
 def _read_source(content: bytes) -> tuple[str, list[str]]:
-    """Digest of the syntax of a source without docstrings, and the full names that it imports.
+    """Digest of what a source executes, and the full names that it imports.
 
     The answer for the same bytes is kept in the cache of the user: parsing takes 6 ms a module.
     """
@@ -150,10 +151,9 @@ _VERSION = repr(sys.version_info[:2]).encode() + Path(__file__).read_bytes()
 
 
 def _parsed_source(content: bytes) -> tuple[str, list[str]]:
-    """Digest of the syntax of a source without docstrings, and the full names that it imports."""
-    tree = ast.parse(content)
-    imported = sorted(set(_imported_names(tree)))
-    return _digest(ast.dump(_WithoutDocstrings().visit(tree)).encode()), imported
+    """Digest of what a source executes, and the full names that it imports."""
+    tree = _Executed().visit(ast.parse(content))
+    return _digest(ast.dump(tree).encode()), sorted(set(_imported_names(tree)))
 
 
 def _imported_names(tree: ast.AST) -> Iterator[str]:
@@ -165,10 +165,16 @@ def _imported_names(tree: ast.AST) -> Iterator[str]:
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
 
 
-class _WithoutDocstrings(ast.NodeTransformer):
-    """Removes texts that stand alone as statements: docstrings of modules, functions and values."""
+class _Executed(ast.NodeTransformer):
+    """Removes what does nothing when a program runs: docstrings, and imports for annotations."""
 
     def visit_Expr(self, node: ast.Expr) -> ast.Expr | None:
         """A statement that is an expression, which goes if it is a text."""
         is_text = isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
         return None if is_text else node
+
+    def visit_If(self, node: ast.If) -> ast.AST | list[ast.stmt]:
+        """A condition, which goes if it is TYPE_CHECKING."""
+        if isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
+            return node.orelse
+        return self.generic_visit(node)

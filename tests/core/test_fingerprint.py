@@ -174,7 +174,7 @@ assert called <= counted.keys(), called - counted.keys()
 def test_what_shows_plans_stores_or_evaluates_simulations_is_no_part_of_them(kind):
     counted = [name.removeprefix("crackfront.") for name in module_digests(kind)]
     outside = {name for name in counted if not name.startswith(("core.", "simulate."))}
-    assert outside <= {"core", "analysis.measures", "analysis.standard_error"}
+    assert outside <= {"analysis.measures", "analysis.standard_error"}
     planned = {f"simulate.{name}" for name in ("laws", "numerics", "costs", "line_loads", "files")}
     assert not planned & {*counted}
 
@@ -221,7 +221,7 @@ def test_a_change_makes_stale_what_comes_from_its_module_and_nothing_else(
         "from crackfront.core import added",
         "from crackfront.core.added import SIZE",
         "def size():\n    from crackfront.core.added import SIZE\n",
-        "if TYPE_CHECKING:\n    from crackfront.core import added\n",
+        "if not TYPE_CHECKING:\n    from crackfront.core import added\n",
     ],
 )
 def test_a_module_counts_wherever_and_however_it_is_imported(sources, imports):
@@ -233,6 +233,25 @@ def test_a_module_counts_wherever_and_however_it_is_imported(sources, imports):
     (sources / "crackfront/core/added.py").write_text("SIZE = 2\n")
     after = module_digests("crackfront.core.importing")
     assert {name for name in found if after[name] != found[name]} == {"crackfront.core.added"}
+
+
+def test_what_is_imported_for_annotations_alone_does_not_count(sources):
+    importing = sources / "crackfront/core/importing.py"
+    importing.write_text("SIZE = 1\n")
+    before = module_digests("crackfront.core.importing")
+    importing.write_text("if TYPE_CHECKING:\n    from crackfront.core import jkr\nSIZE = 1\n")
+    assert module_digests("crackfront.core.importing") == before
+
+
+def test_no_module_imports_a_package_whose_names_are_imported_when_they_are_used():
+    names = (
+        ".".join(path.relative_to(module.ROOT).with_suffix("").parts)
+        for package in ("crackfront", "studies")
+        for path in Path(module.ROOT, package).rglob("*.py")
+        if path.stem != "__init__"
+    )
+    lazy = {"crackfront", "crackfront.core"}
+    assert [name for name in names if lazy & module_digests(name).keys()] == []
 
 
 def test_a_package_that_is_left_out_does_not_count_nor_what_only_it_imports():
