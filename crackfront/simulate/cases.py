@@ -25,7 +25,8 @@ from crackfront.data.arguments import refuse_no_numbers
 from crackfront.data.bounds import NUMBER, Range, refuse_outside
 from crackfront.simulate.costs import affordable_seconds
 from crackfront.simulate.given import surface_adhesion, surface_kind
-from crackfront.simulate.simulation import Simulation, missed_error, simulation_field
+from crackfront.simulate.numerics import missed_error
+from crackfront.simulate.simulation import Simulation, simulation_field
 from crackfront.simulate.surfaces import (
     TileMeasures,
     chosen_simulation,

@@ -37,7 +37,8 @@ from crackfront.data.bounds import (
 )
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.lines import LineSchedule
-from crackfront.simulate.simulation import Numerics, Simulation
+from crackfront.simulate.numerics import Numerics
+from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.steady import SteadySchedule
 
 _PROCESS_BYTES, _STORE_SECONDS = 300e6, 0.015

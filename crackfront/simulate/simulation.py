@@ -1,4 +1,8 @@
-"""What determines one simulation: its parameters, sizes, key and seed; and its field."""
+"""What determines one simulation: its parameters, sizes, key and seed; and its field.
+
+How the sizes are chosen stands in :mod:`crackfront.simulate.numerics`: it may change without any
+simulation of known sizes being another one.
+"""
 
 from __future__ import annotations
 
@@ -6,14 +10,11 @@ import functools
 import hashlib
 import json
 import math
-from collections.abc import Collection
 from dataclasses import astuple, dataclass, replace
-from typing import Any, Literal, cast
+from typing import Any, cast
 
 import numpy as np
-from scipy.fft import next_fast_len
 
-from crackfront.analysis.steady import SteadyAdhesion
 from crackfront.core.adhesion import (
     AdhesionMap,
     FieldKind,
@@ -22,48 +23,13 @@ from crackfront.core.adhesion import (
     rough_adhesion,
 )
 from crackfront.core.arrays import Array
-from crackfront.core.contact import n_site
 from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.field.fields import Interpolation, TileField
+from crackfront.core.fingerprint import fingerprint
 from crackfront.core.geometry.base import Geometry
-from crackfront.core.solver import DEFAULT_MAX_SWEEPS
-from crackfront.core.solver.relax import Solver, named_solver
+from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
-from crackfront.data.fingerprint import fingerprint
-from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error, usual_size
-
-
-@dataclass(frozen=True, slots=True)
-class Numerics:
-    """How simulations are resolved and solved."""
-
-    knobs: Knobs | float
-    """Resolution and tolerance, or the standard error of the factor k of either branch that they
-    may leave: measured laws then choose them for every spectrum and amplitude."""
-    tile_roll_offs: float = 4.0
-    tile_cutoffs: float = 200.0
-    """Side of the tile in roll-off wavelengths, of other spectra in the longest wavelengths that
-    matter, and at least so many short cutoffs."""
-    max_sweeps: int = DEFAULT_MAX_SWEEPS
-    """Limit on the sweeps of one load step."""
-    solver: str = "newton"
-    """A name in :data:`crackfront.core.solver.relax.SOLVERS`."""
-
-    def knobs_of(
-        self, kind: FieldKind, spectrum: Spectrum, elastic_energy: float, *, straight: bool = False
-    ) -> Knobs:
-        """Knobs for one spectrum and amplitude."""
-        if isinstance(self.knobs, Knobs):
-            return self.knobs
-        return chosen_knobs(self.knobs, kind, spectrum, elastic_energy, straight=straight)
-
-    def tile_side(self, spectrum: Spectrum) -> float:
-        """Least side of a tile (Units: that of the spectrum)."""
-        return max(
-            self.tile_roll_offs * spectrum.longest_feature,
-            self.tile_cutoffs * spectrum.short_cutoff,
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,34 +44,6 @@ class Resolution:
     interpolation: Interpolation
     tile_side: float
     n_point: int
-
-
-def resolution(
-    spectrum: Spectrum, numerics: Numerics, knobs: Knobs, schedule: Schedule
-) -> Resolution:
-    """Sizes of the front and of the tile for one spectrum; those of a line are of its schedule.
-
-    Examples
-    --------
-    >>> from crackfront.core.spectrum import SelfAffineSpectrum
-    >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
-    >>> knobs = Knobs(None, 2, 4, "cubic", 4, 1e-6)
-    >>> numerics = Numerics(knobs, tile_roll_offs=10, tile_cutoffs=20)
-    >>> resolution(flat, numerics, knobs, LoadSchedule(max_penetration=1.0, step=0.1))
-    Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
-    """
-    cutoff = spectrum.short_cutoff
-    sites = schedule.front_length / cutoff * knobs.angles_per_cutoff
-    side, spacing = schedule.fitted(numerics.tile_side(spectrum), cutoff / knobs.samples_per_cutoff)
-    points = math.ceil(side / cutoff * knobs.pixels_per_cutoff * (1 - 1e-12))
-    n_point = next_fast_len(points, real=True)
-    return Resolution(
-        n_angle=n_point if schedule.uncorrelated else knobs.angles or n_site(sites),
-        spacing=spacing,
-        interpolation=knobs.interpolation,
-        tile_side=side,
-        n_point=n_point,
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,39 +141,6 @@ class Simulation:
         return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))
 
 
-def simulation_of(
-    kind: FieldKind,
-    spectrum: Spectrum,
-    elastic_energy: float,
-    schedule: Schedule,
-    numerics: Numerics,
-    *,
-    seed: int,
-    realisation: int = 0,
-    name: str = "single",
-    record: Collection[Literal["fronts", "energy"]] = (),
-) -> Simulation:
-    """The simulation of a surface; the largest penetration of the schedule decides its sites.
-
-    The name is that of the spectrum, the numerics are how it is resolved and solved, and `record`
-    is what is kept beside the curves; the rest is as in :class:`Simulation`.
-    """
-    knobs = numerics.knobs_of(kind, spectrum, elastic_energy, straight=schedule.straight)
-    return Simulation(
-        spectrum_name=name,
-        kind=kind,
-        spectrum=spectrum,
-        elastic_energy=elastic_energy,
-        realisation=realisation,
-        sweep_seed=seed,
-        resolution=resolution(spectrum, numerics, knobs, schedule),
-        schedule=schedule,
-        solver=named_solver(numerics.solver, knobs.tolerance, numerics.max_sweeps),
-        record_fronts="fronts" in record,
-        record_energy="energy" in record,
-    )
-
-
 def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
     """Work of adhesion on the tile of a simulation."""
     points, sides = simulation.tile
@@ -281,61 +186,6 @@ def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None
     return simulation.schedule.field(adhesion, sizes.n_angle, sizes.spacing, sizes.interpolation)
 
 
-def missed_error(simulation: Simulation, wanted: float) -> float:
-    """Error of k that the numerics are expected to leave, 0 where it is the wanted one."""
-    left = max(numerical_error(simulation)) / simulation.elastic_energy
-    # Knobs have two digits.
-    return left if left > 1.2 * wanted else 0.0
-
-
-def numerical_error(
-    simulation: Simulation, size: float | None = None, front_length: float | None = None
-) -> tuple[float, float]:
-    """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
-
-    The size is the number of states times length of the front over the short cutoff, by default the
-    usual one; the front length that of the longest front, by default that of a smooth contact.
-    (Units: reduced lateral length)
-    """
-    sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
-    if front_length is None:
-        front_length = simulation.schedule.front_length
-    values: dict[Knob, float] = {
-        "sites": sizes.n_angle * cutoff / front_length,
-        sizes.interpolation: cutoff / sizes.spacing,
-        "pixels": cutoff * sizes.n_point / sizes.tile_side,
-        "tolerance": simulation.solver.tolerance,
-    }
-    straight = simulation.schedule.straight
-    return combined_error(
-        simulation.kind,
-        simulation.spectrum,
-        simulation.elastic_energy,
-        values,
-        usual_size(simulation.spectrum, straight) if size is None else size,
-        straight=straight,
-    )
-
-
-def stated_error(
-    simulation: Simulation, steady: SteadyAdhesion, correlation_length: float
-) -> tuple[float, float]:
-    """Numerical standard errors of the w_appr and w_retr that a simulation found (Units: w_int).
-
-    States closer than a correlation length of w_loc count as one.
-    """
-    cutoff = simulation.spectrum.short_cutoff
-    if simulation.schedule.straight:
-        period, length = simulation.tile[1]
-        return numerical_error(simulation, length / cutoff * (1 + period / correlation_length))
-    low, high = steady.lowest_radius, steady.highest_radius
-    cutoffs, longest = math.pi * (low + high) / cutoff, 2 * math.pi * high
-    apart = 1 + (high - low) / correlation_length
-    approach, _ = numerical_error(simulation, cutoffs * min(steady.n_approach, apart), longest)
-    _, retraction = numerical_error(simulation, cutoffs * min(steady.n_retraction, apart), longest)
-    return approach, retraction
-
-
 def _digest(content: Any) -> str:
     """Hexadecimal digits that change with the content."""
     text = json.dumps(content, sort_keys=True, allow_nan=False)
@@ -345,5 +195,4 @@ def _digest(content: Any) -> str:
 @functools.cache
 def simulation_fingerprint(kind: type[Schedule] = LoadSchedule) -> str:
     """Twelve hexadecimal digits that change with what determines a simulation of a kind of load."""
-    schedule = f"{kind.__module__}.{kind.__qualname__}"
-    return fingerprint("crackfront.simulate.run.run_simulation", schedule)
+    return fingerprint("crackfront.simulate.run", kind.__module__)

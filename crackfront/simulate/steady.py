@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crackfront.analysis.steady import standard_error
+from crackfront.analysis.standard_error import standard_error
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load

@@ -19,13 +19,8 @@ from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import SEED, refuse_beyond_memory
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.given import refuse_unknown_kind, surface_array
-from crackfront.simulate.simulation import (
-    Numerics,
-    Simulation,
-    simulation_adhesion,
-    simulation_of,
-    simulation_values,
-)
+from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_values
 
 
 def random_surface(

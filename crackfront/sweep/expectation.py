@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 from crackfront.analysis.law import mean_adhesion, pinning_factor, spectral_breadth
 from crackfront.analysis.law_spheres import sphere_factors
-from crackfront.analysis.steady import FEWEST_STATES
+from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.core import jkr
 from crackfront.core.adhesion import force_correlation_length, larkin_length
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.simulate.lines import front_rms
+from crackfront.simulate.line_loads import front_rms
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.sweep import Sweep

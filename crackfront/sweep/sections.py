@@ -37,8 +37,8 @@ from crackfront.data.section import (
     within,
 )
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.lines import LineLoad, SpringUnit
-from crackfront.simulate.simulation import Numerics
+from crackfront.simulate.line_loads import LineLoad, SpringUnit
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.sweep import NamedSpectrum
 from crackfront.topography.measures import MeasuredSurface, read_surface

@@ -13,8 +13,9 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.cycle.schedule import Schedule
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
-from crackfront.simulate.lines import LineLoad
-from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
+from crackfront.simulate.line_loads import LineLoad
+from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.simulation import Simulation
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,9 +18,10 @@ from crackfront.core.cycle.schedule import Schedule
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.lines import LineLoad
+from crackfront.simulate.line_loads import LineLoad
+from crackfront.simulate.numerics import Numerics, numerical_error, simulation_of
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Numerics, Simulation, numerical_error, simulation_of
+from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import surface_spectrum

@@ -12,8 +12,9 @@ from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.variables import ADHESION, variable
 from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.numerics import numerical_error, stated_error
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Simulation, numerical_error, stated_error
+from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.steady import SteadySchedule
 from studies.accuracy.scenes import HELD_OUT, Progress, Scene
 from studies.accuracy.study import branches_seconds, measured_branches

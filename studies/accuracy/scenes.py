@@ -13,7 +13,8 @@ from crackfront.core.arrays import Array
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.laws import KNOBS, MEASURED, Knob, Knobs, chosen_knobs
-from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
+from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.simulation import Simulation
 
 Progress = Callable[[str], None]
 """What is called with a line when a part of a study is done."""

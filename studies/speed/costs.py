@@ -18,8 +18,9 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.costs import Features, Measured, features, measured_runs, predicted_seconds
 from crackfront.simulate.laws import Knobs
+from crackfront.simulate.numerics import Numerics, simulation_of
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
+from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.steady import SteadySchedule
 
 KNOBS = Knobs(None, 2.4, 4, "cubic", 4, 1e-4)

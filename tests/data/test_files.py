@@ -37,8 +37,8 @@ from crackfront.simulate.files import (
     simulation_dataset,
 )
 from crackfront.simulate.given import read_field, surface_adhesion
+from crackfront.simulate.numerics import numerical_error
 from crackfront.simulate.run import SimulationResult, run_simulation
-from crackfront.simulate.simulation import numerical_error
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fit_files import write_fit
 from crackfront.sweep.table import read_statuses, read_table, sweep_row, write_hysteresis

@@ -8,8 +8,8 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.laws import Knobs
+from crackfront.simulate.numerics import Numerics, simulation_of
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Numerics, simulation_of
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.expectation import expectation
 
