@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
+from scipy.optimize import OptimizeResult, least_squares
 from scipy.special import expit
 
 from crackfront.analysis.estimate import Estimate, quantiles
@@ -48,6 +48,9 @@ logarithm of the noise goes from where it was seen."""
 
 _LEAST_CURVATURE = -2.0
 """Logarithm of data over model down to which the curvature of the deviance is taken as it is."""
+
+_SHORT, _LONG = 30, 400
+"""Evaluations of fits from several starts, and of the best one."""
 
 _GAIN = 9.0
 """What half of the deviance must fall by for an instrument to be seen in a density."""
@@ -471,18 +474,19 @@ def _likeliest(models: _Models, starts: Sequence[Array], limits: Array) -> tuple
         every = residuals(np.concatenate([parameters[None], parameters + np.diag(step)]))
         return np.asarray(((every[1:] - every[0]) / step[:, None]).T)
 
-    fits = (
-        least_squares(
+    def fitted(start: Array, evaluations: int) -> OptimizeResult:
+        return least_squares(
             lambda parameters: residuals(parameters[None])[0],
             np.clip(start, limits[:, 0] + 1e-6, limits[:, 1] - 1e-6),
             slopes,
             bounds=limits.T,
             x_scale="jac",
-            max_nfev=40,
+            max_nfev=evaluations,
         )
-        for start in starts
-    )
-    found = min(fits, key=lambda fit: float(fit.cost))
+
+    # The best of some short fits, to its end: valleys of the deviance are flat.
+    best = min((fitted(start, _SHORT) for start in starts), key=lambda fit: float(fit.cost))
+    found = fitted(best.x, _LONG)
     return float(found.cost), np.asarray(found.x)
 
 

@@ -223,6 +223,7 @@ ROLL_OFFS = tuple(
 """Scans that hardly show their roll-off: by these its prior was chosen."""
 
 HELD_OUT = (
+    Kind("H = 0.8, end at two points", _self_affine(0.8, points=2.0)),
     Kind("H = 0.6, end at three pixels", _self_affine(0.6, SIDE / 12, 3.0)),
     Kind("H = 0.9, roll-off at a fifth", _self_affine(0.9, SIDE / 5)),
     Kind("H = 0.7, noise of 5%", _self_affine(0.7, SIDE / 16), _weak_noise),
