@@ -161,8 +161,8 @@ def predict(
     predicted, and the output says which modulus, radius or roughness would meet it. With --csv the
     largest of all samples; an unusable scan counts as 4.
     """
-    from crackfront.topography.prediction import judged
-    from crackfront.topography.report import machine_readable, prediction_page, report_text
+    from crackfront.topography.prediction import check_and_predict
+    from crackfront.topography.report import machine_readable, report_text
 
     scales = _scales(options)
     given = parsed_options(PredictionOptions, options, "--")
@@ -175,12 +175,12 @@ def predict(
     if not no_figure:
         refuse_unwritable(stem.parent)
     surface = _surface(scans, options)
-    (ruling, prediction), outcome = judged(surface, scales, given), None
+    (verdict, prediction), outcome = check_and_predict(surface, scales, given), None
     say: Say = (lambda _: None) if as_json else click.echo
     if prediction is not None:
-        say(prediction_page(prediction))
+        say(repr(prediction))
     if is_long or prediction is None:
-        say("\n" * is_long + report_text(surface, scales, ruling, prediction))
+        say("\n" * is_long + report_text(surface, scales, verdict, prediction))
     if prediction is not None and not no_figure:
         from crackfront.plots.style import save_figure
         from crackfront.topography.drawing import prediction_figure
@@ -191,8 +191,8 @@ def predict(
         announce_compilation(err=as_json)
         outcome = _simulated(prediction, scales, realisations, seed, say)
     if as_json:
-        echo_json(machine_readable(surface, scales, ruling, prediction, outcome))
-    context.exit(_exit_code(ruling.outcome, strict))
+        echo_json(machine_readable(surface, scales, verdict, prediction, outcome))
+    context.exit(_exit_code(verdict.outcome, strict))
 
 
 def _exit_code(outcome: str, strict: bool) -> int:
@@ -208,7 +208,7 @@ def _write_samples(
     """Write a table with a row for each scan, and give the outcomes."""
     from crackfront.data.files import write_text
     from crackfront.topography.measures import read_surface
-    from crackfront.topography.prediction import judged
+    from crackfront.topography.prediction import check_and_predict
     from crackfront.topography.report import sample_row
 
     refuse_unwritable(path.parent)
@@ -217,7 +217,7 @@ def _write_samples(
     for scan, by in zip(scans, reading, strict=True):
         try:
             surface = read_surface([scan], [by])
-            row = sample_row(surface, scales, *judged(surface, scales, given))
+            row = sample_row(surface, scales, *check_and_predict(surface, scales, given))
         except (ValueError, OSError) as error:
             row = {"outcome": "refused", "remarks": str(error)}
         click.echo(f"{scan}: {row['outcome']}")

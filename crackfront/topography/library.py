@@ -24,8 +24,9 @@ from crackfront.topography.options import (
     parameters_text,
     parsed_options,
 )
-from crackfront.topography.prediction import Prediction, judged
+from crackfront.topography.prediction import Prediction, check_and_predict
 from crackfront.topography.reading import read_measurements
+from crackfront.topography.remarks import remark_text
 from crackfront.topography.tile import scan_surface
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -132,9 +133,11 @@ def predict(
     given = parsed_options(PredictionOptions, options)
     surface_library()  # Whole: the program may use it too.
     surface = read_surface(files, options_for_each(ReadingOptions, options, len(files)))
-    ruling, prediction = judged(surface, sphere, given)
+    verdict, prediction = check_and_predict(surface, sphere, given)
     if prediction is None:
-        raise ValueError(f"the theory does not apply; what would meet {'; '.join(ruling.remedies)}")
-    if strict and ruling.reservations:
-        raise ValueError(f"the theory applies with reservations: {' '.join(ruling.reservations)}")
+        failing = map(remark_text, verdict.of("fails", "undecided"))
+        raise ValueError(f"the theory does not apply: {' '.join(failing)}")
+    if strict and (found := verdict.of("undecided", "reservation")):
+        sentences = " ".join(map(remark_text, found))
+        raise ValueError(f"the theory applies with reservations: {sentences}")
     return prediction

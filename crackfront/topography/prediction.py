@@ -5,23 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Protocol
-
-from scipy.optimize import brentq
 
 from crackfront.analysis.estimate import Estimate, product
 from crackfront.analysis.law import shipped_law
-from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
-from crackfront.analysis.validity import Excess, front_excess
+from crackfront.analysis.law_spheres import SphereFactors
+from crackfront.analysis.validity import Excess
 from crackfront.core import jkr
-from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
-from crackfront.topography.cautions import scan_notes
+from crackfront.data.written_units import prefixed
+from crackfront.topography.conditions import verdict, zero_load_radius
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.options import PredictionOptions
-from crackfront.topography.tile import zero_load_radius
-from crackfront.topography.verdict import LARGEST_ENERGY, Verdict, verdict
+from crackfront.topography.remarks import Remark, Verdict, remark_text
+from crackfront.topography.surface_remarks import measure_next
+from crackfront.topography.texts import ENERGY, estimate_text, wavelengths_text
+from crackfront.topography.works import Works, implied_work_of_adhesion, inverse, works
+
+_MOST_RESERVATIONS = 2
+"""Reservations on a page, which names the most severe ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,118 +65,84 @@ class Prediction:
 
     def __repr__(self) -> str:
         """The page that the command `crackfront predict` prints."""
-        from crackfront.topography.report import prediction_page
-
         return prediction_page(self)
 
 
-def prediction_notes(prediction: Prediction) -> Iterator[str]:
-    """Treatments of the measurements, where k comes from, and where the numbers are weak."""
-    yield from scan_notes(prediction.surface.scans, prediction.contact_radius)
-    yield (
+def prediction_page(prediction: Prediction) -> str:
+    """What an experimenter wants first: numbers, how far to trust them, what to measure next."""
+    surface, e_el = prediction.surface, prediction.e_el
+    joint, smallest = surface.joint, shipped_law().size[0]
+    hysteresis = estimate_text(ENERGY, prediction.hysteresis)
+    if prediction.size < smallest:
+        hysteresis += f"; none expected: g {prediction.size:.2g} is below {smallest:.2g}"
+    pull_off = estimate_text("N", prediction.pull_off_force)
+    smooth = prefixed("N", prediction.pull_off_force_smooth)
+    relative = e_el.value / prediction.work_of_adhesion
+    recorded = surface.conformity_energy(prediction.contact_modulus, surface.recorded)
+    waves = wavelengths_text(joint.shortest, joint.longest)
+    rows = [
+        ("hysteresis", hysteresis),
+        ("w_appr", estimate_text(ENERGY, prediction.w_appr)),
+        ("w_retr", estimate_text(ENERGY, prediction.w_retr)),
+        ("pull-off force", f"{pull_off}; smooth sphere {smooth}"),
+    ]
+    if math.isfinite(prediction.implied_work_of_adhesion.value):
+        implied = estimate_text(ENERGY, prediction.implied_work_of_adhesion)
+        rows.append(("w_int by pull-off", implied))
+    rows += [
+        ("e_el", f"{estimate_text(ENERGY, e_el)} = {relative:.3g} w_int"),
+        ("recorded of it", f"{prefixed(ENERGY, recorded.value)}; trusted waves from {waves}"),
+    ]
+    reservations = prediction.verdict.of("undecided", "reservation")
+    return "\n".join(
+        [
+            *(f"{name:18}{text}" for name, text in rows),
+            f"{prediction.verdict.heading}. {prediction.excess.sentence}",
+            *map(remark_text, _repelled_remarks(prediction.w_appr)),
+            *map(remark_text, reservations[:_MOST_RESERVATIONS]),
+            remark_text(measure_next(surface)),
+            "Intervals hold 95%; --long says all.",
+        ]
+    )
+
+
+def _law_remarks(found: Works) -> Iterator[Remark]:
+    """Remarks on the law of k, on the division by the excess, and on a negative w_appr."""
+    factors = found.factors
+    if factors.warning:
+        sentence = f"The law of k was not measured there: {factors.warning}."
+        yield Remark("k", "reservation", sentence)
+    yield Remark(
+        "k",
+        "note",
         "k is that of a straight front on springs of the length L_kappa, by the law that was "
-        "fitted to simulations of such fronts; its interval holds the errors of both."
+        "fitted to simulations of such fronts; its interval holds the errors of both.",
     )
     _, largest = shipped_law().size
-    if prediction.size > largest:
-        yield (
-            f"Size g {prediction.size:.3g} is above the largest that was measured "
-            f"({largest:.3g}): k follows the finite-size exponent of the elastic line from there."
+    if factors.size > largest:
+        yield Remark(
+            "k",
+            "note",
+            f"Size g {factors.size:.3g} is above the largest that was measured ({largest:.3g}): k "
+            "follows the finite-size exponent of the elastic line from there.",
         )
-    yield prediction.excess.sentence
-    yield from repelled_note(prediction)
+    yield Remark("hysteresis", "note", found.excess.sentence)
+    yield from _repelled_remarks(found.appr)
 
 
-def repelled_note(prediction: Prediction) -> Iterator[str]:
-    """What a w_appr that is not positive means, where its interval holds one."""
-    if prediction.w_appr.low <= 0:
-        reach = "is not" if prediction.w_appr.value <= 0 else "may not be"
-        yield (
+def _repelled_remarks(w_appr: Estimate[float]) -> Iterator[Remark]:
+    """Note on what a w_appr that is not positive means, where its interval holds one."""
+    if w_appr.low <= 0:
+        reach = "is not" if w_appr.value <= 0 else "may not be"
+        yield Remark(
+            "w_appr",
+            "note",
             f"w_appr {reach} positive: there the sphere is not drawn into contact but has to be "
-            "pressed on, and the theory ends."
+            "pressed on, and the theory ends.",
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Adhesions:
-    """Works of adhesion (Units: J / m^2)."""
-
-    w_appr: Estimate[float]
-    w_retr: Estimate[float]
-    hysteresis: Estimate[float]
-
-
-class FrontWorks(Protocol):
-    """Works of adhesion of simulated fronts (Units: J / m^2)."""
-
-    @property
-    def w_appr(self) -> Estimate[float]:
-        """That of the approach."""
-
-    @property
-    def w_retr(self) -> Estimate[float]:
-        """That of the retraction."""
-
-    @property
-    def hysteresis(self) -> Estimate[float]:
-        """Their difference."""
-
-
-def corrected_works(found: FrontWorks, prediction: Prediction) -> Adhesions:
-    """Works of adhesion of fronts, divided as the prediction divides its own.
-
-    What lies on either side of w_int - e_el is divided; without an interval of the ratio, which
-    stands in the prediction.
-    """
-    middle = prediction.work_of_adhesion - prediction.e_el.value
-    ratio = prediction.excess.ratio.value
-    appr, retr = (
-        work.each(lambda number: middle + (number - middle) / ratio)
-        for work in (found.w_appr, found.w_retr)
-    )
-    return Adhesions(appr, retr, found.hysteresis.each(lambda number: number / ratio))
-
-
-def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSpectrum:
-    """A spectrum of heights in metres in reduced units: its `elastic_energy` is e_el / w_int."""
-    unit = (scales.vertical * scales.lateral) ** 2
-    return spectrum.in_units(scales.lateral).amplified(1 / unit)
-
-
-class _Works(NamedTuple):
-    """Works of adhesion of a surface under a sphere, and what they come from."""
-
-    energy: Estimate[float]  # e_el (J / m^2)
-    factors: SphereFactors
-    excess: Excess
-    appr: Estimate[float]
-    retr: Estimate[float]
-
-
-def surface_spectrum(surface: MeasuredSurface, scales: Scales) -> TabulatedSpectrum:
-    """The spectrum of a surface in reduced units, with the e_el of :func:`energy_of_theory`."""
-    shape = reduced_spectrum(surface.joint.spectrum, scales)
-    energy = energy_of_theory(surface, scales).value / scales.work_of_adhesion
-    return shape.amplified(energy / shape.elastic_energy)
-
-
-def energy_of_theory(surface: MeasuredSurface, scales: Scales) -> Estimate[float]:
-    """The e_el of a surface where the theory applies, at most the largest for which it does.
-
-    Units: J / m^2, as scales in SI units. ValueError if even the least is larger than w_int.
-    """
-    energy, adhesion = surface.conformity_energy(scales.contact_modulus), scales.work_of_adhesion
-    if not energy.low < adhesion:
-        raise ValueError(
-            f"e_el is {energy.value / adhesion:.3g} w_int, so that no contact conforms fully and "
-            "the theory does not apply; a softer sphere, a stronger adhesion or a smoother "
-            "surface would"
-        )
-    value = min(energy.value, LARGEST_ENERGY * adhesion)
-    return replace(energy, value=value, low=min(energy.low, value))
-
-
-def judged(
+def check_and_predict(
     surface: MeasuredSurface, scales: Scales, given: PredictionOptions
 ) -> tuple[Verdict, Prediction | None]:
     """Whether the theory applies under a sphere, and the prediction where it does."""
@@ -197,7 +165,8 @@ def predicted(
     measured pull-off force (Units: N) gives the w_int that it implies. ValueError if no contact
     conforms.
     """
-    energy, factors, excess, appr, retr = _works(surface, scales)
+    found = works(surface, scales)
+    energy, factors, excess, appr, retr = found
     radius, adhesion = zero_load_radius(scales), scales.work_of_adhesion
     front = product(factors.both, energy).each(lambda work: 2 * work)
     # By JKR, pull-off forces are linear in the work of adhesion.
@@ -207,10 +176,10 @@ def predicted(
     )
     implied = Estimate(*[math.nan] * 4)
     if pull_off is not None:
-        implied = _implied_work_of_adhesion(surface, scales, pull_off / at_load)
+        implied = implied_work_of_adhesion(surface, scales, pull_off / at_load)
     return Prediction(
         surface=surface,
-        verdict=verdict(surface, scales, attraction_range, factors),
+        verdict=verdict(surface, scales, attraction_range, _law_remarks(found)),
         factors=factors,
         excess=excess,
         radius=scales.radius,
@@ -230,65 +199,9 @@ def predicted(
         front_hysteresis=front,
         w_appr=appr,
         w_retr=retr,
-        hysteresis=product(front, _inverse(excess.ratio)),
+        hysteresis=product(front, inverse(excess.ratio)),
         pull_off_force=retr.each(lambda work: at_load * work),
         pull_off_force_held=retr.each(lambda work: at_displacement * work),
         pull_off_force_smooth=-jkr.pull_off_force() * scales.force,
         implied_work_of_adhesion=implied,
     )
-
-
-def _works(surface: MeasuredSurface, scales: Scales) -> _Works:
-    """Works of adhesion by the law of k, divided by what the front has more than others."""
-    adhesion, energy = scales.work_of_adhesion, energy_of_theory(surface, scales)
-    relative = energy.value / adhesion
-    radius = zero_load_radius(scales) / scales.lateral
-    factors = sphere_factors("roughness", surface_spectrum(surface, scales), relative, radius)
-    excess = front_excess(relative, factors.size)
-    appr, retr = (
-        _linear(adhesion, energy, product(branch.factor, _inverse(excess.ratio)), sign)
-        for branch, sign in ((factors.approach, -1.0), (factors.retraction, 1.0))
-    )
-    return _Works(energy, factors, excess, appr, retr)
-
-
-def _implied_work_of_adhesion(
-    surface: MeasuredSurface, scales: Scales, measured: float
-) -> Estimate[float]:
-    """The w_int at which the predicted w_retr is the measured one; NaN if none (Units: J / m^2)."""
-    energy = surface.conformity_energy(scales.contact_modulus)
-    least = 1.001 * max(energy.low, energy.value * LARGEST_ENERGY)
-
-    def solved(end: str) -> float:
-        def apart(adhesion: float) -> float:
-            works = _works(surface, replace(scales, work_of_adhesion=adhesion))
-            return float(getattr(works.retr, end)) - measured
-
-        most = 10 * max(measured, least)
-        if apart(least) * apart(most) > 0:
-            return math.nan
-        return float(brentq(apart, least, most, rtol=1e-4))
-
-    # Its interval ends where those of predictions do.
-    return Estimate(solved("value"), math.nan, solved("high"), solved("low"))
-
-
-def _inverse(number: Estimate[float]) -> Estimate[float]:
-    """One over a positive number."""
-    return Estimate(1 / number.value, math.nan, 1 / number.high, 1 / number.low)
-
-
-def _linear(
-    adhesion: float, energy: Estimate[float], factor: Estimate[float], sign: float
-) -> Estimate[float]:
-    """Work of adhesion w_int - e_el + sign k e_el, intervals of k and e_el in quadrature."""
-    value = adhesion + (sign * factor.value - 1) * energy.value
-    ends = [
-        sorted(end - value for end in pair)
-        for pair in (
-            [adhesion + (sign * end - 1) * energy.value for end in (factor.low, factor.high)],
-            [adhesion + (sign * factor.value - 1) * end for end in (energy.low, energy.high)],
-        )
-    ]
-    low, high = (math.hypot(*(one[end] for one in ends)) for end in (0, 1))
-    return Estimate(value, math.nan, value - low, value + high)

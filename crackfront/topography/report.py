@@ -3,39 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.law import shipped_law
 from crackfront.core.units import Scales
 from crackfront.core.variables import variables
 from crackfront.data.plain import plain
 from crackfront.data.written_units import prefixed
 from crackfront.topography.bands import BandLimit
-from crackfront.topography.cautions import measure_next, scan_notes, surface_doubts
 from crackfront.topography.fitting import Fit
 from crackfront.topography.measures import MeasuredSurface
-from crackfront.topography.prediction import (
-    Prediction,
-    corrected_works,
-    prediction_notes,
-    repelled_note,
-)
-from crackfront.topography.verdict import Condition, Outcome, Verdict
+from crackfront.topography.prediction import Prediction
+from crackfront.topography.remarks import Remark, Verdict, remark_lines, remark_text
+from crackfront.topography.surface_remarks import surface_remarks
+from crackfront.topography.texts import ENERGY, estimate_text, wavelengths_text
 
 if TYPE_CHECKING:
+    # Importing it compiles nothing, but takes a second that a prediction does not need.
     from crackfront.topography.simulated import Simulated
 
 Number = Estimate[float]
 
-_ENERGY = "J/m2"
 _MEASURES = {0.0: ("heights", "m"), 0.5: ("half-derivative", "m^1/2"), 1.0: ("slopes", "1")}
 """Names and units of rms measures by the orders of their derivatives."""
-
-_FAR = 1000.0
-"""Factor to a limit from which on it is not worth a number."""
 
 _ADHESIONS = ("w_appr", "w_retr", "hysteresis")
 
@@ -43,67 +35,24 @@ _ADHESIONS = ("w_appr", "w_retr", "hysteresis")
 def report_text(
     surface: MeasuredSurface,
     scales: Scales | None = None,
-    ruling: Verdict | None = None,
+    verdict: Verdict | None = None,
     prediction: Prediction | None = None,
 ) -> str:
-    """All of surface, verdict and prediction, each where it is known, and what a reader must know.
+    """All of surface, verdict and prediction, each where it is known, with all remarks.
 
     Without a prediction, scales in SI units add the energy of full conformity.
     """
     parts = [_surface_lines(surface)]
-    if ruling is not None:
-        parts.append(_verdict_lines(ruling))
+    if verdict is None:
+        parts.append(remark_lines(surface_remarks(surface)))
+    else:
+        parts.append(iter([verdict.heading, *remark_lines(verdict.remarks)]))
     if prediction is not None:
         parts.append(_prediction_lines(prediction))
     elif scales is not None:
         energy = surface.conformity_energy(scales.contact_modulus)
         parts.append(_conformity_lines(energy, scales.work_of_adhesion))
-    notes = _notes(surface, prediction)
-    if ruling is None:
-        notes += surface_doubts(surface)
-    if notes:
-        parts.append(iter(["Notes", *(f"  {note}" for note in notes)]))
     return "\n\n".join("\n".join(lines) for lines in parts)
-
-
-def prediction_page(prediction: Prediction) -> str:
-    """What an experimenter wants first: numbers, how far to trust them, what to measure next."""
-    surface, e_el = prediction.surface, prediction.e_el
-    joint, smallest = surface.joint, shipped_law().size[0]
-    hysteresis = _shown(_ENERGY, prediction.hysteresis)
-    if prediction.size < smallest:
-        hysteresis += f"; none expected: g {prediction.size:.2g} is below {smallest:.2g}"
-    smooth = prefixed("N", prediction.pull_off_force_smooth)
-    relative = e_el.value / prediction.work_of_adhesion
-    recorded = surface.conformity_energy(prediction.contact_modulus, surface.recorded)
-    waves = _span(joint.shortest, joint.longest)
-    rows = [
-        ("hysteresis", hysteresis),
-        *((name, _shown(_ENERGY, getattr(prediction, name))) for name in ("w_appr", "w_retr")),
-        ("pull-off force", f"{_shown('N', prediction.pull_off_force)}; smooth sphere {smooth}"),
-        ("e_el", f"{_shown(_ENERGY, e_el)} = {relative:.3g} w_int"),
-        ("recorded of it", f"{prefixed(_ENERGY, recorded.value)}; trusted waves from {waves}"),
-    ]
-    if math.isfinite(prediction.implied_work_of_adhesion.value):
-        implied = _shown(_ENERGY, prediction.implied_work_of_adhesion)
-        rows.insert(4, ("w_int by pull-off", implied))
-    doubts = prediction.verdict.reservations
-    trust = _heading(prediction.verdict)
-    return "\n".join(
-        [
-            *(f"{name:18}{text}" for name, text in rows),
-            f"{trust}. {prediction.excess.sentence}",
-            *repelled_note(prediction),
-            *doubts[:2],  # the most important ones
-            measure_next(surface),
-            "Intervals hold 95%; --long says all.",
-        ]
-    )
-
-
-def _notes(surface: MeasuredSurface, prediction: Prediction | None) -> list[str]:
-    """Notes of a surface, and of its prediction where there is one."""
-    return list(scan_notes(surface.scans) if prediction is None else prediction_notes(prediction))
 
 
 def simulation_text(found: Simulated, prediction: Prediction) -> str:
@@ -112,15 +61,20 @@ def simulation_text(found: Simulated, prediction: Prediction) -> str:
     lines = [
         f"Simulated on {found.realisations} synthesised surface{several}, beside the prediction"
     ]
-    front = _shown(_ENERGY, found.hysteresis), _shown(_ENERGY, prediction.front_hysteresis)
+    front = (
+        estimate_text(ENERGY, found.hysteresis),
+        estimate_text(ENERGY, prediction.front_hysteresis),
+    )
     lines.append(f"  {'front, not corrected':22}{front[0]}; predicted {front[1]}")
-    corrected = corrected_works(found, prediction)
+    corrected = found.corrected(prediction)
     for name in _ADHESIONS:
         ours, theirs = getattr(corrected, name), getattr(prediction, name)
-        lines.append(f"  {name:22}{_shown(_ENERGY, ours)}; predicted {_shown(_ENERGY, theirs)}")
-    law = _shown("1", prediction.factors.both)
+        lines.append(
+            f"  {name:22}{estimate_text(ENERGY, ours)}; predicted {estimate_text(ENERGY, theirs)}"
+        )
+    law = estimate_text("1", prediction.factors.both)
     lines.append(
-        f"  {'k of the front':22}{_shown('1', found.k)}, numerical error "
+        f"  {'k of the front':22}{estimate_text('1', found.k)}, numerical error "
         f"{found.numerical_error:.2g}; predicted {law}"
     )
     if found.remark:
@@ -132,11 +86,11 @@ def simulation_text(found: Simulated, prediction: Prediction) -> str:
 def machine_readable(
     surface: MeasuredSurface,
     scales: Scales | None = None,
-    ruling: Verdict | None = None,
+    verdict: Verdict | None = None,
     prediction: Prediction | None = None,
     found: Simulated | None = None,
 ) -> dict[str, Any]:
-    """What the texts and notes say, for JSON, by the names of records and in their SI units."""
+    """What the texts say, for JSON, by the names of records and in their SI units."""
     joint = surface.joint
     return {
         "measurements": list(_scan_entries(surface)),
@@ -164,26 +118,26 @@ def machine_readable(
         "prediction": None if prediction is None else _prediction_entries(prediction),
         "factors": None if prediction is None else plain(prediction.factors),
         "excess": None if prediction is None else plain(prediction.excess),
-        "verdict": None if ruling is None else _verdict_entry(ruling),
-        "notes": _notes(surface, prediction),
+        "outcome": None if verdict is None else verdict.outcome,
+        "remarks": _remark_entries(
+            surface_remarks(surface) if verdict is None else verdict.remarks
+        ),
         "simulation": None
         if found is None or prediction is None
         else _simulation(found, prediction),
     }
 
 
-def _simulation(found: Simulated | None, prediction: Prediction | None) -> dict[str, Any] | None:
+def _simulation(found: Simulated, prediction: Prediction) -> dict[str, Any]:
     """What simulations found: of the front itself, and corrected as the prediction is."""
-    if found is None or prediction is None:
-        return None
-    return plain(found) | {"corrected": plain(corrected_works(found, prediction))}
+    return plain(found) | {"corrected": plain(found.corrected(prediction))}
 
 
 def sample_row(
-    surface: MeasuredSurface, scales: Scales, ruling: Verdict, prediction: Prediction | None
+    surface: MeasuredSurface, scales: Scales, verdict: Verdict, prediction: Prediction | None
 ) -> dict[str, Any]:
     """Row of a surface in a table: numbers and the ends of their 95% intervals, in SI units."""
-    remarks = " ".join(ruling.reservations or ruling.remedies)
+    remarks = " ".join(map(remark_text, verdict.of("fails", "undecided", "reservation")))
     numbers = {
         f"rms_{_MEASURES[one.order][0].replace('-', '_')}": plain(one.rms)
         for one in surface.measures
@@ -191,7 +145,7 @@ def sample_row(
     numbers["e_el"] = plain(surface.conformity_energy(scales.contact_modulus))
     numbers |= {} if prediction is None else _prediction_entries(prediction)
     heads = {"value": "", "low": "_low", "high": "_high"}
-    return {"outcome": ruling.outcome, "remarks": remarks} | {
+    return {"outcome": verdict.outcome, "remarks": remarks} | {
         f"{name}{head}": entry[end]
         for name, entry in numbers.items()
         for end, head in heads.items()
@@ -228,7 +182,8 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
     joint = surface.joint
     yield "Spectrum"
     shares = joint.shares
-    yield f"  {'measured':22}{_span(joint.shortest, joint.longest)}, {shares.measured:.0%} of e_el"
+    waves = wavelengths_text(joint.shortest, joint.longest)
+    yield f"  {'measured':22}{waves}, {shares.measured:.0%} of e_el"
     if len(surface.scans) > 1:
         yield f"  {'scatter of scans':22}{joint.density.scatter:.0%} of the density"
     yield (
@@ -237,7 +192,7 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
     )
     for name, found, units in _continuation(joint.fit):
         unsure = name == "roll_off" and not joint.fit.has_roll_off
-        yield f"    {name:20}{_shown(units, found)}{', not resolved' if unsure else ''}"
+        yield f"    {name:20}{estimate_text(units, found)}{', not resolved' if unsure else ''}"
     yield (
         f"  {'missing':22}two more decades of short waves would add {shares.missing_short:.0%} "
         f"to e_el; waves above {prefixed('m', joint.longest)} have {shares.continued_long:.0%}"
@@ -246,8 +201,8 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
     yield "Measures of the spectrum, and the scales of 80% of their mean squares"
     for measure in surface.measures:
         name, unit = _MEASURES[measure.order]
-        rms = _shown(unit, measure.rms)
-        yield f"  rms of {name:16}{rms:40}{_span(measure.shortest, measure.longest)}"
+        rms = estimate_text(unit, measure.rms)
+        yield f"  rms of {name:16}{rms:40}{wavelengths_text(measure.shortest, measure.longest)}"
 
 
 def _prediction_lines(item: Prediction) -> Iterator[str]:
@@ -257,85 +212,33 @@ def _prediction_lines(item: Prediction) -> Iterator[str]:
         found = getattr(item, one.name)
         number = found if isinstance(found, Estimate) else Estimate(found, *[math.nan] * 3)
         if math.isfinite(number.value):
-            yield f"  {one.attributes['long_name']:58}{_shown(one.units, number)}"
+            yield f"  {one.attributes['long_name']:58}{estimate_text(one.units, number)}"
 
 
 def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
     """Lines of e_el and w_rms."""
     rms = 2 * math.sqrt(energy.value * work_of_adhesion)
-    shown, part = _shown(_ENERGY, energy), energy.value / work_of_adhesion
+    shown, part = estimate_text(ENERGY, energy), energy.value / work_of_adhesion
     yield f"  {'e_el':25}{shown} = {part:.3g} w_int"
-    yield f"  {'w_rms':25}{prefixed(_ENERGY, rms)} = {rms / work_of_adhesion:.3g} w_int"
+    yield f"  {'w_rms':25}{prefixed(ENERGY, rms)} = {rms / work_of_adhesion:.3g} w_int"
 
 
-def _verdict_lines(found: Verdict) -> Iterator[str]:
-    """Lines on whether the theory applies, with conditions, remedies and reservations."""
-    yield _heading(found)
-    for item in found.conditions:
-        yield f"  {item.name}: {item.found}, {_standing(item)}"
-    if found.remedies:
-        yield "What would make it apply, each change alone"
-        yield from (f"  {remedy}" for remedy in found.remedies)
-    if found.reservations:
-        yield "Reservations"
-        yield from (f"  {number}. {text}" for number, text in enumerate(found.reservations, 1))
-    if found.assumption:
-        yield f"Assumed\n  {found.assumption}"
-
-
-def _heading(found: Verdict) -> str:
-    """Whether the theory applies."""
-    count = len(found.reservations)
-    headings: dict[Outcome, str] = {
-        "applies": "The theory applies",
-        "applies with reservations": (
-            f"The theory applies with {count} reservation{'s' if count > 1 else ''}"
-        ),
-        "cannot be decided": (
-            "WHETHER THE THEORY APPLIES CANNOT BE DECIDED; the numbers hold if it does"
-        ),
-        "does not apply": "THE THEORY DOES NOT APPLY",
-    }
-    return headings[found.outcome]
-
-
-def _standing(item: Condition) -> str:
-    """By what factor a condition holds, or where it comes into doubt or fails."""
-    if item.standing == "holds":
-        factor = f"inside by a factor of {float(f'{item.margin:.2g}'):g}"
-        return factor if item.margin < _FAR else "far inside"
-    words = {"in doubt": "IN DOUBT", "undecided": "UNDECIDED", "fails": "FAILS"}
-    end = item.doubtful if item.standing == "in doubt" else item.limit
-    return f"{words[item.standing]} {'below' if item.rising else 'above'} {item.shown(end)}"
-
-
-def _verdict_entry(found: Verdict) -> dict[str, Any]:
-    """A verdict with the standing of every condition."""
-    conditions = [
-        plain(item) | {"standing": item.standing, "margin": plain(item.margin)}
-        for item in found.conditions
+def _remark_entries(remarks: Iterable[Remark]) -> list[dict[str, Any]]:
+    """Remarks, with the margins of conditions."""
+    return [
+        plain(one)
+        | {
+            "comparison": None
+            if one.comparison is None
+            else plain(one.comparison) | {"margin": plain(one.comparison.margin)}
+        }
+        for one in remarks
     ]
-    more = {"conditions": conditions, "remedies": found.remedies}
-    return {"outcome": found.outcome} | plain(found) | more
-
-
-def _shown(unit: str, found: Number) -> str:
-    """A number with its interval, if it has one; powers of lengths have no prefix."""
-    unit = unit.replace("J m-2", _ENERGY)
-    if unit in ("m", "N", "Pa", _ENERGY):
-        return prefixed(unit, found.value, found.low, found.high)
-    interval = f" ({found.low:.3g} to {found.high:.3g})" if math.isfinite(found.low) else ""
-    return f"{found.value:.3g}{interval} {unit}".removesuffix(" 1")
 
 
 def _limit_text(limit: BandLimit) -> str:
     """A wavelength with the cause of its being a limit."""
     return f"{prefixed('m', limit.wavelength)} ({limit.cause})"
-
-
-def _span(shortest: float, longest: float) -> str:
-    """A range of wavelengths."""
-    return f"{prefixed('m', shortest)} to {prefixed('m', longest)}"
 
 
 def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:

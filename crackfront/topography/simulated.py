@@ -22,9 +22,10 @@ from crackfront.simulate.lines import LineLoad
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Numerics, Simulation, numerical_error, simulation_of
 from crackfront.simulate.steady import SteadySchedule
+from crackfront.topography.conditions import zero_load_radius
 from crackfront.topography.measures import MeasuredSurface
-from crackfront.topography.prediction import surface_spectrum
-from crackfront.topography.tile import zero_load_radius
+from crackfront.topography.prediction import Prediction
+from crackfront.topography.works import surface_spectrum
 
 _ERROR = 0.03
 """Standard error of k that the numerics may leave."""
@@ -57,6 +58,15 @@ class SimulationPlan:
 
 
 @dataclass(frozen=True, slots=True)
+class Adhesions:
+    """Works of adhesion (Units: J / m^2)."""
+
+    w_appr: Estimate[float]
+    w_retr: Estimate[float]
+    hysteresis: Estimate[float]
+
+
+@dataclass(frozen=True, slots=True)
 class Simulated:
     """What simulations found, means over surfaces with 95% intervals."""
 
@@ -73,6 +83,20 @@ class Simulated:
     """Why surfaces have no value."""
     remark: str
     """As of :class:`SimulationPlan`."""
+
+    def corrected(self, prediction: Prediction) -> Adhesions:
+        """Works of adhesion, divided as the prediction divides its own.
+
+        What lies on either side of w_int - e_el is divided; without an interval of the ratio,
+        which stands in the prediction.
+        """
+        middle = prediction.work_of_adhesion - prediction.e_el.value
+        ratio = prediction.excess.ratio.value
+        appr, retr = (
+            work.each(lambda number: middle + (number - middle) / ratio)
+            for work in (self.w_appr, self.w_retr)
+        )
+        return Adhesions(appr, retr, self.hysteresis.each(lambda number: number / ratio))
 
 
 def prediction_plan(

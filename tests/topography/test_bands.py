@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from crackfront.topography.bands import scan
-from crackfront.topography.cautions import scan_notes, surface_doubts
 from crackfront.topography.joining import joint_spectrum
+from crackfront.topography.surface_remarks import scan_remarks, spectrum_remarks
 from studies.accuracy.energies import (
     KINDS,
     MEAN_SQUARE,
@@ -61,7 +61,7 @@ def test_waves_that_a_tip_shapes_are_not_trusted_and_continued(found):
     assert result.covers
     recorded, estimated = result.surface.recorded, result.surface.half_derivative
     assert 0.1 * estimated.value < recorded.value < estimated.value
-    assert any("of e_el is measured" in text for text in surface_doubts(result.surface))
+    assert any("of e_el is measured" in one.sentence for one in spectrum_remarks(result.surface))
 
 
 def test_grooves_are_no_shifted_rows_and_told(found):
@@ -98,7 +98,7 @@ def test_shifted_rows_are_found_and_left_out(found, rng):
     assert (one.band.stripes, shifted.band.stripes) == ((), (1,))
     assert shifted.trusted.value == pytest.approx(one.trusted.value, rel=0.6)
     assert shifted.waves.power.mean() > 1.2 * one.waves.power.mean()
-    notes = "\n".join(scan_notes([shifted]))
+    notes = "\n".join(one.sentence for one in scan_remarks([shifted]))
     assert "waves along y alone" in notes
 
 
@@ -161,11 +161,12 @@ def test_surfaces_that_are_not_gaussian_are_told_and_known_less_well(found):
     )
     assert film.unevenness == 0.0
     assert deep.unevenness > 0.03
-    assert [*scan_notes([film])] == []
-    assert any("differ more than those of a Gaussian" in told for told in scan_notes([deep]))
-    assert any(
-        "in narrow ones e_el may be 2 times as large" in told for told in scan_notes([scanned])
-    )
+    assert [*scan_remarks([film])] == []
+    for one, sentence in (
+        (deep, "differ more than those of a Gaussian"),
+        (scanned, "in narrow ones e_el may be 2 times as large"),
+    ):
+        assert any(sentence in remark.sentence for remark in scan_remarks([one]))
 
 
 def test_the_table_of_energies_has_a_row_for_each_kind(found):

@@ -12,7 +12,7 @@ from crackfront.topography.draws import ORDERS, mean_squares
 from crackfront.topography.joining import joint_spectrum
 from crackfront.topography.measures import measured_surface
 from crackfront.topography.options import PredictionOptions
-from crackfront.topography.prediction import judged
+from crackfront.topography.prediction import check_and_predict
 from crackfront.topography.reading import read_measurements
 from studies.accuracy.energies import KINDS, found_scan
 from tests.topography.made import DETAIL, OVERVIEW, SCENE
@@ -113,10 +113,10 @@ def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
     surface = measured_surface(read_measurements(files))
     known, outcomes = None, []
     for modulus in SCENE.contact_modulus * 1.02 ** np.arange(120):
-        ruling, found = judged(
+        verdict, found = check_and_predict(
             surface, replace(SCENE, contact_modulus=modulus), PredictionOptions()
         )
-        outcomes.append(ruling.outcome)
+        outcomes.append(verdict.outcome)
         if found is None:
             break
         estimates = [getattr(found, name) for name in ("e_el", "hysteresis", "w_retr")]
@@ -124,7 +124,7 @@ def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
         if known is not None:
             assert numbers == pytest.approx(known, rel=0.08)
         known = numbers
-        undecided = [text for text in ruling.reservations if "cannot be decided" in text]
-        assert bool(undecided) == (ruling.outcome == "cannot be decided")
+        undecided = verdict.of("undecided")
+        assert bool(undecided) == (verdict.outcome == "cannot be decided")
     order = list(dict.fromkeys(outcomes))
     assert order == ["applies with reservations", "cannot be decided", "does not apply"]

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 import crackfront as cf
-from crackfront.topography import cautions
 from crackfront.topography.instruments import surface_library
 from crackfront.topography.measures import read_surface
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.reading import read_measurements
+from crackfront.topography.surface_remarks import channel_remarks
 from studies.accuracy import scans
 from tests.topography.made import SIDE, read, refusal, write_text
 
@@ -89,8 +89,8 @@ def test_a_channel_of_lengths_that_is_named_after_another_quantity_is_in_doubt(t
     path = write_text(tmp_path / "scan.txt", noise)
     path.write_text(path.read_text().replace("Channel: Main", "Channel: AmplitudeTrace"))
     assert "(height, by its name another quantity)" in str(cf.list_channels(path)[0])
-    [told] = cautions.channel_doubts(read_surface([path], [ReadingOptions()]))
-    assert "channel 'AmplitudeTrace' has a unit of length, but the name of another" in told
+    [told] = channel_remarks(read_surface([path], [ReadingOptions()]))
+    assert "channel 'AmplitudeTrace' has a unit of length, but the name of another" in told.sentence
 
 
 def test_heights_have_a_unit_of_their_own_where_none_is_stated_or_it_cannot_be(tmp_path, noise):

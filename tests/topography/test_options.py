@@ -96,11 +96,11 @@ def test_an_option_that_does_not_exist_is_refused():
 
 
 def test_the_range_of_attraction_reaches_the_verdict_of_the_library():
-    with pytest.raises(ValueError, match=r"does not apply; .*attraction short against the sphere"):
+    with pytest.raises(ValueError, match=r"does not apply: .*attraction short against the sphere"):
         cf.predict(OVERVIEW, SCENE, range="3um")
 
 
 def test_reservations_fail_where_the_library_is_strict():
-    assert cf.predict(OVERVIEW, SCENE).verdict.reservations
+    assert cf.predict(OVERVIEW, SCENE).verdict.of("reservation")
     with pytest.raises(ValueError, match=r"^the theory applies with reservations: small slopes"):
         cf.predict(OVERVIEW, SCENE, strict=True)

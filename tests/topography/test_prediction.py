@@ -11,15 +11,16 @@ from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import TabulatedSpectrum
-from crackfront.topography.cautions import surface_doubts
-from crackfront.topography.prediction import (
-    predicted,
-    prediction_notes,
-    reduced_spectrum,
-    surface_spectrum,
-)
+from crackfront.topography.prediction import predicted
 from crackfront.topography.report import report_text
+from crackfront.topography.surface_remarks import spectrum_remarks
+from crackfront.topography.works import reduced_spectrum, surface_spectrum
 from tests.topography.made import DETAIL, OVERVIEW, SCENE
+
+
+def sentences(found, *severities):
+    """Sentences of the remarks on a prediction."""
+    return [one.sentence for one in found.verdict.of(*severities)]
 
 
 def test_the_law_holds_between_the_predicted_numbers(prediction):
@@ -89,11 +90,11 @@ def test_every_radius_from_a_micrometre_to_a_metre_is_predicted(surface):
     _, largest = shipped_law().size
     for radius in np.geomspace(1e-6, 1.0, 7):
         found = predicted(surface, replace(SCENE, radius=radius))
-        text = report_text(surface, ruling=found.verdict, prediction=found)
-        notes = "\n".join(prediction_notes(found))
+        text = report_text(surface, verdict=found.verdict, prediction=found)
+        notes = "\n".join(sentences(found, "note"))
         assert f"{found.size:.3g}\n" in text
         assert 0 <= found.k_appr.low < found.k_appr.value < found.k_appr.high
-        doubts = found.verdict.reservations
+        doubts = sentences(found, "reservation")
         assert any("not measured there" in text for text in doubts) == (found.factors.warning != "")
         assert ("above the largest that was measured" in notes) == (found.size > largest)
     assert found.k_appr.value > 1
@@ -107,7 +108,11 @@ def test_a_fit_at_the_edge_of_its_range_is_told_where_it_continues_much(surface,
     for continued in (0.05, 0.3):
         shares = replace(surface.joint.shares, continued=continued)
         other = replace(surface, joint=replace(surface.joint, fit=fit, shares=shares))
-        found = [text for text in surface_doubts(other) if "at the edge of what is fitted" in text]
+        found = [
+            one.sentence
+            for one in spectrum_remarks(other)
+            if "at the edge of what is fitted" in one.sentence
+        ]
         assert [f", {hurst:g}, is" in text for text in found] == [True] * (told and continued > 0.1)
 
 
@@ -117,7 +122,7 @@ def test_where_boundary_elements_were_compared_the_hysteresis_is_divided(surface
     assert found.excess.is_measured
     ratio = found.front_hysteresis.value / found.hysteresis.value
     assert ratio == pytest.approx(found.front_excess.value)
-    assert found.excess.sentence in list(prediction_notes(found))
+    assert found.excess.sentence in sentences(found, "note")
 
 
 def test_a_pull_off_force_gives_the_work_of_adhesion_that_it_implies(surface, prediction):
@@ -132,7 +137,7 @@ def test_a_pull_off_force_gives_the_work_of_adhesion_that_it_implies(surface, pr
 
 
 def test_scans_smaller_than_the_contact_are_told(surface, prediction):
-    notes = list(prediction_notes(prediction))
+    notes = sentences(prediction, "note")
     for path in (DETAIL, OVERVIEW):
         assert any(str(path) in note and "smaller than the contact" in note for note in notes)
     assert any("k is that of a straight front on springs" in note for note in notes)
@@ -141,7 +146,7 @@ def test_scans_smaller_than_the_contact_are_told(surface, prediction):
 def test_a_contact_too_small_for_hysteresis_is_told(surface):
     small = replace(SCENE, radius=70e-6, contact_modulus=5e3 / 0.75)
     found = predicted(surface, small)
-    [told] = [text for text in found.verdict.reservations if "law of k" in text]
+    [told] = [text for text in sentences(found, "reservation") if "law of k" in text]
     assert "hysteresis sets in there" in told
     assert found.factors.warning in told
     assert found.hysteresis.low == 0
