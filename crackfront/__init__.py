@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from crackfront.topography.instruments import list_channels as list_channels
     from crackfront.topography.library import predict as predict
     from crackfront.topography.library import read_scan as read_scan
+    from crackfront.topography.options import PredictionOptions as PredictionOptions
+    from crackfront.topography.options import ReadingOptions as ReadingOptions
 
 if not TYPE_CHECKING:
     __all__, __getattr__, __dir__ = lazy_names(__name__)

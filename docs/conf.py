@@ -19,7 +19,7 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import variables
 from crackfront.sweep.configuration import Configuration
 from crackfront.sweep.table import SweepRow
-from crackfront.topography.options import ReadingOptions, declared
+from crackfront.topography.options import ReadingOptions
 
 project = "crackfront"
 author = "crackfront developers"
@@ -178,7 +178,10 @@ def _meanings() -> dict[tuple[str, str], str]:
     # A link leads from there to a page, and here from one.
     rows = re.findall(r"^\| (\w+) \| `(\w+)` \| (.*) \|$", text, re.MULTILINE)
     found = {(section, key): meaning.replace("(../docs/", "(../") for section, key, meaning in rows}
-    return found | {("Surface", one.name): one.meaning for one in declared(ReadingOptions)}
+    options = ReadingOptions.model_fields.items()
+    return found | {
+        ("Surface", name): " ".join(str(field.description).split()) for name, field in options
+    }
 
 
 def _write_references(app: Sphinx) -> None:

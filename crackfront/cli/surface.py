@@ -5,9 +5,8 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable, Mapping
-from dataclasses import astuple, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import click
 
@@ -23,15 +22,16 @@ from crackfront.cli.report import (
 )
 from crackfront.data.bounds import SEED, Range, in_time
 from crackfront.topography.options import (
-    LENGTH,
+    PER_SCAN,
+    REPEATED,
+    Length,
+    Options,
     PredictionOptions,
     ReadingOptions,
-    declared,
+    checked_options,
     number,
-    option,
-    options_for_each,
-    parsed_options,
     quantity,
+    reading_options,
 )
 
 if TYPE_CHECKING:
@@ -44,32 +44,36 @@ Command = Callable[..., None]
 Say = Callable[[str], None]
 
 
-@dataclass(frozen=True, slots=True)
-class SphereOptions:
+class SphereOptions(Options):
     """What is pressed on a surface; the library and configurations have its scales instead."""
 
-    modulus: float | None = option(
-        "Young's modulus, as in 0.7MPa", quantity("Pa", "pressure", "0.7MPa")
+    modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
+    """Young's modulus, as in 0.7MPa."""
+
+    poisson: Annotated[float, number(Range(-0.99, 0.5))] | None = None
+    """Poisson's ratio, as in 0.5."""
+
+    radius: Length | None = None
+    """Radius of the sphere, as in 1.25mm."""
+
+    work_of_adhesion: Annotated[float, quantity("J/m^2", "energy per area", "63mJ/m2")] | None = (
+        None
     )
-    poisson: float | None = option("Poisson's ratio", number(Range(-0.99, 0.5)))
-    radius: float | None = option("Radius of the sphere, as in 1.25mm", LENGTH)
-    work_of_adhesion: float | None = option(
-        "w_int, as in 63mJ/m2", quantity("J/m^2", "energy per area", "63mJ/m2")
-    )
+    """w_int, as in 63mJ/m2."""
 
 
-def _options_of(record: type[Any], *, required: bool = False) -> Callable[[Command], Command]:
-    """Give a command the options of a record, by the names of its fields."""
+def _options_of(record: type[Options], *, required: bool = False) -> Callable[[Command], Command]:
+    """Give a command an option for every field of a record."""
 
     def decorated(command: Command) -> Command:
-        for item in reversed(list(declared(record))):
+        for name, field in reversed(record.model_fields.items()):
+            often = [mark for mark in (PER_SCAN, REPEATED) if mark in field.metadata]
             command = click.option(
-                f"--{item.name.replace('_', '-')}",
+                f"--{name.replace('_', '-')}",
                 required=required,
-                multiple=item.times != "once",
-                default=item.default or None,
-                metavar=item.kind.metavar,
-                help=item.sentence,
+                multiple=bool(often),
+                default=field.default or None,
+                help=" ".join([*str(field.description).split(), *often]),
             )(command)
         return command
 
@@ -165,7 +169,7 @@ def predict(
     from crackfront.topography.report import machine_readable, report_text
 
     scales = _scales(options)
-    given = parsed_options(PredictionOptions, options, "--")
+    given = checked_options(PredictionOptions, options, "--")
     if table is not None:
         if as_json or simulate or is_long or panel or figure:
             raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
@@ -212,8 +216,8 @@ def _write_samples(
     from crackfront.topography.report import sample_row
 
     refuse_unwritable(path.parent)
-    given, rows = parsed_options(PredictionOptions, options, "--"), []
-    reading = options_for_each(ReadingOptions, options, len(scans), "--")
+    given, rows = checked_options(PredictionOptions, options, "--"), []
+    reading = reading_options(options, len(scans), "--")
     for scan, by in zip(scans, reading, strict=True):
         try:
             surface = read_surface([scan], [by])
@@ -268,7 +272,7 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
     """
     from crackfront.topography.report import machine_readable, report_text
 
-    is_pressed = any(options[item.name] is not None for item in declared(SphereOptions))
+    is_pressed = any(options[name] is not None for name in SphereOptions.model_fields)
     scales = _scales(options) if is_pressed or field is not None else None
     if field is not None and len(scans) > 1:
         raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
@@ -290,7 +294,7 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
 
 def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSurface:
     """Surface of the files that a command names, read by its options."""
-    reading = options_for_each(ReadingOptions, options, len(scans), "--")
+    reading = reading_options(options, len(scans), "--")
     from crackfront.topography.measures import read_surface
 
     return read_surface(scans, reading)
@@ -300,11 +304,12 @@ def _scales(options: Mapping[str, Any]) -> Scales:
     """Scene of the sphere of a command, in SI units."""
     from crackfront.core.units import Scales
 
-    given = astuple(parsed_options(SphereOptions, options, "--"))
-    if None in given:
+    given = checked_options(SphereOptions, options, "--")
+    modulus, poisson, radius = given.modulus, given.poisson, given.radius
+    adhesion = given.work_of_adhesion
+    if modulus is None or poisson is None or radius is None or adhesion is None:
         raise ValueError(
             "the sphere is incomplete; name all of --modulus, --poisson, --radius and "
             "--work-of-adhesion"
         )
-    modulus, poisson, radius, work_of_adhesion = given
-    return Scales(radius, work_of_adhesion, modulus / (1 - poisson**2))
+    return Scales(radius, adhesion, modulus / (1 - poisson**2))
