@@ -26,10 +26,10 @@ from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.simulate.surfaces import chosen_simulation, tile_modes
 from crackfront.sweep import parallel, tasks
-from crackfront.topography.measures import measured_surface
-from crackfront.topography.prediction import predicted
-from crackfront.topography.reading import read_measurements
-from crackfront.topography.report import report_text
+from crackfront.topography.page.report import report_text
+from crackfront.topography.prediction.prediction import predicted
+from crackfront.topography.scan.reading import read_measurements
+from crackfront.topography.spectrum.measures import measured_surface
 from tests.commands import curves, run
 
 ROOT = Path(__file__).parents[1]
@@ -78,7 +78,9 @@ def axes_of_a_figure():
     return Figure().add_subplot()
 
 
-@pytest.mark.parametrize(("part", "more"), [("", {"scipy"}), (".topography.prediction", set())])
+@pytest.mark.parametrize(
+    ("part", "more"), [("", {"scipy"}), (".topography.prediction.prediction", set())]
+)
 def test_importing_the_package_or_predictions_is_light(part, more):
     heavy = {"xarray", "matplotlib", "numba", "mpi4py"} | more
     code = f"import crackfront{part}, sys; assert not {heavy} & sys.modules.keys()"

@@ -36,9 +36,9 @@ from crackfront.topography.options import (
 
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
-    from crackfront.topography.measures import MeasuredSurface
-    from crackfront.topography.prediction import Prediction
-    from crackfront.topography.simulated import Simulated
+    from crackfront.topography.prediction.prediction import Prediction
+    from crackfront.topography.prediction.simulated import Simulated
+    from crackfront.topography.spectrum.measures import MeasuredSurface
 
 Command = Callable[..., None]
 Say = Callable[[str], None]
@@ -85,7 +85,7 @@ def _listed(
 ) -> tuple[Path, ...]:
     """The scans, unless a command is to list their channels instead of what it does."""
     if context.params.get("list_channels"):
-        from crackfront.topography.instruments import list_channels
+        from crackfront.topography.scan.instruments import list_channels
 
         for scan in scans:
             click.echo("\n  ".join(map(str, (scan, *list_channels(scan)))))
@@ -165,8 +165,8 @@ def predict(
     predicted, and the output says which modulus, radius or roughness would meet it. With --csv the
     largest of all samples; an unusable scan counts as 4.
     """
-    from crackfront.topography.prediction import check_and_predict
-    from crackfront.topography.report import machine_readable, report_text
+    from crackfront.topography.page.report import machine_readable, report_text
+    from crackfront.topography.prediction.prediction import check_and_predict
 
     scales = _scales(options)
     given = checked_options(PredictionOptions, options, "--")
@@ -187,7 +187,7 @@ def predict(
         say("\n" * is_long + report_text(surface, scales, verdict, prediction))
     if prediction is not None and not no_figure:
         from crackfront.plots.style import save_figure
-        from crackfront.topography.drawing import prediction_figure
+        from crackfront.topography.page.drawing import prediction_figure
 
         for path in save_figure(prediction_figure(surface, prediction, panel), stem):
             say(f"figure: {path}")
@@ -211,9 +211,9 @@ def _write_samples(
 ) -> list[str]:
     """Write a table with a row for each scan, and give the outcomes."""
     from crackfront.data.files import write_text
-    from crackfront.topography.measures import read_surface
-    from crackfront.topography.prediction import check_and_predict
-    from crackfront.topography.report import sample_row
+    from crackfront.topography.page.report import sample_row
+    from crackfront.topography.prediction.prediction import check_and_predict
+    from crackfront.topography.spectrum.measures import read_surface
 
     refuse_unwritable(path.parent)
     given, rows = checked_options(PredictionOptions, options, "--"), []
@@ -240,8 +240,8 @@ def _simulated(
     prediction: Prediction, scales: Scales, realisations: int, seed: int, say: Say
 ) -> Simulated:
     """What simulations of a predicted surface find, which is announced and said."""
-    from crackfront.topography.report import simulation_text
-    from crackfront.topography.simulated import prediction_plan, simulated
+    from crackfront.topography.page.report import simulation_text
+    from crackfront.topography.prediction.simulated import prediction_plan, simulated
 
     plan = prediction_plan(prediction.surface, scales, realisations, seed)
     seconds = in_time(plan.expected_seconds)
@@ -270,7 +270,7 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
     SCANS are files of instruments in any format that SurfaceTopography reads. Options of
     the sphere add e_el and w_rms.
     """
-    from crackfront.topography.report import machine_readable, report_text
+    from crackfront.topography.page.report import machine_readable, report_text
 
     is_pressed = any(options[name] is not None for name in SphereOptions.model_fields)
     scales = _scales(options) if is_pressed or field is not None else None
@@ -295,7 +295,7 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
 def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSurface:
     """Surface of the files that a command names, read by its options."""
     reading = reading_options(options, len(scans), "--")
-    from crackfront.topography.measures import read_surface
+    from crackfront.topography.spectrum.measures import read_surface
 
     return read_surface(scans, reading)
 

@@ -41,8 +41,8 @@ from crackfront.simulate.lines import LineLoad, SpringUnit
 from crackfront.simulate.simulation import Numerics
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.sweep import NamedSpectrum
-from crackfront.topography.measures import MeasuredSurface, read_surface
 from crackfront.topography.options import ReadingOptions, reading_options
+from crackfront.topography.spectrum.measures import MeasuredSurface, read_surface
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 

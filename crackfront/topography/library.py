@@ -12,9 +12,7 @@ from xarray import DataArray
 from crackfront.core.units import Scales
 from crackfront.data.arguments import refuse_other_type
 from crackfront.simulate.si_units import refuse_no_scales
-from crackfront.topography.bands import scan
-from crackfront.topography.instruments import surface_library
-from crackfront.topography.measures import read_surface
+from crackfront.topography.density.bands import scan
 from crackfront.topography.options import (
     PredictionOptions,
     ReadingOptions,
@@ -22,9 +20,11 @@ from crackfront.topography.options import (
     reading_options,
     refuse_unknown,
 )
-from crackfront.topography.prediction import Prediction, check_and_predict
-from crackfront.topography.reading import read_measurements
-from crackfront.topography.remarks import remark_text
+from crackfront.topography.prediction.prediction import Prediction, check_and_predict
+from crackfront.topography.prediction.remarks import remark_text
+from crackfront.topography.scan.instruments import surface_library
+from crackfront.topography.scan.reading import read_measurements
+from crackfront.topography.spectrum.measures import read_surface
 from crackfront.topography.tile import scan_surface
 
 File = str | PathLike[str]

@@ -13,9 +13,9 @@ from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.core.variables import variables
 from crackfront.simulate.given import read_field, surface_adhesion
-from crackfront.topography.measures import measured_surface, read_surface
-from crackfront.topography.prediction import Prediction, predicted
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.prediction.prediction import Prediction, predicted
+from crackfront.topography.scan.reading import read_measurements
+from crackfront.topography.spectrum.measures import measured_surface, read_surface
 from tests.commands import refused, run
 from tests.topography.made import DETAIL, OVERVIEW, SCENE, write_smooth
 
@@ -84,7 +84,7 @@ def test_an_interrupted_batch_of_scans_keeps_the_rows_of_those_before(tmp_path, 
             raise KeyboardInterrupt
         return read_surface(paths, options)
 
-    monkeypatch.setattr("crackfront.topography.measures.read_surface", interrupted)
+    monkeypatch.setattr("crackfront.topography.spectrum.measures.read_surface", interrupted)
     smooth, table = write_smooth(tmp_path / "smooth.al3d"), tmp_path / "samples.csv"
     assert run("predict", *sphere(), "--csv", table, smooth, OVERVIEW).exit_code != 0
     with table.open(encoding="utf-8", newline="") as file:

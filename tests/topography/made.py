@@ -8,9 +8,9 @@ import pytest
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import Scales
-from crackfront.topography.measures import read_surface
 from crackfront.topography.options import reading_options
-from crackfront.topography.reading import Measurement, read_measurements
+from crackfront.topography.scan.reading import Measurement, read_measurements
+from crackfront.topography.spectrum.measures import read_surface
 from studies.accuracy import scans
 
 FOLDER = Path(__file__).parents[2] / "examples/scans"
