@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.units import Scales
 from crackfront.core.variables import variables
-from crackfront.data.plain import plain
+from crackfront.data.jsonable import to_jsonable
 from crackfront.data.written_units import prefixed
 from crackfront.topography.density.bands import BandLimit
 from crackfront.topography.prediction.prediction import Prediction
@@ -97,8 +97,8 @@ def machine_readable(
         "spectrum": {
             "wavelength": list(joint.spectrum.wavelengths),
             "density": list(joint.spectrum.densities),
-            "measured": plain(joint.density),
-            "share_of_e_el": plain(joint.shares),
+            "measured": to_jsonable(joint.density),
+            "share_of_e_el": to_jsonable(joint.shares),
             "shortest": joint.shortest,
             "longest": joint.longest,
             "end": joint.spectrum.short_cutoff,
@@ -109,15 +109,15 @@ def machine_readable(
             },
         },
         "continuation": {
-            **{name: plain(number) for name, number, _ in _continuation(joint.fit)},
+            **{name: to_jsonable(number) for name, number, _ in _continuation(joint.fit)},
             "deviance_per_freedom": joint.fit.misfit,
             "has_roll_off": joint.fit.has_roll_off,
         },
-        "measures": plain(surface.measures),
+        "measures": to_jsonable(surface.measures),
         "e_el": None if scales is None else _energy_entry(surface, scales.contact_modulus),
         "prediction": None if prediction is None else _prediction_entries(prediction),
-        "factors": None if prediction is None else plain(prediction.factors),
-        "excess": None if prediction is None else plain(prediction.excess),
+        "factors": None if prediction is None else to_jsonable(prediction.factors),
+        "excess": None if prediction is None else to_jsonable(prediction.excess),
         "outcome": None if verdict is None else verdict.outcome,
         "remarks": _remark_entries(
             surface_remarks(surface) if verdict is None else verdict.remarks
@@ -130,7 +130,7 @@ def machine_readable(
 
 def _simulation(found: Simulated, prediction: Prediction) -> dict[str, Any]:
     """What simulations found: of the front itself, and corrected as the prediction is."""
-    return plain(found) | {"corrected": plain(found.corrected(prediction))}
+    return to_jsonable(found) | {"corrected": to_jsonable(found.corrected(prediction))}
 
 
 def sample_row(
@@ -139,10 +139,10 @@ def sample_row(
     """Row of a surface in a table: numbers and the ends of their 95% intervals, in SI units."""
     remarks = " ".join(map(remark_text, verdict.of("fails", "undecided", "reservation")))
     numbers = {
-        f"rms_{_MEASURES[one.order][0].replace('-', '_')}": plain(one.rms)
+        f"rms_{_MEASURES[one.order][0].replace('-', '_')}": to_jsonable(one.rms)
         for one in surface.measures
     }
-    numbers["e_el"] = plain(surface.conformity_energy(scales.contact_modulus))
+    numbers["e_el"] = to_jsonable(surface.conformity_energy(scales.contact_modulus))
     numbers |= {} if prediction is None else _prediction_entries(prediction)
     heads = {"value": "", "low": "_low", "high": "_high"}
     return {"outcome": verdict.outcome, "remarks": remarks} | {
@@ -226,11 +226,11 @@ def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
 def _remark_entries(remarks: Iterable[Remark]) -> list[dict[str, Any]]:
     """Remarks, with the margins of conditions."""
     return [
-        plain(one)
+        to_jsonable(one)
         | {
             "comparison": None
             if one.comparison is None
-            else plain(one.comparison) | {"margin": plain(one.comparison.margin)}
+            else to_jsonable(one.comparison) | {"margin": to_jsonable(one.comparison.margin)}
         }
         for one in remarks
     ]
@@ -248,26 +248,26 @@ def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:
         item = one.measurement
         told = (entry.name for entry in fields(item) if entry.name != "heights")
         yield {
-            **{name: plain(getattr(item, name)) for name in told},
+            **{name: to_jsonable(getattr(item, name)) for name in told},
             "points": list(item.heights.shape),
-            **plain(one.band),
-            "density": plain(one.trusted),
-            "profile_density": plain(profile),
-            "level": plain(joined.levels[index]),
+            **to_jsonable(one.band),
+            "density": to_jsonable(one.trusted),
+            "profile_density": to_jsonable(profile),
+            "level": to_jsonable(joined.levels[index]),
             "disagrees": joined.disagrees(index),
         }
 
 
 def _energy_entry(surface: MeasuredSurface, contact_modulus: float) -> dict[str, Any]:
     """e_el, and that of what is recorded (Units: J / m^2)."""
-    return plain(surface.conformity_energy(contact_modulus)) | {
-        "recorded": plain(surface.conformity_energy(contact_modulus, surface.recorded))
+    return to_jsonable(surface.conformity_energy(contact_modulus)) | {
+        "recorded": to_jsonable(surface.conformity_energy(contact_modulus, surface.recorded))
     }
 
 
 def _prediction_entries(prediction: Prediction) -> dict[str, dict[str, Any]]:
     """Numbers of a prediction by name, with what they have of standard errors and intervals."""
-    items = [(item, plain(getattr(prediction, item.name))) for item in variables(Prediction)]
+    items = [(item, to_jsonable(getattr(prediction, item.name))) for item in variables(Prediction)]
     return {
         item.name: (found if isinstance(found, dict) else {"value": found}) | item.attributes
         for item, found in items
