@@ -63,7 +63,7 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     refuse_no_scales(sphere)
     file = _path(path)
     [reading] = reading_options(options, 1)
-    surface_library()  # Whole: the program may use it too.
+    surface_library()  # All of it, as the user's program may import it too.
     [measured] = read_measurements([file], reading)
     return scan_surface(scan(measured, reading.shortest, reading.longest), sphere)
 
@@ -113,7 +113,7 @@ def predict(
     refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
     files = [_path(path) for path in paths]
     given = checked_options(PredictionOptions, options)
-    surface_library()  # Whole: the program may use it too.
+    surface_library()  # All of it, as the user's program may import it too.
     surface = read_surface(files, reading_options(options, len(files)))
     verdict, prediction = check_and_predict(surface, sphere, given)
     if prediction is None:

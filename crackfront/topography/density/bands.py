@@ -34,17 +34,18 @@ form, or the user."""
 _PIXELS = 2.5
 """Points in the shortest wave of the densities in which instruments are looked for."""
 
-_ATTENUATED, _NOISY = 0.2, 0.2
-"""Parts that an instrument may take away and its noise may add in the band; both are corrected."""
+_TRUSTED_LOSS, _TRUSTED_NOISE = 0.2, 0.2
+"""Parts of the density that the instrument takes away and noise adds, at the end of the trusted
+waves; both are corrected."""
 
-_LOST, _DROWNED = 0.85, 1.0
-"""The same for the waves that are fitted."""
+_FITTED_LOSS, _FITTED_NOISE = 0.85, 1.0
+"""The same at the end of the waves to which a model is fitted."""
 
 NYQUIST = 2.0
 """Points in the shortest wave that pixels hold."""
 
 _BLUNTEST = 32.0
-"""Points in the longest wave of which an optic may take so much: with more it is badly chosen."""
+"""Points in the longest wave of which an optic may take a fifth; beyond, the surface falls so."""
 
 _CLIFF, _CLIFF_BINS, _CLIFF_MODES = 0.1, 2, 8
 """Ratio by which a density ends, over how many bins, and modes that each of these must have."""
@@ -53,7 +54,7 @@ _FORM, _FORM_BINS = 2.0, 16
 """Ratio by which window and levelling may change a density, and longest bins that are compared."""
 
 _FINER = 2.0
-"""How far below the shortest wave that pixels hold a surface may go on in the draws."""
+"""Shortest wave that pixels hold, over the shortest one at which a drawn spectrum may end."""
 
 _FEWEST_OCTAVES = 1
 """Octaves that must be left of a band."""
@@ -92,15 +93,15 @@ class Band:
     periodic: tuple[float, float]
     """Part of e_el in one wave, as of grooves, and its wavelength; 0 if none. (Units: 1, m)"""
     instrument: Instrument
-    drowned: float
+    noise_limit: float
     """Wavelength below which noise is more than half of the density; 0 if nowhere. (Units: m)"""
-    informative: float
+    shortest_fitted: float
     """Shortest wavelength that is fitted by the model. (Units: m)"""
     end: float
-    """Wavelength to which it is continued: that of its points or of the instrument. (Units: m)"""
-    finest: float
-    coarsest: float
-    """Shortest and longest wavelength at which it may end in the draws. (Units: m)"""
+    """Wavelength at which the spectrum ends, by the points or the instrument. (Units: m)"""
+    shortest_end: float
+    longest_end: float
+    """Shortest and longest wavelength at which a drawn spectrum may end. (Units: m)"""
 
     @property
     def ends(self) -> tuple[BandLimit, BandLimit]:
@@ -139,9 +140,9 @@ class Scan:
         return self.density.within(*self.band.wavelengths)
 
     @property
-    def informative(self) -> Density:
+    def fitted(self) -> Density:
         """The density where it is fitted by the model."""
-        return self.density.within(self.band.informative, self.band.longest.wavelength)
+        return self.density.within(self.band.shortest_fitted, self.band.longest.wavelength)
 
 
 def scan(
@@ -156,32 +157,36 @@ def scan(
     without = np.any([waves.near_axis(axis) for axis in striped], axis=0) if striped else None
     density = waves.density(without)
     seen = density.within(_PIXELS * pixel, measurement.longest)
-    cliff, behind = _cliff(seen)
+    cliff, behind = _abrupt_fall(seen)
     seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
     instrument = seen_instrument(seen)
-    if measurement.tip_radius or instrument.wavelength(_ATTENUATED) > _BLUNTEST * pixel:
+    if measurement.tip_radius or instrument.loss_wavelength(_TRUSTED_LOSS) > _BLUNTEST * pixel:
         # A surface whose slope grows towards short waves looks like that.
         instrument = replace(instrument, attenuation=math.inf)
     lower = list(_lower_limits(measurement, seen, instrument, cliff))
     upper = [BandLimit("longest", "levelling", measurement.longest)]
     alternatives = () if measurement.periodic else _alternatives(measurement, without)
-    if left := _form(density, alternatives, measurement.longest):
+    if left := _form_limit(density, alternatives, measurement.longest):
         upper.append(BandLimit("longest", "form", left))
     if shortest is not None:
         lower = [BandLimit("shortest", "named", shortest)]
     if longest is not None:
         upper = [BandLimit("longest", "named", longest)]
     low, high = _ends(measurement, lower, upper)
-    drowned = instrument.noisy(seen, _DROWNED)
-    least = max(cliff, drowned, measurement.shortest)
-    informative, coarsest, last = low.wavelength, high.wavelength, max(behind, NYQUIST * pixel)
-    finest = last / _FINER
+    noise_limit = instrument.noise_wavelength(seen, _FITTED_NOISE)
+    least = max(cliff, noise_limit, measurement.shortest)
+    shortest_fitted, longest_end, last = (
+        low.wavelength,
+        high.wavelength,
+        max(behind, NYQUIST * pixel),
+    )
+    shortest_end = last / _FINER
     if low.cause == "tip":
         # It leaves the waves below there, though weaker: they end with the pixels.
-        coarsest = least
+        longest_end = least
     elif low.cause in ("resolution", "noise"):
-        informative = max(least, instrument.wavelength(_LOST))
-        last = max(last, behind or informative)
+        shortest_fitted = max(least, instrument.loss_wavelength(_FITTED_LOSS))
+        last = max(last, behind or shortest_fitted)
     elif low.cause == "named":
         instrument = Instrument()
     band = Band(
@@ -192,11 +197,11 @@ def scan(
         anisotropy=1.0 if measurement.is_line else anisotropy(waves, low.wavelength),
         periodic=periodic,
         instrument=instrument,
-        drowned=drowned,
-        informative=informative,
+        noise_limit=noise_limit,
+        shortest_fitted=shortest_fitted,
         end=min(last, low.wavelength),
-        finest=min(finest, low.wavelength),
-        coarsest=coarsest,
+        shortest_end=min(shortest_end, low.wavelength),
+        longest_end=longest_end,
     )
     return Scan(measurement, waves, density, alternatives, unevenness(measurement), band)
 
@@ -233,17 +238,17 @@ def _lower_limits(
     """Shortest wavelengths to trust by all causes."""
     yield BandLimit("shortest", "pixels", measurement.shortest)
     causes: dict[Cause, float] = {
-        "resolution": max(cliff, instrument.wavelength(_ATTENUATED)),
+        "resolution": max(cliff, instrument.loss_wavelength(_TRUSTED_LOSS)),
         "tip": measurement.tip_wavelength,
-        "noise": instrument.noisy(seen, _NOISY),
+        "noise": instrument.noise_wavelength(seen, _TRUSTED_NOISE),
     }
     for cause, wavelength in causes.items():
         if wavelength > NYQUIST * max(measurement.pixels):
             yield BandLimit("shortest", cause, wavelength)
 
 
-def _cliff(density: Density) -> tuple[float, float]:
-    """Wavelengths before and behind the end of a density, as of a filter; 0 if nowhere."""
+def _abrupt_fall(density: Density) -> tuple[float, float]:
+    """Wavelengths before and behind an abrupt fall of a density, as of a filter; 0 if none."""
     values, least = density.value, np.minimum(density.modes[:-1], density.modes[1:])
     if values.size <= _CLIFF_BINS:
         return 0.0, 0.0
@@ -256,7 +261,7 @@ def _cliff(density: Density) -> tuple[float, float]:
     return before, behind
 
 
-def _form(density: Density, alternatives: Sequence[Density], longest: float) -> float:
+def _form_limit(density: Density, alternatives: Sequence[Density], longest: float) -> float:
     """Wavelength down from which a density does not depend on window and levelling; 0 if all do."""
     here = np.flatnonzero(density.wavevector >= 2 * math.pi / longest)[:_FORM_BINS]
     apart = [np.abs(np.log(other.value[here] / density.value[here])) for other in alternatives]

@@ -57,11 +57,11 @@ class Instrument:
     noise: float = 0.0
     """Density of white noise; 0 if not seen. (Units: that of the density)"""
 
-    def wavelength(self, part: float) -> float:
+    def loss_wavelength(self, part: float) -> float:
         """Wavelength at which a part of the density is lost; 0 where nothing is (Units: m)."""
         return 2 * math.pi / self.attenuation / (-math.log1p(-part)) ** (1 / self.sharpness)
 
-    def noisy(self, density: Density, part: float) -> float:
+    def noise_wavelength(self, density: Density, part: float) -> float:
         """Wavelength below which noise adds more than a part to a density; 0 if nowhere."""
         quiet = np.flatnonzero(density.value > self.noise * (1 + 1 / part))
         if self.noise == 0 or (quiet.size and quiet[-1] == density.value.size - 1):

@@ -246,9 +246,9 @@ def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:
     joined = surface.joint.density
     for index, (one, profile) in enumerate(zip(surface.scans, surface.profiles, strict=True)):
         item = one.measurement
-        told = (entry.name for entry in fields(item) if entry.name != "heights")
+        names = (entry.name for entry in fields(item) if entry.name != "heights")
         yield {
-            **{name: to_jsonable(getattr(item, name)) for name in told},
+            **{name: to_jsonable(getattr(item, name)) for name in names},
             "points": list(item.heights.shape),
             **to_jsonable(one.band),
             "density": to_jsonable(one.trusted),

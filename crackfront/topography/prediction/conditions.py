@@ -57,7 +57,7 @@ def zero_load_radius(scales: Scales) -> float:
     return scales.lateral * jkr.radius_at_force(0.0)
 
 
-def verdict(
+def theory_verdict(
     surface: MeasuredSurface,
     scales: Scales,
     attraction_range: float | None = None,
@@ -68,11 +68,11 @@ def verdict(
     The range of attraction (Units: m) is :data:`ASSUMED_RANGE` where none is given. Further
     remarks, as those on the law of k, count as well.
     """
-    reach = ASSUMED_RANGE if attraction_range is None else attraction_range
+    assumed_range = ASSUMED_RANGE if attraction_range is None else attraction_range
     return Verdict(
         (
             *channel_remarks(surface),
-            *condition_remarks(surface, scales, reach),
+            *condition_remarks(surface, scales, assumed_range),
             *_energy_remarks(surface, scales),
             *spectrum_remarks(surface),
             *further,
@@ -144,8 +144,8 @@ def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Rem
         "full conformity",
         f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', w_int)}",
         "no contact conforms to the roughness",
-        Comparison(e_el, w_int, w_int, "J/m2", reach=e_el / energy.low),
-        _softer(scales, e_el / w_int),
+        Comparison(e_el, w_int, w_int, "J/m2", best_case=e_el / energy.low),
+        _lower_energy(scales, e_el / w_int),
     )
     share, least = (_negative_share(one / w_int) for one in (e_el, energy.low))
     yield _condition(
@@ -158,9 +158,9 @@ def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Rem
             _negative_share(max(row.elastic_energy for row in shipped_validity())),
             _MOST_NEGATIVE,
             "1",
-            reach=share / least if least > 0 else math.inf,
+            best_case=share / least if least > 0 else math.inf,
         ),
-        _softer(scales, e_el / w_int / LARGEST_ENERGY),
+        _lower_energy(scales, e_el / w_int / LARGEST_ENERGY),
         is_share=True,
     )
 
@@ -175,9 +175,9 @@ def _contact_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Re
         "the paraboloid that stands for the sphere departs from it",
         Comparison(contact, _CONTACT[0] * radius, _CONTACT[1] * radius, "m"),
         # a / R goes as the cube root of w_int / (E' R).
-        (_modulus("above", modulus, part**3), _larger(radius * part**3)),
+        (_modulus("above", modulus, part**3), _radius_above(radius * part**3)),
     )
-    half, waves = _waves(surface)
+    half, waves = _dominant_waves(surface)
     part = half.shortest / contact
     yield _condition(
         "roughness fine against the contact",
@@ -185,28 +185,30 @@ def _contact_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Re
         "the contact holds too few of them for an average",
         Comparison(half.longest, contact, contact * half.longest / half.shortest, "m"),
         (
-            _larger(radius * part**1.5),
+            _radius_above(radius * part**1.5),
             _modulus("below", modulus, part**-3.0),
             "a finer roughness",
         ),
     )
 
 
-def _range_conditions(surface: MeasuredSurface, scales: Scales, reach: float) -> Iterator[Remark]:
+def _range_conditions(
+    surface: MeasuredSurface, scales: Scales, attraction_range: float
+) -> Iterator[Remark]:
     """Conditions on the range of attraction (Units: m)."""
     w_int, modulus, radius = scales.work_of_adhesion, scales.contact_modulus, scales.radius
-    half, waves = _waves(surface)
-    tabor = (radius * w_int**2 / (modulus**2 * reach**3)) ** (1 / 3)
+    half, waves = _dominant_waves(surface)
+    tabor = (radius * w_int**2 / (modulus**2 * attraction_range**3)) ** (1 / 3)
     part = _TABOR[1] / tabor
     yield _condition(
         "attraction short against the sphere",
         f"Tabor parameter of {tabor:.3g}",
         "adhesion is not that of a crack at the edge of the contact",
         Comparison(tabor, *_TABOR, "1", rising=True),
-        (_modulus("below", modulus, part**-1.5), _larger(radius * part**3)),
+        (_modulus("below", modulus, part**-1.5), _radius_above(radius * part**3)),
     )
     # Dugdale's zone of a stress w/z over a range z: (pi/8) (K z/w)^2 with K^2 = 2 E' w.
-    zone = math.pi / 4 * modulus * reach**2 / w_int
+    zone = math.pi / 4 * modulus * attraction_range**2 / w_int
     yield _condition(
         "attraction short against the roughness",
         f"cohesive zone of {prefixed('m', zone)} under waves of {waves}",
@@ -216,7 +218,7 @@ def _range_conditions(surface: MeasuredSurface, scales: Scales, reach: float) ->
     )
 
 
-def _waves(surface: MeasuredSurface) -> tuple[RmsMeasure, str]:
+def _dominant_waves(surface: MeasuredSurface) -> tuple[RmsMeasure, str]:
     """Measure of the half-derivative, and the waves that dominate it as a text."""
     half = surface.measures[1]
     return half, f"{prefixed('m', half.shortest)} to {prefixed('m', half.longest)}"
@@ -230,7 +232,7 @@ def _roughness_conditions(surface: MeasuredSurface) -> Iterator[Remark]:
         "small slopes",
         f"rms slope of {slope:.3g}",
         "linear elasticity leaves the square of slopes out",
-        Comparison(slope, *_SLOPES, "1", reach=slope / rms.low),
+        Comparison(slope, *_SLOPES, "1", best_case=slope / rms.low),
         (f"slopes lower by a factor of {slope / _SLOPES[1]:.3g}",),
     )
     part, wavelength = max(one.band.periodic for one in surface.scans)
@@ -245,7 +247,7 @@ def _roughness_conditions(surface: MeasuredSurface) -> Iterator[Remark]:
     )
 
 
-def _softer(scales: Scales, excess: float) -> tuple[str, ...]:
+def _lower_energy(scales: Scales, excess: float) -> tuple[str, ...]:
     """Changes each of which lowers e_el over w_int by a factor."""
     return (
         _modulus("below", scales.contact_modulus, 1 / excess),
@@ -262,7 +264,7 @@ def _modulus(side: Literal["above", "below"], known: float, factor: float) -> st
     )
 
 
-def _larger(radius: float) -> str:
+def _radius_above(radius: float) -> str:
     """A radius of the sphere or a larger one (Units: m)."""
     return f"a radius above {prefixed('m', radius)}"
 

@@ -15,7 +15,7 @@ from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.data.written_units import prefixed
 from crackfront.topography.options import PredictionOptions
-from crackfront.topography.prediction.conditions import verdict, zero_load_radius
+from crackfront.topography.prediction.conditions import theory_verdict, zero_load_radius
 from crackfront.topography.prediction.remarks import Remark, Verdict, remark_text
 from crackfront.topography.prediction.surface_remarks import measure_next
 from crackfront.topography.prediction.texts import ENERGY, estimate_text, wavelengths_text
@@ -127,17 +127,17 @@ def _law_remarks(found: Works) -> Iterator[Remark]:
             "follows the finite-size exponent of the elastic line from there.",
         )
     yield Remark("hysteresis", "note", found.excess.sentence)
-    yield from _repelled_remarks(found.appr)
+    yield from _repelled_remarks(found.w_appr)
 
 
 def _repelled_remarks(w_appr: Estimate[float]) -> Iterator[Remark]:
     """Note on what a w_appr that is not positive means, where its interval holds one."""
     if w_appr.low <= 0:
-        reach = "is not" if w_appr.value <= 0 else "may not be"
+        word = "is not" if w_appr.value <= 0 else "may not be"
         yield Remark(
             "w_appr",
             "note",
-            f"w_appr {reach} positive: there the sphere is not drawn into contact but has to be "
+            f"w_appr {word} positive: there the sphere is not drawn into contact but has to be "
             "pressed on, and the theory ends.",
         )
 
@@ -146,9 +146,9 @@ def check_and_predict(
     surface: MeasuredSurface, scales: Scales, given: PredictionOptions
 ) -> tuple[Verdict, Prediction | None]:
     """Whether the theory applies under a sphere, and the prediction where it does."""
-    ruling = verdict(surface, scales, given.range)
-    if ruling.outcome == "does not apply":
-        return ruling, None
+    verdict = theory_verdict(surface, scales, given.range)
+    if verdict.outcome == "does not apply":
+        return verdict, None
     found = predicted(surface, scales, given.range, given.pull_off)
     return found.verdict, found
 
@@ -166,7 +166,7 @@ def predicted(
     conforms.
     """
     found = works(surface, scales)
-    energy, factors, excess, appr, retr = found
+    energy, factors, excess, w_appr, w_retr = found
     radius, adhesion = zero_load_radius(scales), scales.work_of_adhesion
     front = product(factors.both, energy).each(lambda work: 2 * work)
     # By JKR, pull-off forces are linear in the work of adhesion.
@@ -179,7 +179,7 @@ def predicted(
         implied = implied_work_of_adhesion(surface, scales, pull_off / at_load)
     return Prediction(
         surface=surface,
-        verdict=verdict(surface, scales, attraction_range, _law_remarks(found)),
+        verdict=theory_verdict(surface, scales, attraction_range, _law_remarks(found)),
         factors=factors,
         excess=excess,
         radius=scales.radius,
@@ -197,11 +197,11 @@ def predicted(
         k_retr=replace(factors.retraction.factor, standard_error=math.nan),
         front_excess=excess.ratio,
         front_hysteresis=front,
-        w_appr=appr,
-        w_retr=retr,
+        w_appr=w_appr,
+        w_retr=w_retr,
         hysteresis=product(front, inverse(excess.ratio)),
-        pull_off_force=retr.each(lambda work: at_load * work),
-        pull_off_force_held=retr.each(lambda work: at_displacement * work),
+        pull_off_force=w_retr.each(lambda work: at_load * work),
+        pull_off_force_held=w_retr.each(lambda work: at_displacement * work),
         pull_off_force_smooth=-jkr.pull_off_force() * scales.force,
         implied_work_of_adhesion=implied,
     )

@@ -40,8 +40,8 @@ class Comparison:
     units: str
     rising: bool = False
     """Whether the value must be above the limit, not below."""
-    reach: float = 1.0
-    """Factor to the end of the interval of the value that meets the condition best."""
+    best_case: float = 1.0
+    """Value over the end of its interval that meets the condition best."""
 
     @property
     def severity(self) -> Severity:
@@ -52,7 +52,7 @@ class Comparison:
         """
         margin = self._margin(self.limit)
         if margin <= 1:
-            return "fails" if margin * max(self.reach, _BORDER) <= 1 else "undecided"
+            return "fails" if margin * max(self.best_case, _BORDER) <= 1 else "undecided"
         return "holds" if self.margin > 1 else "reservation"
 
     @property

@@ -14,21 +14,25 @@ from crackfront.topography.spectrum.joining import JointDensity, JointSpectrum
 from crackfront.topography.spectrum.measures import MeasuredSurface
 
 _MOST_ANISOTROPY = 1.25
-_MOST_UNMEASURED = 0.1
-"""Ratio of slopes and parts of e_el from which on they are doubts."""
+"""Largest ratio of the rms slopes along x and y without a reservation."""
 
-_LEAST_MEASURED, _MOST_UNSETTLED = 0.5, 0.0125
-"""Part of e_el that is measured, and standard error of the ends of intervals over their width, from
-which on this is said."""
+_MOST_UNMEASURED = 0.1
+"""Largest part of e_el that shorter waves may add without a reservation."""
+
+_LEAST_MEASURED = 0.5
+"""Least part of e_el that must be measured, without a reservation."""
+
+_MOST_UNSETTLED = 0.0125
+"""Largest standard error of the ends of intervals over their width, without a reservation."""
 
 _MOST_UNSURE = 0.5
-"""How far the interval of e_el may reach above it before another scan is asked for, relative."""
+"""Largest relative distance of e_el to the upper end of its interval that needs no other scan."""
 
 _LEAST_UNEVEN = 0.02
-"""Relative standard error of e_el from which on it is said that a surface is not Gaussian."""
+"""Least relative standard error of e_el at which a note says that a surface is not Gaussian."""
 
 _EDGE, _MATTERS = 0.05, 0.1
-"""Distance of a Hurst exponent from 0 and 1, and continued part of e_el, that make it a doubt."""
+"""Distance of a Hurst exponent from 0 or 1, and continued part of e_el, that are a reservation."""
 
 
 def surface_remarks(surface: MeasuredSurface) -> list[Remark]:
@@ -74,7 +78,7 @@ def _treatments(one: Scan) -> Iterator[str]:
             f"{item.path}: the file does not say what its tip is, which is taken for one of "
             f"{1e9 * item.tip_radius:g} nm; --tip-radius names another."
         )
-    if most := item.hidden:
+    if most := item.log_hidden_energy:
         yield (
             f"{item.path}: valleys are deep; by what the tip does not reach in narrow ones "
             f"e_el may be {np.exp(most):.1g} times as large, which its interval holds."
@@ -157,9 +161,9 @@ def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
         )
     if joint.draws.unsettled > _MOST_UNSETTLED:
         yield (
-            f"The ends of the intervals are known to {joint.draws.unsettled:.0%} of their width "
-            f"alone: the {len(joint.draws.weight)} spectra that were drawn say as much as "
-            f"{joint.draws.effective:.0f} of equal weight."
+            "The ends of the intervals have a standard error of "
+            f"{joint.draws.unsettled:.1%} of their width: the {len(joint.draws.weight)} weighted "
+            f"spectra that were drawn count as {joint.draws.effective:.0f} of equal weight."
         )
     hurst = joint.fit.hurst.value
     if min(hurst, 1 - hurst) < _EDGE and joint.shares.continued > _MATTERS:

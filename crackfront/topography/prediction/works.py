@@ -23,8 +23,8 @@ class Works(NamedTuple):
     energy: Estimate[float]  # e_el (J / m^2)
     factors: SphereFactors
     excess: Excess
-    appr: Estimate[float]
-    retr: Estimate[float]
+    w_appr: Estimate[float]
+    w_retr: Estimate[float]
 
 
 def surface_spectrum(surface: MeasuredSurface, scales: Scales) -> TabulatedSpectrum:
@@ -63,11 +63,11 @@ def works(surface: MeasuredSurface, scales: Scales) -> Works:
     radius = zero_load_radius(scales) / scales.lateral
     factors = sphere_factors("roughness", surface_spectrum(surface, scales), relative, radius)
     excess = front_excess(relative, factors.size)
-    appr, retr = (
+    w_appr, w_retr = (
         _linear(adhesion, energy, product(branch.factor, inverse(excess.ratio)), sign)
         for branch, sign in ((factors.approach, -1.0), (factors.retraction, 1.0))
     )
-    return Works(energy, factors, excess, appr, retr)
+    return Works(energy, factors, excess, w_appr, w_retr)
 
 
 def implied_work_of_adhesion(
@@ -78,14 +78,14 @@ def implied_work_of_adhesion(
     least = 1.001 * max(energy.low, energy.value * LARGEST_ENERGY)
 
     def solved(end: str) -> float:
-        def apart(adhesion: float) -> float:
+        def excess_adhesion(adhesion: float) -> float:
             found = works(surface, replace(scales, work_of_adhesion=adhesion))
-            return float(getattr(found.retr, end)) - measured
+            return float(getattr(found.w_retr, end)) - measured
 
         most = 10 * max(measured, least)
-        if apart(least) * apart(most) > 0:
+        if excess_adhesion(least) * excess_adhesion(most) > 0:
             return math.nan
-        return float(brentq(apart, least, most, rtol=1e-4))
+        return float(brentq(excess_adhesion, least, most, rtol=1e-4))
 
     # Its interval ends where those of predictions do.
     return Estimate(solved("value"), math.nan, solved("high"), solved("low"))

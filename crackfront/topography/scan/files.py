@@ -29,7 +29,7 @@ _MARKS = ((b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"), (b"\xef\xbb\xbf", "u
 _ADVICE = "export the scan again, or write nan where there is no value"
 
 
-def refuse_special(path: Path) -> None:
+def refuse_unreadable(path: Path) -> None:
     """Raise where a path is no regular file, or one that is empty or larger than the memory."""
     if not regular_file(path, _LARGEST_FILE * memory_at_hand()).stat().st_size:
         raise ValueError(f"{path} is empty; export it from the instrument again")

@@ -19,7 +19,7 @@ from crackfront.data.optional_libraries import MissingExtraError
 from crackfront.data.written_units import prefixed
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.deferred_import import import_without_executing
-from crackfront.topography.scan.files import readable, refuse_special, refuse_too_many_points
+from crackfront.topography.scan.files import readable, refuse_too_many_points, refuse_unreadable
 
 _LIBRARY = "SurfaceTopography"
 
@@ -60,8 +60,8 @@ class Channel:
 class RawScan:
     """A channel of a file as it stands there."""
 
-    level: Any
-    """Heights, sides and what the file says of the instrument. (Units: m)"""
+    topography: Any
+    """Object of the library: heights, sides, what the file says of the instrument. (Units: m)"""
     format: str
     """Name of the format, as the library calls it."""
     channel: str
@@ -118,8 +118,8 @@ def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
     channel, name = _channel(path, reader, options.channel)
     if channel.nb_grid_pts is not None:
         refuse_too_many_points(path, channel.nb_grid_pts)
-    given, sides = _completed(path, reader.format(), channel, options)
-    with _parsing(path, reader.format()):
+    given, sides = _what_is_not_stated(path, reader.format(), channel, options)
+    with _errors_as_sentences(path, reader.format()):
         raw = reader.topography(channel_index=channel.index, **given)
         level = raw.to_unit("m")
         level.heights()
@@ -149,7 +149,7 @@ def array_of(path: Path) -> np.ndarray[Any, Any]:
     reader = _reader(path)
     channel = reader.default_channel
     sized = {} if channel.physical_sizes else {"physical_sizes": (1.0,) * channel.dim}
-    with _parsing(path, reader.format()):
+    with _errors_as_sentences(path, reader.format()):
         return np.ma.filled(reader.topography(channel_index=channel.index, **sized).heights(), 0.0)
 
 
@@ -167,7 +167,7 @@ def library_scan(
 
 
 @contextmanager
-def _parsing(path: Path, name: str = "what its head says") -> Iterator[None]:
+def _errors_as_sentences(path: Path, name: str = "what its head says") -> Iterator[None]:
     """Turn what the library raises at a file into a sentence."""
     exceptions = library_part("Exceptions")
     try:
@@ -187,19 +187,19 @@ def _parsing(path: Path, name: str = "what its head says") -> Iterator[None]:
 
 def _reader(path: Path) -> Any:
     """The library's reader of a file, which is regular and not too large."""
-    refuse_special(path)
+    refuse_unreadable(path)
     source: Any = readable(path)
-    with _parsing(path):
+    with _errors_as_sentences(path):
         if isinstance(source, Path):
             # A file that is not what it begins as is left to the readers in their order.
             with suppress(Exception):
-                if (reader := _signed(path)) is not None:
+                if (reader := _reader_by_signature(path)) is not None:
                     return reader(str(path))
             source = str(source)
         return library_part("IO").open_topography(source)
 
 
-def _signed(path: Path) -> Any:
+def _reader_by_signature(path: Path) -> Any:
     """Reader whose signature a file begins with, found by few imports; None if none or several."""
     base = library_part("IO.Reader")
     with path.open("rb") as file:
@@ -245,7 +245,7 @@ def list_channels(path: str | PathLike[str]) -> tuple[Channel, ...]:
 
 def _channels(path: Path, reader: Any) -> tuple[Channel, ...]:
     """Channels of a file, numbered as its reader has them."""
-    with _parsing(path):
+    with _errors_as_sentences(path):
         default = reader.default_channel.index
         return tuple(
             Channel(one.index, one.name, _kind(one), one.nb_grid_pts or (), one.index == default)
@@ -291,7 +291,7 @@ def _choice(channels: Sequence[Channel]) -> str:
     return f"choose by number or name with --channel: {'; '.join(map(str, channels))}"
 
 
-def _completed(
+def _what_is_not_stated(
     path: Path, name: str, channel: Any, options: ReadingOptions
 ) -> tuple[dict[str, Any], tuple[float, ...] | None]:
     """What a file does not state, and sides in metres where it states impossible ones."""

@@ -48,7 +48,7 @@ _TIP = 10e-9
 """Radius of a tip of which nothing is known (Units: m)."""
 
 _DEEP, _HIDDEN = -1.0, 0.7
-"""Skewness below which valleys are narrow, and logarithm of e_el over what a tip finds of it."""
+"""Skewness below which valleys are narrow, and ln of the largest e_el over what a tip finds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,8 +97,8 @@ class Measurement:
         return self.heights.ndim == 1
 
     @property
-    def hidden(self) -> float:
-        """Logarithm by which e_el may be larger for what the tip does not reach in valleys."""
+    def log_hidden_energy(self) -> float:
+        """Ln of the largest e_el over the recorded one, as the tip does not reach into valleys."""
         deviation = self.heights - np.mean(self.heights)
         skewness = np.mean(deviation**3) / np.mean(deviation**2) ** 1.5
         shapes = self.tip_wavelength > 2 * max(self.pixels)  # waves that the pixels would hold
@@ -126,7 +126,7 @@ def read_measurements(
 def _measurement(path: Path, options: ReadingOptions) -> Measurement:
     """Measurement of one file."""
     scan = raw_scan(path, options)
-    raw = scan.level
+    raw = scan.topography
     heights, fitted, size = _used_part(path, raw, options)
     gaps = np.ma.getmaskarray(heights)
     try:
@@ -209,7 +209,7 @@ def _tip(scan: RawScan, options: ReadingOptions) -> tuple[float, bool]:
     """Radius of the tip of a scan, 0 where it has none, and whether it is assumed (Units: m)."""
     if options.tip_radius is not None:
         return options.tip_radius, False
-    if (stated := _stated(scan.level, "tip_radius")) is not None:
+    if (stated := _stated(scan.topography, "tip_radius")) is not None:
         return stated, False
     is_assumed = scan.format in _SCANNING_PROBES
     return (_TIP if is_assumed else 0.0), is_assumed

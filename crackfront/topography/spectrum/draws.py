@@ -101,8 +101,8 @@ class Draws:
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
-    """What is measured of a surface, with all that varies in it beside the model."""
+class SpectrumSampler:
+    """Draws spectra of a surface: what was measured, varied by all that is not known of it."""
 
     scans: Sequence[Scan]
     trusted: Sequence[Density]
@@ -119,7 +119,7 @@ class Measured:
     grid: Array
     """Wavevectors of these bins and of the continuation, increasing. (Units: 1 / m)"""
 
-    def draws(self, fit: Fit, chance: np.random.Generator) -> _Drawn:
+    def spectra(self, fit: Fit, chance: np.random.Generator) -> _Drawn:
         """One draw with each state of a fit."""
         count, n_bin = len(fit.weight), self.wavevector.size
         bins = np.searchsorted(self.grid, self.wavevector * (1 - 1e-12))
@@ -147,7 +147,7 @@ class Measured:
             shortest = np.maximum(shortest, np.max(kept * item.wavevector, axis=1))
         known = weight > 0
         found = np.log(np.where(known, power, 1.0) / np.where(known, weight, 1.0))
-        hidden = max(one.measurement.hidden for one in self.scans) * chance.uniform(
+        hidden = max(one.measurement.log_hidden_energy for one in self.scans) * chance.uniform(
             0, 1, (count, 1)
         )
         table[:, bins] = np.where(known, found + hidden, table[:, bins])
@@ -176,8 +176,8 @@ class Measured:
 
     def _end(self, shortest: Array, chance: np.random.Generator) -> Array:
         """Wavevectors where the surface ends, beyond the last one that is measured."""
-        finest = math.log(min(one.band.finest for one in self.scans))
-        coarsest = math.log(min(one.band.coarsest for one in self.scans))
+        finest = math.log(min(one.band.shortest_end for one in self.scans))
+        coarsest = math.log(min(one.band.longest_end for one in self.scans))
         last = np.minimum(np.log(2 * np.pi / shortest), coarsest)
         return 2 * np.pi * np.exp(-chance.uniform(np.minimum(finest, last), last))
 
@@ -195,7 +195,7 @@ class _Drawn:
     """Wavevectors where the surfaces end. Shape (n,)."""
 
 
-class States(NamedTuple):
+class Batch(NamedTuple):
     """A batch of states of the continuation of a surface."""
 
     fit: Fit
@@ -203,25 +203,25 @@ class States(NamedTuple):
     chance: np.random.Generator  # for all that varies beside them
 
 
-def batches(model: Continuation, quadrature: Quadrature, seed: int | None) -> Iterator[States]:
+def batches(model: Continuation, quadrature: Quadrature, seed: int | None) -> Iterator[Batch]:
     """Batches of states without end, the same ones for the same seed."""
     seeds = np.random.SeedSequence(SEED if seed is None else seed, spawn_key=(0xD4A3,))
     while True:
         sequence, chance = map(np.random.default_rng, seeds.spawn(2))
         uniform = qmc.Sobol(quadrature.n_dimension, rng=sequence).random(BATCH)
         states = quadrature.states(uniform)
-        yield States(fit_of(model, quadrature, states), states.logarithm, chance)
+        yield Batch(fit_of(model, quadrature, states), states.logarithm, chance)
 
 
-def draws(measured: Measured, states: Iterator[States]) -> Draws:
+def drawn(sampler: SpectrumSampler, states: Iterator[Batch]) -> Draws:
     """As many draws as the median and the ends of e_el need, or the most."""
     found: list[_Drawn] = []
     logarithms: list[Array] = []
     for fit, logarithm, chance in states:
-        found.append(measured.draws(fit, chance))
+        found.append(sampler.spectra(fit, chance))
         logarithms.append(logarithm)
         if len(found) == 1:
-            low, high = _interval(measured.grid, found[0], fit.weight)
+            low, high = _interval(sampler.grid, found[0], fit.weight)
         if len(found) not in BATCHES:
             continue
         weight = np.exp(np.concatenate(logarithms) - np.max(logarithms))
@@ -229,7 +229,7 @@ def draws(measured: Measured, states: Iterator[States]) -> Draws:
             estimated=np.concatenate([one.estimated for one in found], axis=1),
             recorded=np.concatenate([one.recorded for one in found], axis=1),
             weight=weight / np.sum(weight),
-            wavevector=measured.grid,
+            wavevector=sampler.grid,
             low=low,
             high=high,
         )

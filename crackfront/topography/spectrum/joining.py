@@ -15,7 +15,7 @@ from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.density.bands import NYQUIST, Scan
 from crackfront.topography.density.densities import Density, bin_numbers
 from crackfront.topography.scan.levelling import Array
-from crackfront.topography.spectrum.draws import Draws, Measured, batches, draws
+from crackfront.topography.spectrum.draws import Draws, SpectrumSampler, batches, drawn
 from crackfront.topography.spectrum.fit import Fit, quadrature_of
 
 _CONTINUED_BINS = 6
@@ -100,7 +100,7 @@ def joint_spectrum(scans: Sequence[Scan], seed: int | None = None) -> JointSpect
     The seed is that of the draws, by default :data:`crackfront.topography.spectrum.draws.SEED`;
     intervals hardly depend on it.
     """
-    model, quadrature = quadrature_of([(one.informative, one.band.instrument) for one in scans])
+    model, quadrature = quadrature_of([(one.fitted, one.band.instrument) for one in scans])
     states = batches(model, quadrature, seed)
     first = next(states)
     fit = first.fit
@@ -117,9 +117,9 @@ def joint_spectrum(scans: Sequence[Scan], seed: int | None = None) -> JointSpect
     density = JointDensity(*_joined(isotropic, scatter), scatter, levels)
     end = min(one.band.end for one in scans)
     spectrum = _continued(density, fit, end)
-    rest = _beyond(scans, fit)
-    finest = min(end, *(one.band.finest for one in scans))
-    measured = Measured(
+    rest = _below_bands(scans, fit)
+    finest = min(end, *(one.band.shortest_end for one in scans))
+    sampler = SpectrumSampler(
         scans,
         trusted,
         scatter,
@@ -132,7 +132,7 @@ def joint_spectrum(scans: Sequence[Scan], seed: int | None = None) -> JointSpect
     return JointSpectrum(
         spectrum=spectrum,
         recorded=_recorded(density, rest),
-        draws=draws(measured, itertools.chain([first], states)),
+        draws=drawn(sampler, itertools.chain([first], states)),
         density=density,
         fit=fit,
         shares=_shares(spectrum, density.wavevector, fit),
@@ -182,11 +182,11 @@ def _joined(densities: Sequence[Density], scatter: float) -> tuple[Array, Array,
     return np.exp(logarithm), value, np.asarray(total**-0.5)
 
 
-def _beyond(scans: Sequence[Scan], fit: Fit) -> Density:
+def _below_bands(scans: Sequence[Scan], fit: Fit) -> Density:
     """What the finest scan holds below all trusted waves and above its noise, without this."""
     index, one = min(enumerate(scans), key=lambda item: max(item[1].measurement.pixels))
     shortest = min(other.band.shortest.wavelength for other in scans) / (1 + 1e-6)
-    last = max(NYQUIST * max(one.measurement.pixels), one.band.drowned)
+    last = max(NYQUIST * max(one.measurement.pixels), one.band.noise_limit)
     rest = one.density.within(last, shortest)
     logarithms = fit.isotropic(rest, index, restored=False)
     return replace(rest, value=np.exp(np.median(logarithms, axis=0)), is_profile=False)

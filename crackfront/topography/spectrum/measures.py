@@ -84,7 +84,7 @@ def measured_surface(
             for one in scans
         ),
         joint=joint,
-        measures=tuple(_measure(order, joint) for order in ORDERS),
+        measures=tuple(_rms_measure(order, joint) for order in ORDERS),
         half_derivative=joint.draws.mean_square(0.5),
         recorded=joint.draws.recorded_mean_square(0.5),
     )
@@ -100,7 +100,7 @@ def read_surface(paths: Sequence[Path], options: Sequence[ReadingOptions]) -> Me
     return measured_surface(measurements, options[0].shortest, options[0].longest)
 
 
-def _measure(order: float, joint: JointSpectrum) -> RmsMeasure:
+def _rms_measure(order: float, joint: JointSpectrum) -> RmsMeasure:
     """Measure of one order."""
     draws = joint.draws
     rms = draws.estimate(np.sqrt(draws.estimated[ORDERS.index(order)]))

@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 
 from crackfront.data.written_units import si_value
-from crackfront.topography.prediction.conditions import ASSUMED_RANGE, condition_remarks, verdict
+from crackfront.topography.prediction.conditions import (
+    ASSUMED_RANGE,
+    condition_remarks,
+    theory_verdict,
+)
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import measured_surface
 from tests.topography.made import SCENE, write_smooth
@@ -45,7 +49,7 @@ def test_the_range_of_attraction_is_held_against_sphere_and_roughness(surface):
         zone = found["attraction short against the roughness"].comparison.value
         assert zone == pytest.approx(np.pi / 4 * modulus * reach**2 / w)
     for reach, is_assumed in ((None, True), (1e-9, False)):
-        notes = verdict(surface, SCENE, reach).of("note")
+        notes = theory_verdict(surface, SCENE, reach).of("note")
         assert any("taken for 0.5 nm" in one.sentence for one in notes) == is_assumed
 
 
@@ -61,7 +65,7 @@ def test_the_range_of_attraction_is_held_against_sphere_and_roughness(surface):
     ],
 )
 def test_what_would_meet_a_failing_condition_meets_it(surface, scales, reach, failing):
-    found = verdict(surface, scales, reach)
+    found = theory_verdict(surface, scales, reach)
     assert found.outcome == "does not apply"
     [remark] = [one for one in found.of("fails") if one.concerns == failing]
     changes = {"modulus": "contact_modulus", "a radius": "radius", "w_int": "work_of_adhesion"}
@@ -80,7 +84,7 @@ def test_what_would_meet_a_failing_condition_meets_it(surface, scales, reach, fa
 
 
 def test_all_failing_conditions_and_all_reservations_are_named(surface):
-    found = verdict(surface, replace(SCENE, contact_modulus=1e3), 1e-3)
+    found = theory_verdict(surface, replace(SCENE, contact_modulus=1e3), 1e-3)
     failing = found.of("fails")
     assert len(failing) > 1
     assert all(one.remedies for one in failing)
@@ -89,7 +93,7 @@ def test_all_failing_conditions_and_all_reservations_are_named(surface):
 
 def test_a_surface_in_no_doubt_has_no_reservation(tmp_path):
     smooth = measured_surface(read_measurements([write_smooth(tmp_path / "smooth.al3d")]))
-    found = verdict(smooth, SCENE)
+    found = theory_verdict(smooth, SCENE)
     assert len(found.of("holds")) == 8
     assert found.of("fails", "undecided", "reservation") == ()
     assert found.outcome == "applies"
