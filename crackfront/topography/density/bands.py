@@ -175,11 +175,8 @@ def scan(
     low, high = _ends(measurement, lower, upper)
     noise_limit = instrument.noise_wavelength(seen, _FITTED_NOISE)
     least = max(cliff, noise_limit, measurement.shortest)
-    shortest_fitted, longest_end, last = (
-        low.wavelength,
-        high.wavelength,
-        max(behind, NYQUIST * pixel),
-    )
+    shortest_fitted, longest_end = low.wavelength, high.wavelength
+    last = max(behind, NYQUIST * pixel)
     shortest_end = last / _FINER
     if low.cause == "tip":
         # It leaves the waves below there, though weaker: they end with the pixels.
