@@ -19,7 +19,7 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import variables
 from crackfront.sweep.configuration import Configuration
 from crackfront.sweep.table import SweepRow
-from crackfront.topography.options import ReadingOptions
+from crackfront.topography.options import Options, ReadingOptions
 
 project = "crackfront"
 author = "crackfront developers"
@@ -128,6 +128,17 @@ def _escape_magnitudes(
         lines[0] = lines[0].replace("|", r"\|")
 
 
+def _describe_options(
+    app: Sphinx, what: str, name: str, member: object, options: object, lines: list[str]
+) -> None:
+    """List the fields of a record of options with their meanings, which autodoc does not find."""
+    if isinstance(member, type) and issubclass(member, Options):
+        lines.append("")
+        for field, about in member.model_fields.items():
+            lines.append(f":param {field}: {' '.join(str(about.description).split())}")
+        lines.append("")
+
+
 def _visit_math(self: HTML5Translator, node: nodes.math) -> None:
     """Write a formula in a line."""
     self.body.append(tex2mathml(node.astext()))
@@ -225,5 +236,6 @@ def setup(app: Sphinx) -> None:
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_displaymath, None))
     app.connect("autodoc-skip-member", _is_foreign)
     app.connect("autodoc-process-docstring", _escape_magnitudes, priority=400)
+    app.connect("autodoc-process-docstring", _describe_options, priority=600)
     app.connect("builder-inited", _write_references)
     app.connect("build-finished", _refuse_network)

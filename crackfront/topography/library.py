@@ -40,9 +40,10 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     sphere : Scales
         What is pressed on it; it says what a reduced length is.
     **options
-        Fields of :class:`~crackfront.topography.options.ReadingOptions`, which says what each
-        means, as ``crop="2um:8um,0um:5um"`` or ``shortest=4e-7``: channel, crop, detrend, mask,
-        unit, height_unit, size, tip_radius, shortest, longest.
+        Fields of :class:`~crackfront.topography.options.ReadingOptions`, as
+        ``crop="2um:8um,0um:5um"`` or ``shortest=4e-7``: channel, crop, detrend, mask, unit,
+        height_unit, size, tip_radius, shortest, longest. `crackfront surface --help` says what
+        each means.
 
     Returns
     -------
