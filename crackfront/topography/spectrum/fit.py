@@ -29,7 +29,7 @@ from crackfront.topography.density.self_affine import (
 from crackfront.topography.scan.levelling import Array
 from crackfront.topography.spectrum.quadrature import Quadrature, States
 
-_FAR = 1e9
+_FAR = 2.0
 """Logarithm of the factor by which a roll-off beyond the fitted waves is less likely by e."""
 
 _LOSS, _NOISE = (1e-3, 8.0), 1.0

@@ -15,6 +15,7 @@ from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.density.bands import NYQUIST, Scan
 from crackfront.topography.density.densities import Density, bin_numbers
 from crackfront.topography.scan.levelling import Array
+from crackfront.topography.spectrum import draws as sampling
 from crackfront.topography.spectrum.draws import Draws, SpectrumSampler, batches, drawn
 from crackfront.topography.spectrum.fit import Fit, quadrature_of
 
@@ -94,11 +95,13 @@ class JointSpectrum:
         return float(2 * np.pi / self.density.wavevector[0])
 
 
-def joint_spectrum(scans: Sequence[Scan], seed: int | None = None) -> JointSpectrum:
+def joint_spectrum(
+    scans: Sequence[Scan], seed: int | None = None, numbers: Sequence[int] | None = None
+) -> JointSpectrum:
     """Spectrum of all scans of a surface, refused where their densities do not determine one.
 
-    The seed is that of the draws, by default :data:`crackfront.topography.spectrum.draws.SEED`;
-    intervals hardly depend on it.
+    The seed is that of the draws, and the numbers are of batches of these; where none are given,
+    those of :mod:`crackfront.topography.spectrum.draws`. Intervals hardly depend on either.
     """
     model, quadrature = quadrature_of([(one.fitted, one.band.instrument) for one in scans])
     states = batches(model, quadrature, seed)
@@ -132,7 +135,7 @@ def joint_spectrum(scans: Sequence[Scan], seed: int | None = None) -> JointSpect
     return JointSpectrum(
         spectrum=spectrum,
         recorded=_recorded(density, rest),
-        draws=drawn(sampler, itertools.chain([first], states)),
+        draws=drawn(sampler, itertools.chain([first], states), numbers or sampling.BATCHES),
         density=density,
         fit=fit,
         shares=_shares(spectrum, density.wavevector, fit),
