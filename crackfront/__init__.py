@@ -30,9 +30,11 @@ if TYPE_CHECKING:
     from crackfront.simulate.si_units import in_si_units as in_si_units
     from crackfront.simulate.surfaces import random_surface as random_surface
     from crackfront.sweep import sweep as sweep
-    from crackfront.topography.instruments import list_channels as list_channels
     from crackfront.topography.library import predict as predict
     from crackfront.topography.library import read_scan as read_scan
+    from crackfront.topography.options import PredictionOptions as PredictionOptions
+    from crackfront.topography.options import ReadingOptions as ReadingOptions
+    from crackfront.topography.scan.instruments import list_channels as list_channels
 
 if not TYPE_CHECKING:
     __all__, __getattr__, __dir__ = lazy_names(__name__)

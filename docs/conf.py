@@ -19,7 +19,7 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import variables
 from crackfront.sweep.configuration import Configuration
 from crackfront.sweep.table import SweepRow
-from crackfront.topography.options import ReadingOptions, declared
+from crackfront.topography.options import Options, ReadingOptions
 
 project = "crackfront"
 author = "crackfront developers"
@@ -128,6 +128,17 @@ def _escape_magnitudes(
         lines[0] = lines[0].replace("|", r"\|")
 
 
+def _describe_options(
+    app: Sphinx, what: str, name: str, member: object, options: object, lines: list[str]
+) -> None:
+    """List the fields of a record of options with their meanings, which autodoc does not find."""
+    if isinstance(member, type) and issubclass(member, Options):
+        lines.append("")
+        for field, about in member.model_fields.items():
+            lines.append(f":param {field}: {' '.join(str(about.description).split())}")
+        lines.append("")
+
+
 def _visit_math(self: HTML5Translator, node: nodes.math) -> None:
     """Write a formula in a line."""
     self.body.append(tex2mathml(node.astext()))
@@ -178,7 +189,10 @@ def _meanings() -> dict[tuple[str, str], str]:
     # A link leads from there to a page, and here from one.
     rows = re.findall(r"^\| (\w+) \| `(\w+)` \| (.*) \|$", text, re.MULTILINE)
     found = {(section, key): meaning.replace("(../docs/", "(../") for section, key, meaning in rows}
-    return found | {("Surface", one.name): one.meaning for one in declared(ReadingOptions)}
+    options = ReadingOptions.model_fields.items()
+    return found | {
+        ("Surface", name): " ".join(str(field.description).split()) for name, field in options
+    }
 
 
 def _write_references(app: Sphinx) -> None:
@@ -222,5 +236,6 @@ def setup(app: Sphinx) -> None:
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_displaymath, None))
     app.connect("autodoc-skip-member", _is_foreign)
     app.connect("autodoc-process-docstring", _escape_magnitudes, priority=400)
+    app.connect("autodoc-process-docstring", _describe_options, priority=600)
     app.connect("builder-inited", _write_references)
     app.connect("build-finished", _refuse_network)

@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from crackfront.data.bounds import Range, in_time
-from crackfront.data.plain import plain
+from crackfront.data.jsonable import to_jsonable
 
 FILE = click.Path(path_type=Path)
 """Type of a parameter that names a file or folder."""
@@ -77,7 +77,7 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
 
 def echo_json(content: object) -> None:
     """Print one JSON value."""
-    click.echo(json.dumps(plain(content), indent=2, allow_nan=False))
+    click.echo(json.dumps(to_jsonable(content), indent=2, allow_nan=False))
 
 
 def announce_compilation(*, err: bool = False) -> None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable, Mapping
-from dataclasses import astuple, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import click
 
@@ -23,53 +22,58 @@ from crackfront.cli.report import (
 )
 from crackfront.data.bounds import SEED, Range, in_time
 from crackfront.topography.options import (
-    LENGTH,
+    PER_SCAN,
+    REPEATED,
+    Length,
+    Options,
     PredictionOptions,
     ReadingOptions,
-    declared,
+    checked_options,
     number,
-    option,
-    options_for_each,
-    parsed_options,
     quantity,
+    reading_options,
 )
 
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
-    from crackfront.topography.measures import MeasuredSurface
-    from crackfront.topography.prediction import Prediction
-    from crackfront.topography.simulated import Simulated
+    from crackfront.topography.prediction.prediction import Prediction
+    from crackfront.topography.prediction.simulated import Simulated
+    from crackfront.topography.spectrum.measures import MeasuredSurface
 
 Command = Callable[..., None]
 Say = Callable[[str], None]
 
 
-@dataclass(frozen=True, slots=True)
-class SphereOptions:
+class SphereOptions(Options):
     """What is pressed on a surface; the library and configurations have its scales instead."""
 
-    modulus: float | None = option(
-        "Young's modulus, as in 0.7MPa", quantity("Pa", "pressure", "0.7MPa")
+    modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
+    """Young's modulus, as in 0.7MPa."""
+
+    poisson: Annotated[float, number(Range(-0.99, 0.5))] | None = None
+    """Poisson's ratio, as in 0.5."""
+
+    radius: Length | None = None
+    """Radius of the sphere, as in 1.25mm."""
+
+    work_of_adhesion: Annotated[float, quantity("J/m^2", "energy per area", "63mJ/m2")] | None = (
+        None
     )
-    poisson: float | None = option("Poisson's ratio", number(Range(-0.99, 0.5)))
-    radius: float | None = option("Radius of the sphere, as in 1.25mm", LENGTH)
-    work_of_adhesion: float | None = option(
-        "w_int, as in 63mJ/m2", quantity("J/m^2", "energy per area", "63mJ/m2")
-    )
+    """w_int, as in 63mJ/m2."""
 
 
-def _options_of(record: type[Any], *, required: bool = False) -> Callable[[Command], Command]:
-    """Give a command the options of a record, by the names of its fields."""
+def _options_of(record: type[Options], *, required: bool = False) -> Callable[[Command], Command]:
+    """Give a command an option for every field of a record."""
 
     def decorated(command: Command) -> Command:
-        for item in reversed(list(declared(record))):
+        for name, field in reversed(record.model_fields.items()):
+            often = [mark for mark in (PER_SCAN, REPEATED) if mark in field.metadata]
             command = click.option(
-                f"--{item.name.replace('_', '-')}",
+                f"--{name.replace('_', '-')}",
                 required=required,
-                multiple=item.times != "once",
-                default=item.default or None,
-                metavar=item.kind.metavar,
-                help=item.sentence,
+                multiple=bool(often),
+                default=field.default or None,
+                help=" ".join([*str(field.description).split(), *often]),
             )(command)
         return command
 
@@ -81,7 +85,7 @@ def _listed(
 ) -> tuple[Path, ...]:
     """The scans, unless a command is to list their channels instead of what it does."""
     if context.params.get("list_channels"):
-        from crackfront.topography.instruments import list_channels
+        from crackfront.topography.scan.instruments import list_channels
 
         for scan in scans:
             click.echo("\n  ".join(map(str, (scan, *list_channels(scan)))))
@@ -161,11 +165,11 @@ def predict(
     predicted, and the output says which modulus, radius or roughness would meet it. With --csv the
     largest of all samples; an unusable scan counts as 4.
     """
-    from crackfront.topography.prediction import judged
-    from crackfront.topography.report import machine_readable, prediction_page, report_text
+    from crackfront.topography.page.report import machine_readable, report_text
+    from crackfront.topography.prediction.prediction import check_and_predict
 
     scales = _scales(options)
-    given = parsed_options(PredictionOptions, options, "--")
+    given = checked_options(PredictionOptions, options, "--")
     if table is not None:
         if as_json or simulate or is_long or panel or figure:
             raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
@@ -175,15 +179,15 @@ def predict(
     if not no_figure:
         refuse_unwritable(stem.parent)
     surface = _surface(scans, options)
-    (ruling, prediction), outcome = judged(surface, scales, given), None
+    (verdict, prediction), outcome = check_and_predict(surface, scales, given), None
     say: Say = (lambda _: None) if as_json else click.echo
     if prediction is not None:
-        say(prediction_page(prediction))
+        say(repr(prediction))
     if is_long or prediction is None:
-        say("\n" * is_long + report_text(surface, scales, ruling, prediction))
+        say("\n" * is_long + report_text(surface, scales, verdict, prediction))
     if prediction is not None and not no_figure:
         from crackfront.plots.style import save_figure
-        from crackfront.topography.drawing import prediction_figure
+        from crackfront.topography.page.drawing import prediction_figure
 
         for path in save_figure(prediction_figure(surface, prediction, panel), stem):
             say(f"figure: {path}")
@@ -191,8 +195,8 @@ def predict(
         announce_compilation(err=as_json)
         outcome = _simulated(prediction, scales, realisations, seed, say)
     if as_json:
-        echo_json(machine_readable(surface, scales, ruling, prediction, outcome))
-    context.exit(_exit_code(ruling.outcome, strict))
+        echo_json(machine_readable(surface, scales, verdict, prediction, outcome))
+    context.exit(_exit_code(verdict.outcome, strict))
 
 
 def _exit_code(outcome: str, strict: bool) -> int:
@@ -207,17 +211,17 @@ def _write_samples(
 ) -> list[str]:
     """Write a table with a row for each scan, and give the outcomes."""
     from crackfront.data.files import write_text
-    from crackfront.topography.measures import read_surface
-    from crackfront.topography.prediction import judged
-    from crackfront.topography.report import sample_row
+    from crackfront.topography.page.report import sample_row
+    from crackfront.topography.prediction.prediction import check_and_predict
+    from crackfront.topography.spectrum.measures import read_surface
 
     refuse_unwritable(path.parent)
-    given, rows = parsed_options(PredictionOptions, options, "--"), []
-    reading = options_for_each(ReadingOptions, options, len(scans), "--")
+    given, rows = checked_options(PredictionOptions, options, "--"), []
+    reading = reading_options(options, len(scans), "--")
     for scan, by in zip(scans, reading, strict=True):
         try:
             surface = read_surface([scan], [by])
-            row = sample_row(surface, scales, *judged(surface, scales, given))
+            row = sample_row(surface, scales, *check_and_predict(surface, scales, given))
         except (ValueError, OSError) as error:
             row = {"outcome": "refused", "remarks": str(error)}
         click.echo(f"{scan}: {row['outcome']}")
@@ -236,8 +240,8 @@ def _simulated(
     prediction: Prediction, scales: Scales, realisations: int, seed: int, say: Say
 ) -> Simulated:
     """What simulations of a predicted surface find, which is announced and said."""
-    from crackfront.topography.report import simulation_text
-    from crackfront.topography.simulated import prediction_plan, simulated
+    from crackfront.topography.page.report import simulation_text
+    from crackfront.topography.prediction.simulated import prediction_plan, simulated
 
     plan = prediction_plan(prediction.surface, scales, realisations, seed)
     seconds = in_time(plan.expected_seconds)
@@ -266,9 +270,9 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
     SCANS are files of instruments in any format that SurfaceTopography reads. Options of
     the sphere add e_el and w_rms.
     """
-    from crackfront.topography.report import machine_readable, report_text
+    from crackfront.topography.page.report import machine_readable, report_text
 
-    is_pressed = any(options[item.name] is not None for item in declared(SphereOptions))
+    is_pressed = any(options[name] is not None for name in SphereOptions.model_fields)
     scales = _scales(options) if is_pressed or field is not None else None
     if field is not None and len(scans) > 1:
         raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
@@ -290,8 +294,8 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
 
 def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSurface:
     """Surface of the files that a command names, read by its options."""
-    reading = options_for_each(ReadingOptions, options, len(scans), "--")
-    from crackfront.topography.measures import read_surface
+    reading = reading_options(options, len(scans), "--")
+    from crackfront.topography.spectrum.measures import read_surface
 
     return read_surface(scans, reading)
 
@@ -300,11 +304,12 @@ def _scales(options: Mapping[str, Any]) -> Scales:
     """Scene of the sphere of a command, in SI units."""
     from crackfront.core.units import Scales
 
-    given = astuple(parsed_options(SphereOptions, options, "--"))
-    if None in given:
+    given = checked_options(SphereOptions, options, "--")
+    modulus, poisson, radius = given.modulus, given.poisson, given.radius
+    adhesion = given.work_of_adhesion
+    if modulus is None or poisson is None or radius is None or adhesion is None:
         raise ValueError(
             "the sphere is incomplete; name all of --modulus, --poisson, --radius and "
             "--work-of-adhesion"
         )
-    modulus, poisson, radius, work_of_adhesion = given
-    return Scales(radius, work_of_adhesion, modulus / (1 - poisson**2))
+    return Scales(radius, adhesion, modulus / (1 - poisson**2))

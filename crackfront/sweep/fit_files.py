@@ -14,8 +14,8 @@ from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import FIT_DEFINITION
 from crackfront.data.files import write_dataset, write_text
+from crackfront.data.jsonable import to_jsonable
 from crackfront.data.labels import labelled
-from crackfront.data.plain import plain
 from crackfront.data.provenance import Provenance, utc_now
 
 
@@ -36,7 +36,7 @@ def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Pa
     columns = {item.name: labelled(item, values) for item, values in fit_columns(fit)}
     write_dataset(paths[0], xr.Dataset(columns, attrs=about), origin)
     entries = {
-        name: {"dims": dims, "values": plain(values), **attributes}
+        name: {"dims": dims, "values": to_jsonable(values), **attributes}
         for name, (dims, values, attributes) in columns.items()
     }
     content = {

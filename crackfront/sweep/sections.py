@@ -41,8 +41,8 @@ from crackfront.simulate.line_loads import LineLoad, SpringUnit
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.sweep import NamedSpectrum
-from crackfront.topography.measures import MeasuredSurface, read_surface
-from crackfront.topography.options import ReadingOptions, declared, options_for_each
+from crackfront.topography.options import ReadingOptions, reading_options
+from crackfront.topography.spectrum.measures import MeasuredSurface, read_surface
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 
@@ -55,7 +55,10 @@ class ScalesSection(Section):
     contact_modulus: Annotated[float, within(SI["Pa"])]
 
 
-_READING_KEYS: Any = {item.name: (Any, item.default) for item in declared(ReadingOptions)}
+_READING_KEYS: Any = {
+    name: (Any, Field(field.default, description=field.description))
+    for name, field in ReadingOptions.model_fields.items()
+}
 
 _ReadingSection = create_model("_ReadingSection", __base__=Section, **_READING_KEYS)
 
@@ -85,7 +88,7 @@ class SurfaceSection(_ReadingSection):
         """What the files hold."""
         given = self.model_dump(exclude={"file"})
         try:
-            options = options_for_each(ReadingOptions, given, len(self.file))
+            options = reading_options(given, len(self.file))
         except TypeError as error:
             raise ValueError(str(error)) from error
         return read_surface(self.file, options)

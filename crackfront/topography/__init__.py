@@ -1,1 +1,6 @@
-"""Measured surfaces: from scans to a spectrum, and from that to a prediction."""
+"""Measured surfaces: from scans to a spectrum, and from that to a prediction.
+
+Data pass through the folders in the order `scan`, `density`, `spectrum`, `prediction`, `page`; each
+imports from those before it. `options` has what a user may choose, `library` the functions of the
+library, `tile` a scan as a surface to press on.
+"""

@@ -2,56 +2,34 @@
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from xarray import DataArray
 
 from crackfront.core.units import Scales
 from crackfront.data.arguments import refuse_other_type
 from crackfront.simulate.si_units import refuse_no_scales
-from crackfront.topography.bands import scan
-from crackfront.topography.instruments import surface_library
-from crackfront.topography.measures import read_surface
+from crackfront.topography.density.bands import scan
 from crackfront.topography.options import (
     PredictionOptions,
     ReadingOptions,
-    declared,
-    options_for_each,
-    parameters_text,
-    parsed_options,
+    checked_options,
+    reading_options,
+    refuse_unknown,
 )
-from crackfront.topography.prediction import Prediction, judged
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.prediction.prediction import Prediction, check_and_predict
+from crackfront.topography.prediction.remarks import remark_text
+from crackfront.topography.scan.instruments import surface_library
+from crackfront.topography.scan.reading import read_measurements
+from crackfront.topography.spectrum.measures import read_surface
 from crackfront.topography.tile import scan_surface
 
-Function = TypeVar("Function", bound=Callable[..., Any])
 File = str | PathLike[str]
 
 
-def _taking(*records: type[Any]) -> Callable[[Function], Function]:
-    """Give a function the options of records: as keywords, in its signature and its docstring."""
-    kind = inspect.Parameter.KEYWORD_ONLY
-    keywords = [
-        inspect.Parameter(one.name, kind, default=one.default, annotation=one.kind.accepts)
-        for one in declared(*records)
-    ]
-
-    def decorated(function: Function) -> Function:
-        plain = inspect.signature(function)
-        named = [item for item in plain.parameters.values() if item.kind is not item.VAR_KEYWORD]
-        function.__doc__ = str(function.__doc__).replace("{options}", parameters_text(*records))
-        signature = plain.replace(parameters=[*named, *keywords])
-        function.__signature__ = signature  # type: ignore[attr-defined]
-        return function
-
-    return decorated
-
-
-@_taking(ReadingOptions)
 def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     """A measured map as a surface to press on, levelled and made periodic.
 
@@ -61,7 +39,11 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
         File of an instrument, in any format that SurfaceTopography reads.
     sphere : Scales
         What is pressed on it; it says what a reduced length is.
-    {options}
+    **options
+        Fields of :class:`~crackfront.topography.options.ReadingOptions`, as
+        ``crop="2um:8um,0um:5um"`` or ``shortest=4e-7``: channel, crop, detrend, mask, unit,
+        height_unit, size, tip_radius, shortest, longest. `crackfront surface --help` says what
+        each means.
 
     Returns
     -------
@@ -78,11 +60,11 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     OSError
         If the file cannot be opened.
     """
-    inspect.signature(read_scan).bind(path, sphere, **options)
+    refuse_unknown("read_scan", options, ReadingOptions)
     refuse_no_scales(sphere)
     file = _path(path)
-    reading = parsed_options(ReadingOptions, options)
-    surface_library()  # Whole: the program may use it too.
+    [reading] = reading_options(options, 1)
+    surface_library()  # All of it, as the user's program may import it too.
     [measured] = read_measurements([file], reading)
     return scan_surface(scan(measured, reading.shortest, reading.longest), sphere)
 
@@ -93,7 +75,6 @@ def _path(scan: File) -> Path:
     return Path(scan)
 
 
-@_taking(ReadingOptions, PredictionOptions)
 def predict(
     scans: File | Iterable[File], sphere: Scales, *, strict: bool = False, **options: Any
 ) -> Prediction:
@@ -107,7 +88,10 @@ def predict(
         What is pressed on it.
     strict : bool, optional
         Raise where the theory applies with reservations as well.
-    {options}
+    **options
+        Those of :func:`read_scan`, and fields of
+        :class:`~crackfront.topography.options.PredictionOptions`, as ``range="0.3nm"``: pull_off,
+        range. A list gives every scan its own channel, crop or tip radius.
 
     Returns
     -------
@@ -124,17 +108,19 @@ def predict(
     OSError
         If a file cannot be opened.
     """
-    inspect.signature(predict).bind(scans, sphere, strict=strict, **options)
+    refuse_unknown("predict", options, ReadingOptions, PredictionOptions)
     refuse_no_scales(sphere)
     paths = [scans] if isinstance(scans, (str, PathLike)) else scans
     refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
     files = [_path(path) for path in paths]
-    given = parsed_options(PredictionOptions, options)
-    surface_library()  # Whole: the program may use it too.
-    surface = read_surface(files, options_for_each(ReadingOptions, options, len(files)))
-    ruling, prediction = judged(surface, sphere, given)
+    given = checked_options(PredictionOptions, options)
+    surface_library()  # All of it, as the user's program may import it too.
+    surface = read_surface(files, reading_options(options, len(files)))
+    verdict, prediction = check_and_predict(surface, sphere, given)
     if prediction is None:
-        raise ValueError(f"the theory does not apply; what would meet {'; '.join(ruling.remedies)}")
-    if strict and ruling.reservations:
-        raise ValueError(f"the theory applies with reservations: {' '.join(ruling.reservations)}")
+        failing = map(remark_text, verdict.of("fails", "undecided"))
+        raise ValueError(f"the theory does not apply: {' '.join(failing)}")
+    if strict and (found := verdict.of("undecided", "reservation")):
+        sentences = " ".join(map(remark_text, found))
+        raise ValueError(f"the theory applies with reservations: {sentences}")
     return prediction

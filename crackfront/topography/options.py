@@ -1,25 +1,25 @@
-"""Options of reading scans and of predictions, each declared once, as a field of a record.
+"""Options of reading scans and of predictions: each is one field of a pydantic model.
 
 Commands (`cli/surface.py`), functions of the library (`topography/library.py`) and configurations
-(`sweep/configuration.py`) take their options from these fields.
+(`sweep/sections.py`) take their options from the fields, and their meaning from the text below.
 """
 
 from __future__ import annotations
 
+import difflib
 import re
-import textwrap
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Iterable, Mapping
 from numbers import Integral, Real
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, TypeVar, get_args
+from typing import Annotated, Any, Literal, TypeVar, get_args
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, ValidationInfo
+from pydantic_core import ErrorDetails
 
 from crackfront.data.arguments import refuse_other_type
 from crackfront.data.bounds import SI, Range, refuse_outside
 from crackfront.data.written_units import si_value
-
-Record = TypeVar("Record")
 
 DetrendName = Literal["center", "height", "slope", "curvature"]
 
@@ -32,259 +32,257 @@ HIGHEST_ORDER = 9
 Region = tuple[tuple[float, float], ...]
 """Ends of a part of a scan along every direction (Units: m)."""
 
-Times = Literal["once", "for each", "repeated"]
+PER_SCAN = "One for all scans, or one for each."
+"""Marks a field for which every scan of a surface may have its own value."""
 
-_OFTEN = {
-    "once": "",
-    "for each": "; one for all scans, or one for each",
-    "repeated": "; may be repeated",
-}
+REPEATED = "May be repeated."
+"""Marks a field of which one scan may have several values."""
 
 _ZERO = re.compile(r"\s*0(\.0*)?\s*[a-zµ]*\s*")
 
 
-class Kind(NamedTuple):
-    """A kind of values: how one is understood, and what commands and the library call it."""
+class Options(BaseModel):
+    """A record of options; the text below a field is its description."""
 
-    parsed: Callable[[Any, str], Any]
-    """Value of what a user gives, and its name in refusals."""
-    accepts: str
-    metavar: str | None = None
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
 
-class Option(NamedTuple):
-    """An option, as commands, library and configurations need it."""
-
-    name: str
-    meaning: str
-    kind: Kind
-    default: Any
-    times: Times
-    """Whether one value holds for all scans, each scan may have its own, or one scan several."""
-
-    @property
-    def sentence(self) -> str:
-        """What it means, and how often it may be given."""
-        return f"{self.meaning}{_OFTEN[self.times]}."
+Record = TypeVar("Record", bound=Options)
 
 
-def option(meaning: str, kind: Kind, *, default: Any = None, times: Times = "once") -> Any:
-    """Field of a record of options; see :class:`Option`."""
-    return field(default=default, metadata={"option": (meaning, kind, default, times)})
+def checked_options(record: type[Record], given: Mapping[str, Any], prefix: str = "") -> Record:
+    """Record of its options among those that a user gives; None is not given.
 
-
-def declared(*records: type[Any]) -> Iterator[Option]:
-    """Options of records, in the order of their fields."""
-    for item in (one for record in records for one in fields(record)):
-        yield Option(item.name, *item.metadata["option"])
-
-
-def parsed_options(record: type[Record], given: Mapping[str, Any], prefix: str = "") -> Record:
-    """Record of the options among what a user gives; None is not given.
-
-    The prefix stands before names in refusals: -- in commands. ValueError if a value cannot be
-    used, TypeError if it is of another type.
+    The prefix stands before names in refusals: -- in commands. ValueError, of one sentence, if a
+    value cannot be used, TypeError if it is of another type.
     """
-    [found] = options_for_each(record, given, 1, prefix)
+    known = {
+        name: value
+        for name, value in given.items()
+        if name in record.model_fields and value is not None
+    }
+    try:
+        return record.model_validate(known, context=prefix)
+    except ValidationError as error:
+        first, *_ = error.errors(include_url=False)
+        raise ValueError(_sentence(first, prefix)) from None
+
+
+def reading_options(
+    given: Mapping[str, Any], n_scan: int, prefix: str = ""
+) -> list[ReadingOptions]:
+    """Options of reading so many scans of one surface; otherwise as :func:`checked_options`.
+
+    A list or tuple gives every scan its own value, where a field allows this.
+    """
+    for name, field in ReadingOptions.model_fields.items():
+        if REPEATED in field.metadata and given.get(name) and n_scan > 1:
+            raise ValueError(
+                f"{_shown_name(name, prefix)} is for one scan, and {n_scan} are named; read them "
+                "one by one"
+            )
+    for name, values in _values_per_scan(given):
+        if len(values) not in (1, n_scan):
+            raise ValueError(
+                f"{_shown_name(name, prefix)} is given {len(values)} times for {n_scan} scan(s); "
+                "give it once, or once for each in their order"
+            )
+    found = []
+    for scan in range(n_scan):
+        own = {name: values[scan % len(values)] for name, values in _values_per_scan(given)}
+        found.append(checked_options(ReadingOptions, {**given, **own}, prefix))
     return found
 
 
-def options_for_each(
-    record: type[Record], given: Mapping[str, Any], n_scan: int, prefix: str = ""
-) -> list[Record]:
-    """Records of the options of so many scans; otherwise as :func:`parsed_options`."""
-    columns = {
-        one.name: _values(one, given.get(one.name), n_scan, prefix) for one in declared(record)
-    }
+def _values_per_scan(given: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    """Names and lists of the options that are given as lists, one entry a scan."""
     return [
-        record(**{name: column[scan] for name, column in columns.items()}) for scan in range(n_scan)
+        (name, given[name] or [None])
+        for name, field in ReadingOptions.model_fields.items()
+        if PER_SCAN in field.metadata and isinstance(given.get(name), (list, tuple))
     ]
 
 
-def _values(item: Option, given: Any, n_scan: int, prefix: str) -> Sequence[Any]:
-    """Values of an option for each of so many scans."""
-    what = prefix + (item.name.replace("_", "-") if prefix else item.name)
-    is_list = isinstance(given, (list, tuple)) and item.times != "once"
-    every = given if is_list else () if given is None else (given,)
-    found = [item.kind.parsed(one, what) for one in every]
-    if not found:
-        return [item.default] * n_scan
-    if item.times == "repeated":
-        if n_scan > 1:
-            raise ValueError(
-                f"{what} is for one scan, and {n_scan} are named; read them one by one"
-            )
-        return [tuple(found)]
-    if len(found) not in (1, n_scan):
-        raise ValueError(
-            f"{what} is given {len(found)} times for {n_scan} scan(s); give it once, or once for "
-            "each in their order"
-        )
-    return found * n_scan if len(found) == 1 else found
+def refuse_unknown(function: str, names: Iterable[str], *records: type[Options]) -> None:
+    """Raise TypeError if a keyword of a function is no option of some records."""
+    known = [name for record in records for name in record.model_fields]
+    for name in names:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, n=1)
+            hint = f"did you mean {near[0]}?" if near else f"the options are {', '.join(known)}"
+            raise TypeError(f"{function}() got an unexpected keyword argument {name!r}; {hint}")
 
 
-def parameters_text(*records: type[Any]) -> str:
-    """Paragraphs of a docstring on the options of records."""
-    lines, indent = [], " " * 8
-    for item in declared(*records):
-        several = "" if item.times == "once" else " or list of such"
-        lines.append(f"    {item.name} : {item.kind.accepts}{several}, optional")
-        lines += textwrap.wrap(item.sentence, 100, initial_indent=indent, subsequent_indent=indent)
-    return "\n".join(lines).lstrip()
+def _sentence(error: ErrorDetails, prefix: str) -> str:
+    """What one error of pydantic means: the sentence of a validator, or its own."""
+    if "error" in error.get("ctx", {}):
+        return str(error["ctx"]["error"])
+    must = error["msg"].replace("Input should", "it must")
+    return f"{_shown_name(str(error['loc'][0]), prefix)} is {error['input']!r}; {must}"
 
 
-def quantity(unit: str, name: str, example: str) -> Kind:
-    """Values with units, as texts, or as numbers in the SI unit."""
+def _shown_name(name: str, prefix: str) -> str:
+    """Name of an option as the user writes it: --tip-radius in commands, else tip_radius."""
+    return f"{prefix}{name.replace('_', '-')}" if prefix else name
 
-    def parsed(value: Any, what: str) -> float:
+
+def _named(info: ValidationInfo) -> str:
+    """Name of the option that is validated, as the user writes it."""
+    return _shown_name(str(info.field_name), info.context or "")
+
+
+def quantity(unit: str, name: str, example: str) -> BeforeValidator:
+    """Validator of values with units, as texts, or as numbers in the SI unit."""
+
+    def checked(value: Any, info: ValidationInfo) -> float:
+        what = _named(info)
         refuse_other_type(what, value, (str, Real), f"a {name}, as '{example}' or in {unit}")
         if isinstance(value, str):
             return si_value(value, unit, what=what)
         refuse_outside(what, float(value), SI[unit], unit)
         return float(value)
 
-    return Kind(parsed, "str or float", name.replace(" ", "-").upper())
+    return BeforeValidator(checked)
 
 
-def number(bounds: Range) -> Kind:
-    """Numbers within bounds."""
+def number(bounds: Range) -> BeforeValidator:
+    """Validator of numbers within bounds."""
 
-    def parsed(value: Any, what: str) -> float:
+    def checked(value: Any, info: ValidationInfo) -> float:
         try:
             found = float(value)
         except ValueError as error:
-            raise ValueError(f"{what} is {value!r}; write a number") from error
-        refuse_outside(what, found, bounds)
+            raise ValueError(f"{_named(info)} is {value!r}; write a number") from error
+        refuse_outside(_named(info), found, bounds)
         return found
 
-    return Kind(parsed, "float", "NUMBER")
+    return BeforeValidator(checked)
 
 
-def _text(value: Any, what: str) -> str:
-    """A text, or a number as one."""
-    refuse_other_type(what, value, (str, Integral), "a text or a number")
+def _text(value: Any, info: ValidationInfo) -> str:
+    """A text, or a whole number as one."""
+    refuse_other_type(_named(info), value, (str, Integral), "a text or a number")
     return str(value)
 
 
-def region_named(value: Any, what: str) -> Region:
-    """Region of a text like 2um:8um,0um:5um."""
-    refuse_other_type(what, value, str, "a text, as in '2um:8um,0um:5um'")
-    ends = [part.split(":") for part in value.split(",")]
+def _region(value: Any, info: ValidationInfo) -> Region:
+    """A part of a scan, from a text as in 2um:8um,0um:5um or from pairs of ends in metres."""
+    if isinstance(value, tuple):
+        return value
+    refuse_other_type(_named(info), value, str, "a text, as in '2um:8um,0um:5um'")
+    return _region_of(value, _named(info))
+
+
+def _region_of(text: str, what: str) -> Region:
+    """The part of a scan that a text names."""
+    ends = [part.split(":") for part in text.split(",")]
     if not all(len(part) == 2 for part in ends) or len(ends) > 2:
         raise ValueError(
-            f"{what} is {value!r}; write both ends along every direction, as in 2um:8um,0um:5um"
+            f"{what} is {text!r}; write both ends along every direction, as in 2um:8um,0um:5um"
         )
-
-    def place(end: str) -> float:
-        return 0.0 if _ZERO.fullmatch(end) else si_value(end, "m", what=what)
-
-    found = tuple((place(low), place(high)) for low, high in ends)
+    found = tuple((_place(low, what), _place(high, what)) for low, high in ends)
     if any(low >= high for low, high in found):
-        raise ValueError(f"{what} is {value!r}, which ends where it begins or before; swap them")
+        raise ValueError(f"{what} is {text!r}, which ends where it begins or before; swap them")
     return found
 
 
+def _place(end: str, what: str) -> float:
+    """An end of a part of a scan, for which 0 needs no unit (Units: m)."""
+    return 0.0 if _ZERO.fullmatch(end) else si_value(end, "m", what=what)
+
+
+def _masks(value: Any, info: ValidationInfo) -> tuple[Region | Path, ...]:
+    """Parts of a scan and files, from one or several of them."""
+    given = value if isinstance(value, (list, tuple)) else (value,)
+    return tuple(_region_or_file(one, _named(info)) for one in given)
+
+
 def _region_or_file(value: Any, what: str) -> Region | Path:
-    """Region of a text with colons, or the path of a file."""
+    """A part of a scan, from a text with colons, or the path of a file."""
+    if isinstance(value, tuple):
+        return value
     refuse_other_type(what, value, (str, PathLike), "a part, or the path of a file")
     is_region = isinstance(value, str) and ":" in value
-    return region_named(value, what) if is_region else Path(value)
+    return _region_of(value, what) if is_region else Path(value)
 
 
-def _detrend(value: Any, what: str) -> Detrend:
+def _detrend(value: Any, info: ValidationInfo) -> Detrend:
     """Name of a trend, or the order of a polynomial."""
     names = get_args(DetrendName)
     found: Any = int(value) if str(value).isdecimal() else value
     if found in names or (isinstance(found, int) and 0 <= found <= HIGHEST_ORDER):
         return found
     raise ValueError(
-        f"{what} is {value!r}; choose one of {', '.join(names)}, or an order from 0 to "
+        f"{_named(info)} is {value!r}; choose one of {', '.join(names)}, or an order from 0 to "
         f"{HIGHEST_ORDER}"
     )
 
 
-def _sides(value: Any, what: str) -> tuple[float, ...]:
+def _sides(value: Any, info: ValidationInfo) -> tuple[float, ...]:
     """Sides of a scan, from a text with commas, a number or a sequence of numbers."""
-    value = (value,) if isinstance(value, Real) else value
+    given = (value,) if isinstance(value, Real) else value
     try:
-        found = tuple(map(float, value.split(",") if isinstance(value, str) else value))
+        found = tuple(map(float, given.split(",") if isinstance(given, str) else given))
     except (TypeError, ValueError) as error:
         raise ValueError(
-            f"{what} is {value!r}; write one number for each direction, as in 50,50"
+            f"{_named(info)} is {value!r}; write one number for each direction, as in 50,50"
         ) from error
     if not all(0 < side < float("inf") for side in found):
-        raise ValueError(f"{what} is {value!r}; sides must be positive and finite")
+        raise ValueError(f"{_named(info)} is {value!r}; sides must be positive and finite")
     return found
 
 
-LENGTH = quantity("m", "length", "0.4um")
+Length = Annotated[float, quantity("m", "length", "0.4um")]
+Text = Annotated[str, BeforeValidator(_text)]
 
 
-@dataclass(frozen=True, slots=True)
-class ReadingOptions:
-    """How the file of a scan is read, and which of its waves are trusted; lengths in metres."""
+class ReadingOptions(Options):
+    """How the file of a scan is read, and which of its waves are trusted.
 
-    channel: str | None = option(
-        "Channel by name or number, for files with several",
-        Kind(_text, "str or int", "NAME|NUMBER"),
-        times="for each",
-    )
-    crop: Region | None = option(
-        "Part of the scan to use, as in 2um:8um,0um:5um",
-        Kind(region_named, "str"),
-        times="for each",
-    )
-    detrend: Detrend = option(
-        "What is taken off: center (mean), height (plane of least height), slope (that of least "
-        "slope), curvature (paraboloid), or the polynomial of an order up to 9",
-        Kind(_detrend, "str or int", "NAME|ORDER"),
-        default="curvature",
-    )
-    mask: tuple[Region | Path, ...] = option(
-        "What the levelling leaves out and the map keeps: a part of the scan as in crop, or a file "
-        "with a number for each point, not zero there",
-        Kind(_region_or_file, "str or path"),
-        default=(),
-        times="repeated",
-    )
-    unit: str | None = option(
-        "Unit of length of files that state none, as in um", Kind(_text, "str")
-    )
-    height_unit: str | None = option(
-        "Unit of the heights alone, as in nm, where a file states none or one that cannot be",
-        Kind(_text, "str"),
-    )
-    size: tuple[float, ...] | None = option(
-        "Sides of scans that state none, in --unit, as in 50,40; 50 for a square or a line",
-        Kind(_sides, "str, float or sequence of float"),
-    )
-    tip_radius: float | None = option(
-        "Radius of the tip that scanned it, as in 20nm; by default what the file says, and 10nm "
-        "for formats of scanning probes that do not",
-        LENGTH,
-        times="for each",
-    )
-    shortest: float | None = option(
-        "Shortest wavelength to trust, as in 0.4um; by default found by resolution, noise, tip, "
-        "and four pixels",
-        LENGTH,
-    )
-    longest: float | None = option(
-        "Longest wavelength to trust; by default found by what is left of the form, and half a "
-        "side",
-        LENGTH,
-    )
+    Lengths are texts with a unit, as in 0.4um, or numbers in metres.
+    """
+
+    channel: Annotated[Text | None, PER_SCAN] = None
+    """Channel by name or number, for files with several."""
+
+    crop: Annotated[Annotated[Region, BeforeValidator(_region)] | None, PER_SCAN] = None
+    """Part of the scan to use, as in 2um:8um,0um:5um."""
+
+    detrend: Annotated[Detrend, BeforeValidator(_detrend)] = "curvature"
+    """What is taken off: center (mean), height (plane of least height), slope (that of least
+    slope), curvature (paraboloid), or the polynomial of an order up to 9."""
+
+    mask: Annotated[tuple[Region | Path, ...], BeforeValidator(_masks), REPEATED] = ()
+    """What the levelling leaves out and the map keeps: a part of the scan as in crop, or a file
+    with a number for each point, not zero there."""
+
+    unit: Text | None = None
+    """Unit of length of files that state none, as in um."""
+
+    height_unit: Text | None = None
+    """Unit of the heights alone, as in nm, where a file states none or one that cannot be."""
+
+    size: Annotated[tuple[float, ...], BeforeValidator(_sides)] | None = None
+    """Sides of scans that state none, in --unit, as in 50,40; 50 for a square or a line."""
+
+    tip_radius: Annotated[Length | None, PER_SCAN] = None
+    """Radius of the tip that scanned it, as in 20nm; by default what the file says, and 10nm for
+    formats of scanning probes that do not."""
+
+    shortest: Length | None = None
+    """Shortest wavelength to trust, as in 0.4um; by default found by resolution, noise, tip, and
+    four pixels."""
+
+    longest: Length | None = None
+    """Longest wavelength to trust; by default found by what is left of the form, and half a
+    side."""
 
 
-@dataclass(frozen=True, slots=True)
-class PredictionOptions:
+class PredictionOptions(Options):
     """What a prediction takes into account beside the surface and the sphere."""
 
-    pull_off: float | None = option(
-        "Measured pull-off force, as in 0.4mN; the w_int that it implies is told",
-        quantity("N", "force", "0.4mN"),
-    )
-    range: float | None = option(
-        "Range of the attraction, as in 0.3nm; by default 0.5nm, that of van der Waals forces",
-        LENGTH,
-    )
+    pull_off: Annotated[float, quantity("N", "force", "0.4mN")] | None = None
+    """Measured pull-off force, as in 0.4mN; the w_int that it implies is stated."""
+
+    range: Length | None = None
+    """Range of the attraction, as in 0.3nm; by default 0.5nm, that of van der Waals forces."""

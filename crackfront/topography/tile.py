@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import fftfreq, irfft2, rfft2
 
-from crackfront.core import jkr
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
-from crackfront.topography.bands import Scan
-from crackfront.topography.cautions import scan_notes
-from crackfront.topography.levelling import Array
-from crackfront.topography.reading import Measurement
+from crackfront.topography.density.bands import Scan
+from crackfront.topography.prediction.conditions import zero_load_radius
+from crackfront.topography.prediction.remarks import remark_text
+from crackfront.topography.prediction.surface_remarks import scan_remarks
+from crackfront.topography.scan.levelling import Array
+from crackfront.topography.scan.reading import Measurement
 
 if TYPE_CHECKING:
     from xarray import DataArray
@@ -37,6 +38,7 @@ def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
     from crackfront.simulate.given import surface_array
 
     measurement = scan.trusted_measurement
+    notes = scan_remarks([scan], zero_load_radius(sphere))
     heights, pixel = tile_heights(measurement)
     return surface_array(
         "roughness",
@@ -49,7 +51,7 @@ def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
         else "mirrored at its edges, where a scan does not go on: twice its sides",
         waves=f"those shorter than {prefixed('m', measurement.shortest)} were taken away, as they "
         "are not to be trusted",
-        notes=" ".join(scan_notes([scan], zero_load_radius(sphere))),
+        notes=" ".join(map(remark_text, notes)),
     )
 
 
@@ -72,11 +74,6 @@ def tile_heights(measurement: Measurement) -> tuple[Array, float]:
     across = 2 * np.pi / sides[1] * np.arange(n_y // 2 + 1)
     kept = np.sqrt(along[:, None] ** 2 + across**2) <= 2 * np.pi / measurement.shortest
     return np.asarray(irfft2(rfft2(tile) * kept, tile.shape)), float(sides[0] / n_x)
-
-
-def zero_load_radius(scales: Scales) -> float:
-    """Radius of the smooth contact at zero load (Units: m)."""
-    return scales.lateral * jkr.radius_at_force(0.0)
 
 
 def _with_square_pixels(measurement: Measurement) -> Measurement:

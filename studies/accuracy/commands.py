@@ -19,7 +19,7 @@ from crackfront.data.bounds import Range
 from crackfront.data.files import read_attributes, write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.run import compile_solver
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.scan.reading import read_measurements
 from studies.accuracy import energies as synthetic
 from studies.accuracy import energy_balance as balance
 from studies.accuracy import movement as settled

@@ -20,9 +20,9 @@ from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.topography.measures import MeasuredSurface, measured_surface
 from crackfront.topography.options import ReadingOptions
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.scan.reading import read_measurements
+from crackfront.topography.spectrum.measures import MeasuredSurface, measured_surface
 from studies.accuracy.scans import scanned
 from studies.pages import markdown_table
 

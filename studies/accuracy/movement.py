@@ -10,10 +10,10 @@ import numpy as np
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.arrays import Array
-from crackfront.topography.bands import scan
-from crackfront.topography.draws import BATCH
-from crackfront.topography.joining import joint_spectrum
-from crackfront.topography.reading import Measurement
+from crackfront.topography.density.bands import scan
+from crackfront.topography.scan.reading import Measurement
+from crackfront.topography.spectrum.draws import BATCH
+from crackfront.topography.spectrum.joining import joint_spectrum
 from studies.pages import markdown_table
 
 SEEDS = 5

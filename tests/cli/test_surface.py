@@ -13,9 +13,9 @@ from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.core.variables import variables
 from crackfront.simulate.given import read_field, surface_adhesion
-from crackfront.topography.measures import measured_surface, read_surface
-from crackfront.topography.prediction import Prediction, predicted
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.prediction.prediction import Prediction, predicted
+from crackfront.topography.scan.reading import read_measurements
+from crackfront.topography.spectrum.measures import measured_surface, read_surface
 from tests.commands import refused, run
 from tests.topography.made import DETAIL, OVERVIEW, SCENE, write_smooth
 
@@ -34,6 +34,11 @@ def sphere(**changes):
     """Options of the sphere; None leaves one out."""
     named = SPHERE | {f"--{name.replace('_', '-')}": value for name, value in changes.items()}
     return [part for item in named.items() if item[1] is not None for part in item]
+
+
+def reservations(content):
+    """Sentences of the reservations in JSON."""
+    return [one["sentence"] for one in content["remarks"] if one["severity"] == "reservation"]
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +84,7 @@ def test_an_interrupted_batch_of_scans_keeps_the_rows_of_those_before(tmp_path, 
             raise KeyboardInterrupt
         return read_surface(paths, options)
 
-    monkeypatch.setattr("crackfront.topography.measures.read_surface", interrupted)
+    monkeypatch.setattr("crackfront.topography.spectrum.measures.read_surface", interrupted)
     smooth, table = write_smooth(tmp_path / "smooth.al3d"), tmp_path / "samples.csv"
     assert run("predict", *sphere(), "--csv", table, smooth, OVERVIEW).exit_code != 0
     with table.open(encoding="utf-8", newline="") as file:
@@ -95,12 +100,12 @@ def test_channels_are_listed_without_the_options_that_a_prediction_needs():
 
 def test_a_negative_share_is_a_reservation_where_it_counts(predict):
     content = json.loads(predict("--json", modulus="0.9MPa").stdout)
-    [told] = [text for text in content["verdict"]["reservations"] if "w_loc negative" in text]
+    [told] = [text for text in reservations(content) if "w_loc negative" in text]
     share = content["prediction"]["negative_share"]["value"]
     assert f"{share:.2%} of the surface" in told
     weak = json.loads(predict("--json", modulus="0.1MPa").stdout)
     assert weak["prediction"]["negative_share"]["value"] < 0.05
-    assert not any("w_loc" in text for text in weak["verdict"]["reservations"])
+    assert not any("w_loc" in text for text in reservations(weak))
 
 
 def test_each_outcome_has_its_exit_code(predict, tmp_path):
@@ -114,7 +119,7 @@ def test_each_outcome_has_its_exit_code(predict, tmp_path):
         strict = ["--strict"] * more.pop("strict", False)
         result = predict("--json", "--no-figure", *strict, **more)
         content = json.loads(result.stdout)
-        assert (result.exit_code, content["verdict"]["outcome"]) == (code, outcome)
+        assert (result.exit_code, content["outcome"]) == (code, outcome)
         assert (content["prediction"] is None) == (code == 4)
     told = run("predict", "--help").output
     for text in ("Exit code 0: a prediction", "(3 with --strict)", "4: the theory does not"):
@@ -126,7 +131,7 @@ def test_a_modulus_far_too_low_is_refused_with_what_would_do(predict):
     result = predict("--simulate", modulus="0.0007Pa", drawn=True)
     assert result.exit_code == 4
     assert "THE THEORY DOES NOT APPLY" in result.output
-    assert "contact of 114 mm on a sphere of 1.25 mm, FAILS above 875 um" in result.output
+    assert "contact of 114 mm on a sphere of 1.25 mm, above the limit of 875 um" in result.output
     assert "contact modulus E / (1 - nu^2) above 2.08 kPa" in result.output
     assert "w_appr" not in result.output
     assert "figure:" not in result.output

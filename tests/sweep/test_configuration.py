@@ -17,9 +17,9 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.table import failed_row, read_table, write_hysteresis
-from crackfront.topography.measures import measured_surface
 from crackfront.topography.options import ReadingOptions
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.scan.reading import read_measurements
+from crackfront.topography.spectrum.measures import measured_surface
 
 ROOT = Path(__file__).parents[2]
 

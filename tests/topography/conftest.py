@@ -2,9 +2,9 @@
 
 import pytest
 
-from crackfront.topography.measures import measured_surface
-from crackfront.topography.prediction import predicted
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.prediction.prediction import predicted
+from crackfront.topography.scan.reading import read_measurements
+from crackfront.topography.spectrum.measures import measured_surface
 from tests.topography.made import DETAIL, OVERVIEW, SCENE, map_heights, write_al3d
 
 

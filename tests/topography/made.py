@@ -8,9 +8,9 @@ import pytest
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import Scales
-from crackfront.topography.measures import read_surface
-from crackfront.topography.options import ReadingOptions, options_for_each
-from crackfront.topography.reading import Measurement, read_measurements
+from crackfront.topography.options import reading_options
+from crackfront.topography.scan.reading import Measurement, read_measurements
+from crackfront.topography.spectrum.measures import read_surface
 from studies.accuracy import scans
 
 FOLDER = Path(__file__).parents[2] / "examples/scans"
@@ -56,13 +56,13 @@ def write_line(path, heights, pixel):
 
 def read(path, **given):
     """Measurement of a file, read by options as a user gives them."""
-    return read_measurements([path], options_for_each(ReadingOptions, given, 1))[0]
+    return read_measurements([path], reading_options(given, 1))[0]
 
 
 def refusal(*paths, **given):
     """Sentence for files that are refused."""
     with pytest.raises(ValueError, match=r".") as caught:
-        read_surface(paths, options_for_each(ReadingOptions, given, len(paths)))
+        read_surface(paths, reading_options(given, len(paths)))
     message = str(caught.value)
     assert "\n" not in message
     return message

@@ -10,9 +10,9 @@ from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.given import surface_adhesion
-from crackfront.topography.bands import scan as scan_of
+from crackfront.topography.density.bands import scan as scan_of
 from crackfront.topography.options import ReadingOptions
-from crackfront.topography.reading import read_measurements
+from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.tile import scan_surface
 from studies.accuracy import scans
 from tests.topography.made import (

@@ -1,0 +1,1 @@
+"""Spectral density of each scan, what its instrument does to it, and the waves to trust."""

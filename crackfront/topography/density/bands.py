@@ -1,0 +1,269 @@
+"""The wavelengths at which a scan can be trusted, found in its density, and what else it shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.data.written_units import prefixed
+from crackfront.topography.density.densities import (
+    Density,
+    Periodogram,
+    anisotropy,
+    periodic_part,
+    periodogram,
+    stripes,
+    unevenness,
+)
+from crackfront.topography.density.self_affine import Instrument, seen_instrument
+from crackfront.topography.scan.levelling import polynomial
+from crackfront.topography.scan.reading import Measurement
+
+End = Literal["shortest", "longest"]
+
+Cause = Literal["pixels", "resolution", "tip", "noise", "levelling", "form", "named"]
+"""What ends a band: points or the resolution that the file states, waves that fall faster than
+those of any surface, the radius of the tip, a flat density, the levelling, what this left of the
+form, or the user."""
+
+_PIXELS = 2.5
+"""Points in the shortest wave of the densities in which instruments are looked for."""
+
+_TRUSTED_LOSS, _TRUSTED_NOISE = 0.2, 0.2
+"""Parts of the density that the instrument takes away and noise adds, at the end of the trusted
+waves; both are corrected."""
+
+_FITTED_LOSS, _FITTED_NOISE = 0.85, 1.0
+"""The same at the end of the waves to which a model is fitted."""
+
+NYQUIST = 2.0
+"""Points in the shortest wave that pixels hold."""
+
+_BLUNTEST = 32.0
+"""Points in the longest wave of which an optic may take a fifth; beyond, the surface falls so."""
+
+_CLIFF, _CLIFF_BINS, _CLIFF_MODES = 0.1, 2, 8
+"""Ratio by which a density ends, over how many bins, and modes that each of these must have."""
+
+_FORM, _FORM_BINS = 2.0, 16
+"""Ratio by which window and levelling may change a density, and longest bins that are compared."""
+
+_FINER = 2.0
+"""Shortest wave that pixels hold, over the shortest one at which a drawn spectrum may end."""
+
+_FEWEST_OCTAVES = 1
+"""Octaves that must be left of a band."""
+
+MOST_PERIODIC = 0.25
+"""Part of e_el in one wave from which on a surface is not random."""
+
+_ORDER = 3
+"""Order of the polynomials whose removal shows what the levelling changes."""
+
+
+@dataclass(frozen=True, slots=True)
+class BandLimit:
+    """An end of the trusted wavelengths, and why it is one."""
+
+    end: End
+    cause: Cause
+    """Why, one of :data:`Cause`."""
+    wavelength: float
+    """Where it lies. (Units: m)"""
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """Trusted wavelengths of a scan, and what its density shows beside them."""
+
+    shortest: BandLimit
+    longest: BandLimit
+    """The two ends of the band: the longest of the lower limits, the shortest of the upper ones."""
+    limits: tuple[BandLimit, ...]
+    """All limits that were found, both ends among them."""
+    stripes: tuple[int, ...]
+    """Axes along which the map is shifted or levelled row by row; these waves are left out."""
+    anisotropy: float
+    """Of a map the rms slope along x over that along y; 1 for lines."""
+    periodic: tuple[float, float]
+    """Part of e_el in one wave, as of grooves, and its wavelength; 0 if none. (Units: 1, m)"""
+    instrument: Instrument
+    noise_limit: float
+    """Wavelength below which noise is more than half of the density; 0 if nowhere. (Units: m)"""
+    shortest_fitted: float
+    """Shortest wavelength that is fitted by the model. (Units: m)"""
+    end: float
+    """Wavelength at which the spectrum ends, by the points or the instrument. (Units: m)"""
+    shortest_end: float
+    longest_end: float
+    """Shortest and longest wavelength at which a drawn spectrum may end. (Units: m)"""
+
+    @property
+    def ends(self) -> tuple[BandLimit, BandLimit]:
+        """Both ends, the shortest first."""
+        return self.shortest, self.longest
+
+    @property
+    def wavelengths(self) -> tuple[float, float]:
+        """Wavelengths of both ends (Units: m)."""
+        return self.shortest.wavelength, self.longest.wavelength
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """A measurement with its waves, its density and the band that can be trusted."""
+
+    measurement: Measurement
+    waves: Periodogram
+    density: Density
+    """Isotropic density of a map without its stripes, C_1D of a line; trusted or not."""
+    alternatives: tuple[Density, ...]
+    """This density with another window, and with one more order of polynomials taken off."""
+    unevenness: float
+    """Standard error of the density, as parts of the scan differ, relative."""
+    band: Band
+    """The trusted wavelengths."""
+
+    @property
+    def trusted_measurement(self) -> Measurement:
+        """The measurement with the shortest wavelength of its band."""
+        return replace(self.measurement, shortest=self.band.shortest.wavelength)
+
+    @property
+    def trusted(self) -> Density:
+        """The density over its band."""
+        return self.density.within(*self.band.wavelengths)
+
+    @property
+    def fitted(self) -> Density:
+        """The density where it is fitted by the model."""
+        return self.density.within(self.band.shortest_fitted, self.band.longest.wavelength)
+
+
+def scan(
+    measurement: Measurement, shortest: float | None = None, longest: float | None = None
+) -> Scan:
+    """A measurement with its trusted band, refused if narrow; its ends may be named (Units: m)."""
+    waves, pixel = periodogram(measurement), max(measurement.pixels)
+    periodic = periodic_part(waves, measurement.shortest, measurement.longest)
+    # Grooves along an axis are no rows that the instrument has shifted.
+    is_map = not measurement.is_line and periodic[0] < MOST_PERIODIC
+    striped = stripes(waves, measurement.shortest) if is_map else ()
+    without = np.any([waves.near_axis(axis) for axis in striped], axis=0) if striped else None
+    density = waves.density(without)
+    seen = density.within(_PIXELS * pixel, measurement.longest)
+    cliff, behind = _abrupt_fall(seen)
+    seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
+    instrument = seen_instrument(seen)
+    if measurement.tip_radius or instrument.loss_wavelength(_TRUSTED_LOSS) > _BLUNTEST * pixel:
+        # A surface whose slope grows towards short waves looks like that.
+        instrument = replace(instrument, attenuation=math.inf)
+    lower = list(_lower_limits(measurement, seen, instrument, cliff))
+    upper = [BandLimit("longest", "levelling", measurement.longest)]
+    alternatives = () if measurement.periodic else _alternatives(measurement, without)
+    if left := _form_limit(density, alternatives, measurement.longest):
+        upper.append(BandLimit("longest", "form", left))
+    if shortest is not None:
+        lower = [BandLimit("shortest", "named", shortest)]
+    if longest is not None:
+        upper = [BandLimit("longest", "named", longest)]
+    low, high = _ends(measurement, lower, upper)
+    noise_limit = instrument.noise_wavelength(seen, _FITTED_NOISE)
+    least = max(cliff, noise_limit, measurement.shortest)
+    shortest_fitted, longest_end = low.wavelength, high.wavelength
+    last = max(behind, NYQUIST * pixel)
+    shortest_end = last / _FINER
+    if low.cause == "tip":
+        # It leaves the waves below there, though weaker: they end with the pixels.
+        longest_end = least
+    elif low.cause in ("resolution", "noise"):
+        shortest_fitted = max(least, instrument.loss_wavelength(_FITTED_LOSS))
+        last = max(last, behind or shortest_fitted)
+    elif low.cause == "named":
+        instrument = Instrument()
+    band = Band(
+        shortest=low,
+        longest=high,
+        limits=(lower[0], upper[0], *lower[1:], *upper[1:]),
+        stripes=striped,
+        anisotropy=1.0 if measurement.is_line else anisotropy(waves, low.wavelength),
+        periodic=periodic,
+        instrument=instrument,
+        noise_limit=noise_limit,
+        shortest_fitted=shortest_fitted,
+        end=min(last, low.wavelength),
+        shortest_end=min(shortest_end, low.wavelength),
+        longest_end=longest_end,
+    )
+    return Scan(measurement, waves, density, alternatives, unevenness(measurement), band)
+
+
+def _ends(
+    measurement: Measurement, lower: Sequence[BandLimit], upper: Sequence[BandLimit]
+) -> tuple[BandLimit, BandLimit]:
+    """The limits that count, refused where less than an octave lies between them."""
+    low = max(lower, key=lambda limit: limit.wavelength)
+    high = min(upper, key=lambda limit: limit.wavelength)
+    if high.wavelength < 2**_FEWEST_OCTAVES * low.wavelength:
+        short, long = (prefixed("m", limit.wavelength) for limit in (low, high))
+        raise ValueError(
+            f"{measurement.path}: of the waves only those above {short} ({low.cause}) and below "
+            f"{long} ({high.cause}) can be trusted, less than an octave; use a better scan, or "
+            "name --shortest and --longest"
+        )
+    return low, high
+
+
+def _alternatives(
+    measurement: Measurement, without: NDArray[np.bool_] | None
+) -> tuple[Density, Density]:
+    """Densities with another window, and with one more order of polynomials taken off."""
+    heights = measurement.heights
+    form = polynomial(heights, np.full(heights.shape, True), _ORDER)
+    others = periodogram(measurement, window="blackman"), periodogram(measurement, heights - form)
+    return others[0].density(without), others[1].density(without)
+
+
+def _lower_limits(
+    measurement: Measurement, seen: Density, instrument: Instrument, cliff: float
+) -> Iterator[BandLimit]:
+    """Shortest wavelengths to trust by all causes."""
+    yield BandLimit("shortest", "pixels", measurement.shortest)
+    causes: dict[Cause, float] = {
+        "resolution": max(cliff, instrument.loss_wavelength(_TRUSTED_LOSS)),
+        "tip": measurement.tip_wavelength,
+        "noise": instrument.noise_wavelength(seen, _TRUSTED_NOISE),
+    }
+    for cause, wavelength in causes.items():
+        if wavelength > NYQUIST * max(measurement.pixels):
+            yield BandLimit("shortest", cause, wavelength)
+
+
+def _abrupt_fall(density: Density) -> tuple[float, float]:
+    """Wavelengths before and behind an abrupt fall of a density, as of a filter; 0 if none."""
+    values, least = density.value, np.minimum(density.modes[:-1], density.modes[1:])
+    if values.size <= _CLIFF_BINS:
+        return 0.0, 0.0
+    low, high = values[:-_CLIFF_BINS], values[_CLIFF_BINS:]
+    falls = np.flatnonzero((high < _CLIFF * low) & (least[1:] > _CLIFF_MODES))
+    if not falls.size:
+        return 0.0, 0.0
+    first = falls[0]
+    before, behind = (2 * np.pi / density.wavevector[first : first + 2]).tolist()
+    return before, behind
+
+
+def _form_limit(density: Density, alternatives: Sequence[Density], longest: float) -> float:
+    """Wavelength down from which a density does not depend on window and levelling; 0 if all do."""
+    here = np.flatnonzero(density.wavevector >= 2 * math.pi / longest)[:_FORM_BINS]
+    apart = [np.abs(np.log(other.value[here] / density.value[here])) for other in alternatives]
+    if not apart:
+        return 0.0
+    agree = np.max(apart, axis=0) < math.log(_FORM)
+    first = int(np.argmax(agree)) if np.any(agree) else here.size - 1
+    return float(2 * math.pi / density.wavevector[here[first]]) if first else 0.0

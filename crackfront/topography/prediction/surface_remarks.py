@@ -1,0 +1,185 @@
+"""Remarks on a measured surface: its scans, its spectrum, and what another scan would change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from crackfront.data.written_units import prefixed
+from crackfront.topography.density.bands import Scan
+from crackfront.topography.prediction.remarks import Remark
+from crackfront.topography.scan.instruments import is_doubtful
+from crackfront.topography.spectrum.joining import JointDensity, JointSpectrum
+from crackfront.topography.spectrum.measures import MeasuredSurface
+
+_MOST_ANISOTROPY = 1.25
+"""Largest ratio of the rms slopes along x and y without a reservation."""
+
+_MOST_UNMEASURED = 0.1
+"""Largest part of e_el that shorter waves may add without a reservation."""
+
+_LEAST_MEASURED = 0.5
+"""Least part of e_el that must be measured, without a reservation."""
+
+_MOST_UNSETTLED = 0.0125
+"""Largest standard error of the ends of intervals over their width, without a reservation."""
+
+_MOST_UNSURE = 0.5
+"""Largest relative distance of e_el to the upper end of its interval that needs no other scan."""
+
+_LEAST_UNEVEN = 0.02
+"""Least relative standard error of e_el at which a note says that a surface is not Gaussian."""
+
+_EDGE, _MATTERS = 0.05, 0.1
+"""Distance of a Hurst exponent from 0 or 1, and continued part of e_el, that are a reservation."""
+
+
+def surface_remarks(surface: MeasuredSurface) -> list[Remark]:
+    """All remarks on a surface that need no sphere."""
+    return [
+        *channel_remarks(surface),
+        *spectrum_remarks(surface),
+        *scan_remarks(surface.scans),
+        measure_next(surface),
+    ]
+
+
+def scan_remarks(scans: Iterable[Scan], contact_radius: float | None = None) -> Iterator[Remark]:
+    """Notes on what was done to scans, and on those smaller than a contact (Units: m)."""
+    for one in scans:
+        path = str(one.measurement.path)
+        for sentence in _treatments(one):
+            yield Remark(path, "note", sentence)
+        if contact_radius is not None and min(one.measurement.size) < 2 * contact_radius:
+            yield Remark(
+                path,
+                "note",
+                f"{path} is smaller than the contact ({1e6 * min(one.measurement.size):.3g} um "
+                f"against {2e6 * contact_radius:.3g} um across): it stands for the whole surface "
+                "by its spectrum.",
+            )
+
+
+def _treatments(one: Scan) -> Iterator[str]:
+    """Sentences on what was filled, assumed or left out of a scan."""
+    item = one.measurement
+    if item.missing > 0:
+        yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
+    if item.is_line:
+        yield (
+            f"{item.path} is a line scan: its density is that of an isotropic surface with "
+            "this projection."
+        )
+    elif max(item.pixels) > 1.001 * min(item.pixels):
+        yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
+    if item.tip_is_assumed:
+        yield (
+            f"{item.path}: the file does not say what its tip is, which is taken for one of "
+            f"{1e9 * item.tip_radius:g} nm; --tip-radius names another."
+        )
+    if most := item.log_hidden_energy:
+        yield (
+            f"{item.path}: valleys are deep; by what the tip does not reach in narrow ones "
+            f"e_el may be {np.exp(most):.1g} times as large, which its interval holds."
+        )
+    if one.unevenness > _LEAST_UNEVEN:
+        yield (
+            f"{item.path}: parts of it differ more than those of a Gaussian surface, so that "
+            f"e_el is known to {one.unevenness:.1%} at best."
+        )
+    for axis in one.band.stripes:
+        yield (
+            f"{item.path}: waves along {'xy'[axis]} alone have another density than all "
+            "others, as of rows that are shifted or levelled one by one; they are left out."
+        )
+
+
+def measure_next(surface: MeasuredSurface) -> Remark:
+    """Note on what another scan would change."""
+    shares, joint = surface.joint.shares, surface.joint
+    short, long = prefixed("m", joint.shortest), prefixed("m", joint.longest)
+    shorter = max(shares.missing_short, shares.continued - shares.continued_long)
+    unsure = surface.half_derivative.high / surface.half_derivative.value - 1
+    if max(shorter, shares.continued_long) < _MATTERS and unsure < _MOST_UNSURE:
+        sentence = f"A finer or larger scan changes e_el by less than {_MATTERS:.0%}: not needed."
+        return Remark("next scan", "note", sentence)
+    # What is neither continued nor missing is unsure for its few long waves.
+    if shorter >= max(shares.continued_long, _MATTERS):
+        factor, waves = 1 + shorter, f"shorter than {short}"
+    else:
+        factor, waves = 1 + max(unsure, shares.continued_long), f"longer than {long}"
+    sentence = (
+        f"Measure next: waves {waves}, by which e_el may be up to {factor:.3g} times as large."
+    )
+    return Remark("next scan", "note", sentence)
+
+
+def channel_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
+    """Reservations on scans whose channel may hold no heights."""
+    for item in (one.measurement for one in surface.scans):
+        if is_doubtful(item.channel):
+            yield Remark(
+                str(item.path),
+                "reservation",
+                f"{item.path}: channel {item.channel} has a unit of length, but the name of "
+                "another quantity than heights; --list-channels shows them all.",
+            )
+
+
+def spectrum_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
+    """Reservations on the spectrum of a surface."""
+    for index, one in enumerate(surface.scans):
+        for sentence in _scan_doubts(one, surface.joint.density, index):
+            yield Remark(str(one.measurement.path), "reservation", sentence)
+    for sentence in _spectrum_doubts(surface.joint):
+        yield Remark("spectrum", "reservation", sentence)
+
+
+def _scan_doubts(one: Scan, density: JointDensity, index: int) -> Iterator[str]:
+    """Sentences on a scan that is not isotropic, or departs from the other scans."""
+    path, ratio, level = one.measurement.path, one.band.anisotropy, density.levels[index]
+    if max(ratio, 1 / ratio) > _MOST_ANISOTROPY:
+        yield (
+            f"{path}: the rms slope along x is {ratio:.2g} times that along y; the theory is "
+            "for isotropic surfaces."
+        )
+    if density.disagrees(index):
+        yield (
+            f"{path} disagrees with the other scans: its density is {level.value:.2g} "
+            f"({level.low:.2g} to {level.high:.2g}) times theirs where they overlap; the "
+            "intervals hold that."
+        )
+
+
+def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
+    """Sentences on what is not measured, and on intervals that are not settled."""
+    if joint.shares.measured < _LEAST_MEASURED:
+        yield (
+            f"Only {joint.shares.measured:.0%} of e_el is measured, the rest is continued by a "
+            "model; add a scan of the waves that are missing."
+        )
+    if joint.draws.unsettled > _MOST_UNSETTLED:
+        yield (
+            "The ends of the intervals have a standard error of "
+            f"{joint.draws.unsettled:.1%} of their width: the {len(joint.draws.weight)} weighted "
+            f"spectra that were drawn count as {joint.draws.effective:.0f} of equal weight."
+        )
+    hurst = joint.fit.hurst.value
+    if min(hurst, 1 - hurst) < _EDGE and joint.shares.continued > _MATTERS:
+        yield (
+            f"The Hurst exponent of the shortest waves, {hurst:.2g}, is at the edge of what is "
+            f"fitted, 0 to 1: the model that continues {joint.shares.continued:.0%} of e_el may "
+            "not be what the surface is."
+        )
+    if not joint.fit.has_roll_off:
+        yield (
+            "The density shows no plateau within the trusted wavelengths: longer waves have about "
+            f"{joint.shares.continued_long:.0%} of e_el, and its interval holds roll-offs of up to "
+            "four sides of the scan; add a larger scan."
+        )
+    if joint.shares.missing_short > _MOST_UNMEASURED:
+        yield (
+            "Waves shorter than the points hold are left out: two more decades of the power law "
+            f"would add {joint.shares.missing_short:.0%} to e_el; add a finer scan."
+        )

@@ -1,0 +1,1 @@
+"""Files of instruments, read, completed by what they do not state, and levelled."""

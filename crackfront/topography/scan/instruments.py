@@ -1,0 +1,376 @@
+"""Files of instruments: opened by a library, and completed by what they do not state."""
+
+from __future__ import annotations
+
+import importlib
+import re
+import sys
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crackfront.data.optional_libraries import MissingExtraError
+from crackfront.data.written_units import prefixed
+from crackfront.topography.options import ReadingOptions
+from crackfront.topography.scan.deferred_import import import_without_executing
+from crackfront.topography.scan.files import readable, refuse_too_many_points, refuse_unreadable
+
+_LIBRARY = "SurfaceTopography"
+
+_BEGIN = 512
+"""Bytes of a file that hold its signature."""
+
+_NO_HEIGHTS = re.compile("ampl|phase|error|deflection|friction|potential|adhesion", re.IGNORECASE)
+"""Names of channels that are not of heights, also where the file gives them a unit of length."""
+
+_SIDES = (1e-9, 1.0)
+"""Sides of a scan within which instruments measure (Units: m): beyond, the unit is wrong."""
+
+_LEAST_HEIGHT, _MOST_HEIGHT = 1e-12, 10.0
+"""Least rms of heights (Units: m), and most span over the side, that instruments measure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """What a file says of one of its channels."""
+
+    number: int
+    name: str
+    quantity: str
+    """Such as height or phase."""
+    points: tuple[int, ...]
+    is_default: bool
+    """Whether it is read where none is named."""
+
+    def __str__(self) -> str:
+        """A line on it."""
+        warned = self.quantity == "height" and is_doubtful(self.name)
+        quantity = f"{self.quantity}{', by its name another quantity' if warned else ''}"
+        points = f", {' x '.join(map(str, self.points))} points" if self.points else ""
+        return f"{self.number} {self.name!r} ({quantity}){points}{', default' * self.is_default}"
+
+
+@dataclass(frozen=True, slots=True)
+class RawScan:
+    """A channel of a file as it stands there."""
+
+    topography: Any
+    """Object of the library: heights, sides, what the file says of the instrument. (Units: m)"""
+    format: str
+    """Name of the format, as the library calls it."""
+    channel: str
+    """Name of the channel, and which of how many of heights it is."""
+
+
+def library_part(name: str) -> Any:
+    """A module of the library SurfaceTopography, and of the others only those that it imports.
+
+    All of them take seconds, most of which is for formats and analyses that are not used.
+    """
+    with _importing():
+        for package in (_LIBRARY, f"{_LIBRARY}.IO"):
+            import_without_executing(package)
+        return importlib.import_module(f"{_LIBRARY}.{name}")
+
+
+def surface_library() -> Any:
+    """The library SurfaceTopography as a whole, with all methods of its objects."""
+    with _importing():
+        import SurfaceTopography
+
+        SurfaceTopography.Topography  # noqa: B018
+    return SurfaceTopography
+
+
+@contextmanager
+def _importing() -> Iterator[None]:
+    """Import the library without MPI, or say how it is installed."""
+    # Scans are read by one process; nodes without jobs may refuse to start MPI.
+    modules: dict[str, Any] = sys.modules
+    without_mpi = modules.setdefault("mpi4py", None) is None
+    try:
+        with _silenced():
+            yield
+    except ModuleNotFoundError as error:
+        raise MissingExtraError("measured surfaces", error, "surfaces") from error
+    finally:
+        if without_mpi:
+            del modules["mpi4py"]
+
+
+@contextmanager
+def _silenced() -> Iterator[None]:
+    """Keep from users what the library warns of, also at files that it leaves open."""
+    with warnings.catch_warnings(action="ignore"):
+        yield
+
+
+@_silenced()
+def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
+    """The heights of a file in metres."""
+    reader = _reader(path)
+    channel, name = _channel(path, reader, options.channel)
+    if channel.nb_grid_pts is not None:
+        refuse_too_many_points(path, channel.nb_grid_pts)
+    given, sides = _what_is_not_stated(path, reader.format(), channel, options)
+    with _errors_as_sentences(path, reader.format()):
+        raw = reader.topography(channel_index=channel.index, **given)
+        level = raw.to_unit("m")
+        level.heights()
+    if not raw.is_uniform:
+        raise ValueError(
+            f"{path}: the points are not equally spaced; resample the line on a uniform grid"
+        )
+    if sides is not None:
+        level = library_scan(level.heights(), sides, periodic=False, info=raw.info)
+    if options.height_unit is not None:
+        _refuse_no_length("--height-unit", options.height_unit)
+        heights, sides = level.heights(), tuple(map(float, level.physical_sizes))
+        if channel.unit is not None and are_possible_heights(heights, sides):
+            raise ValueError(
+                f"{path} states heights in {channel.unit}, which may be; leave --height-unit "
+                f"{options.height_unit} out"
+            )
+        [factor] = in_metres(options.height_unit, 1.0)
+        heights = factor * raw.heights()
+        level = library_scan(heights, sides, periodic=bool(level.is_periodic), info=raw.info)
+    return RawScan(level, reader.format(), name)
+
+
+@_silenced()
+def array_of(path: Path) -> np.ndarray[Any, Any]:
+    """Numbers of a file without units, as of a mask."""
+    reader = _reader(path)
+    channel = reader.default_channel
+    sized = {} if channel.physical_sizes else {"physical_sizes": (1.0,) * channel.dim}
+    with _errors_as_sentences(path, reader.format()):
+        return np.ma.filled(reader.topography(channel_index=channel.index, **sized).heights(), 0.0)
+
+
+def library_scan(
+    heights: np.ndarray[Any, Any],
+    size: tuple[float, ...],
+    *,
+    periodic: bool,
+    info: dict[str, Any] | None = None,
+) -> Any:
+    """Heights in metres as an object of the library."""
+    kinds = library_part("UniformLineScanAndTopography")
+    kind = kinds.Topography if heights.ndim > 1 else kinds.UniformLineScan
+    return kind(heights, size, periodic=periodic, unit="m", info=info or {})
+
+
+@contextmanager
+def _errors_as_sentences(path: Path, name: str = "what its head says") -> Iterator[None]:
+    """Turn what the library raises at a file into a sentence."""
+    exceptions = library_part("Exceptions")
+    try:
+        yield
+    except exceptions.CannotDetectFileFormat as error:
+        raise ValueError(
+            f"{path} is in no format that SurfaceTopography reads, or damaged; export it from the "
+            "instrument again, as X3P if there is a choice"
+        ) from error
+    # A damaged file may fail anywhere in a parser that is not ours.
+    except Exception as error:
+        line = next(iter(str(error).splitlines()), "") or type(error).__name__
+        raise ValueError(
+            f"{path} cannot be read as {name}: {line}; export it from the instrument again"
+        ) from error
+
+
+def _reader(path: Path) -> Any:
+    """The library's reader of a file, which is regular and not too large."""
+    refuse_unreadable(path)
+    source: Any = readable(path)
+    with _errors_as_sentences(path):
+        if isinstance(source, Path):
+            # A file that is not what it begins as is left to the readers in their order.
+            with suppress(Exception):
+                if (reader := _reader_by_signature(path)) is not None:
+                    return reader(str(path))
+            source = str(source)
+        return library_part("IO").open_topography(source)
+
+
+def _reader_by_signature(path: Path) -> Any:
+    """Reader whose signature a file begins with, found by few imports; None if none or several."""
+    base = library_part("IO.Reader")
+    with path.open("rb") as file:
+        begin = file.read(_BEGIN)
+
+    def is_signed(reader: Any) -> bool:
+        return bool(reader.can_read(begin) == base.MagicMatch.YES)
+
+    found: list[Any] = []
+    if (name := path.suffix[1:].upper()).isalnum():
+        # Most readers stand in a module of the name of their files' suffix.
+        with suppress(Exception):
+            kinds = vars(library_part(f"IO.{name}")).values()
+            readers = (one for one in kinds if isinstance(one, type(base.ReaderBase)))
+            found = [one for one in readers if hasattr(one, "can_read") and is_signed(one)]
+    found = found or list(filter(is_signed, library_part("IO").readers))
+    return found[0] if len(found) == 1 else None
+
+
+@_silenced()
+def list_channels(path: str | PathLike[str]) -> tuple[Channel, ...]:
+    """Channels of a file, as options `channel` name them.
+
+    Parameters
+    ----------
+    path : str or path
+        File of an instrument, in any format that SurfaceTopography reads.
+
+    Returns
+    -------
+    tuple of Channel
+        Number, name, quantity and points of each, and whether it is read by default.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read.
+    OSError
+        If it cannot be opened.
+    """
+    return _channels(Path(path), _reader(Path(path)))
+
+
+def _channels(path: Path, reader: Any) -> tuple[Channel, ...]:
+    """Channels of a file, numbered as its reader has them."""
+    with _errors_as_sentences(path):
+        default = reader.default_channel.index
+        return tuple(
+            Channel(one.index, one.name, _kind(one), one.nb_grid_pts or (), one.index == default)
+            for one in reader.channels
+        )
+
+
+def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
+    """A channel of heights, the library's own choice if none is named, and what it is called."""
+    known = _channels(path, reader)
+    named = [one for one in known if (one.is_default if wanted is None else one.name == wanted)]
+    named = named or [one for one in known if str(one.number) == wanted]
+    if len(named) != 1:
+        raise ValueError(
+            f"{path} has {'several channels' if named else 'no channel'} {wanted!r}; "
+            f"{_choice(known)}"
+        )
+    [found] = named
+    if found.quantity != "height":
+        of_heights = [one for one in known if one.quantity == "height"]
+        raise ValueError(
+            f"{path}: channel {found.name!r} holds {found.quantity}, no heights; "
+            + (_choice(of_heights) if of_heights else "export the channel of the heights")
+        )
+    several = f", {found.number} of {len(known)}" if len(known) > 1 else ""
+    [channel] = [one for one in reader.channels if one.index == found.number]
+    return channel, f"{found.name!r}{several}"
+
+
+def _kind(channel: Any) -> str:
+    """Quantity that a channel holds: height, phase and others."""
+    # A reader takes any quantity over lengths for heights, and has two units for it.
+    return "another quantity" if isinstance(channel.unit, tuple) else str(channel.data_kind.value)
+
+
+def is_doubtful(channel: str) -> bool:
+    """Whether the name of a channel says that it holds no heights."""
+    return _NO_HEIGHTS.search(channel) is not None
+
+
+def _choice(channels: Sequence[Channel]) -> str:
+    """Sentence that lists channels."""
+    return f"choose by number or name with --channel: {'; '.join(map(str, channels))}"
+
+
+def _what_is_not_stated(
+    path: Path, name: str, channel: Any, options: ReadingOptions
+) -> tuple[dict[str, Any], tuple[float, ...] | None]:
+    """What a file does not state, and sides in metres where it states impossible ones."""
+    unit, size = channel.unit, channel.physical_sizes
+    is_sized = size is not None and None not in size
+    if unit is not None and is_sized and not _are_possible(stated := in_metres(unit, *size)):
+        if options.size is None or options.unit is None:
+            raise ValueError(
+                f"{path} states sides of {shown_sides(stated)}, which no instrument measures; its "
+                "unit is wrong, so name the sides, as in --size "
+                f"{','.join(f'{side:g}' for side in stated)} --unit um"
+            )
+        return {}, _named_sides(path, _sides(path, options.size, len(stated)), options.unit)
+    given: dict[str, Any] = {}
+    if unit is None:
+        if options.unit is None:
+            raise ValueError(
+                f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
+            )
+        _refuse_no_length("--unit", options.unit)
+        given["unit"] = unit = options.unit
+    elif options.unit not in (None, unit):
+        raise ValueError(f"{path} states its own unit, {unit}; leave --unit {options.unit} out")
+    if not is_sized:
+        if options.size is None:
+            raise ValueError(f"{path} states no size of the scan; name it, as in --size 50,50")
+        given["physical_sizes"] = size = _sides(path, options.size, channel.dim)
+    elif options.size is not None:
+        known = " x ".join(f"{side:g}" for side in size)
+        raise ValueError(f"{path} states its own size, {known} {unit}; leave --size out")
+    _named_sides(path, size, unit)
+    return given, None
+
+
+def _refuse_no_length(option: str, unit: str) -> None:
+    """Raise where an option names no unit of length."""
+    if not library_part("Support.UnitConversion").is_length_unit(unit):
+        raise ValueError(f"{option} {unit} is no unit of length; name one, as in um")
+
+
+def _sides(path: Path, named: tuple[float, ...], n_side: int) -> tuple[float, ...]:
+    """Sides of a scan that are named, one number for a square."""
+    found = named * n_side if len(named) == 1 else named
+    if len(found) != n_side:
+        raise ValueError(
+            f"{path} has {n_side} dimension(s) and the size that is named {len(named)}; name one "
+            "length for each, as in --size 50,40, or one for a square"
+        )
+    return found
+
+
+def in_metres(unit: str, *lengths: float) -> tuple[float, ...]:
+    """Lengths of a unit in metres."""
+    factor = library_part("Support.UnitConversion").get_unit_conversion_factor(unit, "m")
+    return tuple(float(factor * float(length)) for length in lengths)
+
+
+def are_possible_heights(heights: np.ndarray[Any, Any], sides: tuple[float, ...]) -> bool:
+    """Whether an instrument measures heights on such sides, all in metres."""
+    known = np.ma.compressed(np.ma.masked_invalid(heights))
+    return bool(np.std(known) >= _LEAST_HEIGHT and np.ptp(known) <= _MOST_HEIGHT * max(sides))
+
+
+def _are_possible(sides: tuple[float, ...]) -> bool:
+    """Whether an instrument measures sides of so many metres."""
+    return all(_SIDES[0] <= side <= _SIDES[1] for side in sides)
+
+
+def _named_sides(path: Path, sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
+    """Sides in metres, refused where no instrument measures them."""
+    found = in_metres(unit, *sides)
+    if not _are_possible(found):
+        raise ValueError(
+            f"{path} cannot have sides of {shown_sides(found)}: instruments measure from "
+            f"{shown_sides(_SIDES[:1])} to {shown_sides(_SIDES[1:])}; check --size and --unit"
+        )
+    return found
+
+
+def shown_sides(sides: tuple[float, ...]) -> str:
+    """Sides of a scan as a text (Units: m)."""
+    return " x ".join(prefixed("m", side) for side in sides)

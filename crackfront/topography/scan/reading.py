@@ -1,0 +1,276 @@
+"""Measurements of surfaces: read by a library, completed by what files do not state, levelled."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crackfront.data.written_units import prefixed
+from crackfront.topography.options import ReadingOptions, Region
+from crackfront.topography.scan.files import checksum
+from crackfront.topography.scan.instruments import (
+    RawScan,
+    are_possible_heights,
+    array_of,
+    in_metres,
+    library_part,
+    library_scan,
+    raw_scan,
+    shown_sides,
+    surface_library,
+)
+from crackfront.topography.scan.levelling import Array, Points, levelled, order_of, taken_off
+
+_PIXELS_PER_WAVE = 4
+"""Points in the shortest wave to trust without a stated resolution: shorter ones are aliased."""
+
+_WAVES_PER_SIDE = 2
+"""Longest waves to trust in a side: levelling and window take part of longer ones away."""
+
+_MOST_MISSING = 0.1
+"""Part of the points that may be missing; more leave too much to the interpolation."""
+
+_FEWEST_OCTAVES = 2
+"""Octaves between the shortest and the longest trusted wavelength that a spectrum needs."""
+
+_FEWEST_POINTS = 8
+"""Points along a side that a crop must leave."""
+
+_SCANNING_PROBES = {"di", "ezd", "ibw", "jpk", "mdt", "mi", "ps", "wsxm"}
+"""Formats of scanning probes, whose files seldom say what their tip is."""
+
+_TIP = 10e-9
+"""Radius of a tip of which nothing is known (Units: m)."""
+
+_DEEP, _HIDDEN = -1.0, 0.7
+"""Skewness below which valleys are narrow, and ln of the largest e_el over what a tip finds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """A scan of a surface, ready for analysis."""
+
+    path: Path
+    format: str
+    """Name of the format, as the library calls it."""
+    comment: str
+    """What the file says of itself."""
+    checksum: str
+    """Eight hexadecimal digits of its content."""
+    size: tuple[float, ...]
+    """Sides of a map, or the length of a line. (Units: m)"""
+    heights: Array
+    """Detrended heights without gaps. Shape (n_x, n_y) or (n_x,). (Units: m)"""
+    periodic: bool
+    """Whether the file says that opposite edges belong together."""
+    missing: float
+    """Part of the points that were interpolated."""
+    shortest: float
+    longest: float
+    """Wavelengths that pixels, resolution and size of the scan allow to trust. (Units: m)"""
+    tip_radius: float = 0.0
+    tip_wavelength: float = 0.0
+    """Radius of the tip, and wavelength below which it shapes what it records; 0 where there is
+    none. (Units: m)"""
+    tip_is_assumed: bool = False
+    """Whether its radius is that of a tip of which nothing is known."""
+    channel: str = ""
+    """Name of the channel in the file, and which of how many of heights it is."""
+    levelling: str = ""
+    """What was taken off, in words."""
+
+    @property
+    def pixels(self) -> tuple[float, ...]:
+        """Distances of points in the directions (Units: m)."""
+        return tuple(
+            side / count for side, count in zip(self.size, self.heights.shape, strict=True)
+        )
+
+    @property
+    def is_line(self) -> bool:
+        """Whether it is a line scan."""
+        return self.heights.ndim == 1
+
+    @property
+    def log_hidden_energy(self) -> float:
+        """Ln of the largest e_el over the recorded one, as the tip does not reach into valleys."""
+        deviation = self.heights - np.mean(self.heights)
+        skewness = np.mean(deviation**3) / np.mean(deviation**2) ** 1.5
+        shapes = self.tip_wavelength > 2 * max(self.pixels)  # waves that the pixels would hold
+        return _HIDDEN if shapes and skewness < _DEEP else 0.0
+
+
+def read_measurements(
+    paths: Sequence[Path], options: ReadingOptions | Sequence[ReadingOptions] | None = None
+) -> tuple[Measurement, ...]:
+    """Measurements of one surface, from files in any format that SurfaceTopography reads.
+
+    The options say how the files are read: one record for all, or one for each. ValueError, of one
+    sentence, if the library is missing or a file cannot be used; OSError if one cannot be opened.
+    """
+    if not paths:
+        raise ValueError("no file is named; name one measurement of the surface or several")
+    repeated = sorted({str(path) for path in paths if list(paths).count(path) > 1})
+    if repeated:
+        raise ValueError(f"{repeated[0]} is named twice; a measurement counts once")
+    if options is None or isinstance(options, ReadingOptions):
+        options = [options or ReadingOptions()] * len(paths)
+    return tuple(_measurement(*both) for both in zip(paths, options, strict=True))
+
+
+def _measurement(path: Path, options: ReadingOptions) -> Measurement:
+    """Measurement of one file."""
+    scan = raw_scan(path, options)
+    raw = scan.topography
+    heights, fitted, size = _used_part(path, raw, options)
+    gaps = np.ma.getmaskarray(heights)
+    try:
+        values = levelled(np.ma.getdata(heights), fitted, options.detrend)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+    periodic = raw.is_periodic and options.crop is None and not order_of(options.detrend)
+    level = library_scan(
+        np.ma.array(values, mask=gaps), size, periodic=bool(periodic), info=raw.info
+    )
+    if gaps.any():
+        library_part("Uniform.Imputation")
+        level = level.interpolate_undefined_data()
+    levelling = taken_off(options.detrend)
+    if options.mask:
+        left_out = 1 - np.count_nonzero(fitted) / np.ma.count(heights)
+        levelling += f" of all but {left_out:.2%} of the points"
+    radius, is_assumed = _tip(scan, options)
+    tip = 0.0
+    if radius:
+        surface_library()
+        tip = float(level.scanning_probe_reliability_cutoff(radius) or 0.0)
+    shortest, longest = _trusted_wavelengths(path, level, size)
+    return Measurement(
+        path=path,
+        format=scan.format,
+        comment=str(raw.info.get("comment") or "").strip(),
+        checksum=checksum(path),
+        size=size,
+        heights=np.array(np.ma.getdata(level.heights()), dtype=float),
+        periodic=bool(level.is_periodic),
+        missing=float(np.mean(gaps)),
+        shortest=shortest,
+        longest=longest,
+        tip_radius=radius,
+        tip_wavelength=tip,
+        tip_is_assumed=is_assumed,
+        channel=scan.channel,
+        levelling=levelling,
+    )
+
+
+def _used_part(
+    path: Path, raw: Any, options: ReadingOptions
+) -> tuple[np.ma.MaskedArray[Any, Any], Points, tuple[float, ...]]:
+    """Heights of the part that is used, which of them the trend is fitted to, and its sides."""
+    heights = np.ma.masked_invalid(raw.heights())
+    counts, size = heights.shape, tuple(map(float, raw.physical_sizes))
+    fitted = ~np.ma.getmaskarray(heights) & ~_masked(path, options, counts, size)
+    if options.crop is not None:
+        part = _slices(path, "crop", options.crop, counts, size)
+        heights, fitted = heights[part], fitted[part]
+        if min(heights.shape) < _FEWEST_POINTS:
+            raise ValueError(
+                f"{path}: the crop leaves fewer than {_FEWEST_POINTS} points along a side; widen it"
+            )
+    size = tuple(
+        side * kept / count for side, kept, count in zip(size, heights.shape, counts, strict=True)
+    )
+    missing = float(np.mean(np.ma.getmaskarray(heights)))
+    if missing > _MOST_MISSING:
+        raise ValueError(
+            f"{path}: {missing:.0%} of the points are missing; more than {_MOST_MISSING:.0%} are "
+            "too many to interpolate, so use a part with --crop, or measure again"
+        )
+    known = np.ma.compressed(heights)
+    rms, span = float(np.std(known)), float(np.ptp(known))
+    if not span > 0:
+        raise ValueError(f"{path}: all heights are equal; a smooth surface has no spectrum")
+    if not are_possible_heights(known, size):
+        raise ValueError(
+            f"{path}: the heights vary by {prefixed('m', rms)} rms and span {prefixed('m', span)} "
+            f"on {shown_sides(size)}, which cannot be; their unit is wrong, so name the right "
+            "one, as in --height-unit nm"
+        )
+    return heights, fitted, size
+
+
+def _tip(scan: RawScan, options: ReadingOptions) -> tuple[float, bool]:
+    """Radius of the tip of a scan, 0 where it has none, and whether it is assumed (Units: m)."""
+    if options.tip_radius is not None:
+        return options.tip_radius, False
+    if (stated := _stated(scan.topography, "tip_radius")) is not None:
+        return stated, False
+    is_assumed = scan.format in _SCANNING_PROBES
+    return (_TIP if is_assumed else 0.0), is_assumed
+
+
+def _stated(level: Any, name: str) -> float | None:
+    """A length that a file states of its instrument (Units: m)."""
+    found = level.info.get("instrument", {}).get("parameters", {}).get(name)
+    return in_metres(found["unit"], found["value"])[0] if found else None
+
+
+def _trusted_wavelengths(path: Path, level: Any, size: tuple[float, ...]) -> tuple[float, float]:
+    """Wavelengths that points, resolution and sides allow to trust, refused where they are few."""
+    shortest = _PIXELS_PER_WAVE * max(np.divide(size, level.nb_grid_pts).tolist())
+    shortest = max(shortest, _stated(level, "resolution") or 0.0)
+    longest = min(size) / _WAVES_PER_SIDE
+    if longest < 2**_FEWEST_OCTAVES * shortest:
+        raise ValueError(
+            f"{path}: a spectrum needs {_FEWEST_OCTAVES} octaves of waves to trust, above "
+            f"{prefixed('m', shortest)} (points or instrument) and below {prefixed('m', longest)} "
+            "(half a side); use a larger or finer scan"
+        )
+    return shortest, longest
+
+
+def _masked(
+    path: Path, options: ReadingOptions, counts: tuple[int, ...], size: tuple[float, ...]
+) -> Points:
+    """Points that the levelling leaves out."""
+    found = np.zeros(counts, dtype=bool)
+    for mask in options.mask:
+        if not isinstance(mask, Path):
+            found[_slices(path, "mask", mask, counts, size)] = True
+            continue
+        numbers = array_of(mask)
+        if numbers.shape != counts:
+            given, needed = (" x ".join(map(str, shape)) for shape in (numbers.shape, counts))
+            raise ValueError(
+                f"mask {mask} has {given} points and {path} {needed}; a mask has a number for each "
+                "point, not zero where the levelling leaves it out"
+            )
+        found |= numbers != 0
+    return found
+
+
+def _slices(
+    path: Path, what: str, region: Region, counts: tuple[int, ...], size: tuple[float, ...]
+) -> tuple[slice, ...]:
+    """Slices of the points within a region of a scan."""
+    if len(region) != len(counts):
+        raise ValueError(
+            f"{path} has {len(counts)} dimension(s) and the {what} {len(region)}; name both ends "
+            "along each, as in 2um:8um,0um:5um"
+        )
+    for (_, high), side in zip(region, size, strict=True):
+        if high > side * (1 + 1e-9):
+            raise ValueError(
+                f"{path} ends at {prefixed('m', side)} and the {what} at {prefixed('m', high)}; "
+                "name ends within the scan"
+            )
+    return tuple(
+        slice(*(math.ceil(end / side * count - 1e-6) for end in ends))
+        for ends, side, count in zip(region, size, counts, strict=True)
+    )

@@ -1,0 +1,107 @@
+"""What a surface is: rms measures of all orders, the scales behind them, and e_el."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from crackfront.analysis.estimate import Estimate
+from crackfront.topography.density.bands import Scan, scan
+from crackfront.topography.density.densities import Density, periodogram
+from crackfront.topography.options import ReadingOptions
+from crackfront.topography.scan.reading import Measurement, read_measurements
+from crackfront.topography.spectrum.draws import ORDERS
+from crackfront.topography.spectrum.joining import JointSpectrum, joint_spectrum
+
+_SHARE = 0.8
+"""Part of a mean square that lies within the scales that dominate it."""
+
+
+@dataclass(frozen=True, slots=True)
+class RmsMeasure:
+    """Root mean square of a derivative of the heights."""
+
+    order: float
+    rms: Estimate[float]
+    """Of the joint spectrum. (Units: m^(1 - order))"""
+    shortest: float
+    longest: float
+    """Wavelengths that dominate it: a tenth lies below, a tenth above. (Units: m)"""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredSurface:
+    """What was measured of a surface, and what follows from it."""
+
+    scans: tuple[Scan, ...]
+    """The measurements with their trusted bands."""
+    profiles: tuple[Density, ...]
+    """Density of the lines along x of every measurement."""
+    joint: JointSpectrum
+    """Their spectrum; maps enter by their isotropic density, lines by that of profiles."""
+    measures: tuple[RmsMeasure, ...]
+    """Of the heights, their half-derivative and their slopes."""
+    half_derivative: Estimate[float]
+    """Mean square of the half-derivative of the joint spectrum. (Units: m)"""
+    recorded: Estimate[float]
+    """That of what the scans hold. (Units: m)"""
+
+    @property
+    def checksum(self) -> str:
+        """Eight hexadecimal digits of the content of all files, in their order."""
+        text = "".join(one.measurement.checksum for one in self.scans)
+        return hashlib.sha256(text.encode()).hexdigest()[:8]
+
+    def conformity_energy(
+        self, contact_modulus: float, half_derivative: Estimate[float] | None = None
+    ) -> Estimate[float]:
+        """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2, of E' in Pa (Units: J / m^2).
+
+        By another mean square of the half-derivative where one is given. (Units: m)
+        """
+        square = half_derivative or self.half_derivative
+        return square.each(lambda number: contact_modulus / 4 * number)
+
+
+def measured_surface(
+    measurements: Sequence[Measurement], shortest: float | None = None, longest: float | None = None
+) -> MeasuredSurface:
+    """Spectrum and measures of a surface of which there is one measurement or several.
+
+    Ends of the trusted wavelengths (Units: m) stand in place of those that are found in each.
+    ValueError if the densities do not determine a spectrum.
+    """
+    scans = tuple(scan(item, shortest, longest) for item in measurements)
+    joint = joint_spectrum(scans)
+    return MeasuredSurface(
+        scans=scans,
+        profiles=tuple(
+            periodogram(one.measurement, is_profile=True).density().within(*one.band.wavelengths)
+            for one in scans
+        ),
+        joint=joint,
+        measures=tuple(_rms_measure(order, joint) for order in ORDERS),
+        half_derivative=joint.draws.mean_square(0.5),
+        recorded=joint.draws.recorded_mean_square(0.5),
+    )
+
+
+def read_surface(paths: Sequence[Path], options: Sequence[ReadingOptions]) -> MeasuredSurface:
+    """Surface of files, each of which is read by its options.
+
+    ValueError if a file cannot be used, or the densities do not determine a spectrum; OSError if
+    one cannot be opened.
+    """
+    measurements = read_measurements(paths, options)
+    return measured_surface(measurements, options[0].shortest, options[0].longest)
+
+
+def _rms_measure(order: float, joint: JointSpectrum) -> RmsMeasure:
+    """Measure of one order."""
+    draws = joint.draws
+    rms = draws.estimate(np.sqrt(draws.estimated[ORDERS.index(order)]))
+    return RmsMeasure(order, rms, *joint.spectrum.dominant_wavelengths(order, _SHARE))

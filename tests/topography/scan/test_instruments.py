@@ -1,0 +1,252 @@
+"""Files of instruments: formats, channels, units and sides, and what cannot be read."""
+
+import hashlib
+import subprocess
+import sys
+import warnings
+import zipfile
+
+import h5py
+import numpy as np
+import pytest
+
+import crackfront as cf
+from crackfront.topography.options import ReadingOptions
+from crackfront.topography.prediction.surface_remarks import channel_remarks
+from crackfront.topography.scan.instruments import surface_library
+from crackfront.topography.scan.reading import read_measurements
+from crackfront.topography.spectrum.measures import read_surface
+from studies.accuracy import scans
+from tests.topography.made import SIDE, read, refusal, write_text
+
+N_POINT = 48
+PLAIN = {"unit": "um", "size": (20.0,)}
+
+
+def write_arrays(path, **channels):
+    """Arrays in one file."""
+    with h5py.File(path, "w") as file:
+        for name, values in channels.items():
+            file[name] = values
+    return path
+
+
+def test_sides_that_cannot_be_are_refused_and_may_be_named(tmp_path, noise):
+    path = tmp_path / "scan.al3d"
+    path.write_bytes(scans.al3d(noise, 160 / N_POINT, "metres for micrometres"))
+    message = refusal(path)
+    assert "states sides of 160 m x 160 m, which no instrument measures" in message
+    assert "--size 160,160 --unit um" in message
+    found = read(path, size="160,160", unit="um")
+    assert found.size == pytest.approx((160e-6, 160e-6))
+    assert np.std(found.heights) == pytest.approx(np.std(noise), rel=0.1)
+    plain = write_arrays(tmp_path / "plain.h5", surface=noise)
+    assert "cannot have sides of 20 m x 20 m" in refusal(plain, unit="m", size=(20.0, 20.0))
+    assert "which cannot be" in refusal(plain, unit="pm", size=(1e7, 1e7))
+
+
+def test_a_channel_is_chosen_by_name_or_number(tmp_path, noise):
+    path = tmp_path / "scan.txt"
+    one, two = (write_text(tmp_path / f"{n}.txt", n * noise).read_text() for n in (1, 3))
+    path.write_text(one + two.replace("Channel: Main", "Channel: Other"))
+    by_default, by_name, by_number = (read(path, channel=name) for name in (None, "Other", 1))
+    assert by_default.channel == "'Main', 0 of 2"
+    assert by_name.channel == by_number.channel == "'Other', 1 of 2"
+    assert np.std(by_name.heights) == pytest.approx(3 * np.std(by_default.heights), rel=1e-4)
+    message = refusal(path, channel="Phase")
+    assert "has no channel 'Phase'; choose by number or name with --channel: 0 'Main'" in message
+
+
+def test_warnings_of_parsers_are_none_of_the_users(tmp_path, noise, monkeypatch):
+    library, path, mask = surface_library().IO, tmp_path / "scan.txt", tmp_path / "mask.npy"
+    np.savetxt(path, 1e6 * noise.T)
+    np.save(mask, np.zeros(noise.shape))
+    opened, warned = library.open_topography, []
+
+    def warning(*arguments, **options):
+        warned.append(warnings.warn("wmf image format is not supported", stacklevel=2))
+        return opened(*arguments, **options)
+
+    monkeypatch.setattr(library, "open_topography", warning)
+    assert read(path, unit="um", size="5,4", mask=mask).heights.shape == noise.shape
+    assert warned
+
+
+def test_channels_are_listed_and_those_of_other_quantities_refused(monkeypatch, scan):
+    module = surface_library().IO.Reader
+    assert [str(one) for one in cf.list_channels(scan)] == [
+        "0 'Default' (height), 128 x 128 points, default"
+    ]
+    monkeypatch.setattr(module.ChannelInfo, "unit", property(lambda channel: ("nm", None)))
+    assert "channel 'Default' holds another quantity, no heights; export" in refusal(scan)
+    kind = property(lambda channel: module.DataKind.PHASE)
+    monkeypatch.setattr(module.ChannelInfo, "data_kind", kind)
+    monkeypatch.setattr(module.ChannelInfo, "unit", "m")
+    assert "channel 'Default' holds phase, no heights" in refusal(scan)
+
+
+def test_a_channel_of_lengths_that_is_named_after_another_quantity_is_in_doubt(tmp_path, noise):
+    path = write_text(tmp_path / "scan.txt", noise)
+    path.write_text(path.read_text().replace("Channel: Main", "Channel: AmplitudeTrace"))
+    assert "(height, by its name another quantity)" in str(cf.list_channels(path)[0])
+    [told] = channel_remarks(read_surface([path], [ReadingOptions()]))
+    assert "channel 'AmplitudeTrace' has a unit of length, but the name of another" in told.sentence
+
+
+def test_heights_have_a_unit_of_their_own_where_none_is_stated_or_it_cannot_be(tmp_path, noise):
+    nanometres, head = tmp_path / "plain.txt", "# Width: 20 µm\n# Height: 20 µm\n"
+    np.savetxt(nanometres, 1e9 * noise.T)
+    assert "name the right one, as in --height-unit nm" in refusal(nanometres, unit="um", size=20)
+    found = [read(nanometres, unit="um", size=20, height_unit="nm")]
+    for unit, given in (("m", {}), ("µm", {"unit": None})):
+        path = tmp_path / f"stated-{unit}.txt"
+        path.write_text(f"{head}# Value units: {unit}\n{nanometres.read_text()}")
+        found.append(read(path, height_unit="nm", **given))
+    for one in found:
+        assert one.size == pytest.approx((20e-6, 20e-6))
+        np.testing.assert_allclose(one.heights, found[0].heights, rtol=1e-9)
+    assert np.std(found[0].heights) == pytest.approx(np.std(noise), rel=0.1)
+    assert "--height-unit kg is no unit of length" in refusal(nanometres, height_unit="kg", **PLAIN)
+    path.write_text(path.read_text().replace("units: µm", "units: nm"))
+    assert "states heights in nm, which may be; leave" in refusal(path, height_unit="um")
+
+
+def test_unequally_spaced_lines_are_refused(rng, tmp_path):
+    places = np.sort(rng.uniform(0, 20, 128))
+    np.savetxt(tmp_path / "line.xyz", np.column_stack([places, rng.standard_normal(128)]))
+    assert "not equally spaced" in refusal(tmp_path / "line.xyz", unit="um")
+
+
+def test_units_and_sizes_that_a_file_lacks_must_be_named(tmp_path, heights, scan):
+    path = tmp_path / "plain.txt"
+    np.savetxt(path, 1e6 * heights)
+    assert "read as asc, states no unit of length; name it, as in --unit um" in refusal(path)
+    assert "states no size" in refusal(path, unit="um")
+    assert "--unit kg is no unit of length" in refusal(path, unit="kg", size=(20.0, 20.0))
+    assert "2 dimension(s)" in refusal(path, unit="um", size=(20.0, 20.0, 20.0))
+    [given] = read_measurements([path], ReadingOptions(**PLAIN))
+    assert given.size == pytest.approx((20e-6, 20e-6))
+    assert np.std(given.heights) == pytest.approx(
+        np.std(read_measurements([scan])[0].heights), rel=1e-6
+    )
+
+
+def test_units_and_sizes_that_a_file_states_are_not_overruled(scan):
+    assert "states its own unit, m" in refusal(scan, unit="nm")
+    assert "states its own size" in refusal(scan, size=(1.0, 1.0))
+
+
+def test_files_that_cannot_be_read_are_refused(rng, tmp_path, scan):
+    noise, empty, cut = (tmp_path / name for name in ("noise.al3d", "empty.al3d", "cut.al3d"))
+    noise.write_bytes(rng.bytes(5001))
+    empty.write_bytes(b"")
+    cut.write_bytes(scan.read_bytes()[:2000])
+    assert "in no format that SurfaceTopography reads" in refusal(noise)
+    assert "is empty" in refusal(empty)
+    assert "cut.al3d" in refusal(cut)
+    with pytest.raises(FileNotFoundError):
+        read_measurements([tmp_path / "absent.al3d"])
+
+
+_LEAN = """
+import sys
+from pathlib import Path
+from crackfront.topography.options import ReadingOptions
+from crackfront.topography.scan.reading import read_measurements
+[scan] = read_measurements([Path(sys.argv[1])])
+assert scan.format == "al3d"
+assert "SurfaceTopography.IO.X3P" not in sys.modules and "matplotlib" not in sys.modules
+[points] = read_measurements([Path(sys.argv[2])], ReadingOptions(unit="m"))
+assert points.format == "xyz"
+import SurfaceTopography
+whole = SurfaceTopography.read_topography(sys.argv[1])
+assert whole.detrend().rms_height_from_area() > 0
+"""
+
+
+def test_a_scan_is_read_without_the_readers_of_other_formats_which_come_when_used(
+    scan, tmp_path, rng
+):
+    write_xyz(tmp_path / "scan.xyz", 1e-8 * rng.standard_normal((N_SIDE, N_SIDE)))
+    subprocess.run([sys.executable, "-c", _LEAN, scan, tmp_path / "scan.xyz"], check=True)
+
+
+def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatch, scan):
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    assert "pip install '.[surfaces]'" in refusal(scan)
+
+
+N_SIDE = 32
+PIXEL = SIDE / N_SIDE
+UNSTATED = ReadingOptions(detrend="center", unit="m", size=(SIDE, SIDE))
+
+
+_X3P = """<?xml version="1.0" encoding="UTF-8"?>
+<p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2">
+<Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>
+<CX><AxisType>I</AxisType><DataType>D</DataType><Increment>{pixel}</Increment></CX>
+<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>{pixel}</Increment></CY>
+<CZ><AxisType>A</AxisType><DataType>D</DataType><Increment>1</Increment></CZ></Axes></Record1>
+<Record2><Date>2026-01-01T00:00:00</Date><Creator>test</Creator>
+<Instrument><Manufacturer>A</Manufacturer><Model>B</Model><Serial>1</Serial>
+<Version>1</Version></Instrument>
+<CalibrationDate>2026-01-01T00:00:00</CalibrationDate>
+<ProbingSystem><Type>Software</Type><Identification/></ProbingSystem></Record2>
+<Record3><MatrixDimension><SizeX>{n}</SizeX><SizeY>{n}</SizeY><SizeZ>1</SizeZ></MatrixDimension>
+<DataLink><PointDataLink>bindata/data.bin</PointDataLink>
+<MD5ChecksumPointData>{checksum}</MD5ChecksumPointData></DataLink></Record3>
+<Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4></p:ISO5436_2>"""
+
+
+def write_x3p(path, heights):
+    """ISO 5436-2: a ZIP file of XML and numbers."""
+    numbers = heights.T.astype("<f8").tobytes()
+    checksum = hashlib.md5(numbers).hexdigest()
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("main.xml", _X3P.format(pixel=PIXEL, n=N_SIDE, checksum=checksum))
+        archive.writestr("bindata/data.bin", numbers)
+
+
+def write_h5(path, heights):
+    """An array in HDF5."""
+    with h5py.File(path, "w") as file:
+        file["surface"] = heights
+
+
+def write_xyz(path, heights):
+    """Points in three columns."""
+    places = PIXEL * np.indices(heights.shape).reshape(2, -1)
+    np.savetxt(path, np.column_stack([*places, heights.ravel()]))
+
+
+WRITERS = {
+    "x3p": (write_x3p, ReadingOptions(detrend="center")),
+    "xyz": (write_xyz, ReadingOptions(detrend="center", unit="m")),
+    "asc": (lambda path, heights: np.savetxt(path, heights.T), UNSTATED),
+    "npy": (np.save, UNSTATED),
+    "h5": (write_h5, UNSTATED),
+}
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_a_map_is_the_same_in_every_format(tmp_path, rng, name):
+    heights = 1e-8 * rng.standard_normal((N_SIDE, N_SIDE))
+    write, options = WRITERS[name]
+    path = tmp_path / f"scan.{name}"
+    write(path, heights)
+    [measurement] = read_measurements([path], options)
+    assert measurement.format == name
+    assert measurement.size == pytest.approx((SIDE, SIDE))
+    np.testing.assert_allclose(measurement.heights, heights - heights.mean(), atol=1e-20)
+
+
+def test_a_file_with_a_damaged_head_is_refused_with_a_sentence(tmp_path, rng):
+    path = tmp_path / "scan.x3p"
+    write_x3p(path, rng.standard_normal((N_SIDE, N_SIDE)))
+    with zipfile.ZipFile(path) as archive:
+        head, numbers = (archive.read(name) for name in ("main.xml", "bindata/data.bin"))
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("main.xml", head.replace(b"<Model>B</Model>", b"<Model/>"))
+        archive.writestr("bindata/data.bin", numbers)
+    with pytest.raises(ValueError, match=r"scan.x3p cannot be read as what its head says: .*; exp"):
+        read_measurements([path])
