@@ -27,7 +27,6 @@ rule all:
         f"{RESULTS}/summary.html",
         f"{RESULTS}/hysteresis.nc",
         multiext(f"{RESULTS}/fit", ".nc", ".json", ".md"),
-        expand("{results}/shards/{shard}.json", results=RESULTS, shard=SHARDS),
 
 
 include: "workflow/rules/simulate.smk"

@@ -516,7 +516,7 @@ def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
     assert found.w_retr.dims == ("spectrum", "amplitude", "realisation")
     assert bool((found.w_retr > found.w_appr).all())
     xr.testing.assert_identical(found, xr.load_dataset(tmp_path / "hysteresis.nc"))
-    assert (tmp_path / "shards/flat.json").is_file()
+    assert (tmp_path / "shards/flat.nc").is_file()
 
     def run_again(*arguments):
         raise AssertionError("nothing is missing")

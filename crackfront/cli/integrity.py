@@ -20,7 +20,7 @@ def verify(place: Path, as_json: bool) -> None:
     The exit code is 1 where a file is damaged, or missing although a row or a list names it.
     """
     from crackfront.data.digests import Integrity
-    from crackfront.sweep.journal import mixture_sentence
+    from crackfront.sweep.store import mixture_sentence
     from crackfront.sweep.verification import verification
 
     found = verification(place)
@@ -40,7 +40,7 @@ def verify(place: Path, as_json: bool) -> None:
     if is_whole := not (found.damaged or found.missing):
         lines.append(f"{place}: nothing is damaged or missing")
     content = {"counts": counts, "damaged": found.damaged, "missing": found.missing}
-    content["arithmetic"] = found.arithmetic
+    content["arithmetic"] = sorted(found.arithmetic)
     echo_answer(content, lines, as_json=as_json)
     if not is_whole:
         raise click.ClickException(
@@ -59,9 +59,9 @@ def verify(place: Path, as_json: bool) -> None:
 def repair(places: tuple[Path, ...], output: Path | None) -> None:
     """Set damaged files aside, so that the workflow makes them and what depends on them anew.
 
-    A PLACE is a configuration of a sweep, or a folder of results. Lists of shards that lack
-    simulations are removed, and files that are dated in the future get the date of now. `make`
-    begins with it; nothing else of the workflow changes results before its jobs run.
+    A PLACE is a configuration of a sweep, or a folder of results. Shards
+    whose curves are gone are removed, and files that are dated in the future get the date of now.
+    `make` begins with it; nothing else of the workflow changes results before its jobs run.
     """
     from crackfront.data.files import date_back, set_aside_damaged
     from crackfront.sweep.library import opened
@@ -70,8 +70,8 @@ def repair(places: tuple[Path, ...], output: Path | None) -> None:
         if place.is_dir():
             folder, sentences = place, set_aside_damaged(place)
         else:
-            sweep, store, _ = opened(place, output)
-            folder, sentences = store.folder, store.renewed(sweep, place)
+            _, store, _ = opened(place, output)
+            folder, sentences = store.folder, store.renewed(place)
         date_back(folder)
         for sentence in sentences:
             click.echo(sentence)

@@ -34,7 +34,7 @@ _COMMENT = {
 
 _ALWAYS_SEALED = (
     *("configuration.yaml", "hysteresis.nc", "fit.nc", "fit.json", "fit.md", "summary.html"),
-    *("curves/*-r[0-9]*.nc", "checkpoints/*-r[0-9]*.nc", "shards/*.json"),
+    *("curves/*-r[0-9]*.nc", "checkpoints/*-r[0-9]*.nc", "shards/*.nc"),
     *("figures/*.pdf", "figures/*.png"),
     *("figures/*/*.nc", "figures/*/*.pdf", "figures/*/*.png", "figures/*/*.gif"),
     *("checks.md", "accuracy/*.nc", "accuracy/*.pdf", "accuracy/*.png", "accuracy.md"),

@@ -16,8 +16,8 @@ import re
 import secrets
 import socket
 import time
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -215,28 +215,6 @@ def _write(kept: Iterable[Member], path: Path) -> None:
     with path.open("wb") as file:
         file.writelines(record(one.name, one.content() or b"") for one in kept)
     finish(path)
-
-
-def lost_curves(folder: Path) -> tuple[list[str], Counter[str]]:
-    """Curves that rows in packs of a folder name and none has, and the rows of each arithmetic."""
-    names: set[str] = set()
-    wanted: list[str] = []
-    found: Counter[str] = Counter()
-    for member in (one for path in pack_paths(folder) for one in members(path)[0]):
-        names.add(member.name)
-        if member.name.endswith(_ROW) and (entry := _entry(member)) is not None:
-            wanted += [entry.stem + _CURVE] if entry.curve_digest else []
-            found[entry.arithmetic] += 1
-    return [name for name in wanted if name not in names], found
-
-
-def mixture_sentence(arithmetic: Mapping[str, int]) -> str:
-    """That simulations are of several processors or packages; empty where they are of one."""
-    if len(arithmetic) < 2:
-        return ""
-    parts = (f"{count} of {name or 'an earlier version'}" for name, count in arithmetic.items())
-    listed = "; ".join(parts)
-    return f"stored simulations differ in their origin, and may in their last digits: {listed}"
 
 
 def _entry(member: Member) -> Entry | None:

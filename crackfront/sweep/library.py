@@ -40,7 +40,8 @@ def sweep_table(
     for name, given in (("configuration", configuration), ("output", output or "")):
         refuse_other_type(name, given, (str, PathLike), "the path of a file or folder")
     found, store, origin = opened(Path(configuration), None if output is None else Path(output))
-    missing = store.inventory(found.simulations()).missing
+    shards = found.shards()
+    missing = store.unfinished(found, shards).missing
     shown = bool(progress and missing)
     with (
         deferring_stops(),
@@ -49,8 +50,8 @@ def sweep_table(
     ):
         for _ in outcomes:
             bar.update()
-    for item in found.spectra:
-        store.write_manifest(found, found.named_shard(item, range(found.n_realisation)))
+    for shard in shards:
+        store.finish_shard(found, shard, origin)
     table = store.aggregate(found, origin)
     failed, sentence = without_value(table)
     if failed:

@@ -14,8 +14,8 @@ from zipfile import BadZipFile, ZipFile
 from crackfront.data.digests import Integrity
 from crackfront.data.files import NO_ROOM, UnreadableFileError
 from crackfront.data.packs import PACK
-from crackfront.sweep.journal import lost_curves
-from crackfront.sweep.store import SUMS, checked_files
+from crackfront.sweep.shards import finished_shard
+from crackfront.sweep.store import SUMS, checked_files, lost_curves
 
 FILES = "packs of curves and rows"
 """Name under which the files in packs are counted, each of which has a checksum."""
@@ -27,8 +27,8 @@ class Verification:
 
     counts: dict[str, Counter[Integrity]]
     """Numbers of whole and damaged files by their folder, and of such files in packs."""
-    arithmetic: Counter[str]
-    """How many rows are of which arithmetic."""
+    arithmetic: frozenset[str]
+    """Those of the origins of the rows."""
     damaged: tuple[str, ...]
     missing: tuple[str, ...]
     """Files that are not as they were written, and absent ones that a list or a row names."""
@@ -48,8 +48,9 @@ def verification(place: Path) -> Verification:
             damaged += [str(name)] if states[Integrity.DAMAGED] else []
         listed = _listed(folder)
         missing = [name for name in listed if not (folder / name).is_file()]
-        lost, arithmetic = lost_curves(folder / "curves")
-        missing += lost
+        missing += lost_curves(folder)
+        shards = map(finished_shard, (folder / "shards").glob("*.nc"))
+        arithmetic = frozenset[str]().union(*(one.arithmetic for one in shards if one))
         for file in listed.keys() - set(missing):
             with (folder / file).open("rb") as opened:
                 if hashlib.file_digest(opened, "sha256").hexdigest() != listed[file]:

@@ -3,7 +3,6 @@
 import errno
 import json
 import os
-import pickle
 import re
 import shlex
 import shutil
@@ -30,7 +29,6 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.files import write_text
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, Note, new_pack
-from crackfront.sweep.store import Store
 from crackfront.sweep.table import failed_row, row_fingerprint
 from tests.commands import curves, refused, run
 
@@ -214,7 +212,7 @@ def test_a_plan_tells_what_is_stale_and_why(tmp_path):
     assert "4 stored simulations are stale: 4 as numerics changed\n[1/4]" in result.output
 
 
-def test_the_status_counts_what_is_done_failed_running_and_waiting(tmp_path):
+def test_the_status_counts_what_is_done_failed_and_left(tmp_path):
     sweep = load_configuration(TEST)
     run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
     flat = tuple(sweep.simulations(sweep.spectra[0]))
@@ -228,9 +226,9 @@ def test_the_status_counts_what_is_done_failed_running_and_waiting(tmp_path):
     [_, first, second, process, sentence] = result.output.splitlines()
     who = f"process {os.getpid()} on {socket.gethostname()}: {flat[1].label}, last sign of life "
     assert process.startswith(who)
-    assert first.split()[:5] == ["flat", "0", "1", "1", "2"]
-    assert float(first.split()[5]) > 0
-    assert second.split() == ["rough", "4", "0", "0", "0", "0"]
+    assert first.split()[:4] == ["flat", "0", "1", "3"]
+    assert float(first.split()[4]) > 0
+    assert second.split() == ["rough", "4", "0", "0", "0"]
     assert sentence.startswith("5 of 8 simulations have ended; about ")
     assert sentence.endswith("minutes are left on 1 rank(s)")
 
@@ -282,24 +280,14 @@ def test_one_spectrum_can_be_run_alone(tmp_path):
     result = run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
     assert result.exit_code == 0
     assert {name.split("-")[0] for name in curves(tmp_path)} == {"rough"}
-    assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.json"]
+    assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.nc"]
 
 
 def test_a_block_of_realisations_can_be_run_alone(tmp_path):
     options = ("--spectrum", "rough", "--realisations", "1-1", "--output", tmp_path)
     assert run("simulate", TEST, *options).exit_code == 0
     assert {"-r1-" in name for name in curves(tmp_path)} == {True}
-    assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.1-1.json"]
-
-
-def test_what_a_launcher_found_missing_is_not_looked_for_again(tmp_path, monkeypatch):
-    sweep = load_configuration(TEST)
-    found = tmp_path / "found"
-    found.write_bytes(pickle.dumps((one := next(sweep.simulations()),)))
-    monkeypatch.setattr(Store, "inventory", None)
-    options = ("--output", tmp_path, "--found", found)
-    assert run("simulate", TEST, *options).exit_code == 0
-    assert [Path(name).stem for name in curves(tmp_path)] == [one.stem]
+    assert [path.name for path in (tmp_path / "shards").iterdir()] == ["rough.1-1.nc"]
 
 
 @pytest.mark.parametrize("block", ["1", "1-", "2-1", "a-b", "0-9"])
@@ -316,12 +304,13 @@ def test_a_configuration_whose_name_is_no_name_for_results_is_refused(tmp_path, 
     assert "the results are named after" in refused("plan", bad)
 
 
-def test_a_damaged_result_is_named_and_replaced(tmp_path):
+def test_a_damaged_curve_is_named_and_replaced_by_the_job_of_its_shard(tmp_path):
     run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
     broken = min((tmp_path / "curves").iterdir())
     content = bytearray(broken.read_bytes())
     content[5000] ^= 1
     broken.write_bytes(content)
+    (tmp_path / "shards/flat.nc").unlink()
     result = run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
     assert result.exit_code == 0
     [warning] = result.stderr.splitlines()
@@ -360,7 +349,7 @@ def test_a_simulation_that_cannot_be_stored_ends_the_run_with_exit_code_one(tmp_
 
 def test_missing_input_of_the_later_steps_is_refused(tmp_path):
     output = ("--output", tmp_path)
-    assert "8 of 8 simulations are missing or unreadable" in refused("aggregate", TEST, *output)
+    assert "8 of 8 simulations are in no finished shard" in refused("aggregate", TEST, *output)
     assert "hysteresis.nc does not exist" in refused("fit", TEST, *output)
     assert "hysteresis.nc does not exist" in refused("figures", TEST, *output)
 
@@ -430,7 +419,7 @@ def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path):
     after = json.loads(run("plan", TEST, *output).stdout)
     assert (after["missing"], after["core_seconds"], len(after["late"])) == (0, 0, 4)
     spectra = json.loads(run("status", tmp_path, "--json").stdout)["spectra"]
-    assert [(one["name"], one["done"], one["waiting"]) for one in spectra] == [
+    assert [(one["name"], one["done"], one["left"]) for one in spectra] == [
         ("flat", 4, 0),
         ("rough", 4, 0),
     ]

@@ -119,8 +119,8 @@ def until(condition, seconds=120):
 
 WAYS = {
     "serial": ("hysteresis.nc", {"tasks": 2}),
-    "srun": ("shards/flat.json", {"mpi": SRUN}),
-    "mpiexec": ("shards/flat.json", {"mpi": default_launcher()}),
+    "srun": ("shards/flat.nc", {"mpi": SRUN}),
+    "mpiexec": ("shards/flat.nc", {"mpi": default_launcher()}),
 }
 """Up to where a sweep runs, and the resources of its shard."""
 
@@ -182,7 +182,7 @@ def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
     changes = (("angles: 128", "angles: 512"), ("step: 0.1", "step: 0.02"))
     sweep = configuration(tmp_path, *changes, ("realisations: 2", "realisations: 4"))
     results = tmp_path / "results/sweep"
-    command = snakemake(tmp_path, sweep, "shards/flat.json")
+    command = snakemake(tmp_path, sweep, "shards/flat.nc")
     with subprocess.Popen(
         command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment()
     ) as process:

@@ -40,7 +40,7 @@ ROOT = Path(__file__).parents[2]
 SWEEP = load_configuration(ROOT / "config/test.yaml")
 ONE = SWEEP.simulation(SWEEP.spectra[0], SWEEP.elastic_energies[0], 0)
 
-NAMES = ("fit.nc", "shards/a.json", "fit.md", "summary.html", "configuration.yaml")
+NAMES = ("fit.nc", "shards/a.nc", "fit.md", "summary.html", "configuration.yaml")
 NAMES += ("figures/loop.pdf", "figures/quick/main-1d.png", "figures/quick/film.gif")
 
 
@@ -108,9 +108,8 @@ def kinds(tmp_path_factory):
     folder = tmp_path_factory.mktemp("kinds")
     store = Store(folder / "sweep")
     origin = provenance("text")
-    [shard, *_] = SWEEP.shards()
     list(tasks.fill(store, list(SWEEP.simulations()), origin))
-    store.write_manifest(SWEEP, shard)
+    [store.finish_shard(SWEEP, shard, origin) for shard in SWEEP.shards()]
     store.aggregate(SWEEP, origin)
     ends = {"lowest_elastic_energy": 0.02, "highest_elastic_energy": 0.1}
     fitted = fit_sweep(read_table(store.hysteresis), **ends, n_bootstrap=100)
@@ -130,7 +129,7 @@ def kinds(tmp_path_factory):
     pictures = save_figure(blank_figure(1, 1), folder / "picture")
     return {
         "table": (store.hysteresis, read_table),
-        "list of a shard": (folder / "sweep/shards/flat.json", refuse_damaged),
+        "shard": (folder / "sweep/shards/flat.nc", read_dataset),
         "configuration": (store.configuration, refuse_damaged),
         "fit": (fits[0], read_dataset),
         "fit as JSON": (fits[1], refuse_damaged),

@@ -52,7 +52,7 @@ def stored(folder):
 
 def renewed(configuration, folder):
     """Sentences about what the workflow sets aside before it plans."""
-    return list(Store(folder).renewed(load_configuration(configuration), configuration))
+    return list(Store(folder).renewed(configuration))
 
 
 def rerun(configuration, folder, *more):
@@ -289,7 +289,7 @@ def test_what_a_truncated_pack_lost_is_computed_anew_and_no_more(
 
 
 FILES = ("configuration.yaml", "hysteresis.nc", "fit.nc", "fit.json", "fit.md", "summary.html")
-FILES += ("figures/loop.png", "figures/factor.pdf", "shards/flat.json", "curves/*.tar")
+FILES += ("figures/loop.png", "figures/factor.pdf", "shards/flat.nc", "curves/*.tar")
 HARM = {
     "emptied": lambda content: b"",
     "halved": lambda content: content[: len(content) // 2],
@@ -353,5 +353,6 @@ def test_a_clock_that_jumps_makes_nothing_older_or_newer(configuration, same, co
     assert rerun(configuration, copied) == 0
     lost = min((copied / "curves").iterdir())
     lost.unlink()
+    assert "6 curve(s) of its simulations are gone" in renewed(configuration, copied)[-1]
     assert rerun(configuration, copied) == 6
     assert same(copied)

@@ -78,7 +78,7 @@ def contents(folder):
 )
 def test_reading_the_workflow_changes_nothing_even_where_files_are_damaged(tmp_path, whole, verb):
     shutil.copytree(whole / "results", tmp_path / "results")
-    for name in ("fit.json", "figures/loop.pdf", "shards/flat.json"):
+    for name in ("fit.json", "figures/loop.pdf", "shards/flat.nc"):
         (tmp_path / "results/test" / name).write_bytes(b"{")
     date(2096, tmp_path / "results/test/summary.html")
     before = contents(tmp_path / "results")
@@ -232,7 +232,7 @@ def test_the_workflow_makes_anew_what_is_damaged_or_missing_and_no_more(tmp_path
         "a flipped bit in a curve": lambda: flip(pack),
         "all curves and a figure gone": remove_curves,
         "a torn pack": lambda: tear(min((results / "curves").glob("*.tar"))),
-        "a corrupt list": lambda: (results / "shards/flat.json").write_bytes(b"{"),
+        "a corrupt shard": lambda: (results / "shards/flat.nc").write_bytes(b"{"),
         "a truncated table": lambda: (results / "hysteresis.nc").write_bytes(b"CDF"),
         "a flipped bit in the table": lambda: flip(results / "hysteresis.nc"),
         "a flipped bit in the fit": lambda: flip(results / "fit.json"),
