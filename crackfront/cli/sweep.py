@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from crackfront.simulate.costs import Cost
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.expectation import Expectation
-    from crackfront.sweep.journal import Running
+    from crackfront.sweep.journal import Writer
     from crackfront.sweep.store import Inventory, Store
     from crackfront.sweep.sweep import Shard, Sweep
 
@@ -336,14 +336,14 @@ def fill_store(
 @click.argument("folder", type=FILE)
 @as_json
 def status(folder: Path, as_json: bool) -> None:
-    """Show how far the sweep in a folder is, and which processes run it, here or elsewhere.
+    """Show how far the sweep in a folder is, and which processes store simulations in it.
 
-    A process on this machine counts as long as it lives, one on another machine as long as
-    it renews its file in the folder.
+    Processes on other machines are shown where the file system passes their locks on; a batch
+    system knows them all.
     """
     from crackfront.data.files import refuse_damaged
     from crackfront.sweep.configuration import load_configuration
-    from crackfront.sweep.journal import running
+    from crackfront.sweep.journal import writers
     from crackfront.sweep.store import Store
 
     store = Store(folder)
@@ -352,7 +352,7 @@ def status(folder: Path, as_json: bool) -> None:
     refuse_damaged(store.configuration)
     sweep = load_configuration(store.configuration)
     progress = _progress({item.name: store.progress(sweep, item) for item in sweep.spectra})
-    processes = running(store.checkpoints)
+    processes = writers(store.curves)
     content = {"spectra": progress, "processes": processes}
     echo_answer(content, _status_lines(progress, processes), as_json=as_json)
 
@@ -382,23 +382,17 @@ def _progress(inventories: Mapping[str, Inventory]) -> list[Progress]:
     ]
 
 
-def _status_lines(spectra: Sequence[Progress], processes: Sequence[Running]) -> Iterator[str]:
-    """Table of the spectra of a sweep, the processes that run it, and how long they will."""
+def _status_lines(spectra: Sequence[Progress], processes: Sequence[Writer]) -> Iterator[str]:
+    """Table of the spectra of a sweep, and the processes that store their simulations."""
     rows = [(*map(str, astuple(item)[:-1]), f"{item.seconds / 3600:.3g}") for item in spectra]
     yield from table(("spectrum", "done", "failed", "left", "core hours left"), rows)
     for one in processes[:_MOST_PROCESSES]:
-        yield (
-            f"process {one.process} on {one.host}: {one.label}, last sign of life "
-            f"{one.silent_seconds:.0f} s ago"
-        )
+        yield f"process {one.process} on {one.host} stores {one.spectrum} {one.realisations}"
     if len(processes) > _MOST_PROCESSES:
         yield f"and {len(processes) - _MOST_PROCESSES} more, listed by --json"
     ended = sum(item.done + item.failed for item in spectra)
     total = ended + sum(item.left for item in spectra)
     sentence = f"{ended} of {total} simulations have ended"
-    if processes:
-        minutes = sum(item.seconds for item in spectra) / len(processes) / 60
-        sentence += f"; about {minutes:.3g} minutes are left on {len(processes)} rank(s)"
-    elif ended < total:
-        sentence += "; nothing runs"
+    if ended < total and not processes:
+        sentence += "; no process that is seen here stores any"
     yield sentence

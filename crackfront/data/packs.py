@@ -19,9 +19,6 @@ PACK = ".tar"
 SECONDS_TO_DISK = 0.5
 """What a machine that crashes may lose of a pack; a process that is killed loses nothing."""
 
-END = bytes(2 * BLOCKSIZE)
-"""How a pack ends that was closed."""
-
 LONGEST_NAME = 100
 """Letters that the name of a file in a pack may have."""
 
@@ -50,25 +47,15 @@ File = Path | Member
 """A file, or one in a pack."""
 
 
-def is_finished(path: Path) -> bool:
-    """Whether a pack was closed, and has not been cut since."""
-    with path.open("rb") as file:
-        file.seek(max(0, file.seek(0, os.SEEK_END) - len(END)))
-        return file.read() == END
-
-
-def finish(path: Path) -> None:
-    """Close a pack whose process has ended."""
-    with path.open("ab") as file:
-        file.write(END)
-
-
 def members(path: Path) -> tuple[list[Member], int]:
-    """Files in a pack in their order, and the number of damaged places between them."""
+    """Files in a pack in their order, and the number of damaged places between them.
+
+    A pack is created with its first file: an empty one is damaged.
+    """
     found: list[Member] = []
-    end = path.stat().st_size - (len(END) if is_finished(path) else 0)
+    end = path.stat().st_size
     with path.open("rb", buffering=0) as file:
-        place, n_damaged, known = 0, 0, True
+        place, n_damaged, known = 0, int(not end), True
         while place < end:
             with contextlib.suppress(HeaderError):
                 head = TarInfo.frombuf(os.pread(file.fileno(), BLOCKSIZE, place), "ascii", "strict")
@@ -90,10 +77,10 @@ def _padded(size: int) -> int:
 
 
 def checked(path: Path) -> tuple[list[Member], int]:
-    """Whole files in a pack, and the number of its damaged files and places, one the lost end."""
+    """Whole files in a pack, and the number of its damaged files and places."""
     found, n_damaged = members(path)
     whole = [one for one in found if one.content() is not None]
-    return whole, n_damaged + len(found) - len(whole) + (not is_finished(path))
+    return whole, n_damaged + len(found) - len(whole)
 
 
 def record(name: str, content: bytes) -> bytes:
@@ -118,7 +105,7 @@ class Pack:
         """
         if self._number is None:
             self._number = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o666)
-            lock(self._number, fcntl.LOCK_EX)
+            _lock(self._number)
         rest = memoryview(b"".join(record(*item) for item in files.items()))
         length = os.lseek(self._number, 0, os.SEEK_END)
         try:
@@ -135,18 +122,11 @@ class Pack:
                 self._number = None
             raise
 
-    def beat(self) -> None:
-        """Show that this process lives, on machines that do not know its lock."""
-        with contextlib.suppress(OSError):
-            if self._number is not None:
-                os.utime(self._number)
-
     def close(self) -> None:
         """Have all of it on disk, and unlock it; an OSError where that is impossible."""
         if self._number is not None:
             number, self._number = self._number, None
             try:
-                os.write(number, END)
                 os.fsync(number)
             except OSError as error:
                 raise OSError(error.errno, error.strerror, str(self._path)) from error
@@ -154,7 +134,19 @@ class Pack:
                 os.close(number)
 
 
-def lock(number: int, operation: int) -> None:
-    """Lock or unlock an open file, where the file system has locks and no other has this one."""
+def _lock(number: int) -> None:
+    """Lock an open file, where the file system has locks and no other process has this one."""
     with contextlib.suppress(OSError):
-        fcntl.flock(number, operation | fcntl.LOCK_NB)
+        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def is_locked(path: Path) -> bool:
+    """Whether a process holds the lock on a pack, as far as the file system says so."""
+    with path.open("rb") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        except OSError:
+            return False  # a file system without locks
+    return False

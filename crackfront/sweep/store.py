@@ -5,8 +5,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import itertools
-import threading
-from collections import Counter, defaultdict, deque
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
@@ -24,14 +23,14 @@ from crackfront.data.files import (
     set_aside_damaged,
     write_text,
 )
-from crackfront.data.packs import Pack, checked, members
+from crackfront.data.packs import Pack, checked, is_locked, members
 from crackfront.data.provenance import Provenance
 from crackfront.data.section import movable_text
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.journal import RowIndex, living, new_pack, pack_paths, renew_packs
+from crackfront.sweep.journal import RowIndex, new_pack, pack_paths, renew_packs
 from crackfront.sweep.shards import (
     FinishedShard,
     covering,
@@ -48,9 +47,6 @@ from crackfront.sweep.table import (
     sweep_row,
     write_hysteresis,
 )
-
-SECONDS_BETWEEN_BEATS = 20.0
-"""Time after which a process that simulates or stores shows that it lives."""
 
 SUMS = "SHA256SUMS"
 """File of an archive that lists the checksums of all others."""
@@ -143,7 +139,7 @@ class Store:
 
     @property
     def checkpoints(self) -> Path:
-        """Folder of what running processes keep: checkpoints, and notes of what they are at."""
+        """Folder of the checkpoints of running simulations."""
         return self.folder / "checkpoints"
 
     def checkpoint(self, simulation: Simulation) -> Path:
@@ -194,32 +190,15 @@ class Store:
 
     @contextlib.contextmanager
     def packs(self, simulations: Iterable[Simulation]) -> Iterator[dict[str, Pack]]:
-        """New packs for simulations, by the names of their spectra, until they are left.
-
-        Where ended processes left packs of the same realisations damaged, what is whole is kept.
-        """
+        """New packs for simulations, by the names of their spectra, until they are left."""
         self.curves.mkdir(parents=True, exist_ok=True)
         alike: dict[str, list[Simulation]] = defaultdict(list)
         for one in simulations:
             alike[one.spectrum_name].append(one)
-        blocks = {name: _span(ones) for name, ones in alike.items()}
-        for name, block in blocks.items():
-            deque(renew_packs(pack_paths(self.curves, name, block)), maxlen=0)
-        found = {name: new_pack(self.curves, name, block) for name, block in blocks.items()}
-        left = threading.Event()
-
-        def beat() -> None:
-            while not left.wait(SECONDS_BETWEEN_BEATS):
-                for pack in found.values():
-                    pack.beat()
-
-        beating = threading.Thread(target=beat, daemon=True)
-        beating.start()
+        found = {name: new_pack(self.curves, name, _span(ones)) for name, ones in alike.items()}
         try:
             yield found
         finally:
-            left.set()
-            beating.join()
             for pack in found.values():
                 pack.close()
 
@@ -420,10 +399,9 @@ def checked_files(folder: Path) -> Iterator[tuple[Path, Counter[Integrity]]]:
     """Files of a folder of results, each counted by whether it, or each file in it, is whole."""
     for path, state in integrities(folder):
         yield path, Counter([state])
-    alive = living(pack_paths(folder / "curves"))
     for path in pack_paths(folder / "curves"):
         whole, n_damaged = checked(path)
-        n_damaged = 0 if path in alive else n_damaged
+        n_damaged = 0 if is_locked(path) else n_damaged
         yield path, Counter({Integrity.WHOLE: len(whole), Integrity.DAMAGED: n_damaged})
 
 

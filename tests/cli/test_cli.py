@@ -28,7 +28,7 @@ from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.files import write_text
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import Entry, Note, new_pack
+from crackfront.sweep.journal import Entry, new_pack
 from crackfront.sweep.table import failed_row, row_fingerprint
 from tests.commands import curves, refused, run
 
@@ -218,58 +218,20 @@ def test_the_status_counts_what_is_done_failed_and_left(tmp_path):
     flat = tuple(sweep.simulations(sweep.spectra[0]))
     refused_row = failed_row(flat[0], "refused", "too rough")
     entry = Entry(flat[0].stem, flat[0].parts, row_fingerprint(), refused_row)
-    new_pack(tmp_path / "curves", "flat", range(2)).append(entry.files())
-    note = Note(tmp_path / "checkpoints")
-    note.begin(flat[1])
+    pack = new_pack(tmp_path / "curves", "flat", range(2))
+    pack.append(entry.files())
     result = run("status", tmp_path)
     assert result.exit_code == 0, result.output
     [_, first, second, process, sentence] = result.output.splitlines()
-    who = f"process {os.getpid()} on {socket.gethostname()}: {flat[1].label}, last sign of life "
-    assert process.startswith(who)
+    assert process == f"process {os.getpid()} on {socket.gethostname()} stores flat 0-1"
     assert first.split()[:4] == ["flat", "0", "1", "3"]
     assert float(first.split()[4]) > 0
     assert second.split() == ["rough", "4", "0", "0", "0"]
-    assert sentence.startswith("5 of 8 simulations have ended; about ")
-    assert sentence.endswith("minutes are left on 1 rank(s)")
-
-
-@pytest.fixture
-def begun(tmp_path):
-    """Folder of a sweep, and the note in it of a process that has begun a simulation."""
-    sweep = load_configuration(TEST)
-    write_text(tmp_path / "configuration.yaml", TEST.read_text(), sealed=True)
-    one = next(sweep.simulations())
-    (tmp_path / "checkpoints").mkdir()
-    note = Note(tmp_path / "checkpoints")
-    note.begin(one)
-    return tmp_path, note
-
-
-def last_line_of_status(folder):
-    """What the status says at its end."""
-    return run("status", folder).output.splitlines()[-1]
-
-
-def test_a_process_runs_as_long_as_it_lives_and_not_until_its_note_is_old(begun):
-    folder, note = begun
-    for path in (folder / "checkpoints").iterdir():
-        os.utime(path, (1e9, 1e9))
-    assert last_line_of_status(folder).endswith("left on 1 rank(s)")
-    note.end()
-    for path in (folder / "checkpoints").iterdir():
-        os.utime(path)
-    assert last_line_of_status(folder).endswith("have ended; nothing runs")
-
-
-def test_a_process_elsewhere_runs_as_long_as_it_shows_signs_of_life(begun):
-    folder, note = begun
-    note.end()
-    [path] = (folder / "checkpoints").iterdir()
-    path = path.rename(path.with_name("another-host-12-abcd.running"))
-    told = json.loads(run("status", folder, "--json").stdout)["processes"]
-    assert [(one["host"], one["process"]) for one in told] == [("another-host", "12")]
-    os.utime(path, (1e9, 1e9))
-    assert last_line_of_status(folder).endswith("have ended; nothing runs")
+    assert sentence == "5 of 8 simulations have ended"
+    told = json.loads(run("status", tmp_path, "--json").stdout)["processes"]
+    assert [(one["spectrum"], one["realisations"]) for one in told] == [("flat", "0-1")]
+    pack.close()
+    assert run("status", tmp_path).output.endswith("no process that is seen here stores any\n")
 
 
 def test_the_status_of_a_folder_without_a_sweep_is_refused(tmp_path):
