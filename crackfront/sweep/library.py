@@ -33,10 +33,40 @@ def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Prov
     return sweep, store, provenance(movable_text(configuration))
 
 
-def sweep_table(
-    configuration: str | PathLike[str], output: str | PathLike[str] | None, *, progress: bool
+def run_sweep(
+    configuration: str | PathLike[str],
+    output: str | PathLike[str] | None = None,
+    *,
+    progress: bool = True,
 ) -> Dataset:
-    """The table that :func:`crackfront.sweep` returns."""
+    """Table of a sweep; what is not stored yet is run here, one simulation after the other.
+
+    `crackfront simulate` runs the same on many ranks, into the same folder.
+
+    Parameters
+    ----------
+    configuration : str or path
+        File of the sweep, as config/default.yaml.
+    output : str or path, optional
+        Folder of the results, by default results/<name of the configuration>.
+    progress : bool, optional
+        Whether a bar on standard error shows how far it is.
+
+    Returns
+    -------
+    xarray.Dataset
+        w_appr, w_retr, their errors, status and costs over `spectrum`, `amplitude` and
+        `realisation`, as in hysteresis.nc.
+
+    Raises
+    ------
+    ValueError
+        If the configuration cannot be used.
+    OSError
+        If nothing can be stored.
+    KeyboardInterrupt
+        After Ctrl-C or SIGTERM. Finished simulations are stored; the same call continues.
+    """
     for name, given in (("configuration", configuration), ("output", output or "")):
         refuse_other_type(name, given, (str, PathLike), "the path of a file or folder")
     found, store, origin = opened(Path(configuration), None if output is None else Path(output))

@@ -354,7 +354,7 @@ def test_a_killed_snakemake_costs_nothing_that_is_stored(tmp_path):
     assert before.items() <= curves(results).items()
     found = xr.load_dataset(tmp_path / table).drop_vars(COSTS)
     assert found.sizes["realisation"] == 2
-    undisturbed = cf.sweep(sweep, tmp_path / "undisturbed", progress=False).drop_vars(COSTS)
+    undisturbed = cf.run_sweep(sweep, tmp_path / "undisturbed", progress=False).drop_vars(COSTS)
     assert found.equals(undisturbed)
 
 
