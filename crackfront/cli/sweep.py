@@ -341,7 +341,6 @@ def status(folder: Path, as_json: bool) -> None:
     Processes on other machines are shown where the file system passes their locks on; a batch
     system knows them all.
     """
-    from crackfront.data.files import refuse_damaged
     from crackfront.sweep.configuration import load_configuration
     from crackfront.sweep.journal import writers
     from crackfront.sweep.store import Store
@@ -349,7 +348,6 @@ def status(folder: Path, as_json: bool) -> None:
     store = Store(folder)
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
-    refuse_damaged(store.configuration)
     sweep = load_configuration(store.configuration)
     progress = _progress({item.name: store.progress(sweep, item) for item in sweep.spectra})
     processes = writers(store.curves)

@@ -1,17 +1,20 @@
-"""Packs: tar archives of sealed files to which one process appends, read past any damage."""
+"""Packs: tar archives to which one process appends, read past any damage.
+
+The header of a file holds the SHA-256 of its content, in the field for the target of a link, which
+programs that unpack ignore for files.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import fcntl
+import hashlib
 import os
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from tarfile import BLOCKSIZE, USTAR_FORMAT, HeaderError, TarInfo
-
-from crackfront.data.digests import content_digest
 
 PACK = ".tar"
 """Ending of the names of packs."""
@@ -25,22 +28,24 @@ LONGEST_NAME = 100
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A file in a pack, which begins at a byte of that and has so many; or a file by itself."""
+    """A file in a pack: where its content begins, its number of bytes, and their checksum."""
 
     path: Path
     name: str
     place: int
     size: int
+    digest: str
+    """SHA-256 of its content, in hexadecimal digits."""
 
     def content(self) -> bytes | None:
         """Its bytes, None where they are not those that were written."""
         with contextlib.suppress(FileNotFoundError), self.path.open("rb", buffering=0) as file:
             content = os.pread(file.fileno(), self.size, self.place)
-            return content if content_digest(content) else None
+            return content if hashlib.sha256(content).hexdigest() == self.digest else None
         return None
 
     def __str__(self) -> str:
-        return f"{self.path}: {self.name}" if self.place else str(self.path)
+        return f"{self.path}: {self.name}"
 
 
 File = Path | Member
@@ -61,7 +66,7 @@ def members(path: Path) -> tuple[list[Member], int]:
                 head = TarInfo.frombuf(os.pread(file.fileno(), BLOCKSIZE, place), "ascii", "strict")
                 start = place + BLOCKSIZE
                 if start + head.size <= end:
-                    found.append(Member(path, head.name, start, head.size))
+                    found.append(Member(path, head.name, start, head.size, head.linkname))
                     place, known = start + _padded(head.size), True
                     continue
             # Headers begin at multiples of a block: the next one ends what is damaged.
@@ -87,6 +92,7 @@ def record(name: str, content: bytes) -> bytes:
     """A file as it stands in a pack."""
     head = TarInfo(name)
     head.size = len(content)
+    head.linkname = hashlib.sha256(content).hexdigest()
     return head.tobuf(USTAR_FORMAT, "ascii", "strict") + content.ljust(_padded(len(content)), b"\0")
 
 

@@ -15,11 +15,10 @@ import secrets
 import socket
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from crackfront.analysis.table import SweepRow
-from crackfront.data.digests import content_digest, sealed
 from crackfront.data.files import replace_atomically, set_aside
 from crackfront.data.packs import (
     PACK,
@@ -55,15 +54,12 @@ class Entry:
     """:func:`crackfront.sweep.table.row_fingerprint` of its row."""
     row: SweepRow | None
     """Its row, if rows have the same definition now."""
-    curve_digest: str = ""
-    """Digest of its curve, empty where it has none."""
     arithmetic: str = ""
     """That of its origin; empty where an earlier version stored it."""
 
     def files(self, curve: bytes = b"") -> dict[str, bytes]:
         """Files of a pack, by their names."""
-        text = json.dumps(asdict(self)).removesuffix("}") + "\n}\n"
-        row = {self.stem + _ROW: sealed(text.encode(), _ROW)[0]}
+        row = {self.stem + _ROW: json.dumps(asdict(self)).encode()}
         return {self.stem + _CURVE: curve} | row if curve else row
 
 
@@ -124,7 +120,7 @@ def renew_packs(paths: Iterable[Path]) -> Iterator[str]:
         # Another process may just do the same.
         with contextlib.suppress(FileNotFoundError):
             aside = set_aside(path)
-            kept = [Member(aside, one.name, one.place, one.size) for one in whole]
+            kept = [replace(one, path=aside) for one in whole]
             if kept:
                 replace_atomically(path, functools.partial(_write, kept))
             yield f"{path} is damaged; its whole files stay, the rest is in {aside.name}"
@@ -151,8 +147,7 @@ def _entry(member: Member) -> Entry | None:
 class RowIndex:
     """Simulations in the packs of a spectrum and some consecutive realisations.
 
-    A row counts if its curve has the digest that was stored with it; unless `checked`, if there is
-    a curve. Curves in files by themselves, as earlier versions stored them, count too.
+    A row counts if its curve is whole; unless `checked`, if there is a curve.
     """
 
     def __init__(self, folder: Path, spectrum: str, block: range, *, checked: bool = True) -> None:
@@ -161,8 +156,6 @@ class RowIndex:
         self._latest: dict[str, Member] = {}
         self._known: set[str] = set()
         found = [one for path in pack_paths(folder, spectrum, block) for one in members(path)[0]]
-        alone = sorted(folder.glob(f"*{_CURVE}"))
-        found += [Member(path, path.name, 0, path.stat().st_size) for path in alone]
         for member in found:
             name = Path(member.name).stem[: -_KEY - 1]
             self._members[member.name].append(member)
@@ -176,16 +169,16 @@ class RowIndex:
             entry = _entry(member)
             if entry is None or entry.row is None:
                 continue
-            if not entry.curve_digest or self._has_curve(simulation, entry.curve_digest):
+            if not entry.row.curve or self._has_curve(simulation):
                 return entry
         return None
 
-    def _has_curve(self, simulation: Simulation, digest: str) -> bool:
-        """Whether there is a curve of a digest, or any where digests are not to be checked."""
+    def _has_curve(self, simulation: Simulation) -> bool:
+        """Whether there is a whole curve, or any where they are not to be checked."""
         curves = self.curves(simulation)
         if not self._checked:
             return bool(curves)
-        return any(content_digest(one.content() or b"") == digest for one in curves)
+        return any(one.content() is not None for one in curves)
 
     def curves(self, simulation: Simulation) -> list[Member]:
         """Curves that are stored of a simulation."""

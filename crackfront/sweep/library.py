@@ -14,7 +14,7 @@ from tqdm import tqdm
 from xarray import Dataset
 
 from crackfront.data.arguments import refuse_other_type
-from crackfront.data.files import read_dataset
+from crackfront.data.files import read_dataset, write_sums
 from crackfront.data.labels import flag_words
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.data.section import movable_text
@@ -83,6 +83,7 @@ def run_sweep(
     for shard in shards:
         store.finish_shard(found, shard, origin)
     table = store.aggregate(found, origin)
+    write_sums(store.folder)
     failed, sentence = without_value(table)
     if failed:
         warnings.warn(sentence, stacklevel=2)

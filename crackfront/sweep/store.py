@@ -13,17 +13,17 @@ from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 from crackfront.analysis.table import SweepRow, SweepTable
-from crackfront.data.digests import Integrity
+from crackfront.data.digests import SUMS, forget_sums, read_sums, result_files, sums_text
 from crackfront.data.files import (
     UnreadableFileError,
-    integrities,
+    is_damaged,
     read_attributes,
     read_dataset,
     replace_atomically,
     set_aside_damaged,
     write_text,
 )
-from crackfront.data.packs import Pack, checked, is_locked, members
+from crackfront.data.packs import Pack, members
 from crackfront.data.provenance import Provenance
 from crackfront.data.section import movable_text
 from crackfront.simulate.costs import expected_cost
@@ -47,9 +47,6 @@ from crackfront.sweep.table import (
     sweep_row,
     write_hysteresis,
 )
-
-SUMS = "SHA256SUMS"
-"""File of an archive that lists the checksums of all others."""
 
 _COMPRESSED = {".nc", ".png", ".pdf", ".gif", ".zip"}
 """Files that become no smaller."""
@@ -277,6 +274,7 @@ class Store:
                 f"in {self.curves}, the first is {first.label}; run the same command again"
             )
         arithmetic = {one.arithmetic for one in found if one.arithmetic}
+        forget_sums(self.folder)
         write_shard(path, sweep, shard, rows, arithmetic, origin)
         return path
 
@@ -308,10 +306,11 @@ class Store:
         yield from set_aside_damaged(self.folder)
         yield from renew_packs(pack_paths(self.curves))
         if (self.folder / "shards").is_dir() and not self.configuration.is_file():
-            write_text(self.configuration, movable_text(configuration), sealed=True)
+            write_text(self.configuration, movable_text(configuration))
         known = {one.name for path in pack_paths(self.curves) for one in members(path)[0]}
         for path in sorted((self.folder / "shards").glob("*.nc")):
             if lost := [name for name in curve_names(path) if name not in known]:
+                forget_sums(self.folder)
                 path.unlink()
                 yield f"{path} is made anew, as {len(lost)} curve(s) of its simulations are gone"
 
@@ -335,6 +334,7 @@ class Store:
             [read_dataset(one.path).sel(realisation=list(taken)) for one, taken in chosen]
             for chosen in shards
         ]
+        forget_sums(self.folder)
         write_hysteresis(self.hysteresis, sweep, parts, origin)
         return self.hysteresis
 
@@ -350,30 +350,29 @@ class Store:
             raise ValueError(
                 f"{self.folder} holds no hysteresis.nc; run the sweep before it is archived"
             )
-        left_out = {"checkpoints"} if curves else {"checkpoints", "curves"}
+        listed = read_sums(self.folder)
         found = {
-            file: counts[Integrity.DAMAGED]
-            for file, counts in checked_files(self.folder)
-            if file.relative_to(self.folder).parts[0] not in left_out
-            and file.resolve() != path.resolve()
+            file: str(file.relative_to(self.folder))
+            for file in result_files(self.folder)
+            if (curves or file.parent != self.curves) and file.resolve() != path.resolve()
         }
-        if damaged := [file for file, n_damaged in found.items() if n_damaged]:
+        if damaged := [file for file, name in found.items() if is_damaged(file, listed.get(name))]:
             raise ValueError(
                 f"{len(damaged)} files of {self.folder} are damaged, the first is {damaged[0]}; "
                 "run make, which makes them anew, before it is archived"
             )
 
         def write(part: Path) -> None:
-            root, sums = Path(self.folder.name), []
+            root, digests = Path(self.folder.name), {}
             with ZipFile(part, "w") as archive:
-                for file in sorted(found):
-                    name, content = file.relative_to(self.folder), file.read_bytes()
+                for file, name in found.items():
+                    content = file.read_bytes()
                     # A clock may have been wrong: ZIP knows no year before 1980.
                     entry = ZipInfo.from_file(file, root / name, strict_timestamps=False)
                     entry.compress_type = ZIP_STORED if file.suffix in _COMPRESSED else ZIP_DEFLATED
                     archive.writestr(entry, content)
-                    sums.append(f"{hashlib.sha256(content).hexdigest()}  {name}\n")
-                archive.writestr(str(root / SUMS), "".join(sums))
+                    digests[name] = hashlib.sha256(content).hexdigest()
+                archive.writestr(str(root / SUMS), sums_text(digests))
 
         replace_atomically(path, write)
         return len(found)
@@ -393,16 +392,6 @@ def lost_curves(folder: Path) -> Iterator[str]:
     for path in sorted((folder / "shards").glob("*.nc")):
         with contextlib.suppress(UnreadableFileError):
             yield from (name for name in curve_names(path) if name not in known)
-
-
-def checked_files(folder: Path) -> Iterator[tuple[Path, Counter[Integrity]]]:
-    """Files of a folder of results, each counted by whether it, or each file in it, is whole."""
-    for path, state in integrities(folder):
-        yield path, Counter([state])
-    for path in pack_paths(folder / "curves"):
-        whole, n_damaged = checked(path)
-        n_damaged = 0 if is_locked(path) else n_damaged
-        yield path, Counter({Integrity.WHOLE: len(whole), Integrity.DAMAGED: n_damaged})
 
 
 def _stored_result(simulation: Simulation, index: RowIndex) -> StoredResult:

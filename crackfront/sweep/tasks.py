@@ -12,6 +12,7 @@ from numba.core.errors import NumbaError
 
 from crackfront.core.outcome import DefectError
 from crackfront.data.bounds import TooLargeError
+from crackfront.data.digests import forget_sums
 from crackfront.data.files import dataset_content, leftover_parts, write_text
 from crackfront.data.packs import Pack
 from crackfront.data.provenance import Provenance
@@ -58,7 +59,8 @@ def fill(
         folder.mkdir(parents=True, exist_ok=True)
         for part in leftover_parts(folder):
             part.unlink(missing_ok=True)
-    write_text(store.configuration, origin.configuration, sealed=True)
+    forget_sums(store.folder)
+    write_text(store.configuration, origin.configuration)
     longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
     begun = {path.stem for path in store.checkpoints.glob("*.nc")}
     tasks = [
@@ -189,12 +191,12 @@ def _run(task: _Task) -> _Outcome:
         status = "refused" if isinstance(error, ValueError) else "defect"
         sentence = str(error) or type(error).__name__
         row, seconds = failed_row(simulation, status, sentence), 0.0
-        curve, digest = b"", ""
+        curve = b""
     else:
-        curve, digest = dataset_content(simulation_dataset(result), origin)
+        curve = dataset_content(simulation_dataset(result), origin)
         row, sentence, seconds = sweep_row(result), wrong, result.measures.seconds
     named = simulation.stem, simulation.parts, row_fingerprint()
-    entry = Entry(*named, row, digest, origin.arithmetic)
+    entry = Entry(*named, row, origin.arithmetic)
     return _Outcome(Finished(row.status, seconds, sentence), entry, curve, keeper.has_file)
 
 

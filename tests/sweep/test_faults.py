@@ -304,6 +304,7 @@ def finished(undisturbed, tmp_path_factory):
     folder = shutil.copytree(alone, tmp_path_factory.mktemp("finished") / "sweep")
     for name in ("aggregate", "fit", "figures", "summary"):
         assert run_command(name, configuration, "--output", folder).exit_code == 0
+    assert run_command("checksums", folder).exit_code == 0
     return folder
 
 

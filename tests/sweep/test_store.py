@@ -20,8 +20,7 @@ from crackfront.cli import main
 from crackfront.core.outcome import DefectError
 from crackfront.data.bounds import TooLargeError
 from crackfront.data.comparison import comparison
-from crackfront.data.digests import Integrity
-from crackfront.data.files import read_dataset
+from crackfront.data.files import read_dataset, write_sums
 from crackfront.data.packs import members, record
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost
@@ -32,7 +31,7 @@ from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, RowIndex, new_pack, pack_paths
 from crackfront.sweep.store import Store
-from crackfront.sweep.verification import FILES, verification
+from crackfront.sweep.verification import verification
 from tests.commands import curves
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
@@ -134,7 +133,7 @@ def test_a_store_of_mixed_origin_is_told_where_it_is_planned_and_verified(store)
     assert store.inventory(FLAT).arithmetic == {here}
     for one in FLAT[1:]:
         row = tables.failed_row(one, "refused", "")
-        entry = Entry(one.stem, one.parts, tables.row_fingerprint(), row, arithmetic="another")
+        entry = Entry(one.stem, one.parts, tables.row_fingerprint(), row, "another")
         new_pack(store.curves, "flat", range(2)).append(entry.files())
     words = f"and may in their last digits: another; {here}"
     plan = ["plan", str(TEST), "--output", str(store.folder)]
@@ -174,17 +173,6 @@ def test_a_row_without_its_curve_does_not_count(store):
     fill(store, FLAT)
     without(store, f"{FLAT[2].stem}.nc")
     assert store.inventory(FLAT).missing == (FLAT[2],)
-
-
-def test_curves_in_files_by_themselves_as_earlier_versions_stored_them_count(store):
-    fill(store, FLAT)
-    rows = [held.row for held in store.stored_results(FLAT)]
-    for name, content in curves(store.folder).items():
-        (store.curves / name).write_bytes(content)
-    without(store, ".nc", ".json")
-    assert [held.row for held in store.stored_results(FLAT)] == rows
-    flip(store.curves / f"{FLAT[0].stem}.nc")
-    assert store.inventory(FLAT).missing == (FLAT[0],)
 
 
 def test_what_a_job_reads_before_it_starts_is_that_of_its_own_block(store, monkeypatch):
@@ -395,7 +383,7 @@ def test_a_curve_with_a_flipped_bit_is_named_and_computed_anew(store, rows, plac
     assert inventory.missing == (FLAT[1],)
     [sentence] = inventory.unreadable
     assert str(member) in sentence
-    assert "is damaged, its digest is wrong or missing" in sentence
+    assert "is damaged, its checksum is wrong" in sentence
     fill(store, inventory.missing)
     found = [held.row for held in store.stored_results(FLAT[:2])]
     assert [row.w_retr for row in found] == [row.w_retr for row in expected]
@@ -480,6 +468,7 @@ def test_the_shard_of_a_curve_that_is_damaged_or_gone_is_taken_back(whole, tmp_p
 @pytest.mark.parametrize("damage", ["flipped", "truncated"])
 def test_a_damaged_file_is_set_aside_and_told(whole, tmp_path, name, damage):
     path = whole.folder / name
+    write_sums(whole.folder)
     if damage == "flipped":
         flip(path)
     else:
@@ -489,6 +478,7 @@ def test_a_damaged_file_is_set_aside_and_told(whole, tmp_path, name, damage):
     assert first.startswith(f"{path} is damaged; it is made anew, and set aside as {path.name}.dam")
     assert path.exists() == (name == "configuration.yaml")
     assert path.with_name(f"{path.name}.damaged").exists()
+    assert not (whole.folder / "SHA256SUMS").exists()
 
 
 def test_the_table_of_another_configuration_is_refused(whole):
@@ -512,7 +502,8 @@ def test_a_folder_and_its_archive_are_verified(whole, tmp_path):
     for place in (whole.folder, archive):
         found = verification(place)
         assert found.damaged == found.missing == ()
-        assert found.counts[FILES] == {Integrity.WHOLE: 16}
+        assert (found.listed, found.unlisted) == ((6, 0) if place == archive else (0, 6))
+    write_sums(whole.folder)
     without(whole, f"{FLAT[1].stem}.nc")
     flip_curve(whole, FLAT[0])
     flip(whole.hysteresis)
@@ -573,6 +564,6 @@ def test_the_fit_of_a_sweep_that_was_interrupted_is_that_of_an_undisturbed_one(
     assert one == other
     assert comparison(*(folder / "fit.nc" for folder in folders)).in_bits
     one, other = (json.loads((folder / "fit.json").read_text()) for folder in folders)
-    assert {name for name in one if one[name] != other[name]} <= {"origin", "digest"}
+    assert {name for name in one if one[name] != other[name]} <= {"origin"}
     differing = {name for name, text in one["origin"].items() if text != other["origin"][name]}
     assert differing <= {"date", "command"}
