@@ -27,13 +27,14 @@ rule all:
         f"{RESULTS}/summary.html",
         f"{RESULTS}/hysteresis.nc",
         multiext(f"{RESULTS}/fit", ".nc", ".json", ".md"),
-        expand("{results}/shards/{shard}.json", results=RESULTS, shard=SHARDS),
+        f"{RESULTS}/SHA256SUMS",
 
 
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/aggregate.smk"
 include: "workflow/rules/fit.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/checksums.smk"
 include: "workflow/rules/accuracy.smk"
 include: "workflow/rules/paper.smk"
 include: "workflow/rules/validation.smk"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from crackfront.simulate.si_units import in_reduced_units as in_reduced_units
     from crackfront.simulate.si_units import in_si_units as in_si_units
     from crackfront.simulate.surfaces import random_surface as random_surface
-    from crackfront.sweep import sweep as sweep
+    from crackfront.sweep.library import run_sweep as run_sweep
     from crackfront.topography.library import predict as predict
     from crackfront.topography.library import read_scan as read_scan
     from crackfront.topography.options import PredictionOptions as PredictionOptions

@@ -13,5 +13,5 @@ from pathlib import Path
 import crackfront as cf
 
 film = Path(sys.argv[0]).with_name("film.yaml")
-table = cf.sweep(film, "results/film", progress=False)
+table = cf.run_sweep(film, "results/film", progress=False)
 print(table.w_appr.values, table.w_retr.values, sep="\n")

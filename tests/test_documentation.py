@@ -54,7 +54,7 @@ def test_the_tutorial_gives_what_it_shows():
 
 @pytest.mark.usefixtures("_elsewhere")
 def test_the_page_of_sweeps_computes_the_fit_and_puts_curves_together():
-    cf.sweep(ROOT / "config/test.yaml", "results/test", progress=False)
+    cf.run_sweep(ROOT / "config/test.yaml", "results/test", progress=False)
     main(["fit", str(ROOT / "config/test.yaml")], standalone_mode=False)
     shown = run_examples(DOCS / "sweeps.md")
     stored = json.loads(Path("results/test/fit.json").read_text())["columns"]

@@ -21,3 +21,4 @@ crackfront simulate "$sweep" --ranks $((SLURM_NTASKS - 1)) --launcher "srun -K1 
 for step in aggregate fit figures summary; do
   crackfront "$step" "$sweep"
 done
+crackfront checksums "results/$(basename "${sweep%.*}")"

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from crackfront.cli.cycle import cycle
-from crackfront.cli.integrity import compare, repair, verify
+from crackfront.cli.integrity import checksums, compare, repair, verify
 from crackfront.cli.law import law
 from crackfront.cli.report import StoppedError, announce_compilation, examples
 from crackfront.cli.results import aggregate, archive, figures, fit, summary
@@ -89,7 +89,7 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Predictions": (predict, surface, law),
     "One contact": (cycle,),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
-    "Stored results": (verify, repair, compare),
+    "Stored results": (verify, repair, checksums, compare),
     "The machine": (compile_solvers,),
 }
 """All commands, by what they are for."""

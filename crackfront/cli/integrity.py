@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, as_json, echo_answer, examples, table
+from crackfront.cli.report import FILE, as_json, echo_answer, examples
 
 
 @click.command(
@@ -15,38 +16,44 @@ from crackfront.cli.report import FILE, as_json, echo_answer, examples, table
 @click.argument("place", metavar="FOLDER", type=FILE)
 @as_json
 def verify(place: Path, as_json: bool) -> None:
-    """Check every file of a folder of results, or of its archive, against its digest.
+    """Check a folder of results, or an archive of it, against its list of checksums, SHA256SUMS.
 
-    The exit code is 1 where a file is damaged, or missing although a row or a list names it.
+    `sha256sum --check SHA256SUMS` in the folder does the same. Files that the list does not name
+    are checked where they have checksums of their own: netCDF files, and curves in packs. The exit
+    code is 1 where a file is damaged, or missing although a row or the list names it.
     """
-    from crackfront.data.digests import Integrity
-    from crackfront.sweep.journal import mixture_sentence
+    from crackfront.sweep.store import mixture_sentence
     from crackfront.sweep.verification import verification
 
     found = verification(place)
-    counts = {
-        name: {state.value: count[state] for state in Integrity}
-        for name, count in found.counts.items()
-    }
     lines = [
-        *table(
-            ("files in", *(state.value for state in Integrity)),
-            [(name, *map(str, count.values())) for name, count in counts.items()],
-        ),
+        f"{found.listed} files in SHA256SUMS, {found.unlisted} others",
         *(f"damaged: {name}" for name in found.damaged),
         *(f"missing: {name}" for name in found.missing),
         *filter(None, [mixture_sentence(found.arithmetic)]),
     ]
     if is_whole := not (found.damaged or found.missing):
         lines.append(f"{place}: nothing is damaged or missing")
-    content = {"counts": counts, "damaged": found.damaged, "missing": found.missing}
-    content["arithmetic"] = found.arithmetic
+    content = {**asdict(found), "arithmetic": sorted(found.arithmetic)}
     echo_answer(content, lines, as_json=as_json)
     if not is_whole:
         raise click.ClickException(
             f"{place}: {len(found.damaged)} files are damaged and {len(found.missing)} missing; "
             "make computes them anew, an archive is to be packed again"
         )
+
+
+@click.command(epilog=examples("crackfront checksums results/default"))
+@click.argument("folders", metavar="FOLDER...", type=FILE, nargs=-1, required=True)
+def checksums(folders: tuple[Path, ...]) -> None:
+    """Write SHA256SUMS, the checksums of a folder of results that is finished.
+
+    Commands that change the folder later remove the list. The workflow writes it at its end.
+    """
+    from crackfront.data.files import write_sums
+
+    for folder in folders:
+        click.echo(f"checksums: {write_sums(folder)}")
 
 
 @click.command(
@@ -59,9 +66,9 @@ def verify(place: Path, as_json: bool) -> None:
 def repair(places: tuple[Path, ...], output: Path | None) -> None:
     """Set damaged files aside, so that the workflow makes them and what depends on them anew.
 
-    A PLACE is a configuration of a sweep, or a folder of results. Lists of shards that lack
-    simulations are removed, and files that are dated in the future get the date of now. `make`
-    begins with it; nothing else of the workflow changes results before its jobs run.
+    A PLACE is a configuration of a sweep, or a folder of results. Shards
+    whose curves are gone are removed, and files that are dated in the future get the date of now.
+    `make` begins with it; nothing else of the workflow changes results before its jobs run.
     """
     from crackfront.data.files import date_back, set_aside_damaged
     from crackfront.sweep.library import opened
@@ -70,8 +77,8 @@ def repair(places: tuple[Path, ...], output: Path | None) -> None:
         if place.is_dir():
             folder, sentences = place, set_aside_damaged(place)
         else:
-            sweep, store, _ = opened(place, output)
-            folder, sentences = store.folder, store.renewed(sweep, place)
+            _, store, _ = opened(place, output)
+            folder, sentences = store.folder, store.renewed(place)
         date_back(folder)
         for sentence in sentences:
             click.echo(sentence)

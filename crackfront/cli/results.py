@@ -104,6 +104,7 @@ _CAPTIONS = {
 def summary(configuration: Path, output: Path | None) -> None:
     """Write summary.html: result, figures, fit, how simulations ended, configuration, origin."""
     from crackfront.analysis.report import fit_table
+    from crackfront.data.digests import forget_sums
     from crackfront.data.files import write_text
     from crackfront.sweep.library import opened
     from crackfront.sweep.summary import summary_page
@@ -120,7 +121,8 @@ def summary(configuration: Path, output: Path | None) -> None:
         about | {"seed of the sweep": str(sweep.seed)},
     )
     path = store.folder / "summary.html"
-    write_text(path, page, sealed=True)
+    forget_sums(store.folder)
+    write_text(path, page)
     click.echo(f"summary: {path}")
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import pickle
 import sys
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import astuple
+from dataclasses import astuple, dataclass
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 from typing import TYPE_CHECKING
 
 import click
@@ -35,8 +33,8 @@ if TYPE_CHECKING:
     from crackfront.simulate.costs import Cost
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.expectation import Expectation
-    from crackfront.sweep.journal import Running
-    from crackfront.sweep.store import Inventory, Progress, Store
+    from crackfront.sweep.journal import Writer
+    from crackfront.sweep.store import Inventory, Store
     from crackfront.sweep.sweep import Shard, Sweep
 
 _MOST_PROCESSES = 16
@@ -66,22 +64,23 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
     sweep, store, _ = opened(configuration, output)
     shards, late = sweep.shards(block), late_needs(sweep)
     expected = {item.name: [*map(expectation, sweep.firsts(item))] for item in sweep.spectra}
-    inventory = store.inventory(sweep.simulations(), checked=False)
+    progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
+    missing = [one for found in progress.values() for one in found.missing]
     content = {
         "results": store.folder,
         "spectra": [item.name for item in sweep.spectra],
         "elastic_energies": sweep.elastic_energies,
         "realisations": sweep.n_realisation,
         "simulations": sweep.n_simulation,
-        "missing": len(inventory.missing),
-        "arithmetic": inventory.arithmetic,
+        "missing": len(missing),
+        "arithmetic": sorted(set().union(*(found.arithmetic for found in progress.values()))),
         "shards": [shard.name for shard in shards],
         "expected": expected,
         "doubts": (doubtful := [*doubts(sweep)]),
-        **_costs(inventory.missing),
+        **_costs(missing),
         "late": late,
     }
-    lines = _plan_lines(sweep, store, shards, inventory, expected, late)
+    lines = _plan_lines(sweep, store, shards, progress, expected, late)
     echo_answer(content, [*lines, *doubtful], as_json=as_json)
 
 
@@ -89,17 +88,17 @@ def _plan_lines(
     sweep: Sweep,
     store: Store,
     shards: Sequence[Shard],
-    inventory: Inventory,
+    progress: Mapping[str, Inventory],
     expected: Mapping[str, Sequence[Expectation]],
     late: Mapping[str, Cost],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
-    from crackfront.sweep.journal import mixture_sentence
+    from crackfront.sweep.store import NOTHING, mixture_sentence
 
-    total = sweep.n_simulation // len(sweep.spectra)
+    everything = sum(progress.values(), NOTHING)
     spectra, left = [], []
     for item in sweep.spectra:
-        missing = [one for one in inventory.missing if one.spectrum_name == item.name]
+        found = progress[item.name]
         shape, sizes = item.spectrum, [one.resolution for one in sweep.firsts(item)]
         spectra.append(
             (
@@ -113,18 +112,18 @@ def _plan_lines(
                 ),
                 _span([size.n_angle for size in sizes]),
                 _span([size.n_point for size in sizes]),
-                f"{total - len(missing)}/{total}",
+                f"{found.stored}/{found.stored + len(found.missing)}",
             )
         )
-        left.append(_left(item.name, sum(shard.item is item for shard in shards), missing))
+        left.append(_left(item.name, sum(shard.item is item for shard in shards), found.missing))
     yield from table(
         ("spectrum", "lambda_s", "lambda_r", "H", "s", "g", "k", "angles", "points", "stored"),
         spectra,
     )
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
-    yield from filter(None, (inventory.stale_sentence(), mixture_sentence(inventory.arithmetic)))
+    yield from filter(None, (everything.stale_sentence(), mixture_sentence(everything.arithmetic)))
     yield ""
-    left.append(_left("all", len(shards), inventory.missing))
+    left.append(_left("all", len(shards), everything.missing))
     for name, cost in late.items():
         hours, seconds = f"{cost.seconds / 3600:.3g}", f"{cost.seconds:.3g}"
         left.append((name, "-", "-", hours, seconds, f"{cost.memory / 1e6:.0f}", "-"))
@@ -213,7 +212,6 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
     default=60.0,
     help="Seconds between checkpoints of a running simulation.",
 )
-@click.option("--found", type=FILE, hidden=True, help="What is missing, as the launcher found it.")
 def simulate(
     configuration: Path,
     output: Path | None,
@@ -222,7 +220,6 @@ def simulate(
     ranks: int,
     launcher: str | None,
     checkpoint: float,
-    found: Path | None,
 ) -> None:
     """Run the simulations of a sweep that are not stored yet.
 
@@ -243,18 +240,14 @@ def simulate(
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
     chosen = range(sweep.n_realisation) if realisations is None else realisations
     shards = [sweep.named_shard(item, chosen) for item in items]
-    if found is None:
-        inventory = store.inventory(
-            one for item in items for one in sweep.simulations(item, chosen)
-        )
-        missing, n_stored = inventory.missing, sum(inventory.arithmetic.values())
-        stored = f"{n_stored} of {n_stored + len(missing)} simulations are stored"
-        click.echo(f"{configuration}: {stored}")
+    inventory = store.unfinished(sweep, shards)
+    missing = inventory.missing
+    if not parallel.is_launched():  # the process that started the ranks has printed it
+        stored, total = inventory.stored, inventory.stored + len(missing)
+        click.echo(f"{configuration}: {stored} of {total} simulations are stored")
         for sentence in inventory.unreadable:
             click.echo(f"Warning: {sentence}; it is computed anew", err=True)
         click.echo(inventory.stale_sentence(), nl=bool(inventory.stale))
-    else:
-        missing = pickle.loads(found.read_bytes())
     if missing and not parallel.under_mpi():
         busy, costs = min(ranks, len(missing)), _costs(missing)
         refuse_beyond_memory(
@@ -270,7 +263,7 @@ def simulate(
             arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
             arguments += [] if spectrum is None else ["--spectrum", spectrum]
             arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
-            _launch(arguments, pickle.dumps(missing), busy, launcher, store.checkpoints)
+            _launch(arguments, busy, launcher, store.checkpoints)
             return
     try:
         fill_store(store, missing, origin, checkpoint)
@@ -281,21 +274,15 @@ def simulate(
         StoppedError(str(stop)).show()
         return
     for shard in shards:
-        manifest = store.write_manifest(sweep, shard)
-    click.echo(f"curves: {store.folder / 'curves'}/, lists: {manifest.parent}/")
+        click.echo(f"rows: {store.finish_shard(sweep, shard, origin)}")
 
 
-def _launch(
-    arguments: list[str], missing: bytes, ranks: int, launcher: str | None, folder: Path
-) -> None:
-    """Run a command on ranks, which read what is missing, and end where they failed."""
+def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path) -> None:
+    """Run a command on ranks, and end where they failed."""
     from crackfront.sweep import parallel
 
     folder.mkdir(parents=True, exist_ok=True)
-    with NamedTemporaryFile(prefix=".", suffix=".part", dir=folder) as found:
-        Path(found.name).write_bytes(missing)
-        arguments += ["--found", found.name]
-        code = parallel.launch_ranks(arguments, ranks, launcher, folder)
+    code = parallel.launch_ranks(arguments, ranks, launcher, folder)
     if code is None or code == StoppedError.exit_code:
         sys.exit(StoppedError.exit_code)  # the manager has printed its sentence
     if code != 0:
@@ -349,43 +336,61 @@ def fill_store(
 @click.argument("folder", type=FILE)
 @as_json
 def status(folder: Path, as_json: bool) -> None:
-    """Show how far the sweep in a folder is, and which processes run it, here or elsewhere.
+    """Show how far the sweep in a folder is, and which processes store simulations in it.
 
-    A process on this machine counts as long as it lives, one on another machine as long as
-    it renews its file in the folder.
+    Processes on other machines are shown where the file system passes their locks on; a batch
+    system knows them all.
     """
-    from crackfront.data.files import refuse_damaged
     from crackfront.sweep.configuration import load_configuration
-    from crackfront.sweep.journal import running
+    from crackfront.sweep.journal import writers
     from crackfront.sweep.store import Store
 
     store = Store(folder)
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
-    refuse_damaged(store.configuration)
-    spectra = store.progress(load_configuration(store.configuration))
-    processes = running(store.checkpoints)
-    content = {"spectra": spectra, "processes": processes}
-    echo_answer(content, _status_lines(spectra, processes), as_json=as_json)
+    sweep = load_configuration(store.configuration)
+    progress = _progress({item.name: store.progress(sweep, item) for item in sweep.spectra})
+    processes = writers(store.curves)
+    content = {"spectra": progress, "processes": processes}
+    echo_answer(content, _status_lines(progress, processes), as_json=as_json)
 
 
-def _status_lines(spectra: Sequence[Progress], processes: Sequence[Running]) -> Iterator[str]:
-    """Table of the spectra of a sweep, the processes that run it, and how long they will."""
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far one spectrum is."""
+
+    name: str
+    done: int
+    failed: int
+    left: int
+    """Simulations with values; those that ended without; all others."""
+    seconds: float
+    """Processor time that is expected for those that are left. (Units: s)"""
+
+
+def _progress(inventories: Mapping[str, Inventory]) -> list[Progress]:
+    """How far spectra are; they are expected to go on as fast as they did so far."""
+    from crackfront.sweep.store import NOTHING, expected_seconds
+
+    known = sum(inventories.values(), NOTHING)
+    pace = known.cpu_seconds / known.expected_seconds if known.cpu_seconds else 1.0
+    return [
+        Progress(name, one.done, one.failed, len(one.missing), pace * expected_seconds(one.missing))
+        for name, one in inventories.items()
+    ]
+
+
+def _status_lines(spectra: Sequence[Progress], processes: Sequence[Writer]) -> Iterator[str]:
+    """Table of the spectra of a sweep, and the processes that store their simulations."""
     rows = [(*map(str, astuple(item)[:-1]), f"{item.seconds / 3600:.3g}") for item in spectra]
-    yield from table(("spectrum", "done", "failed", "running", "waiting", "core hours left"), rows)
+    yield from table(("spectrum", "done", "failed", "left", "core hours left"), rows)
     for one in processes[:_MOST_PROCESSES]:
-        yield (
-            f"process {one.process} on {one.host}: {one.label}, last sign of life "
-            f"{one.silent_seconds:.0f} s ago"
-        )
+        yield f"process {one.process} on {one.host} stores {one.spectrum} {one.realisations}"
     if len(processes) > _MOST_PROCESSES:
         yield f"and {len(processes) - _MOST_PROCESSES} more, listed by --json"
     ended = sum(item.done + item.failed for item in spectra)
-    total = ended + sum(item.running + item.waiting for item in spectra)
+    total = ended + sum(item.left for item in spectra)
     sentence = f"{ended} of {total} simulations have ended"
-    if processes:
-        minutes = sum(item.seconds for item in spectra) / len(processes) / 60
-        sentence += f"; about {minutes:.3g} minutes are left on {len(processes)} rank(s)"
-    elif ended < total:
-        sentence += "; nothing runs"
+    if ended < total and not processes:
+        sentence += "; no process that is seen here stores any"
     yield sentence

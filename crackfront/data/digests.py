@@ -1,116 +1,56 @@
-"""Digests: a file states at its end what its content hashes to, which is checked on reading.
+"""SHA256SUMS: the checksums of a folder of results, as `sha256sum --check SHA256SUMS` reads them.
 
-The statement is a line of its own, or what the format has for a remark: netCDF, PNG, PDF and GIF
-end where they say themselves, Markdown, YAML and HTML have comments, and JSON gets a last key. The
-SHA-256 is that of all bytes of the file but its own 64 digits.
+A command that finishes a folder writes the list, and one that changes the folder removes it first.
 """
 
 from __future__ import annotations
 
-import enum
 import hashlib
-import io
-import os
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import BinaryIO
 
-_MARK = b"crackfront digest sha256 "
-"""What stands before the digits."""
+SUMS = "SHA256SUMS"
+"""Name of the list of checksums in a folder."""
 
-_DIGITS = 64
+DAMAGED_SUFFIX = ".damaged"
+"""Ending of the name of a file that was set aside."""
 
-_TAIL = 160
-"""Bytes at the end of a file among which its digest stands."""
-
-_COMMENT = {
-    ".json": (b',\n "digest": "', b'"\n}\n'),
-    ".md": (b"<!-- ", b" -->\n"),
-    ".html": (b"<!-- ", b" -->\n"),
-    ".svg": (b"<!-- ", b" -->\n"),
-    ".yaml": (b"# ", b"\n"),
-    ".pdf": (b"% ", b"\n"),
-}
-"""What stands around a digest in a file of a format; elsewhere it is a line."""
-
-_ALWAYS_SEALED = (
-    *("configuration.yaml", "hysteresis.nc", "fit.nc", "fit.json", "fit.md", "summary.html"),
-    *("curves/*-r[0-9]*.nc", "checkpoints/*-r[0-9]*.nc", "shards/*.json"),
-    *("figures/*.pdf", "figures/*.png"),
-    *("figures/*/*.nc", "figures/*/*.pdf", "figures/*/*.png", "figures/*/*.gif"),
-    *("checks.md", "accuracy/*.nc", "accuracy/*.pdf", "accuracy/*.png", "accuracy.md"),
-    *("validation*/*.nc", "validation.pdf", "validation.png", "validation.md"),
-)
-"""Files in folders of results that are never written without a digest."""
+_NO_RESULTS = {"logs", "benchmarks", "checkpoints"}
+"""Folders of what is no result and changes while others are made."""
 
 
-class Integrity(enum.Enum):
-    """Whether the content of a file is that which was written."""
+def result_files(folder: Path) -> Iterator[Path]:
+    """Files of a folder of results, in the order of their names.
 
-    WHOLE = "whole"
-    DAMAGED = "damaged"
-    UNKNOWN = "without a digest"
-
-
-def seal(path: Path, suffix: str) -> str:
-    """Add the digest to a file that is finished otherwise, and return it.
-
-    The suffix is the ending of the name that it will have, from which its format follows. JSON must
-    be a mapping that ends in a brace and a new line.
+    Hidden ones, links, files that were set aside, logs, times and checkpoints are left out.
     """
-    before, after = _COMMENT.get(suffix, (b"\n", b"\n"))
-    with path.open("rb+") as file:
-        if suffix == ".json":
-            file.truncate(file.seek(-len(b"\n}\n"), os.SEEK_END))
-        file.seek(0, os.SEEK_END)
-        file.write(before + _MARK)
-        file.seek(0)
-        content = hashlib.file_digest(file, "sha256")
-        content.update(after)
-        file.write(content.hexdigest().encode() + after)
-    return content.hexdigest()
+    for path in sorted(folder.rglob("[!.]*")):
+        parts = path.relative_to(folder).parts
+        left_out = path.is_symlink() or path.suffix == DAMAGED_SUFFIX or path.name == SUMS
+        if path.is_file() and not left_out and _NO_RESULTS.isdisjoint(parts):
+            yield path
 
 
-def integrity(path: Path) -> tuple[Integrity, str]:
-    """Whether a file is as it was written, and the digest that it states; empty where none is.
-
-    Without a digest, a file that is always written with one is damaged.
-    """
+def file_digest(path: Path) -> str:
+    """SHA-256 of the content of a file, in hexadecimal digits."""
     with path.open("rb") as file:
-        found, digest = _integrity(file)
-    if found is Integrity.UNKNOWN and any(path.match(pattern) for pattern in _ALWAYS_SEALED):
-        return Integrity.DAMAGED, ""
-    return found, digest
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def sealed(content: bytes, suffix: str) -> tuple[bytes, str]:
-    """Content of a file with its digest, as :func:`seal` adds it, and the digest."""
-    before, after = _COMMENT.get(suffix, (b"\n", b"\n"))
-    start = content.removesuffix(b"\n}\n" if suffix == ".json" else b"") + before + _MARK
-    digest = hashlib.sha256(start + after).hexdigest()
-    return start + digest.encode() + after, digest
+def sums_text(digests: Mapping[str, str]) -> str:
+    """Content of a list of checksums, by the names of files."""
+    return "".join(f"{digest}  {name}\n" for name, digest in digests.items())
 
 
-def content_digest(content: bytes) -> str:
-    """The digest that the content of a file states; empty where it is wrong or none."""
-    return _integrity(io.BytesIO(content))[1]
+def read_sums(folder: Path) -> dict[str, str]:
+    """Checksums in the list of a folder by the names of its files; empty without a list."""
+    path = folder / SUMS
+    if not path.is_file():
+        return {}
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    return {name: digest for digest, _, name in (line.partition("  ") for line in lines)}
 
 
-def _integrity(file: BinaryIO) -> tuple[Integrity, str]:
-    """The same of an open file, of any name."""
-    start = max(0, file.seek(0, os.SEEK_END) - _TAIL)
-    file.seek(start)
-    tail = file.read()
-    place = tail.rfind(_MARK)
-    if place < 0:
-        return Integrity.UNKNOWN, ""
-    digits = place + len(_MARK)
-    stated, left = tail[digits : digits + _DIGITS], start + digits
-    content = hashlib.sha256()
-    file.seek(0)
-    while left and (block := file.read(min(left, 2**20))):
-        content.update(block)
-        left -= len(block)
-    content.update(tail[digits + _DIGITS :])
-    if content.hexdigest().encode() != stated:
-        return Integrity.DAMAGED, ""
-    return Integrity.WHOLE, content.hexdigest()
+def forget_sums(folder: Path) -> None:
+    """Remove the list of a folder before its files change."""
+    (folder / SUMS).unlink(missing_ok=True)

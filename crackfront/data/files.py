@@ -1,4 +1,4 @@
-"""Files: written whole or not at all, with origin and digest; read as written, or refused."""
+"""Files: written whole or not at all, with origin and checksums; read as written, or refused."""
 
 from __future__ import annotations
 
@@ -17,8 +17,16 @@ import numpy as np
 import xarray as xr
 
 from crackfront.data.bounds import TooLargeError, refuse_beyond_memory
-from crackfront.data.digests import Integrity, integrity, seal, sealed
-from crackfront.data.packs import PACK, File
+from crackfront.data.digests import (
+    DAMAGED_SUFFIX,
+    SUMS,
+    file_digest,
+    forget_sums,
+    read_sums,
+    result_files,
+    sums_text,
+)
+from crackfront.data.packs import PACK, File, checked, is_locked
 from crackfront.data.provenance import Provenance, utc_now
 
 PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
@@ -26,9 +34,6 @@ PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
 
 _SECONDS_TO_WRITE = 3600.0
 """Time after which a file that is not finished will not be."""
-
-DAMAGED_SUFFIX = ".damaged"
-"""Ending of the name of a file that was set aside."""
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 """Numbers of the errors of a full disk and of a used-up quota."""
@@ -38,32 +43,23 @@ class UnreadableFileError(ValueError):
     """A file that is missing, damaged, or not what its reader needs."""
 
 
-def write_dataset(
-    path: Path, dataset: xr.Dataset, origin: Provenance, fill: Callable[[Path], None] | None = None
-) -> str:
-    """Write a dataset as netCDF with its origin, atomically, and return its digest.
+def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
+    """Write a dataset as netCDF with its origin and checksums of its arrays, atomically.
 
-    The folder is created. Where `fill` is given, it writes more into the file before that gets its
-    name.
+    The folder is created.
     """
     stamped, encoding = _stamped(dataset, origin)
-
-    def write(part: Path) -> None:
-        stamped.to_netcdf(part, engine="netcdf4", encoding=encoding)
-        if fill is not None:
-            fill(part)
-
-    return replace_atomically(path, write, sealed=True)
+    replace_atomically(
+        path, lambda part: stamped.to_netcdf(part, engine="netcdf4", encoding=encoding)
+    )
 
 
-def dataset_content(dataset: xr.Dataset, origin: Provenance) -> tuple[bytes, str]:
-    """Content of the file that :func:`write_dataset` would write, and its digest."""
-    stamped, encoding = _stamped(dataset, origin)
-    content = bytes(stamped.to_netcdf(engine="netcdf4", encoding=encoding))
-    # Memory grows by blocks; where the file ends stands in its beginning, of which this is a kind.
-    if content[8] in (2, 3):
-        content = content[: int.from_bytes(content[28:36], "little")]
-    return sealed(content, ".nc")
+def dataset_content(dataset: xr.Dataset, origin: Provenance) -> bytes:
+    """Content of the file that :func:`write_dataset` would write."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "dataset.nc"
+        write_dataset(path, dataset, origin)
+        return path.read_bytes()
 
 
 def _stamped(
@@ -74,25 +70,29 @@ def _stamped(
     stamped = dataset.assign_attrs({"title": "results of crackfront"} | dataset.attrs)
     stamped.attrs |= {"Conventions": "CF-1.11", "history": f"{date}: {origin.command}"}
     stamped.attrs |= asdict(origin) | {"date": date}
-    encoding: dict[str, dict[str, Any]] = {
-        str(name): {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
-        for name, values in stamped.variables.items()
-        if np.issubdtype(values.dtype, np.floating)
-    }
-    return stamped, encoding
+    return stamped, {str(name): _encoding(values) for name, values in stamped.variables.items()}
 
 
-def write_text(path: Path, text: str, *, sealed: bool = False) -> None:
-    """Write a text file atomically, with a digest if it is to be sealed."""
-    replace_atomically(path, lambda part: part.write_text(text, encoding="utf-8"), sealed=sealed)
+def _encoding(values: xr.Variable) -> dict[str, Any]:
+    """How a variable is stored: HDF5 has checksums for arrays of numbers or letters alone."""
+    encoding: dict[str, Any] = {"fletcher32": True} if values.ndim else {}
+    if values.dtype.kind in "OU":
+        return encoding | ({"dtype": "S1"} if values.ndim else {})
+    if np.issubdtype(values.dtype, np.floating):
+        encoding |= {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
+    return encoding
 
 
-def replace_atomically(path: Path, write: Callable[[Path], Any], *, sealed: bool = False) -> str:
+def write_text(path: Path, text: str) -> None:
+    """Write a text file atomically."""
+    replace_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
+
+
+def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
     """Let a function write a file beside the final one, and rename it once it is on disk.
 
-    The folder of the final file is created. Returns the digest, which a sealed file gets as
-    :func:`crackfront.data.digests.seal` adds it, or nothing. OSError if the place is none for a
-    file, or the disk is full; what was there before stays.
+    The folder of the final file is created. OSError if the place is none for a file, or the disk is
+    full; what was there before stays.
     """
     refuse_no_file(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -100,7 +100,6 @@ def replace_atomically(path: Path, write: Callable[[Path], Any], *, sealed: bool
     part = path.with_name(f".{path.stem}-{secrets.token_hex(8)}.part")
     try:
         write(part)
-        digest = seal(part, path.suffix) if sealed else ""
         with part.open("rb+") as file:
             os.fsync(file.fileno())
         part.replace(path)
@@ -110,7 +109,6 @@ def replace_atomically(path: Path, write: Callable[[Path], Any], *, sealed: bool
         raise
     finally:
         part.unlink(missing_ok=True)
-    return digest
 
 
 def refuse_no_file(path: Path) -> None:
@@ -156,8 +154,9 @@ def read_dataset(
     if they need more than there is, whatever the file holds of them; UnreadableFileError if there
     is no such file, it is damaged, or it is no complete netCDF file.
     """
-    if isinstance(path, Path):
-        refuse_damaged(path)
+    if isinstance(path, Path) and not path.is_file():
+        what = "is no file" if path.exists() else "does not exist"
+        raise UnreadableFileError(f"{path} {what}; check the name")
     source = path if isinstance(path, Path) else path.content()
     if source is None:
         raise UnreadableFileError(f"{path} {_DAMAGED}")
@@ -171,7 +170,7 @@ def read_dataset(
             return chosen.load()
     except (TooLargeError, MemoryError):
         raise
-    except Exception as error:  # a file without a digest may be wrong in any way
+    except Exception as error:  # a damaged file may be wrong in any way
         if isinstance(error, OSError) and (error.errno or 0) > 0:
             raise  # the machine's; the library's own numbers are negative
         raise UnreadableFileError(
@@ -179,33 +178,60 @@ def read_dataset(
         ) from error
 
 
-def refuse_damaged(path: Path) -> None:
-    """Raise an `UnreadableFileError` if there is no such file, or it is not as it was written."""
-    if not path.is_file():
-        what = "is no file" if path.exists() else "does not exist"
-        raise UnreadableFileError(f"{path} {what}; check the name")
-    if integrity(path)[0] is Integrity.DAMAGED:
-        raise UnreadableFileError(f"{path} {_DAMAGED}")
+_DAMAGED = "is damaged, its checksum is wrong; restore it or write it again"
 
 
-_DAMAGED = "is damaged, its digest is wrong or missing; restore it or write it again"
+def is_damaged(path: Path, digest: str | None) -> bool:
+    """Whether a file is not as it was written, by the checksum of it that a list states.
 
-
-def integrities(folder: Path) -> Iterator[tuple[Path, Integrity]]:
-    """All files of a folder, and whether they are as they were written.
-
-    Hidden ones, links, and what was set aside are left out, and packs but for the files in them.
+    Without one, the arrays of a netCDF file are checked, which have their own, and the files in a
+    pack; whatever else is there counts as whole.
     """
-    for path in sorted(folder.rglob("[!.]*")):
-        left_out = path.is_symlink() or path.suffix in (DAMAGED_SUFFIX, PACK)
-        if path.is_file() and not left_out:
-            yield path, integrity(path)[0]
+    if digest is not None:
+        return file_digest(path) != digest
+    if path.suffix == PACK:
+        return checked(path)[1] > 0 and not is_locked(path)
+    if path.suffix == ".nc":
+        with contextlib.suppress(UnreadableFileError):
+            read_dataset(path)
+            return False
+        return True
+    return False
+
+
+def damaged_files(folder: Path) -> list[Path]:
+    """Files of a folder of results that are not as they were written."""
+    listed = read_sums(folder)
+    return [
+        path
+        for path in result_files(folder)
+        if is_damaged(path, listed.get(str(path.relative_to(folder))))
+    ]
+
+
+def write_sums(folder: Path) -> Path:
+    """Write the list of the checksums of a folder of results, and return its path.
+
+    ValueError if a netCDF file or a pack is damaged, or the folder holds no result.
+    """
+    forget_sums(folder)
+    if damaged := damaged_files(folder):
+        raise ValueError(f"{damaged[0]} is damaged; run crackfront repair and make it again")
+    digests = {str(path.relative_to(folder)): file_digest(path) for path in result_files(folder)}
+    if not digests:
+        raise ValueError(f"{folder} holds no file; name a folder of results")
+    write_text(folder / SUMS, sums_text(digests))
+    return folder / SUMS
 
 
 def set_aside_damaged(folder: Path) -> Iterator[str]:
-    """Rename the damaged files of a folder, so that they are made anew; a sentence each."""
-    for path, found in integrities(folder):
-        if found is Integrity.DAMAGED:
+    """Rename the damaged files of a folder, but packs, to be made anew; a sentence each."""
+    listed = read_sums(folder)
+    damaged = damaged_files(folder)
+    if damaged or any(not (folder / name).is_file() for name in listed):
+        forget_sums(folder)
+    for path in damaged:
+        if path.suffix != PACK:
             yield f"{path} is damaged; it is made anew, and set aside as {set_aside(path).name}"
 
 

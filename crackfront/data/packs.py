@@ -1,9 +1,14 @@
-"""Packs: tar archives of sealed files to which one process appends, read past any damage."""
+"""Packs: tar archives to which one process appends, read past any damage.
+
+The header of a file holds the SHA-256 of its content, in the field for the target of a link, which
+programs that unpack ignore for files.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import fcntl
+import hashlib
 import os
 import time
 from collections.abc import Mapping
@@ -11,16 +16,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from tarfile import BLOCKSIZE, USTAR_FORMAT, HeaderError, TarInfo
 
-from crackfront.data.digests import content_digest
-
 PACK = ".tar"
 """Ending of the names of packs."""
 
 SECONDS_TO_DISK = 0.5
 """What a machine that crashes may lose of a pack; a process that is killed loses nothing."""
-
-END = bytes(2 * BLOCKSIZE)
-"""How a pack ends that was closed."""
 
 LONGEST_NAME = 100
 """Letters that the name of a file in a pack may have."""
@@ -28,53 +28,45 @@ LONGEST_NAME = 100
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A file in a pack, which begins at a byte of that and has so many; or a file by itself."""
+    """A file in a pack: where its content begins, its number of bytes, and their checksum."""
 
     path: Path
     name: str
     place: int
     size: int
+    digest: str
+    """SHA-256 of its content, in hexadecimal digits."""
 
     def content(self) -> bytes | None:
         """Its bytes, None where they are not those that were written."""
         with contextlib.suppress(FileNotFoundError), self.path.open("rb", buffering=0) as file:
             content = os.pread(file.fileno(), self.size, self.place)
-            return content if content_digest(content) else None
+            return content if hashlib.sha256(content).hexdigest() == self.digest else None
         return None
 
     def __str__(self) -> str:
-        return f"{self.path}: {self.name}" if self.place else str(self.path)
+        return f"{self.path}: {self.name}"
 
 
 File = Path | Member
 """A file, or one in a pack."""
 
 
-def is_finished(path: Path) -> bool:
-    """Whether a pack was closed, and has not been cut since."""
-    with path.open("rb") as file:
-        file.seek(max(0, file.seek(0, os.SEEK_END) - len(END)))
-        return file.read() == END
-
-
-def finish(path: Path) -> None:
-    """Close a pack whose process has ended."""
-    with path.open("ab") as file:
-        file.write(END)
-
-
 def members(path: Path) -> tuple[list[Member], int]:
-    """Files in a pack in their order, and the number of damaged places between them."""
+    """Files in a pack in their order, and the number of damaged places between them.
+
+    A pack is created with its first file: an empty one is damaged.
+    """
     found: list[Member] = []
-    end = path.stat().st_size - (len(END) if is_finished(path) else 0)
+    end = path.stat().st_size
     with path.open("rb", buffering=0) as file:
-        place, n_damaged, known = 0, 0, True
+        place, n_damaged, known = 0, int(not end), True
         while place < end:
             with contextlib.suppress(HeaderError):
                 head = TarInfo.frombuf(os.pread(file.fileno(), BLOCKSIZE, place), "ascii", "strict")
                 start = place + BLOCKSIZE
                 if start + head.size <= end:
-                    found.append(Member(path, head.name, start, head.size))
+                    found.append(Member(path, head.name, start, head.size, head.linkname))
                     place, known = start + _padded(head.size), True
                     continue
             # Headers begin at multiples of a block: the next one ends what is damaged.
@@ -90,16 +82,17 @@ def _padded(size: int) -> int:
 
 
 def checked(path: Path) -> tuple[list[Member], int]:
-    """Whole files in a pack, and the number of its damaged files and places, one the lost end."""
+    """Whole files in a pack, and the number of its damaged files and places."""
     found, n_damaged = members(path)
     whole = [one for one in found if one.content() is not None]
-    return whole, n_damaged + len(found) - len(whole) + (not is_finished(path))
+    return whole, n_damaged + len(found) - len(whole)
 
 
 def record(name: str, content: bytes) -> bytes:
     """A file as it stands in a pack."""
     head = TarInfo(name)
     head.size = len(content)
+    head.linkname = hashlib.sha256(content).hexdigest()
     return head.tobuf(USTAR_FORMAT, "ascii", "strict") + content.ljust(_padded(len(content)), b"\0")
 
 
@@ -118,7 +111,7 @@ class Pack:
         """
         if self._number is None:
             self._number = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o666)
-            lock(self._number, fcntl.LOCK_EX)
+            _lock(self._number)
         rest = memoryview(b"".join(record(*item) for item in files.items()))
         length = os.lseek(self._number, 0, os.SEEK_END)
         try:
@@ -135,18 +128,11 @@ class Pack:
                 self._number = None
             raise
 
-    def beat(self) -> None:
-        """Show that this process lives, on machines that do not know its lock."""
-        with contextlib.suppress(OSError):
-            if self._number is not None:
-                os.utime(self._number)
-
     def close(self) -> None:
         """Have all of it on disk, and unlock it; an OSError where that is impossible."""
         if self._number is not None:
             number, self._number = self._number, None
             try:
-                os.write(number, END)
                 os.fsync(number)
             except OSError as error:
                 raise OSError(error.errno, error.strerror, str(self._path)) from error
@@ -154,7 +140,19 @@ class Pack:
                 os.close(number)
 
 
-def lock(number: int, operation: int) -> None:
-    """Lock or unlock an open file, where the file system has locks and no other has this one."""
+def _lock(number: int) -> None:
+    """Lock an open file, where the file system has locks and no other process has this one."""
     with contextlib.suppress(OSError):
-        fcntl.flock(number, operation | fcntl.LOCK_NB)
+        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def is_locked(path: Path) -> bool:
+    """Whether a process holds the lock on a pack, as far as the file system says so."""
+    with path.open("rb") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        except OSError:
+            return False  # a file system without locks
+    return False

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
-import netCDF4
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.core.variables import Variable, variables
-from crackfront.data.files import PACKED, UnreadableFileError, read_dataset, write_dataset
-from crackfront.data.labels import label, labelled, labelled_fields
+from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
+from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.provenance import Provenance
 
 Record = TypeVar("Record")
-
-Block = tuple[tuple[int | slice, ...], Sequence[Any]]
-"""Some records, and their place in the dimensions that count them."""
 
 
 def write_record(path: Path, record: Any, origin: Provenance, **attributes: str | float) -> None:
@@ -36,53 +32,6 @@ def write_records(
 ) -> None:
     """Write one record or more of one kind, as :func:`write_record`, along a dimension."""
     write_dataset(path, xr.Dataset(stacked(rows, along), attrs=attributes), origin)
-
-
-def write_records_in_blocks(
-    path: Path,
-    dataset: xr.Dataset,
-    known: Sequence[Variable],
-    blocks: Iterable[Block],
-    origin: Provenance,
-    flags: Mapping[str, Sequence[str]],
-) -> None:
-    """Write records block by block, atomically, holding one block at a time.
-
-    The dataset has the attributes, and coordinates of the dimensions that count the records; the
-    known variables are those of the records, all of these dimensions alone. Variables that take
-    some words alone are flags, stored as the places of the words.
-    """
-
-    def fill(part: Path) -> None:
-        with netCDF4.Dataset(part, "a") as file:
-            for place, rows in blocks:
-                for variable in known:
-                    values, words = _column(variable, rows), flags.get(variable.name, ())
-                    if words:
-                        values = np.array([words.index(word) for word in values], np.int8)
-                    if variable.name not in file.variables:
-                        _create(file, variable, values, words)
-                    file[variable.name][place] = values
-
-    write_dataset(path, dataset, origin, fill)
-
-
-def _create(
-    file: netCDF4.Dataset, variable: Variable, values: NDArray[Any], flags: Sequence[str]
-) -> None:
-    """Create a variable for values like those of a block, in chunks of a block's size."""
-    text = values.dtype.kind == "U"
-    sizes = [len(file.dimensions[name]) for name in variable.dims]
-    created = file.createVariable(
-        variable.name,
-        str if text else values.dtype,
-        variable.dims,
-        fill_value=None if text else False,
-        chunksizes=[1] * (len(sizes) - 1) + [min(sizes[-1], values.size)],
-        chunk_cache=values.nbytes,  # a chunk is written once; the default holds megabytes of them
-        **({} if text else PACKED),
-    )
-    created.setncatts(label(variable, flags))
 
 
 def stacked(rows: Sequence[Any], along: str) -> dict[str, tuple[Any, ...]]:

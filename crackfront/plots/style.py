@@ -132,7 +132,7 @@ def save_figure(figure: Figure, stem: Path) -> tuple[Path, ...]:
             metadata = {_DATES[path.suffix]: None}
             look: dict[str, Any] = {"format": path.suffix[1:], "metadata": metadata}
             with house_style():
-                replace_atomically(path, functools.partial(figure.savefig, **look), sealed=True)
+                replace_atomically(path, functools.partial(figure.savefig, **look))
     finally:
         logger.disabled = disabled
     return tuple(paths)

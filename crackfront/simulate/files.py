@@ -100,10 +100,10 @@ def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
 
 
 def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
-    """Save a surface or a loop as netCDF with a digest, atomically.
+    """Save a surface or a loop as netCDF with checksums of its arrays, atomically.
 
-    A file that is damaged later is refused wherever it is read. What `to_netcdf` of xarray writes
-    can be read as well, but states no digest.
+    An array that is damaged later is refused wherever it is read. What `to_netcdf` of xarray writes
+    can be read as well, but has no checksums.
 
     Parameters
     ----------

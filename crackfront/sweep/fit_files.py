@@ -13,6 +13,7 @@ from crackfront.analysis.report import fit_notes, fit_table
 from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import FIT_DEFINITION
+from crackfront.data.digests import forget_sums
 from crackfront.data.files import write_dataset, write_text
 from crackfront.data.jsonable import to_jsonable
 from crackfront.data.labels import labelled
@@ -21,6 +22,7 @@ from crackfront.data.provenance import Provenance, utc_now
 
 def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Path, Path]:
     """Write `fit.nc`, `fit.json` and `fit.md`, and return their paths."""
+    forget_sums(folder)
     paths = folder / "fit.nc", folder / "fit.json", folder / "fit.md"
     about = {
         "title": f"fit of adhesion hysteresis, {fit.kind}",
@@ -45,6 +47,6 @@ def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Pa
         "notes": list(fit_notes(fit)),
         "columns": entries,
     }
-    write_text(paths[1], json.dumps(content, indent=1, allow_nan=False) + "\n", sealed=True)
-    write_text(paths[2], fit_table(fit), sealed=True)
+    write_text(paths[1], json.dumps(content, indent=1, allow_nan=False) + "\n")
+    write_text(paths[2], fit_table(fit))
     return paths

@@ -1,45 +1,39 @@
 """The packs of a store, to which the process of each job appends, and the index of what they hold.
 
 A finished simulation is two files in a pack: its curve as netCDF, where it has one, and its row as
-JSON. What a process is at, it writes into a note of its own.
+JSON.
 """
 
 from __future__ import annotations
 
-import atexit
 import contextlib
-import fcntl
 import functools
 import json
 import os
 import re
 import secrets
 import socket
-import time
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from crackfront.analysis.table import SweepRow
-from crackfront.data.digests import content_digest, sealed
 from crackfront.data.files import replace_atomically, set_aside
 from crackfront.data.packs import (
     PACK,
     Member,
     Pack,
     checked,
-    finish,
-    is_finished,
-    lock,
+    is_locked,
     members,
     record,
 )
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.table import row_fingerprint
 
-_CURVE, _ROW, _NOTE = ".nc", ".json", ".running"
-"""Endings of the names of curves and rows in packs, and of notes."""
+_CURVE, _ROW = ".nc", ".json"
+"""Endings of the names of curves and rows in packs."""
 
 _KEY = 16
 """Digits of a key, which end the name of a simulation."""
@@ -60,15 +54,12 @@ class Entry:
     """:func:`crackfront.sweep.table.row_fingerprint` of its row."""
     row: SweepRow | None
     """Its row, if rows have the same definition now."""
-    curve_digest: str = ""
-    """Digest of its curve, empty where it has none."""
     arithmetic: str = ""
     """That of its origin; empty where an earlier version stored it."""
 
     def files(self, curve: bytes = b"") -> dict[str, bytes]:
         """Files of a pack, by their names."""
-        text = json.dumps(asdict(self)).removesuffix("}") + "\n}\n"
-        row = {self.stem + _ROW: sealed(text.encode(), _ROW)[0]}
+        row = {self.stem + _ROW: json.dumps(asdict(self)).encode()}
         return {self.stem + _CURVE: curve} | row if curve else row
 
 
@@ -82,100 +73,27 @@ def _own_name() -> str:
     return f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(4)}"
 
 
-class Note:
-    """The file by which this process shows what it is at; it is locked while it is at something."""
-
-    def __init__(self, folder: Path) -> None:
-        self._path = folder / f"{_own_name()}{_NOTE}"
-        self._number: int | None = None
-
-    def begin(self, simulation: Simulation) -> None:
-        """Say that a simulation runs; an OSError where that cannot be written."""
-        if self._number is None:
-            atexit.register(self._path.unlink, missing_ok=True)
-        if self._number is None or not os.fstat(self._number).st_nlink:
-            self._number = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o666)
-        lock(self._number, fcntl.LOCK_EX)
-        text = json.dumps((simulation.key, simulation.label)) + "\n"
-        os.pwrite(self._number, text.encode(), 0)
-        os.ftruncate(self._number, len(text.encode()))
-
-    def beat(self) -> None:
-        """Show that this process lives."""
-        assert self._number is not None, "something runs"
-        os.utime(self._number)
-
-    def end(self) -> None:
-        """Say that nothing runs."""
-        if self._number is not None:
-            lock(self._number, fcntl.LOCK_UN)
-
-
 @dataclass(frozen=True, slots=True)
-class Running:
-    """A simulation that a living process runs."""
+class Writer:
+    """A process that stores simulations of a spectrum and some realisations."""
 
-    key: str
-    label: str
-    """Key and label of the simulation."""
+    spectrum: str
+    realisations: str
+    """First and last one."""
     host: str
     process: str
     """Machine and number of the process."""
-    silent_seconds: float
-    """Time since its last sign of life, by the clock of this machine. (Units: s)"""
 
 
-_SECONDS_TO_LIVE = 120.0
-"""Age of a file, against the newest, at which its process has ended if it has no lock."""
-
-_SECONDS_OF_CLOCKS = 600.0
-"""Age of the newest file by this machine's clock at which all such processes have ended."""
-
-
-def running(folder: Path) -> list[Running]:
-    """What the living processes are at, by their notes in a folder."""
+def writers(folder: Path) -> list[Writer]:
+    """Processes that hold the lock on their pack, as far as this machine sees locks of others."""
     found = []
-    for path in living(folder.glob(f"*{_NOTE}")):
-        with contextlib.suppress(ValueError):  # it is just written
-            key, label = json.loads(path.read_bytes())
-            host, process, _ = path.stem.rsplit("-", 2)
-            silent = max(0.0, time.time() - path.stat().st_mtime)
-            found.append(Running(key, label, host, process, silent))
+    for path in filter(is_locked, pack_paths(folder)):
+        match = _NAME.fullmatch(path.stem)
+        assert match is not None, "it is the name of a pack"
+        host, process, _ = match[4].rsplit("-", 2)
+        found.append(Writer(match[1], f"{match[2]}-{match[3]}", host, process))
     return found
-
-
-def living(paths: Iterable[Path]) -> list[Path]:
-    """Files whose processes live, by their locks or, where these say nothing, by their dates."""
-    moments = {path: path.stat().st_mtime for path in sorted(paths)}
-    newest, now, found = max(moments.values(), default=0.0), time.time(), []
-    for path, moment in moments.items():
-        alive = _is_locked(path)
-        if alive is None:
-            alive = newest - moment < _SECONDS_TO_LIVE and now - newest <= _SECONDS_OF_CLOCKS
-        found += [path] if alive else []
-    return found
-
-
-def _is_locked(path: Path) -> bool | None:
-    """Whether a process holds the lock on its file; None where that cannot be known."""
-    with path.open("rb") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return True
-        except OSError:
-            return None  # a file system without locks
-    # Locks of other machines may be unknown here.
-    match = _NAME.fullmatch(path.stem) if path.suffix == PACK else None
-    host = (match[4] if match else path.stem).rsplit("-", 2)[0]
-    return False if host == socket.gethostname() else None
-
-
-def forget_notes(folder: Path) -> None:
-    """Remove the notes of processes that have ended."""
-    notes = set(folder.glob(f"*{_NOTE}"))
-    for path in notes.difference(living(notes)):
-        path.unlink(missing_ok=True)
 
 
 def pack_paths(folder: Path, spectrum: str | None = None, block: range | None = None) -> list[Path]:
@@ -194,17 +112,15 @@ def pack_paths(folder: Path, spectrum: str | None = None, block: range | None = 
 
 
 def renew_packs(paths: Iterable[Path]) -> Iterator[str]:
-    """Set damaged packs of ended processes aside but for their whole files; a sentence each."""
-    damaged = [path for path in paths if checked(path)[1]]
-    for path in sorted(set(damaged).difference(living(damaged))):
+    """Set damaged packs that no process writes aside but for their whole files; a sentence each."""
+    for path in paths:
         whole, n_damaged = checked(path)
-        if n_damaged == 1 and whole and not is_finished(path):
-            finish(path)  # its process was killed between two files
+        if not n_damaged or is_locked(path):
             continue
         # Another process may just do the same.
         with contextlib.suppress(FileNotFoundError):
             aside = set_aside(path)
-            kept = [Member(aside, one.name, one.place, one.size) for one in whole]
+            kept = [replace(one, path=aside) for one in whole]
             if kept:
                 replace_atomically(path, functools.partial(_write, kept))
             yield f"{path} is damaged; its whole files stay, the rest is in {aside.name}"
@@ -214,29 +130,6 @@ def _write(kept: Iterable[Member], path: Path) -> None:
     """Write a pack of files of another one."""
     with path.open("wb") as file:
         file.writelines(record(one.name, one.content() or b"") for one in kept)
-    finish(path)
-
-
-def lost_curves(folder: Path) -> tuple[list[str], Counter[str]]:
-    """Curves that rows in packs of a folder name and none has, and the rows of each arithmetic."""
-    names: set[str] = set()
-    wanted: list[str] = []
-    found: Counter[str] = Counter()
-    for member in (one for path in pack_paths(folder) for one in members(path)[0]):
-        names.add(member.name)
-        if member.name.endswith(_ROW) and (entry := _entry(member)) is not None:
-            wanted += [entry.stem + _CURVE] if entry.curve_digest else []
-            found[entry.arithmetic] += 1
-    return [name for name in wanted if name not in names], found
-
-
-def mixture_sentence(arithmetic: Mapping[str, int]) -> str:
-    """That simulations are of several processors or packages; empty where they are of one."""
-    if len(arithmetic) < 2:
-        return ""
-    parts = (f"{count} of {name or 'an earlier version'}" for name, count in arithmetic.items())
-    listed = "; ".join(parts)
-    return f"stored simulations differ in their origin, and may in their last digits: {listed}"
 
 
 def _entry(member: Member) -> Entry | None:
@@ -254,8 +147,7 @@ def _entry(member: Member) -> Entry | None:
 class RowIndex:
     """Simulations in the packs of a spectrum and some consecutive realisations.
 
-    A row counts if its curve has the digest that was stored with it; unless `checked`, if there is
-    a curve. Curves in files by themselves, as earlier versions stored them, count too.
+    A row counts if its curve is whole; unless `checked`, if there is a curve.
     """
 
     def __init__(self, folder: Path, spectrum: str, block: range, *, checked: bool = True) -> None:
@@ -264,8 +156,6 @@ class RowIndex:
         self._latest: dict[str, Member] = {}
         self._known: set[str] = set()
         found = [one for path in pack_paths(folder, spectrum, block) for one in members(path)[0]]
-        alone = sorted(folder.glob(f"*{_CURVE}"))
-        found += [Member(path, path.name, 0, path.stat().st_size) for path in alone]
         for member in found:
             name = Path(member.name).stem[: -_KEY - 1]
             self._members[member.name].append(member)
@@ -279,16 +169,16 @@ class RowIndex:
             entry = _entry(member)
             if entry is None or entry.row is None:
                 continue
-            if not entry.curve_digest or self._has_curve(simulation, entry.curve_digest):
+            if not entry.row.curve or self._has_curve(simulation):
                 return entry
         return None
 
-    def _has_curve(self, simulation: Simulation, digest: str) -> bool:
-        """Whether there is a curve of a digest, or any where digests are not to be checked."""
+    def _has_curve(self, simulation: Simulation) -> bool:
+        """Whether there is a whole curve, or any where they are not to be checked."""
         curves = self.curves(simulation)
         if not self._checked:
             return bool(curves)
-        return any(content_digest(one.content() or b"") == digest for one in curves)
+        return any(one.content() is not None for one in curves)
 
     def curves(self, simulation: Simulation) -> list[Member]:
         """Curves that are stored of a simulation."""

@@ -14,7 +14,7 @@ from tqdm import tqdm
 from xarray import Dataset
 
 from crackfront.data.arguments import refuse_other_type
-from crackfront.data.files import read_dataset
+from crackfront.data.files import read_dataset, write_sums
 from crackfront.data.labels import flag_words
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.data.section import movable_text
@@ -33,14 +33,45 @@ def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Prov
     return sweep, store, provenance(movable_text(configuration))
 
 
-def sweep_table(
-    configuration: str | PathLike[str], output: str | PathLike[str] | None, *, progress: bool
+def run_sweep(
+    configuration: str | PathLike[str],
+    output: str | PathLike[str] | None = None,
+    *,
+    progress: bool = True,
 ) -> Dataset:
-    """The table that :func:`crackfront.sweep` returns."""
+    """Table of a sweep; what is not stored yet is run here, one simulation after the other.
+
+    `crackfront simulate` runs the same on many ranks, into the same folder.
+
+    Parameters
+    ----------
+    configuration : str or path
+        File of the sweep, as config/default.yaml.
+    output : str or path, optional
+        Folder of the results, by default results/<name of the configuration>.
+    progress : bool, optional
+        Whether a bar on standard error shows how far it is.
+
+    Returns
+    -------
+    xarray.Dataset
+        w_appr, w_retr, their errors, status and costs over `spectrum`, `amplitude` and
+        `realisation`, as in hysteresis.nc.
+
+    Raises
+    ------
+    ValueError
+        If the configuration cannot be used.
+    OSError
+        If nothing can be stored.
+    KeyboardInterrupt
+        After Ctrl-C or SIGTERM. Finished simulations are stored; the same call continues.
+    """
     for name, given in (("configuration", configuration), ("output", output or "")):
         refuse_other_type(name, given, (str, PathLike), "the path of a file or folder")
     found, store, origin = opened(Path(configuration), None if output is None else Path(output))
-    missing = store.inventory(found.simulations()).missing
+    shards = found.shards()
+    missing = store.unfinished(found, shards).missing
     shown = bool(progress and missing)
     with (
         deferring_stops(),
@@ -49,9 +80,10 @@ def sweep_table(
     ):
         for _ in outcomes:
             bar.update()
-    for item in found.spectra:
-        store.write_manifest(found, found.named_shard(item, range(found.n_realisation)))
+    for shard in shards:
+        store.finish_shard(found, shard, origin)
     table = store.aggregate(found, origin)
+    write_sums(store.folder)
     failed, sentence = without_value(table)
     if failed:
         warnings.warn(sentence, stacklevel=2)

@@ -53,6 +53,11 @@ def stop_is_requested() -> bool:
     return _received.is_set() or (name is not None and Path(name).exists())
 
 
+def is_launched() -> bool:
+    """Whether another crackfront process started this one as one of its ranks."""
+    return _STOP_FILE in os.environ
+
+
 def launcher_knows_of_stop() -> bool:
     """Write into the file of the launcher that this rank stops on request; whether there is one.
 
@@ -133,7 +138,7 @@ def is_manager(n_worker: int) -> bool:
 
     world = MPI.COMM_WORLD
     if world.size == n_worker + 1:
-        if world.rank == 0 and _STOP_FILE in os.environ:
+        if world.rank == 0 and is_launched():
             threading.Thread(target=_end_with_launcher, args=(world.Abort,), daemon=True).start()
         return world.rank == 0
     if world.rank != 0:

@@ -5,35 +5,41 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import itertools
-import json
-import statistics
-import threading
-from collections import Counter, defaultdict, deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 from crackfront.analysis.table import SweepRow, SweepTable
-from crackfront.data.digests import Integrity, integrity
+from crackfront.data.digests import SUMS, forget_sums, read_sums, result_files, sums_text
 from crackfront.data.files import (
     UnreadableFileError,
-    integrities,
+    is_damaged,
     read_attributes,
+    read_dataset,
     replace_atomically,
     set_aside_damaged,
     write_text,
 )
-from crackfront.data.packs import Pack, checked
+from crackfront.data.packs import Pack, members
 from crackfront.data.provenance import Provenance
 from crackfront.data.section import movable_text
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.journal import RowIndex, living, new_pack, pack_paths, renew_packs, running
-from crackfront.sweep.sweep import Shard, Sweep
+from crackfront.sweep.journal import RowIndex, new_pack, pack_paths, renew_packs
+from crackfront.sweep.shards import (
+    FinishedShard,
+    covering,
+    curve_names,
+    finished_shard,
+    shard_fingerprint,
+    write_shard,
+)
+from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
 from crackfront.sweep.table import (
     COMPLETE,
     SWEEP_FINGERPRINT,
@@ -42,19 +48,13 @@ from crackfront.sweep.table import (
     write_hysteresis,
 )
 
-SECONDS_BETWEEN_BEATS = 20.0
-"""Time after which a process that simulates or stores shows that it lives."""
-
-SUMS = "SHA256SUMS"
-"""File of an archive that lists the checksums of all others."""
-
 _COMPRESSED = {".nc", ".png", ".pdf", ".gif", ".zip"}
 """Files that become no smaller."""
 
 
 @dataclass(frozen=True, slots=True)
-class Holding:
-    """What a store has of a simulation: its row, or a sentence where its curve is of no use."""
+class StoredResult:
+    """What the packs have of a simulation: its row, or a sentence where its curve is of no use."""
 
     simulation: Simulation
     row: SweepRow | None
@@ -67,16 +67,40 @@ class Holding:
 
 @dataclass(frozen=True, slots=True)
 class Inventory:
-    """What a store lacks, and why."""
+    """What a store has of some simulations, and what it lacks and why."""
 
+    done: int
+    failed: int
+    """Simulations with values, and those that ended without."""
     missing: tuple[Simulation, ...]
     """What is to be computed."""
-    unreadable: tuple[str, ...]
+    unreadable: tuple[str, ...] = ()
     """A sentence for every curve that is of no use."""
-    stale: tuple[tuple[str, ...], ...]
+    stale: tuple[tuple[str, ...], ...] = ()
     """Of every missing simulation that is stored with another key the parts of it that changed."""
-    arithmetic: Mapping[str, int]
-    """How many of the others are of which arithmetic."""
+    arithmetic: frozenset[str] = frozenset()
+    """Those of the origins of what is stored."""
+    cpu_seconds: float = 0.0
+    expected_seconds: float = 0.0
+    """Processor time of what is stored, and what was expected for it. (Units: s)"""
+
+    def __add__(self, other: Inventory) -> Inventory:
+        """The same of the simulations of both."""
+        return Inventory(
+            self.done + other.done,
+            self.failed + other.failed,
+            self.missing + other.missing,
+            self.unreadable + other.unreadable,
+            self.stale + other.stale,
+            self.arithmetic | other.arithmetic,
+            self.cpu_seconds + other.cpu_seconds,
+            self.expected_seconds + other.expected_seconds,
+        )
+
+    @property
+    def stored(self) -> int:
+        """Number of simulations that have ended."""
+        return self.done + self.failed
 
     def stale_sentence(self) -> str:
         """How many are stale for which reason; empty where none is."""
@@ -85,18 +109,8 @@ class Inventory:
         return f"{len(self.stale)} stored simulations are stale: {listed}" if listed else ""
 
 
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """How far one spectrum is."""
-
-    name: str
-    done: int
-    failed: int
-    running: int
-    waiting: int
-    """Simulations with values; rows without; those that a process is at; all others."""
-    seconds: float
-    """Processor time that is expected for those that are running or waiting. (Units: s)"""
+NOTHING = Inventory(0, 0, ())
+"""Inventory of no simulation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,53 +136,66 @@ class Store:
 
     @property
     def checkpoints(self) -> Path:
-        """Folder of what running processes keep: checkpoints, and notes of what they are at."""
+        """Folder of the checkpoints of running simulations."""
         return self.folder / "checkpoints"
 
     def checkpoint(self, simulation: Simulation) -> Path:
         """File from which a simulation goes on."""
         return self.checkpoints / f"{simulation.stem}.nc"
 
-    def holdings(
+    def shard_path(self, shard: Shard) -> Path:
+        """File of the rows of a shard."""
+        return self.folder / "shards" / f"{shard.name}.nc"
+
+    def is_finished(self, sweep: Sweep, shard: Shard) -> bool:
+        """Whether the file of a shard is there, by its fingerprint alone."""
+        found = finished_shard(self.shard_path(shard))
+        wanted = shard_fingerprint(sweep.firsts(shard.item), shard.realisations)
+        return found is not None and found.fingerprint == wanted
+
+    def finished(
+        self, sweep: Sweep, item: NamedSpectrum
+    ) -> tuple[list[tuple[FinishedShard, range]], list[range]]:
+        """Files of shards of a spectrum with what is taken of each, and what none of them has."""
+        firsts = sweep.firsts(item)
+        found = map(finished_shard, sorted((self.folder / "shards").glob(f"{item.name}.*nc")))
+        known = (
+            one
+            for one in found
+            if one is not None
+            and one.spectrum == item.name
+            and one.fingerprint == shard_fingerprint(firsts, one.realisations)
+        )
+        chosen, left, position = covering(known, sweep.n_realisation), [], 0
+        for _, taken in chosen:
+            left.append(range(position, taken.start))
+            position = taken.stop
+        left.append(range(position, sweep.n_realisation))
+        return chosen, [block for block in left if block]
+
+    def stored_results(
         self, simulations: Iterable[Simulation], *, checked: bool = True
-    ) -> Iterator[Holding]:
-        """What is stored of simulations, in their order; the curves of one spectrum after another.
+    ) -> Iterator[StoredResult]:
+        """What the packs have of simulations, in their order; one spectrum after another.
 
         Unless `checked`, a curve counts without a look at its digest.
         """
         for spectrum, group in itertools.groupby(simulations, attrgetter("spectrum_name")):
             alike = list(group)
             index = RowIndex(self.curves, spectrum, _span(alike), checked=checked)
-            yield from (_holding(one, index) for one in alike)
+            yield from (_stored_result(one, index) for one in alike)
 
     @contextlib.contextmanager
     def packs(self, simulations: Iterable[Simulation]) -> Iterator[dict[str, Pack]]:
-        """New packs for simulations, by the names of their spectra, until they are left.
-
-        Where ended processes left packs of the same realisations damaged, what is whole is kept.
-        """
+        """New packs for simulations, by the names of their spectra, until they are left."""
         self.curves.mkdir(parents=True, exist_ok=True)
         alike: dict[str, list[Simulation]] = defaultdict(list)
         for one in simulations:
             alike[one.spectrum_name].append(one)
-        blocks = {name: _span(ones) for name, ones in alike.items()}
-        for name, block in blocks.items():
-            deque(renew_packs(pack_paths(self.curves, name, block)), maxlen=0)
-        found = {name: new_pack(self.curves, name, block) for name, block in blocks.items()}
-        left = threading.Event()
-
-        def beat() -> None:
-            while not left.wait(SECONDS_BETWEEN_BEATS):
-                for pack in found.values():
-                    pack.beat()
-
-        beating = threading.Thread(target=beat, daemon=True)
-        beating.start()
+        found = {name: new_pack(self.curves, name, _span(ones)) for name, ones in alike.items()}
         try:
             yield found
         finally:
-            left.set()
-            beating.join()
             for pack in found.values():
                 pack.close()
 
@@ -180,51 +207,75 @@ class Store:
         raise UnreadableFileError(f"{self.curves} has no curve of {simulation.label}; simulate it")
 
     def inventory(self, simulations: Iterable[Simulation], *, checked: bool = True) -> Inventory:
-        """Which of some simulations are missing, and why; as :meth:`holdings`."""
-        known: Counter[str] = Counter()
-        absent = []
-        for one in self.holdings(simulations, checked=checked):
-            absent += [one] if one.row is None else []
-            known.update([] if one.row is None else [one.arithmetic])
+        """What the packs have and lack of some simulations; as :meth:`stored_results`."""
+        results = list(self.stored_results(simulations, checked=checked))
+        found = [one for one in results if one.row is not None]
+        absent = [one for one in results if one.row is None]
+        rows = [one.row for one in found if one.row is not None]
+        done = sum(row.status in COMPLETE for row in rows)
+        expected = expected_seconds(one.simulation for one in found)
         return Inventory(
-            arithmetic=known,
-            missing=tuple(one.simulation for one in absent),
-            unreadable=tuple(one.unreadable for one in absent if one.unreadable),
-            stale=tuple(one.changed for one in absent if one.changed),
+            done,
+            len(rows) - done,
+            tuple(one.simulation for one in absent),
+            tuple(one.unreadable for one in absent if one.unreadable),
+            tuple(one.changed for one in absent if one.changed),
+            frozenset(filter(None, (one.arithmetic for one in found))),
+            sum(row.cpu_seconds for row in rows if row.cpu_seconds > 0),
+            expected,
         )
 
-    def progress(self, sweep: Sweep) -> list[Progress]:
-        """How far each spectrum of a sweep is, also while it runs elsewhere.
+    def unfinished(self, sweep: Sweep, shards: Iterable[Shard]) -> Inventory:
+        """What the packs have and lack of the shards that have no file; finished ones are done."""
+        found = NOTHING
+        for shard in shards:
+            if self.is_finished(sweep, shard):
+                size = len(sweep.elastic_energies) * len(shard.realisations)
+                found += Inventory(size, 0, ())
+            else:
+                found += self.inventory(sweep.simulations(shard.item, shard.realisations))
+        return found
 
-        The expected times are those of the cost model, in proportion to what the stored simulations
-        of the sweep took.
+    def progress(self, sweep: Sweep, item: NamedSpectrum) -> Inventory:
+        """How far a spectrum is: finished shards by their attributes, the rest by the packs."""
+        chosen, left = self.finished(sweep, item)
+        found = NOTHING
+        for shard, taken in chosen:
+            size = len(sweep.elastic_energies) * len(taken)
+            cost = sum(expected_cost(one).seconds for one in sweep.firsts(item)) * len(taken)
+            share = len(taken) / len(shard.realisations)
+            failed = min(shard.failed, size)
+            found += Inventory(
+                size - failed,
+                failed,
+                (),
+                arithmetic=shard.arithmetic,
+                cpu_seconds=share * shard.cpu_seconds,
+                expected_seconds=cost,
+            )
+        for block in left:
+            found += self.inventory(sweep.simulations(item, block), checked=False)
+        return found
+
+    def finish_shard(self, sweep: Sweep, shard: Shard, origin: Provenance) -> Path:
+        """Write the file of a shard from its rows in the packs, unless it is there.
+
+        ValueError if simulations are missing.
         """
-        begun = {one.key for one in running(self.checkpoints)}
-        found, paces = [], []
-        for item in sweep.spectra:
-            counts, seconds = dict.fromkeys(("done", "failed", "running", "waiting"), 0), 0.0
-            for held in self.holdings(sweep.simulations(item), checked=False):
-                expected = expected_cost(held.simulation).seconds
-                if held.row is None:
-                    counts["running" if held.simulation.key in begun else "waiting"] += 1
-                    seconds += expected
-                    continue
-                counts["done" if held.row.status in COMPLETE else "failed"] += 1
-                if held.row.cpu_seconds > 0:
-                    paces.append(held.row.cpu_seconds / expected)
-            found.append(Progress(item.name, **counts, seconds=seconds))
-        pace = statistics.median(paces) if paces else 1.0
-        return [replace(one, seconds=pace * one.seconds) for one in found]
-
-    def write_manifest(self, sweep: Sweep, shard: Shard) -> Path:
-        """Write the file that says that all simulations of a shard are stored."""
-        content = {
-            "spectrum": shard.item.name,
-            "fingerprint": sweep.shard_fingerprint(shard),
-            "realisations": [shard.realisations[0], shard.realisations[-1]],
-        }
-        path = self.folder / "shards" / f"{shard.name}.json"
-        write_text(path, json.dumps(content, indent=1) + "\n", sealed=True)
+        path = self.shard_path(shard)
+        if self.is_finished(sweep, shard):
+            return path
+        found = list(self.stored_results(sweep.simulations(shard.item, shard.realisations)))
+        rows = [one.row for one in found if one.row is not None]
+        if len(rows) < len(found):
+            first = next(one.simulation for one in found if one.row is None)
+            raise ValueError(
+                f"{len(found) - len(rows)} of {len(found)} simulations are missing or unreadable "
+                f"in {self.curves}, the first is {first.label}; run the same command again"
+            )
+        arithmetic = {one.arithmetic for one in found if one.arithmetic}
+        forget_sums(self.folder)
+        write_shard(path, sweep, shard, rows, arithmetic, origin)
         return path
 
     def table(self, sweep: Sweep) -> SweepTable:
@@ -245,62 +296,47 @@ class Store:
             )
         return {name: str(value) for name, value in about.items()}
 
-    def renewed(self, sweep: Sweep, configuration: Path) -> Iterator[str]:
-        """Set aside what is damaged, and remove lists of what is missing; the workflow renews it.
+    def renewed(self, configuration: Path) -> Iterator[str]:
+        """Set aside what is damaged, and remove shards whose curves are gone, to be made anew.
 
-        Yields a sentence for every damaged file, and one for all simulations that run again.
+        Yields a sentence for every such file.
         """
         if not self.folder.is_dir():
             return
         yield from set_aside_damaged(self.folder)
         yield from renew_packs(pack_paths(self.curves))
-        if any((self.folder / "shards").glob("*.json")):
-            if not self.configuration.is_file():
-                write_text(self.configuration, movable_text(configuration), sealed=True)
-            lacking = self.inventory(sweep.simulations())
-            yield from (f"{sentence}; it is computed anew" for sentence in lacking.unreadable)
-            if count := self._forget(lacking.missing):
-                yield f"{self.folder}: {count} list(s) of shards are made anew with what they lack"
+        if (self.folder / "shards").is_dir() and not self.configuration.is_file():
+            write_text(self.configuration, movable_text(configuration))
+        known = {one.name for path in pack_paths(self.curves) for one in members(path)[0]}
+        for path in sorted((self.folder / "shards").glob("*.nc")):
+            if lost := [name for name in curve_names(path) if name not in known]:
+                forget_sums(self.folder)
+                path.unlink()
+                yield f"{path} is made anew, as {len(lost)} curve(s) of its simulations are gone"
 
     def aggregate(self, sweep: Sweep, origin: Provenance) -> Path:
-        """Write the file of the whole sweep, and return its path.
+        """Write the file of the whole sweep from those of its shards, and return its path.
 
-        ValueError if simulations are missing or unreadable. The lists of their shards are removed,
-        so that the workflow runs them again.
+        ValueError if shards are missing or damaged.
         """
-        write_hysteresis(self.hysteresis, sweep, self._rows(sweep), origin)
-        return self.hysteresis
-
-    def _rows(self, sweep: Sweep) -> Iterator[SweepRow]:
-        """Rows of a whole sweep; raises a ValueError that counts those that are missing."""
-        missing: list[Simulation] = []
-        for held in self.holdings(sweep.simulations()):
-            if held.row is None:
-                missing.append(held.simulation)
-            elif not missing:
-                yield held.row
+        shards, missing = [], 0
+        for item in sweep.spectra:
+            chosen, left = self.finished(sweep, item)
+            missing += sum(map(len, left)) * len(sweep.elastic_energies)
+            shards.append(chosen)
         if missing:
-            self._forget(missing)
             raise ValueError(
-                f"{len(missing)} of {sweep.n_simulation} simulations are missing or unreadable in "
-                f"{self.folder}, the first is {missing[0].label}; run `crackfront simulate` with "
-                "this configuration and output, or `make` again"
+                f"{missing} of {sweep.n_simulation} simulations are in no finished shard of "
+                f"{self.folder}; run `crackfront simulate` with this configuration and output, or "
+                "`make` again"
             )
-
-    def _forget(self, missing: Sequence[Simulation]) -> int:
-        """Remove lists of shards that are damaged or name missing simulations; their number."""
-        numbers = {(one.spectrum_name, one.realisation) for one in missing}
-        count = 0
-        for path in (self.folder / "shards").glob("*.json"):
-            if integrity(path)[0] is Integrity.WHOLE:
-                content = json.loads(path.read_text(encoding="utf-8"))
-                first, last = content.get("realisations", (0, -1))
-                block = range(first, last + 1)
-                if block and numbers.isdisjoint((content["spectrum"], one) for one in block):
-                    continue
-            path.unlink()
-            count += 1
-        return count
+        parts = [
+            [read_dataset(one.path).sel(realisation=list(taken)) for one, taken in chosen]
+            for chosen in shards
+        ]
+        forget_sums(self.folder)
+        write_hysteresis(self.hysteresis, sweep, parts, origin)
+        return self.hysteresis
 
     def archive(self, path: Path, *, curves: bool) -> int:
         """Write the files of the sweep and their checksums into a ZIP file; the number of files.
@@ -314,50 +350,54 @@ class Store:
             raise ValueError(
                 f"{self.folder} holds no hysteresis.nc; run the sweep before it is archived"
             )
-        left_out = {"checkpoints"} if curves else {"checkpoints", "curves"}
+        listed = read_sums(self.folder)
         found = {
-            file: counts[Integrity.DAMAGED]
-            for file, counts in checked_files(self.folder)
-            if file.relative_to(self.folder).parts[0] not in left_out
-            and file.resolve() != path.resolve()
+            file: str(file.relative_to(self.folder))
+            for file in result_files(self.folder)
+            if (curves or file.parent != self.curves) and file.resolve() != path.resolve()
         }
-        if damaged := [file for file, n_damaged in found.items() if n_damaged]:
+        if damaged := [file for file, name in found.items() if is_damaged(file, listed.get(name))]:
             raise ValueError(
                 f"{len(damaged)} files of {self.folder} are damaged, the first is {damaged[0]}; "
                 "run make, which makes them anew, before it is archived"
             )
 
         def write(part: Path) -> None:
-            root, sums = Path(self.folder.name), []
+            root, digests = Path(self.folder.name), {}
             with ZipFile(part, "w") as archive:
-                for file in sorted(found):
-                    name, content = file.relative_to(self.folder), file.read_bytes()
+                for file, name in found.items():
+                    content = file.read_bytes()
                     # A clock may have been wrong: ZIP knows no year before 1980.
                     entry = ZipInfo.from_file(file, root / name, strict_timestamps=False)
                     entry.compress_type = ZIP_STORED if file.suffix in _COMPRESSED else ZIP_DEFLATED
                     archive.writestr(entry, content)
-                    sums.append(f"{hashlib.sha256(content).hexdigest()}  {name}\n")
-                archive.writestr(str(root / SUMS), "".join(sums))
+                    digests[name] = hashlib.sha256(content).hexdigest()
+                archive.writestr(str(root / SUMS), sums_text(digests))
 
         replace_atomically(path, write)
         return len(found)
 
 
-def checked_files(folder: Path) -> Iterator[tuple[Path, Counter[Integrity]]]:
-    """Files of a folder of results, each counted by whether it, or each file in it, is whole."""
-    for path, state in integrities(folder):
-        yield path, Counter([state])
-    alive = living(pack_paths(folder / "curves"))
-    for path in pack_paths(folder / "curves"):
-        whole, n_damaged = checked(path)
-        n_damaged = 0 if path in alive else n_damaged
-        yield path, Counter({Integrity.WHOLE: len(whole), Integrity.DAMAGED: n_damaged})
+def mixture_sentence(arithmetic: Collection[str]) -> str:
+    """That results are of several processors or packages; empty where they are of one."""
+    if len(arithmetic) < 2:
+        return ""
+    listed = "; ".join(sorted(arithmetic))
+    return f"stored simulations differ in their origin, and may in their last digits: {listed}"
 
 
-def _holding(simulation: Simulation, index: RowIndex) -> Holding:
+def lost_curves(folder: Path) -> Iterator[str]:
+    """Curves that belong to rows of finished shards in a folder, and are in no pack."""
+    known = {one.name for path in pack_paths(folder / "curves") for one in members(path)[0]}
+    for path in sorted((folder / "shards").glob("*.nc")):
+        with contextlib.suppress(UnreadableFileError):
+            yield from (name for name in curve_names(path) if name not in known)
+
+
+def _stored_result(simulation: Simulation, index: RowIndex) -> StoredResult:
     """What an index has of a simulation."""
     if (entry := index.entry(simulation)) is not None:
-        return Holding(simulation, entry.row, "", arithmetic=entry.arithmetic)
+        return StoredResult(simulation, entry.row, "", arithmetic=entry.arithmetic)
     unreadable, latest = "", index.latest(simulation)
     for member in index.curves(simulation):
         try:
@@ -365,10 +405,18 @@ def _holding(simulation: Simulation, index: RowIndex) -> Holding:
         except UnreadableFileError as error:
             unreadable = str(error)
         else:
-            return Holding(simulation, row, "", arithmetic=latest.arithmetic if latest else "")
+            return StoredResult(simulation, row, "", arithmetic=latest.arithmetic if latest else "")
     known, now = (latest.parts, simulation.parts) if latest else ({}, {})
     changed = tuple(name for name, part in now.items() if part != known.get(name))
-    return Holding(simulation, None, unreadable, changed)
+    return StoredResult(simulation, None, unreadable, changed)
+
+
+def expected_seconds(simulations: Iterable[Simulation]) -> float:
+    """Processor time that simulations are expected to take, where realisations cost the same."""
+    alike: dict[tuple[str, float], list[Simulation]] = defaultdict(list)
+    for one in simulations:
+        alike[one.spectrum_name, one.elastic_energy].append(one)
+    return sum(expected_cost(ones[0]).seconds * len(ones) for ones in alike.values())
 
 
 def _span(simulations: Sequence[Simulation]) -> range:

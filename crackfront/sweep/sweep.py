@@ -120,11 +120,6 @@ class Sweep:
         """Twelve hexadecimal digits that change with what a configuration means."""
         return self._fingerprint()
 
-    def shard_fingerprint(self, shard: Shard) -> str:
-        """The same of the simulations of a shard, none of which is made but the first ones."""
-        firsts = [simulation.stem for simulation in self.firsts(shard.item)]
-        return _digits("\n".join([*firsts, repr(shard.realisations)]))
-
     @property
     def table_fingerprint(self) -> str:
         """The same without what is done with the table of the sweep."""

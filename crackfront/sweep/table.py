@@ -6,9 +6,8 @@ import functools
 import json
 import math
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Sequence
 from dataclasses import asdict, fields
-from itertools import islice
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -24,7 +23,7 @@ from crackfront.analysis.steady import (
     mean_adhesion,
 )
 from crackfront.analysis.table import (
-    AMPLITUDE,
+    PLACE,
     REALISATION,
     SPECTRUM,
     SweepAxes,
@@ -36,17 +35,13 @@ from crackfront.core.fingerprint import fingerprint
 from crackfront.core.outcome import Status
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.variables import ADHESION, variables
-from crackfront.data.files import UnreadableFileError, read_dataset
-from crackfront.data.labels import flag_words, labelled_fields
+from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
+from crackfront.data.labels import flag_words, label, labelled_fields
 from crackfront.data.provenance import Provenance
-from crackfront.data.records import Block, write_records_in_blocks
 from crackfront.simulate.numerics import stated_error
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sweep import Sweep
-
-ROWS_AT_ONCE = 4096
-"""Rows that are in memory at once."""
 
 COMPLETE = ("lost_contact", "steady")
 """Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
@@ -64,24 +59,39 @@ _STATUSES = (*(one.name.lower() for one in Status), NO_STEADY_PART, "refused", "
 """What `status` may be; the file of a sweep has their places."""
 
 
-def write_hysteresis(
-    path: Path, sweep: Sweep, rows: Iterable[SweepRow], origin: Provenance
-) -> None:
-    """Write the file of a sweep, in the memory of a few thousand rows.
+def rows_dataset(sweep: Sweep, rows: Sequence[SweepRow], realisations: range) -> xr.Dataset:
+    """Rows of all spectra and amplitudes of a sweep and some of its realisations.
 
-    The rows are those of :meth:`crackfront.sweep.sweep.Sweep.simulations`, in their order.
+    They stand in the order of :meth:`crackfront.sweep.sweep.Sweep.simulations`.
     """
-    known = variables(SweepRow, SPECTRUM, AMPLITUDE, REALISATION)
-    dataset = xr.Dataset(coords=labelled_fields(_axes(sweep)), attrs=_attributes(sweep))
+    axes = _axes(sweep, realisations)
+    shape = axes.spectrum.size, axes.amplitude.size, axes.realisation.size
+    columns = {}
+    for variable in variables(SweepRow, *PLACE):
+        values = np.array([getattr(row, variable.name) for row in rows])
+        words = _STATUSES if variable.name == "status" else ()
+        if words:
+            values = np.array([words.index(value) for value in values], np.int8)
+        columns[variable.name] = (variable.dims, values.reshape(shape), label(variable, words))
+    return xr.Dataset(columns, labelled_fields(axes), _attributes(sweep))
 
-    def blocks() -> Iterator[Block]:
-        remaining = iter(rows)
-        for cell in np.ndindex(len(sweep.spectra), len(sweep.elastic_energies)):
-            for start in range(0, sweep.n_realisation, ROWS_AT_ONCE):
-                stop = min(start + ROWS_AT_ONCE, sweep.n_realisation)
-                yield (*cell, slice(start, stop)), list(islice(remaining, stop - start))
 
-    write_records_in_blocks(path, dataset, known, blocks(), origin, {"status": _STATUSES})
+def write_hysteresis(
+    path: Path, sweep: Sweep, shards: Sequence[Sequence[xr.Dataset]], origin: Provenance
+) -> None:
+    """Write the file of a sweep: for each spectrum its shards, one after the other.
+
+    The shards of a spectrum are datasets of :func:`rows_dataset` that have all its realisations in
+    their order.
+    """
+    spectra = [
+        xr.concat([one.drop_vars(list(one.coords)) for one in parts], REALISATION)
+        for parts in shards
+    ]
+    axes = labelled_fields(_axes(sweep, range(sweep.n_realisation)))
+    # What the files say of their storage is theirs, as the length of their longest text.
+    whole = xr.concat(spectra, SPECTRUM).drop_encoding().assign_coords(axes)
+    write_dataset(path, whole.drop_attrs(deep=False).assign_attrs(_attributes(sweep)), origin)
 
 
 def read_table(path: Path) -> SweepTable:
@@ -165,8 +175,8 @@ def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
     return status, record.status.value
 
 
-def _axes(sweep: Sweep) -> SweepAxes:
-    """Coordinates of a sweep."""
+def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
+    """Coordinates of a sweep, and of some of its realisations."""
     spectra = [item.spectrum for item in sweep.spectra]
     energies = np.array(sweep.elastic_energies)
     firsts = [sweep.firsts(item) for item in sweep.spectra]
@@ -190,7 +200,7 @@ def _axes(sweep: Sweep) -> SweepAxes:
         tolerance=each("solver.tolerance"),
         amplitude=energies,
         w_rms_requested=2 * np.sqrt(energies),
-        realisation=np.arange(sweep.n_realisation),
+        realisation=np.array(realisations),
         parameters=None if stated else np.array(texts),
     )
 

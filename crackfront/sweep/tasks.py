@@ -12,6 +12,7 @@ from numba.core.errors import NumbaError
 
 from crackfront.core.outcome import DefectError
 from crackfront.data.bounds import TooLargeError
+from crackfront.data.digests import forget_sums
 from crackfront.data.files import dataset_content, leftover_parts, write_text
 from crackfront.data.packs import Pack
 from crackfront.data.provenance import Provenance
@@ -20,8 +21,8 @@ from crackfront.simulate.files import read_checkpoint, simulation_dataset, write
 from crackfront.simulate.run import PartialRun, SimulationResult, compile_solver, run_simulation
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
-from crackfront.sweep.journal import Entry, Note, forget_notes
-from crackfront.sweep.store import SECONDS_BETWEEN_BEATS, Store
+from crackfront.sweep.journal import Entry
+from crackfront.sweep.store import Store
 from crackfront.sweep.table import failed_row, row_fingerprint, sweep_row
 
 _STOPPED, _NOT_STORED = "stopped", "not_stored"
@@ -58,8 +59,8 @@ def fill(
         folder.mkdir(parents=True, exist_ok=True)
         for part in leftover_parts(folder):
             part.unlink(missing_ok=True)
-    forget_notes(store.checkpoints)
-    write_text(store.configuration, origin.configuration, sealed=True)
+    forget_sums(store.folder)
+    write_text(store.configuration, origin.configuration)
     longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
     begun = {path.stem for path in store.checkpoints.glob("*.nc")}
     tasks = [
@@ -85,7 +86,6 @@ def fill(
                     "same call continues with the others"
                 )
             yield task.simulation, finished
-    forget_notes(store.checkpoints)
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,11 +131,11 @@ def _not_stored(error: Exception) -> Finished:
 class _Keeper:
     """Stores checkpoints of a task, and ends it with the last one when the process is to stop."""
 
-    def __init__(self, task: _Task, note: Note) -> None:
-        self._task, self._note = task, note
+    def __init__(self, task: _Task) -> None:
+        self._task = task
         self._path = task.store.checkpoint(task.simulation)
         self.has_file = task.resumes
-        self._written = self._beaten = time.monotonic()
+        self._written = time.monotonic()
 
     def result(self) -> tuple[SimulationResult, str]:
         """Result of the task, from its checkpoint on if that is of use, and why it was of none."""
@@ -150,26 +150,21 @@ class _Keeper:
 
     def _keep(self, make: Callable[[], PartialRun]) -> None:
         """Store a checkpoint when it is time for one; leave when the process is to stop."""
-        now, stop = time.monotonic(), parallel.stop_is_requested()
-        if stop or now - self._written >= self._task.checkpoint_seconds:
+        stop = parallel.stop_is_requested()
+        if stop or time.monotonic() - self._written >= self._task.checkpoint_seconds:
             self.has_file = True
             write_checkpoint(self._path, make(), self._task.origin)
             self._written = time.monotonic()
         if stop:
             raise _StopRequestedError
-        if now - self._beaten >= SECONDS_BETWEEN_BEATS:
-            self._note.beat()
-            self._beaten = now
 
 
 def _run_task(task: _Task) -> _Outcome:
     """Run one simulation; what the machine could not do has no entry."""
     if parallel.stop_is_requested():
         return _Outcome(Finished(_STOPPED))
-    note = _note(task.store.checkpoints)
     try:
-        note.begin(task.simulation)
-        return _run(task, note)
+        return _run(task)
     except _StopRequestedError:
         return _Outcome(Finished(_STOPPED))
     except (MemoryError, TooLargeError):
@@ -177,17 +172,15 @@ def _run_task(task: _Task) -> _Outcome:
         return _Outcome(Finished(_NOT_STORED, sentence=sentence))
     except (OSError, RuntimeError, SystemError, NumbaError) as error:
         return _Outcome(_not_stored(error))
-    finally:
-        note.end()
 
 
 _OF_PHYSICS = (ValueError, ArithmeticError, DefectError)
 """What ends a simulation in the same way on every machine."""
 
 
-def _run(task: _Task, note: Note) -> _Outcome:
+def _run(task: _Task) -> _Outcome:
     """Run one simulation to its row and its curve."""
-    simulation, keeper = task.simulation, _Keeper(task, note)
+    simulation, keeper = task.simulation, _Keeper(task)
     origin = task.origin.here()
     try:
         result, wrong = keeper.result()
@@ -198,18 +191,14 @@ def _run(task: _Task, note: Note) -> _Outcome:
         status = "refused" if isinstance(error, ValueError) else "defect"
         sentence = str(error) or type(error).__name__
         row, seconds = failed_row(simulation, status, sentence), 0.0
-        curve, digest = b"", ""
+        curve = b""
     else:
-        curve, digest = dataset_content(simulation_dataset(result), origin)
+        curve = dataset_content(simulation_dataset(result), origin)
         row, sentence, seconds = sweep_row(result), wrong, result.measures.seconds
     named = simulation.stem, simulation.parts, row_fingerprint()
-    entry = Entry(*named, row, digest, origin.arithmetic)
+    entry = Entry(*named, row, origin.arithmetic)
     return _Outcome(Finished(row.status, seconds, sentence), entry, curve, keeper.has_file)
 
 
 class _StopRequestedError(Exception):
     """A simulation was left as the process is to stop; its checkpoint is stored."""
-
-
-_note = functools.cache(Note)
-"""The note of this process in a folder."""

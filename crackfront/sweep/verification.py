@@ -3,32 +3,27 @@
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import tempfile
-from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
-from crackfront.data.digests import Integrity
-from crackfront.data.files import NO_ROOM, UnreadableFileError
-from crackfront.data.packs import PACK
-from crackfront.sweep.journal import lost_curves
-from crackfront.sweep.store import SUMS, checked_files
-
-FILES = "packs of curves and rows"
-"""Name under which the files in packs are counted, each of which has a checksum."""
+from crackfront.data.digests import read_sums, result_files
+from crackfront.data.files import NO_ROOM, UnreadableFileError, damaged_files
+from crackfront.sweep.shards import finished_shard
+from crackfront.sweep.store import lost_curves
 
 
 @dataclass(frozen=True, slots=True)
 class Verification:
     """What was found in a folder."""
 
-    counts: dict[str, Counter[Integrity]]
-    """Numbers of whole and damaged files by their folder, and of such files in packs."""
-    arithmetic: Counter[str]
-    """How many rows are of which arithmetic."""
+    listed: int
+    unlisted: int
+    """Numbers of files that the list of checksums names, and of others."""
+    arithmetic: frozenset[str]
+    """Those of the origins of the rows."""
     damaged: tuple[str, ...]
     missing: tuple[str, ...]
     """Files that are not as they were written, and absent ones that a list or a row names."""
@@ -39,27 +34,21 @@ def verification(place: Path) -> Verification:
 
     UnreadableFileError if there is no such folder or archive, or the folder is empty.
     """
-    counts: dict[str, Counter[Integrity]] = defaultdict(Counter)
-    damaged = []
     with _folder(place) as folder:
-        for path, states in checked_files(folder):
-            name = path.relative_to(folder)
-            counts[FILES if path.suffix == PACK else str(name.parent)] += states
-            damaged += [str(name)] if states[Integrity.DAMAGED] else []
-        listed = _listed(folder)
-        missing = [name for name in listed if not (folder / name).is_file()]
-        lost, arithmetic = lost_curves(folder / "curves")
-        missing += lost
-        for file in listed.keys() - set(missing):
-            with (folder / file).open("rb") as opened:
-                if hashlib.file_digest(opened, "sha256").hexdigest() != listed[file]:
-                    damaged.append(file)
+        listed = read_sums(folder)
+        names = [str(path.relative_to(folder)) for path in result_files(folder)]
+        damaged = [str(path.relative_to(folder)) for path in damaged_files(folder)]
+        missing = sorted({*listed} - {*names}) + list(lost_curves(folder))
+        shards = map(finished_shard, (folder / "shards").glob("*.nc"))
+        arithmetic = frozenset[str]().union(*(one.arithmetic for one in shards if one))
         if place.is_file() and not listed:
             damaged.append(place.name)  # the list is the last file of an archive
-        elif not counts:
+        elif not names and not listed:
             raise UnreadableFileError(f"{place} holds no file; name a folder of results")
-    listed_once = (tuple(dict.fromkeys(names)) for names in (damaged, missing))
-    return Verification(dict(counts), arithmetic, *listed_once)
+    unlisted = len({*names} - {*listed})
+    return Verification(
+        len(listed), unlisted, arithmetic, tuple(damaged), tuple(dict.fromkeys(missing))
+    )
 
 
 @contextlib.contextmanager
@@ -79,11 +68,3 @@ def _folder(place: Path) -> Iterator[Path]:
                 raise
         inner = list(Path(temporary).iterdir())
         yield inner[0] if len(inner) == 1 else Path(temporary)
-
-
-def _listed(folder: Path) -> dict[str, str]:
-    """Checksums in the list of an archive by the names of the files; empty without a list."""
-    if not (folder / SUMS).is_file():
-        return {}
-    lines = (folder / SUMS).read_text(encoding="utf-8", errors="replace").splitlines()
-    return {name: checksum for checksum, _, name in (line.partition("  ") for line in lines)}

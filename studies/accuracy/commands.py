@@ -16,7 +16,8 @@ from crackfront.cli.report import (
     whole,
 )
 from crackfront.data.bounds import Range
-from crackfront.data.files import read_attributes, write_dataset
+from crackfront.data.digests import forget_sums
+from crackfront.data.files import read_attributes, write_dataset, write_sums
 from crackfront.data.provenance import provenance
 from crackfront.simulate.run import compile_solver
 from crackfront.topography.scan.reading import read_measurements
@@ -66,6 +67,7 @@ def scene(scene: str, output: Path, study: str, realisations: int) -> None:
     compile_solver("newton")
     found = STUDIES[study].measured(SCENES[scene], realisations, click.echo)
     path = output / f"{study}-{scene}.nc"
+    forget_sums(output)
     write_dataset(path, found, provenance())
     click.echo(f"errors: {path}")
 
@@ -75,7 +77,9 @@ def scene(scene: str, output: Path, study: str, realisations: int) -> None:
 @keep_option
 def report(output: Path, keep: bool) -> None:
     """Fit the laws, write the tables, and draw the figures of what was measured."""
+    forget_sums(output)
     tables = write_report(output, click.echo)
+    write_sums(output)
     if keep:
         sources = "studies.accuracy.report", "studies.accuracy.files"
         page = (Path(__file__).parents[2] / "docs/experiments/numerics.md").read_text("utf-8")

@@ -71,7 +71,7 @@ def write_report(folder: Path, progress: Progress) -> dict[str, str]:
     tables |= {f"Averages, {scene.name}": _sample_table(kept) for scene, kept in samples.values()}
     tables |= {f"Settings, {name}": _setting_table(study) for name, study in studies.items()}
     parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
-    write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]), sealed=True)
+    write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]))
     progress(f"tables: {folder / 'accuracy.md'}")
     fitted = [study for study in knobs.values() if study.scene.single_knobs]
     laws = list(fit_laws(fitted))

@@ -32,6 +32,8 @@ def validate(configuration: Path, output: Path | None) -> None:
     Every load step of the boundary elements is on disk at once: a run that is killed goes on with
     the next one. The tables grow with every finished case.
     """
+    from crackfront.data.digests import forget_sums
+    from crackfront.data.files import write_sums
     from crackfront.data.provenance import provenance
     from crackfront.sweep.configuration import results_folder
     from studies.boundary_elements import study
@@ -44,7 +46,9 @@ def validate(configuration: Path, output: Path | None) -> None:
     origin = provenance(configuration.read_text(encoding="utf-8"))
     announce_compilation()
     try:
+        forget_sums(folder)
         study.write_validation(folder, parameters, origin, click.echo)
+        write_sums(folder)
     except KeyboardInterrupt as error:
         raise StoppedError("Run the same command to continue with the next load step") from error
 

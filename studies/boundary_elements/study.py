@@ -74,7 +74,7 @@ def write_validation(
             edges.append(edge_forces(case, boundary, front(case)))
             write_records(folder / "edges.nc", edges, "case", origin)
         report = validation_report(rows, loops)
-        write_text(folder / "validation.md", report, sealed=True)
+        write_text(folder / "validation.md", report)
         rank = case.elastic_energy, -case.roll_off, case.n_point
         if case.elastic_energy and rank > pictured:
             picture = validation_picture(case, boundary, front(case), front(case, rotated=False))

@@ -18,6 +18,7 @@ from crackfront.cli.report import (
     refuse_unwritable,
 )
 from crackfront.cli.results import fit_of_sweep
+from crackfront.data.digests import forget_sums, read_sums
 from crackfront.data.files import read_attributes, write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
@@ -52,6 +53,7 @@ def compute_figure(configuration: Path, scale: str, output: Path) -> None:
     parameters = load_figure(configuration, scale)
     shown = figure(configuration.stem)
     path = output / scale / f"{configuration.stem}.nc"
+    forget_sums(output)
     refuse_unwritable(path.parent)
     announce_cost(shown.seconds(parameters))
     if (sweep := getattr(parameters, "sweep", None)) is not None:
@@ -73,6 +75,9 @@ def compute_figure(configuration: Path, scale: str, output: Path) -> None:
 def draw_figure(data: Path) -> None:
     """Draw a figure from its data, beside them, and its animation where it has one."""
     shown, record = _figure_and_record(data)
+    folder = data.absolute().parents[1]
+    if str(data.absolute().relative_to(folder)) in read_sums(folder):
+        forget_sums(folder)
     for path in save_figure(shown.draw(record), data.with_suffix("")):
         click.echo(f"figure: {path}")
     if shown.animate is not None:
@@ -100,7 +105,8 @@ def check_figures(output: Path) -> None:
         f"says (docs/law.md), {fail} fail"
     )
     lines = ["# Checks of the figures", "", f"{told}.", *lines, ""]
-    write_text(output / "checks.md", "\n".join(lines), sealed=True)
+    forget_sums(output)
+    write_text(output / "checks.md", "\n".join(lines))
     click.echo(f"checks: {output / 'checks.md'}, {told}")
 
 

@@ -85,7 +85,7 @@ def save_animation(animation: Animation, stem: Path) -> Path:
         duration=1000 / _FRAMES_PER_SECOND,
         loop=0,
     )
-    replace_atomically(path, written, sealed=True)
+    replace_atomically(path, written)
     return path
 
 

@@ -166,15 +166,18 @@ def synthetic(folder: Path, n_simulation: int) -> Path:
     text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
     path.write_text(text.replace("realisations: 2", f"realisations: {n_simulation // 4}"))
     sweep, rng = load_configuration(path), np.random.default_rng(1)
-    with Store(folder).packs(sweep.simulations()) as packs:
+    store = Store(folder)
+    with store.packs(sweep.simulations()) as packs:
         for one in sweep.simulations():
             if one.realisation == 0:
                 result = run_simulation(one)
-                curve, digest = dataset_content(simulation_dataset(result), provenance())
+                curve = dataset_content(simulation_dataset(result), provenance())
                 first = sweep_row(result)
             row = replace(first, w_appr=first.w_appr * rng.normal(1, 0.01), seed=one.seed)
-            entry = Entry(one.stem, one.parts, row_fingerprint(), row, digest)
+            entry = Entry(one.stem, one.parts, row_fingerprint(), row)
             packs[one.spectrum_name].append(entry.files(curve))
+    for shard in sweep.shards():
+        store.finish_shard(sweep, shard, provenance())
     return path
 
 

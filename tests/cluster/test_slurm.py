@@ -119,8 +119,8 @@ def until(condition, seconds=120):
 
 WAYS = {
     "serial": ("hysteresis.nc", {"tasks": 2}),
-    "srun": ("shards/flat.json", {"mpi": SRUN}),
-    "mpiexec": ("shards/flat.json", {"mpi": default_launcher()}),
+    "srun": ("shards/flat.nc", {"mpi": SRUN}),
+    "mpiexec": ("shards/flat.nc", {"mpi": default_launcher()}),
 }
 """Up to where a sweep runs, and the resources of its shard."""
 
@@ -182,7 +182,7 @@ def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
     changes = (("angles: 128", "angles: 512"), ("step: 0.1", "step: 0.02"))
     sweep = configuration(tmp_path, *changes, ("realisations: 2", "realisations: 4"))
     results = tmp_path / "results/sweep"
-    command = snakemake(tmp_path, sweep, "shards/flat.json")
+    command = snakemake(tmp_path, sweep, "shards/flat.nc")
     with subprocess.Popen(
         command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment()
     ) as process:
@@ -202,7 +202,10 @@ def checkpoint_at_the_limit(folder, results, command):
     """What a job has stored of its one simulation when its time is over, and what it printed."""
     job = ["sbatch", "--parsable", "--ntasks=3", "--time=60", "--signal=TERM@58", "--wrap", command]
     number = run(job, cwd=folder).stdout.strip()
-    until(lambda: len(list((results / "checkpoints").glob("*.running"))) == 1)
+    before = [path.stat().st_mtime for path in (results / "checkpoints").glob("*.nc")]
+    until(
+        lambda: [path.stat().st_mtime for path in (results / "checkpoints").glob("*.nc")] != before
+    )
     time.sleep(3)  # for more than the first states
     # Limits are in minutes: with notice 58 s before its end, the minute that runs is the last.
     used = run(["squeue", "--noheader", "--jobs", number, "--format=%M"]).stdout.split(":")[0]
@@ -219,7 +222,7 @@ def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_pa
     one = (("realisations: 2", "realisations: 1"), ("[0.02, 0.1]", "[0.1]"))
     sweep, results = configuration(tmp_path, *changes, *one), tmp_path / "results"
     command = f"exec {SRUN} -n 3 {sys.executable} -m mpi4py -m crackfront simulate {sweep} "
-    command += f"--ranks 2 --output {results}"
+    command += f"--ranks 2 --output {results} --checkpoint 1"
     first, then = (checkpoint_at_the_limit(tmp_path, results, command) for _ in range(2))
     known, more = first["mean_radius"], then["mean_radius"]
     assert 0 < known.size < more.size

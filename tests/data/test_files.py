@@ -41,7 +41,7 @@ from crackfront.simulate.numerics import numerical_error
 from crackfront.simulate.run import SimulationResult, run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fit_files import write_fit
-from crackfront.sweep.table import read_statuses, read_table, sweep_row, write_hysteresis
+from crackfront.sweep.table import read_statuses, read_table, rows_dataset, sweep_row
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 ORIGIN = Provenance("1.2.3", "abc", "f00", "crackfront test", "seed: 1\n")
@@ -255,7 +255,8 @@ def results():
 def hysteresis(tmp_path, results):
     """File of the sweep."""
     path = tmp_path / "hysteresis.nc"
-    write_hysteresis(path, SWEEP, map(sweep_row, results.values()), ORIGIN)
+    rows = [sweep_row(one) for one in results.values()]
+    write_dataset(path, rows_dataset(SWEEP, rows, range(2)), ORIGIN)
     return path
 
 

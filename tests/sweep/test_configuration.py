@@ -11,12 +11,13 @@ import yaml
 from crackfront.analysis.law import spectral_breadth
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
+from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.data.section import ConfigurationError, movable_text
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.table import failed_row, read_table, write_hysteresis
+from crackfront.sweep.table import failed_row, read_table, rows_dataset
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import measured_surface
@@ -496,7 +497,8 @@ def test_the_table_of_a_sweep_keeps_measured_spectra(tmp_path):
     spectra = MEASURED + "  - {name: flat, short_cutoff: 2e-6, hurst: 0.8}\n"
     sweep = load_configuration(written(tmp_path, with_surface(spectra)))
     rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
-    write_hysteresis(tmp_path / "hysteresis.nc", sweep, rows, provenance("text"))
+    dataset = rows_dataset(sweep, rows, range(sweep.n_realisation))
+    write_dataset(tmp_path / "hysteresis.nc", dataset, provenance("text"))
     table = read_table(tmp_path / "hysteresis.nc")
     measured, flat = (item.spectrum for item in sweep.spectra)
     assert table.shape_of(0).wavelengths == measured.wavelengths

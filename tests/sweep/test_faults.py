@@ -52,7 +52,7 @@ def stored(folder):
 
 def renewed(configuration, folder):
     """Sentences about what the workflow sets aside before it plans."""
-    return list(Store(folder).renewed(load_configuration(configuration), configuration))
+    return list(Store(folder).renewed(configuration))
 
 
 def rerun(configuration, folder, *more):
@@ -220,7 +220,7 @@ def test_a_killed_process_goes_on_from_its_last_checkpoint(configuration, same, 
         os.kill(process.pid, signal.SIGSTOP)
         assert f"process {process.pid} on " in run_command("status", tmp_path).stdout
         process.kill()
-    assert run_command("status", tmp_path).stdout.endswith("have ended; nothing runs\n")
+    assert run_command("status", tmp_path).stdout.endswith("stores any\n")
     [checkpoint] = (tmp_path / "checkpoints").glob("[!.]*.nc")
     known = xr.load_dataset(checkpoint)["force"]
     kept = len(stored(tmp_path))
@@ -289,7 +289,7 @@ def test_what_a_truncated_pack_lost_is_computed_anew_and_no_more(
 
 
 FILES = ("configuration.yaml", "hysteresis.nc", "fit.nc", "fit.json", "fit.md", "summary.html")
-FILES += ("figures/loop.png", "figures/factor.pdf", "shards/flat.json", "curves/*.tar")
+FILES += ("figures/loop.png", "figures/factor.pdf", "shards/flat.nc", "curves/*.tar")
 HARM = {
     "emptied": lambda content: b"",
     "halved": lambda content: content[: len(content) // 2],
@@ -304,6 +304,7 @@ def finished(undisturbed, tmp_path_factory):
     folder = shutil.copytree(alone, tmp_path_factory.mktemp("finished") / "sweep")
     for name in ("aggregate", "fit", "figures", "summary"):
         assert run_command(name, configuration, "--output", folder).exit_code == 0
+    assert run_command("checksums", folder).exit_code == 0
     return folder
 
 
@@ -353,5 +354,6 @@ def test_a_clock_that_jumps_makes_nothing_older_or_newer(configuration, same, co
     assert rerun(configuration, copied) == 0
     lost = min((copied / "curves").iterdir())
     lost.unlink()
+    assert "6 curve(s) of its simulations are gone" in renewed(configuration, copied)[-1]
     assert rerun(configuration, copied) == 6
     assert same(copied)

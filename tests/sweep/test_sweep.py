@@ -34,17 +34,6 @@ def test_the_fit_range_changes_no_simulation():
     assert stems(narrower) == stems(SWEEP)
 
 
-def test_the_fingerprint_of_a_shard_changes_with_its_simulations_alone():
-    flat, rough = SWEEP.shards()
-    before = SWEEP.shard_fingerprint(flat)
-    more = replace(SWEEP, n_realisation=3)
-    fewer = replace(SWEEP, spectra=(flat.item,))
-    assert more.shard_fingerprint(more.shards()[0]) != before
-    assert SWEEP.shard_fingerprint(rough) != before
-    assert replace(SWEEP, seed=SWEEP.seed + 1).shard_fingerprint(flat) != before
-    assert fewer.shard_fingerprint(flat) == before
-
-
 @pytest.mark.parametrize("block", [None, 1, 3, 10, 11])
 def test_shards_hold_every_simulation_once(block):
     sweep = replace(SWEEP, n_realisation=10)

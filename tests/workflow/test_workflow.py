@@ -20,7 +20,7 @@ from tests.commands import curves, slow
 
 ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
-RULES = {"all", "simulate", "aggregate", "fit", "summary", "sweep_figures"}
+RULES = {"all", "simulate", "aggregate", "fit", "summary", "sweep_figures", "checksums"}
 
 
 def command(folder, *settings, sweep=ROOT / "config/test.yaml", ranks=2):
@@ -78,7 +78,7 @@ def contents(folder):
 )
 def test_reading_the_workflow_changes_nothing_even_where_files_are_damaged(tmp_path, whole, verb):
     shutil.copytree(whole / "results", tmp_path / "results")
-    for name in ("fit.json", "figures/loop.pdf", "shards/flat.json"):
+    for name in ("fit.json", "figures/loop.pdf", "shards/flat.nc"):
         (tmp_path / "results/test" / name).write_bytes(b"{")
     date(2096, tmp_path / "results/test/summary.html")
     before = contents(tmp_path / "results")
@@ -169,13 +169,15 @@ def test_the_workflow_reruns_what_a_change_concerns_and_nothing_else(tmp_path, w
     assert more.returncode == 0, more.stderr
     after = states(results)
     assert len(curves(results)) == 12
-    kept = {path for path in before if before[path] == after[path]}
+    assert not (results / "SHA256SUMS").exists()  # the folder is not finished
+    kept = {path for path in before if before[path] == after.get(path)}
     # What is drawn of the table is left to do, and no more.
     drawn = {path for path in kept if path.parent.name == "figures"} | {results / "summary.html"}
     assert len(drawn) == 7
     assert kept == drawn | {path for path in before if path.parent.name == "curves"}
     left = snakemake(tmp_path, "--dry-run", sweep=sweep, ranks=1).stdout
-    assert {word.strip(",") for word in left.split()} & RULES == {"all", "summary", "sweep_figures"}
+    waiting = {"all", "summary", "sweep_figures", "checksums"}
+    assert {word.strip(",") for word in left.split()} & RULES == waiting
     assert xr.load_dataset(results / "hysteresis.nc").sizes["realisation"] == 3
 
 
@@ -232,7 +234,7 @@ def test_the_workflow_makes_anew_what_is_damaged_or_missing_and_no_more(tmp_path
         "a flipped bit in a curve": lambda: flip(pack),
         "all curves and a figure gone": remove_curves,
         "a torn pack": lambda: tear(min((results / "curves").glob("*.tar"))),
-        "a corrupt list": lambda: (results / "shards/flat.json").write_bytes(b"{"),
+        "a corrupt shard": lambda: (results / "shards/flat.nc").write_bytes(b"{"),
         "a truncated table": lambda: (results / "hysteresis.nc").write_bytes(b"CDF"),
         "a flipped bit in the table": lambda: flip(results / "hysteresis.nc"),
         "a flipped bit in the fit": lambda: flip(results / "fit.json"),
@@ -354,7 +356,7 @@ def test_a_killed_snakemake_costs_nothing_that_is_stored(tmp_path):
     assert before.items() <= curves(results).items()
     found = xr.load_dataset(tmp_path / table).drop_vars(COSTS)
     assert found.sizes["realisation"] == 2
-    undisturbed = cf.sweep(sweep, tmp_path / "undisturbed", progress=False).drop_vars(COSTS)
+    undisturbed = cf.run_sweep(sweep, tmp_path / "undisturbed", progress=False).drop_vars(COSTS)
     assert found.equals(undisturbed)
 
 

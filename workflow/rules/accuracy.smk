@@ -75,6 +75,7 @@ rule accuracy_report:
     output:
         f"{ACCURACY}/accuracy.md",
         f"{ACCURACY}/laws.csv",
+        f"{ACCURACY}/SHA256SUMS",
         expand(
             "{results}/{figure}.{suffix}",
             results=ACCURACY,

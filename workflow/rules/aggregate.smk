@@ -1,6 +1,6 @@
 rule aggregate:
     input:
-        expand("{results}/shards/{shard}.json", results=RESULTS, shard=SHARDS),
+        expand("{results}/shards/{shard}.nc", results=RESULTS, shard=SHARDS),
     output:
         f"{RESULTS}/hysteresis.nc",
     log:

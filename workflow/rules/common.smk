@@ -13,6 +13,7 @@ from crackfront.core.fingerprint import fingerprint
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.needs import late_needs
+from crackfront.sweep.shards import shard_fingerprint
 from studies.boundary_elements.parameters import load_validation
 from studies.paper.figure import (
     FIGURES,
@@ -66,8 +67,9 @@ SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
 PAPER = f"results/figures/{SCALE}"
 ACCURACY = "results/accuracy"
 NEEDS = late_needs(SWEEP)
+FIRSTS = {item.name: SWEEP.firsts(item) for item in SWEEP.spectra}
 RANK_BYTES = max(
-    expected_cost(one).memory for item in SWEEP.spectra for one in SWEEP.firsts(item)
+    expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts
 )
 ANIMATED = [name for name in FIGURES if figure(name).animate]
 

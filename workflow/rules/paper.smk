@@ -17,6 +17,7 @@ rule figures:
         ),
         expand("{results}/{figure}.gif", results=PAPER, figure=ANIMATED),
         "results/figures/checks.md",
+        "results/figures/SHA256SUMS",
 
 
 rule figure_data:

@@ -1,8 +1,9 @@
-# One job a shard, spread over MPI ranks inside. The finished simulations stand in `curves/`,
-# which no rule declares: Snakemake deletes what a failed job declares, and they must survive.
+# One job a shard, spread over MPI ranks inside; its output is the rows of the shard. Each finished
+# simulation stands in `curves/`, which no rule declares: Snakemake deletes what a failed job
+# declares, and they must survive.
 rule simulate:
     output:
-        f"{RESULTS}/shards/{{shard}}.json",
+        f"{RESULTS}/shards/{{shard}}.nc",
     log:
         f"{RESULTS}/logs/simulate-{{shard}}.log",
     benchmark:
@@ -17,8 +18,11 @@ rule simulate:
         mem_mb_per_cpu=megabytes(RANK_BYTES),
         runtime=240,
     params:
-        # Changes with everything that determines the simulations, the solver's sources included.
-        fingerprint=lambda wildcards: SWEEP.shard_fingerprint(SHARDS[wildcards.shard]),
+        # Changes with everything that determines the rows, the solver's sources included.
+        fingerprint=lambda wildcards: shard_fingerprint(
+            FIRSTS[SHARDS[wildcards.shard].item.name],
+            SHARDS[wildcards.shard].realisations,
+        ),
         spectrum=lambda wildcards: SHARDS[wildcards.shard].item.name,
         block=lambda wildcards: block_option(SHARDS[wildcards.shard]),
         # No reason to run a job again, as a function of resources is none to Snakemake.

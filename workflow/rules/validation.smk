@@ -12,6 +12,7 @@ rule validate:
         f"{VALIDATED}/validation.md",
         f"{VALIDATED}/hysteresis.nc",
         f"{VALIDATED}/picture.nc",
+        f"{VALIDATED}/SHA256SUMS",
         multiext(f"{VALIDATED}/validation", ".pdf", ".png"),
     log:
         f"{VALIDATED}/logs/validate.log",

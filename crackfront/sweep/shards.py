@@ -1,0 +1,114 @@
+"""The file of a shard: the rows of its simulations, and attributes that say which these are."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+
+from crackfront.analysis.table import SweepRow
+from crackfront.data.files import read_dataset, write_dataset
+from crackfront.data.provenance import Provenance
+from crackfront.simulate.simulation import Simulation
+from crackfront.sweep.sweep import Shard, Sweep
+from crackfront.sweep.table import COMPLETE, row_fingerprint, rows_dataset
+
+_BETWEEN = "; "
+"""What stands between arithmetics in the attribute of a file."""
+
+
+@dataclass(frozen=True, slots=True)
+class FinishedShard:
+    """What the attributes of a shard's file say, which are read without its rows."""
+
+    path: Path
+    spectrum: str
+    realisations: range
+    fingerprint: str
+    """That of :func:`shard_fingerprint`, when the file was written."""
+    failed: int
+    """Simulations without a value."""
+    cpu_seconds: float
+    """Processor time of all simulations. (Units: s)"""
+    arithmetic: frozenset[str]
+    """Those of the origins of the rows."""
+
+
+def shard_fingerprint(firsts: Sequence[Simulation], realisations: range) -> str:
+    """Twelve hexadecimal digits that change with the simulations of a shard, and how rows are made.
+
+    They follow from the first realisation of each amplitude
+    (:meth:`crackfront.sweep.sweep.Sweep.firsts`), at the same cost for any number of realisations.
+    """
+    text = "\n".join([*(one.stem for one in firsts), repr(realisations), row_fingerprint()])
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def write_shard(
+    path: Path,
+    sweep: Sweep,
+    shard: Shard,
+    rows: Sequence[SweepRow],
+    arithmetic: Iterable[str],
+    origin: Provenance,
+) -> None:
+    """Write the file of a shard, atomically.
+
+    The rows are those of :meth:`crackfront.sweep.sweep.Sweep.simulations`, in their order. The
+    layout is that of the file of the whole sweep.
+    """
+    alone = replace(sweep, spectra=(shard.item,))
+    about = {
+        "spectrum_name": shard.item.name,
+        "fingerprint": shard_fingerprint(sweep.firsts(shard.item), shard.realisations),
+        "first_realisation": np.int64(shard.realisations.start),
+        "last_realisation": np.int64(shard.realisations.stop - 1),
+        "failed": np.int64(sum(row.status not in COMPLETE for row in rows)),
+        "cpu_seconds": float(np.nansum([row.cpu_seconds for row in rows])),
+        "arithmetic_of_rows": _BETWEEN.join(sorted(arithmetic)),
+    }
+    dataset = rows_dataset(alone, rows, shard.realisations)
+    write_dataset(path, dataset.assign_attrs(about), origin)
+
+
+def finished_shard(path: Path) -> FinishedShard | None:
+    """What the attributes of a file say; None if it is not the file of a shard."""
+    try:
+        with netCDF4.Dataset(path) as file:
+            return FinishedShard(
+                path=path,
+                spectrum=str(file.spectrum_name),
+                realisations=range(int(file.first_realisation), int(file.last_realisation) + 1),
+                fingerprint=str(file.fingerprint),
+                failed=int(file.failed),
+                cpu_seconds=float(file.cpu_seconds),
+                arithmetic=frozenset(filter(None, str(file.arithmetic_of_rows).split(_BETWEEN))),
+            )
+    except (OSError, AttributeError, ValueError):
+        return None  # emptied, cut, or of something else
+
+
+def covering(
+    shards: Iterable[FinishedShard], n_realisation: int
+) -> list[tuple[FinishedShard, range]]:
+    """Shards of a spectrum that together hold what all of them hold, and what is taken of each.
+
+    No realisation is taken twice, and none beyond the number of those that are wanted.
+    """
+    chosen, position = [], 0
+    for one in sorted(shards, key=lambda one: (one.realisations.start, -one.realisations.stop)):
+        start, stop = one.realisations.start, one.realisations.stop
+        taken = range(max(position, start), min(stop, n_realisation))
+        if taken:
+            chosen.append((one, taken))
+            position = taken.stop
+    return chosen
+
+
+def curve_names(path: Path) -> list[str]:
+    """Names of the curves in packs that belong to the rows of a shard's file."""
+    return [name for name in read_dataset(path, ("curve",))["curve"].values.flat if name]
