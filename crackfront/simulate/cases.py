@@ -13,12 +13,12 @@ from xarray import DataArray
 
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
-from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule, protocol
 from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.field.fields import TileField
 from crackfront.core.geometry import line
+from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.arguments import refuse_no_numbers

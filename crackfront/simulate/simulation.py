@@ -22,10 +22,9 @@ from crackfront.core.adhesion import (
     rough_adhesion,
 )
 from crackfront.core.arrays import Array
-from crackfront.core.contact import n_site
 from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.field.fields import Interpolation, TileField
-from crackfront.core.geometry.base import Geometry
+from crackfront.core.geometry.base import Geometry, fast_site_count
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS
 from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import Spectrum
@@ -100,7 +99,7 @@ def resolution(
     points = math.ceil(side / cutoff * knobs.pixels_per_cutoff * (1 - 1e-12))
     n_point = next_fast_len(points, real=True)
     return Resolution(
-        n_angle=n_point if schedule.uncorrelated else knobs.angles or n_site(sites),
+        n_angle=n_point if schedule.uncorrelated else knobs.angles or fast_site_count(sites),
         spacing=spacing,
         interpolation=knobs.interpolation,
         tile_side=side,

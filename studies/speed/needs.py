@@ -17,8 +17,9 @@ import numpy as np
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import Field, first_place, polar_field
+from crackfront.core.field.fields import Field, first_place
 from crackfront.core.field.samples import make_memory
+from crackfront.core.geometry.sphere import polar_field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum

@@ -10,9 +10,9 @@ from click.testing import CliRunner
 import crackfront as cf
 from crackfront.analysis.sweep import fit_sweep
 from crackfront.cli import main
-from crackfront.core.contact import contact_field
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.data.digests import Integrity, integrity, seal
 from crackfront.data.files import (

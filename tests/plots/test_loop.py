@@ -9,8 +9,8 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import polar_field
 from crackfront.core.geometry.line import LineState
+from crackfront.core.geometry.sphere import polar_field
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.loop import draw_loop, draw_pinning, steady_loop_figure

@@ -8,9 +8,8 @@ from scipy.optimize import brentq
 
 from crackfront.core.adhesion import AdhesionMap, correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.field.fields import polar_field
 from crackfront.core.geometry.line import line_field, straight_front
-from crackfront.core.geometry.sphere import sphere
+from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.solver.relax import Newton, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION

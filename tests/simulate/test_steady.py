@@ -9,13 +9,12 @@ import pytest
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import correlation_length
-from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import first_touch
-from crackfront.core.field.fields import polar_field
 from crackfront.core.field.rays import front_adhesion
+from crackfront.core.geometry.sphere import contact_field, polar_field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum

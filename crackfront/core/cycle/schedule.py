@@ -11,13 +11,12 @@ from typing import Any
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.field.fields import Field, Interpolation, TileField
 from crackfront.core.geometry.base import Geometry
-from crackfront.core.geometry.sphere import sphere
+from crackfront.core.geometry.sphere import contact_field, sphere
 from crackfront.core.outcome import Direction
 from crackfront.core.solver.relax import Solver
 
@@ -77,7 +76,7 @@ class Schedule(ABC):
     def field(
         self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
     ) -> TileField:
-        """Field of a tile, as of :func:`crackfront.core.contact.contact_field`."""
+        """Field of a tile, as of :func:`crackfront.core.geometry.sphere.contact_field`."""
 
     @abstractmethod
     def run(

@@ -10,7 +10,10 @@ line, which is diagonal in the modes of the front.
 
 from __future__ import annotations
 
+import math
 from typing import Any, Protocol
+
+from scipy.fft import next_fast_len
 
 from crackfront.core.arrays import Array
 from crackfront.core.compiled import dispatched, jit
@@ -110,3 +113,14 @@ def self_modes(n_site: int) -> float:
     The mean number of a mode: N/4 for even N, (N^2 - 1)/4N for odd N.
     """
     return n_site / 4 if n_site % 2 == 0 else (n_site**2 - 1) / (4 * n_site)
+
+
+def fast_site_count(least: float) -> int:
+    """Even number of sites, 4 or more and not below a number, whose transforms are fast.
+
+    Transforms are fast of lengths without large prime factors. From 256 sites on the number is a
+    multiple of 8, so that four pairs of sites are transformed at once; from 16384 on, of 32.
+    """
+    least = max(4.0, least * (1 - 1e-12))
+    together = 2 if least < 256 else 8 if least < 16384 else 32
+    return together * int(next_fast_len(math.ceil(least / together), real=True))

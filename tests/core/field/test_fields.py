@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.field.fields import first_place, last_place, polar_field, tile_field
+from crackfront.core.field.fields import first_place, last_place, tile_field
 from crackfront.core.field.rays import front_adhesion, sampled_on_rays, swept_adhesion
 from crackfront.core.field.samples import evaluate, sample_place
-from crackfront.core.geometry.sphere import sphere
+from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.units import WORK_OF_ADHESION
 
 
