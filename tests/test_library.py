@@ -17,13 +17,13 @@ import crackfront as cf
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL
 from crackfront.simulate.files import cycle_record
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
+from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.surfaces import chosen_simulation, tile_modes
 from crackfront.sweep import parallel, tasks
 from crackfront.topography.measures import measured_surface
@@ -121,7 +121,7 @@ def test_the_loop_of_a_smooth_surface_is_that_of_jkr(smooth):
 
 
 def test_the_loop_of_a_simulation_is_that_of_the_library_to_round_off(surface, loop):
-    load, given = LoadSchedule(1.0, 0.05), {"error": 0.05, "side": 4.0, "seed": 3}
+    load, given = FullCycle(1.0, 0.05), {"error": 0.05, "side": 4.0, "seed": 3}
     requested = chosen_simulation("roughness", FLAT, 0.05, load, **given)
     # Sites, samples and tolerance follow from what was measured on the tile.
     measured = chosen_simulation("roughness", FLAT, float(loop.e_el), load, **given)
@@ -138,7 +138,7 @@ def test_the_loop_of_a_simulation_is_that_of_the_library_to_round_off(surface, l
 def test_a_random_surface_is_that_of_the_sweep_of_its_seed(kind):
     found = cf.random_surface(**COARSE, kind=kind, realisation=2)
     simulation = chosen_simulation(
-        kind, FLAT, 0.05, LoadSchedule(1, 1), error=0.05, side=4.0, seed=3, realisation=2
+        kind, FLAT, 0.05, FullCycle(1, 1), error=0.05, side=4.0, seed=3, realisation=2
     )
     adhesion = simulation_adhesion(simulation)
     if kind == "chemical":
@@ -258,7 +258,7 @@ def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jum
     swept = 0.5 * (jumps.before**2 - jumps.after**2).sum("angle") * 2 * np.pi / jumps.sizes["angle"]
     assert np.all(jumps.area <= swept + 1e-12)
     simulation = chosen_simulation(
-        "roughness", FLAT, 0.05, LoadSchedule(1.0, 0.1), error=0.05, side=4.0, seed=3
+        "roughness", FLAT, 0.05, FullCycle(1.0, 0.1), error=0.05, side=4.0, seed=3
     )
     if simulation.resolution.n_angle == jumps.sizes["angle"]:
         field, last = simulation_field(simulation), jumps.isel(instability=-1)
@@ -388,7 +388,7 @@ def test_loads_are_visited_up_and_down_by_library_and_command_alike(straight, tm
     pressed = cf.straight_front(patches, spring=2.0) if straight else patches
     found = cf.run_loop(pressed, loads=LOADS, step=0.1, energy=True)
     up, down = 0.1 * np.arange(6), [0.4, 0.3, 0.2]
-    load = found["load" if straight else "penetration"]
+    load = found["spring_position" if straight else "penetration"]
     np.testing.assert_allclose(load[:13], [*up, *down, 0.3, 0.4, 0.5, 0.5], atol=1e-12)
     assert found.direction.values[:15].tolist() == [1] * 6 + [-1] * 3 + [1] * 4 + [-1] * 2
     front = found["position" if straight else "radius"]

@@ -10,7 +10,7 @@ import xarray as xr
 
 from crackfront.analysis.table import PLACE, RunMeasures, SweepAxes
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
-from crackfront.core.geometry.base import Geometry
+from crackfront.core.geometry.base import Geometry, State
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
@@ -28,6 +28,9 @@ _FRONTS = {
     "turn": Variable("turning_front", ("angle",), LATERAL, "front at which its branch began"),
 }
 """Fronts of a checkpoint, by their fields."""
+
+_STATES: tuple[type[State], ...] = (ContactState, LineState)
+"""Records of the states of all geometries, of which a file of curves holds one."""
 
 _STEP = Variable(STEP, (STEP,), "1", "number of the state")
 
@@ -174,16 +177,19 @@ def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.D
 
 def cycle_record(dataset: xr.Dataset, place: File | str = "the dataset") -> CycleRecord:
     """Record that a dataset of :func:`cycle_dataset` holds, or `UnreadableFileError`."""
-    states = LineState if "mean_position" in dataset else ContactState
+    lacking = [
+        [item.name for item in variables(kind) if item.name not in dataset] for kind in _STATES
+    ]
+    missing = min(lacking, key=len)
+    states = _STATES[lacking.index(missing)]
     names = [item.name for item in variables(states)]
-    missing = [name for name in names if name not in dataset]
     name = str(dataset.attrs.get("status", "")).upper()
     end = f"end_{names[0]}"
     if missing or name not in Status.__members__ or end not in dataset.attrs:
         what = ", ".join(missing) or "a known status"
         raise UnreadableFileError(f"{place} holds no cycle: it lacks {what}")
     pull_off = dataset.attrs.get("pull_off_energy")
-    fronts = dataset.get("position" if states is LineState else "radius")
+    fronts = dataset.get(states.front_name)
     lost = dataset.get("dissipated_energy")
     return CycleRecord(
         status=Status[name],

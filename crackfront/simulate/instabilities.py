@@ -65,13 +65,14 @@ def resolved_motion(
     tries: list[Load] = []
     steps = follow(field, front, iter(tries.pop, None), solver)
 
-    def front_at(penetration: float) -> Array | None:
-        tries.append(Load(penetration, direction, front))
+    def front_at(value: float) -> Array | None:
+        tries.append(Load(value, direction, front))
         found = next(steps)
         if found.status is Status.LOST_CONTACT:
             return None
         if found.status is not Status.CONVERGED:
-            raise ValueError(f"at penetration {penetration:.6g}: {found.status.value}")
+            noun = field.geometry.state_type.load_noun
+            raise ValueError(f"at {noun} {value:.6g}: {found.status.value}")
         return found.front
 
     for load in loads:

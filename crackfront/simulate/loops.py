@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import get_args
 
-import numpy as np
 from xarray import DataArray, Dataset
 
 from crackfront.analysis.estimate import with_error
@@ -22,9 +21,8 @@ from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import first_touch
-from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
-from crackfront.core.outcome import Direction, Status
+from crackfront.core.outcome import Direction
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
@@ -32,17 +30,18 @@ from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.provenance import __version__
-from crackfront.simulate.cases import Problem, StraightFront, load_values, problem_of
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
+from crackfront.simulate.loop_setup import LoopContact, LoopSetup, load_values
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import stated_error
+from crackfront.simulate.sphere.loop import PressedSphere
 
 _KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
 
 
 def run_loop(
-    surface: DataArray | StraightFront,
+    surface: DataArray | LoopContact,
     *,
     loads: Iterable[float] | None = None,
     max_penetration: float | None = None,
@@ -121,36 +120,36 @@ def run_loop(
     if not callable(progress):
         refuse_other_type("progress", progress, type(None), "a function of a state")
     visited = None if loads is None else load_values(loads)
-    straight = isinstance(surface, StraightFront)
-    if not straight and visited is None and max_penetration is None:
+    if visited is None and max_penetration is None:
         max_penetration = 1.0
     if step is None:
         step = 0.02 if visited is None else math.inf
     solution = named_solver(solver, DEFAULT_TOLERANCE)
-    problem = problem_of(surface, visited, max_penetration, step, error)
-    compile_solver(solver, straight)
+    contact = surface if isinstance(surface, LoopContact) else PressedSphere(surface)
+    setup = contact.setup(visited, max_penetration, step, error)
+    compile_solver(solver, setup.kind)
     observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
-    solution = replace(solution, tolerance=problem.tolerance)
-    recorder.run(problem.field, problem.front, problem.loads, solution)
-    return loop_dataset(recorder.record(), problem).assign_attrs(
+    solution = replace(solution, tolerance=setup.tolerance)
+    recorder.run(setup.field, setup.front, setup.loads, solution)
+    return loop_dataset(recorder.record(), setup).assign_attrs(
         solver=solver,
-        tolerance=problem.tolerance,
+        tolerance=setup.tolerance,
         crackfront_version=__version__,
         solver_fingerprint=solver_fingerprint(),
     )
 
 
-def loop_dataset(record: CycleRecord, problem: Problem) -> Dataset:
+def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
     """Labelled curves of a run, and measures of the whole."""
-    measures, simulation = problem.measures, problem.simulation
-    curves = cycle_dataset(record, problem.field.geometry)
+    measures, simulation = setup.measures, setup.simulation
+    curves = cycle_dataset(record, setup.field.geometry)
     values = {name: getattr(measures, name) for name in ("e_el", "w_rms", "correlation_length")}
     length = measures.correlation_length
-    if isinstance(record.states, ContactState):
+    if setup.period is None:
         steady = steady_adhesion(record, length)
     else:
-        steady = passing_adhesion(record, length, measures.mean, measures.period)
+        steady = passing_adhesion(record, length, measures.mean, setup.period)
     numerical = (math.nan, math.nan)
     if simulation is not None and not steady.sentence:
         numerical = stated_error(simulation, steady, length)
@@ -168,14 +167,7 @@ def _result_sentence(record: CycleRecord, steady: SteadyAdhesion) -> str:
     states = record.states
     if states.direction.size == 0:
         return "no state was found"
-    if isinstance(states, LineState):
-        most, least = float(np.max(states.pinning_force)), float(np.min(states.pinning_force))
-        forces = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
-    else:
-        forces = f"jump-in force {states.force[0]:.4g}"
-        if record.status is Status.LOST_CONTACT:
-            forces += f", pull-off force {np.min(states.force):.4g}"
-        forces += " (pi w_int R)"
+    forces = states.forces_summary(record.status)
     if steady.sentence:
         return f"no steady part: w_appr and w_retr are unknown; {forces}"
     works = []
@@ -232,7 +224,7 @@ def find_instabilities(
         max_penetration=max_penetration, step=step, travel=travel, precision=precision
     )
     schedule = LoadSchedule(max_penetration, step)
-    contact = problem_of(surface, None, max_penetration, step, error)
+    contact = PressedSphere(surface).setup(None, max_penetration, step, error)
     compile_solver("newton")
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
     reach = travel * contact.measures.correlation_length

@@ -7,7 +7,7 @@ import hashlib
 import json
 import math
 from collections.abc import Collection
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, dataclass
 from typing import Any, Literal, cast
 
 import numpy as np
@@ -17,20 +17,17 @@ from crackfront.analysis.steady import SteadyAdhesion
 from crackfront.core.adhesion import (
     AdhesionMap,
     FieldKind,
-    chemical_adhesion,
     correlation_length,
-    rough_adhesion,
 )
-from crackfront.core.arrays import Array
-from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.field.fields import Interpolation, TileField
-from crackfront.core.geometry.base import Geometry, fast_site_count
+from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS
 from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import Spectrum
-from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
 from crackfront.data.fingerprint import fingerprint
-from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error, usual_size
+from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error
+from crackfront.simulate.schedule import Schedule
+from crackfront.simulate.sphere.cycle import FullCycle
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,12 +47,16 @@ class Numerics:
     """A name in :data:`crackfront.core.solver.relax.SOLVERS`."""
 
     def knobs_of(
-        self, kind: FieldKind, spectrum: Spectrum, elastic_energy: float, *, straight: bool = False
+        self,
+        kind: FieldKind,
+        spectrum: Spectrum,
+        elastic_energy: float,
+        usual_size: float | None = None,
     ) -> Knobs:
-        """Knobs for one spectrum and amplitude."""
+        """Knobs for one spectrum and amplitude; size as of :func:`laws.chosen_knobs`."""
         if isinstance(self.knobs, Knobs):
             return self.knobs
-        return chosen_knobs(self.knobs, kind, spectrum, elastic_energy, straight=straight)
+        return chosen_knobs(self.knobs, kind, spectrum, elastic_energy, usual_size)
 
     def tile_side(self, spectrum: Spectrum) -> float:
         """Least side of a tile (Units: that of the spectrum)."""
@@ -90,7 +91,7 @@ def resolution(
     >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
     >>> knobs = Knobs(None, 2, 4, "cubic", 4, 1e-6)
     >>> numerics = Numerics(knobs, tile_roll_offs=10, tile_cutoffs=20)
-    >>> resolution(flat, numerics, knobs, LoadSchedule(max_penetration=1.0, step=0.1))
+    >>> resolution(flat, numerics, knobs, FullCycle(max_penetration=1.0, step=0.1))
     Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
     cutoff = spectrum.short_cutoff
@@ -99,7 +100,7 @@ def resolution(
     points = math.ceil(side / cutoff * knobs.pixels_per_cutoff * (1 - 1e-12))
     n_point = next_fast_len(points, real=True)
     return Resolution(
-        n_angle=n_point if schedule.uncorrelated else knobs.angles or fast_site_count(sites),
+        n_angle=schedule.site_count(knobs.angles, sites, n_point),
         spacing=spacing,
         interpolation=knobs.interpolation,
         tile_side=side,
@@ -219,7 +220,7 @@ def simulation_of(
     The name is that of the spectrum, the numerics are how it is resolved and solved, and `record`
     is what is kept beside the curves; the rest is as in :class:`Simulation`.
     """
-    knobs = numerics.knobs_of(kind, spectrum, elastic_energy, straight=schedule.straight)
+    knobs = numerics.knobs_of(kind, spectrum, elastic_energy, schedule.usual_size(spectrum))
     return Simulation(
         spectrum_name=name,
         kind=kind,
@@ -237,39 +238,7 @@ def simulation_of(
 
 def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
     """Work of adhesion on the tile of a simulation."""
-    points, sides = simulation.tile
-    pixel = sides[1] / points[1]
-    if simulation.schedule.uncorrelated:
-        return _uncorrelated_adhesion(simulation, pixel)
-    adhesion = rough_adhesion if simulation.kind == "roughness" else chemical_adhesion
-    return adhesion(simulation_values(simulation), pixel)
-
-
-def simulation_values(simulation: Simulation) -> Array:
-    """Heights on the tile (Units: reduced vertical length), or deviations of w_loc (Units: w_int).
-
-    The noise of a realisation is scaled to the amplitude, so that all amplitudes of a spectrum
-    see the same surface.
-    """
-    unit, rng = simulation.spectrum.with_elastic_energy(1.0), np.random.default_rng(simulation.seed)
-    values = gaussian_field(unit, *simulation.tile, rng)
-    if simulation.kind == "roughness":
-        values *= math.sqrt(simulation.elastic_energy)
-    else:
-        values *= 2 * math.sqrt(simulation.elastic_energy / unit.mean_square(0.0))
-    return values
-
-
-def _uncorrelated_adhesion(simulation: Simulation, pixel: float) -> AdhesionMap:
-    """Rows of the spectrum of w_loc integrated along the front; e_el is a quarter of its f_2."""
-    spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
-    rng = np.random.default_rng(simulation.seed)
-    rows = uncorrelated_rows(spectrum, order, simulation.tile[0], pixel, rng)
-    ratio = spectrum.mean_square(order - 0.5) / spectrum.mean_square(order)
-    adhesion = chemical_adhesion(rows, pixel)
-    rows *= math.sqrt(8 * simulation.elastic_energy * ratio / pixel)
-    energy = simulation.elastic_energy * adhesion.w_rms**2
-    return replace(chemical_adhesion(rows, pixel), e_el=energy)
+    return simulation.schedule.adhesion(simulation)
 
 
 def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None) -> TileField:
@@ -299,20 +268,20 @@ def numerical_error(
     sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
     if front_length is None:
         front_length = simulation.schedule.front_length
+    usual_size = simulation.schedule.usual_size(simulation.spectrum)
     values: dict[Knob, float] = {
         "sites": sizes.n_angle * cutoff / front_length,
         sizes.interpolation: cutoff / sizes.spacing,
         "pixels": cutoff * sizes.n_point / sizes.tile_side,
         "tolerance": simulation.solver.tolerance,
     }
-    straight = simulation.schedule.straight
     return combined_error(
         simulation.kind,
         simulation.spectrum,
         simulation.elastic_energy,
         values,
-        usual_size(simulation.spectrum, straight) if size is None else size,
-        straight=straight,
+        usual_size if size is None else size,
+        usual_size,
     )
 
 
@@ -323,15 +292,11 @@ def stated_error(
 
     States closer than a correlation length of w_loc count as one.
     """
-    cutoff = simulation.spectrum.short_cutoff
-    if simulation.schedule.straight:
-        period, length = simulation.tile[1]
-        return numerical_error(simulation, length / cutoff * (1 + period / correlation_length))
-    low, high = steady.lowest_radius, steady.highest_radius
-    cutoffs, longest = math.pi * (low + high) / cutoff, 2 * math.pi * high
-    apart = 1 + (high - low) / correlation_length
-    approach, _ = numerical_error(simulation, cutoffs * min(steady.n_approach, apart), longest)
-    _, retraction = numerical_error(simulation, cutoffs * min(steady.n_retraction, apart), longest)
+    *sizes, longest = simulation.schedule.averaged_sizes(
+        steady, correlation_length, simulation.spectrum.short_cutoff
+    )
+    approach, _ = numerical_error(simulation, sizes[0], longest)
+    _, retraction = numerical_error(simulation, sizes[1], longest)
     return approach, retraction
 
 
@@ -342,7 +307,7 @@ def _digest(content: Any) -> str:
 
 
 @functools.cache
-def simulation_fingerprint(kind: type[Schedule] = LoadSchedule) -> str:
+def simulation_fingerprint(kind: type[Schedule] = FullCycle) -> str:
     """Twelve hexadecimal digits that change with what determines a simulation of a kind of load."""
     schedule = f"{kind.__module__}.{kind.__qualname__}"
     return fingerprint("crackfront.simulate.run.run_simulation", schedule)

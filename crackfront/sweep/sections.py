@@ -18,7 +18,6 @@ from pydantic import (
 )
 
 from crackfront.analysis.sweep import FEWEST_BOOTSTRAP
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
@@ -37,9 +36,11 @@ from crackfront.data.section import (
     within,
 )
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.lines import LineLoad, SpringUnit
+from crackfront.simulate.line.schedule import LineLoad, SpringUnit
+from crackfront.simulate.schedule import SweepLoad
 from crackfront.simulate.simulation import Numerics
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.sweep import NamedSpectrum
 from crackfront.topography.measures import MeasuredSurface, read_surface
 from crackfront.topography.options import ReadingOptions, declared, options_for_each
@@ -320,14 +321,14 @@ class LoadSection(Section):
             )
         return self
 
-    def schedule(self, vertical: float) -> LoadSchedule | SteadySchedule | LineLoad:
+    def schedule(self, vertical: float) -> SweepLoad:
         """Penetrations to visit, lengths divided by a unit, or straight fronts."""
         if self.line is not None:
             return LineLoad(**self.line.model_dump(exclude={"springs"}))
         given: Any = self
         deepest, steady = given.max_penetration / vertical, given.steady
         if steady is None:
-            return LoadSchedule(deepest, given.step / vertical)
+            return FullCycle(deepest, given.step / vertical)
         return SteadySchedule(steady.start / vertical, deepest, steady.travel, steady.error)
 
 

@@ -10,10 +10,9 @@ from dataclasses import dataclass, fields, replace
 from typing import Literal
 
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.cycle.schedule import Schedule
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
-from crackfront.simulate.lines import LineLoad
+from crackfront.simulate.schedule import SweepLoad
 from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
 
 
@@ -70,7 +69,7 @@ class Sweep:
     """Realisations of the noise for every spectrum."""
     numerics: Numerics
     """How simulations are resolved and solved."""
-    schedule: Schedule | LineLoad
+    schedule: SweepLoad
     """Loads of all simulations, or how straight fronts are held."""
     record: tuple[Literal["fronts", "energy"], ...]
     """What to record beside the curves."""

@@ -14,14 +14,14 @@ from crackfront.analysis.estimate import Estimate, mean_estimate
 from crackfront.analysis.steady import mean_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
-from crackfront.core.cycle.schedule import Schedule
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.lines import LineLoad
+from crackfront.simulate.line.schedule import LineLoad
 from crackfront.simulate.run import run_simulation
+from crackfront.simulate.schedule import Schedule
 from crackfront.simulate.simulation import Numerics, Simulation, numerical_error, simulation_of
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import surface_spectrum
 from crackfront.topography.tile import zero_load_radius

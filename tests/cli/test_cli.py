@@ -646,7 +646,7 @@ def test_an_output_that_cannot_be_written_is_refused_with_its_path(tmp_path):
 def test_a_cycle_that_could_not_be_written_is_not_computed(
     smooth_tile, monkeypatch, output, reason
 ):
-    monkeypatch.setattr("crackfront.simulate.given.read_field", None)
+    monkeypatch.setattr("crackfront.simulate.user_surface.read_field", None)
     options = ("--field", smooth_tile, "--max-penetration", "0.5")
     assert f"cannot be used: {reason}" in refused("cycle", *options, "--output", output)
 

@@ -26,8 +26,8 @@ from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import blank_figure, save_figure
 from crackfront.simulate.files import cycle_dataset, cycle_record, read_checkpoint, write_checkpoint
-from crackfront.simulate.given import read_field, surface_adhesion
 from crackfront.simulate.run import run_simulation
+from crackfront.simulate.user_surface import read_field, surface_adhesion
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fit_files import write_fit

@@ -36,9 +36,9 @@ from crackfront.simulate.files import (
     read_simulation,
     simulation_dataset,
 )
-from crackfront.simulate.given import read_field, surface_adhesion
 from crackfront.simulate.run import SimulationResult, run_simulation
 from crackfront.simulate.simulation import numerical_error
+from crackfront.simulate.user_surface import read_field, surface_adhesion
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fit_files import write_fit
 from crackfront.sweep.table import read_statuses, read_table, sweep_row, write_hysteresis

@@ -47,7 +47,7 @@ def line_states(n_step=9):
     pinning = np.where(load < 4, 0.0, 0.2)
     zero = np.zeros(2 * n_step)
     return LineState(
-        load=np.concatenate([load, load[::-1]]),
+        spring_position=np.concatenate([load, load[::-1]]),
         direction=np.repeat([1, -1], n_step),
         mean_position=zero,
         rms_position=zero,

@@ -189,9 +189,7 @@ def test_few_cutoffs_along_the_front_ask_for_finer_numerics():
 
 def test_a_straight_front_asks_for_the_same_in_all_units():
     found = {
-        chosen_knobs(
-            0.03, "roughness", SelfAffineSpectrum(size, 4 * size, 0.8), 0.005, straight=True
-        )
+        chosen_knobs(0.03, "roughness", SelfAffineSpectrum(size, 4 * size, 0.8), 0.005, LAW_SIZE)
         for size in (1e-3, 0.02, 1.0)
     }
     assert len(found) == 1

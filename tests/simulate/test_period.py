@@ -16,7 +16,7 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.lines import LineSchedule
+from crackfront.simulate.line.schedule import LineSchedule
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.store import Store

@@ -11,14 +11,34 @@ line, which is diagonal in the modes of the front.
 from __future__ import annotations
 
 import math
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 from scipy.fft import next_fast_len
 
 from crackfront.core.arrays import Array
 from crackfront.core.compiled import dispatched, jit
-from crackfront.core.outcome import Direction, Relaxation
+from crackfront.core.outcome import Direction, Relaxation, Status
 from crackfront.core.variables import Variable
+
+
+class State(Protocol):
+    """Record of a front at rest, or of all of a cycle: a dataclass, one entry or array a field.
+
+    Its fields are made by :func:`crackfront.core.variables.variable`. The first is the load; others
+    are `direction`, `least_travel`, `iterations`, `updates` and `residual`.
+    """
+
+    load_noun: ClassVar[str]
+    """What messages call the load."""
+    front_name: ClassVar[str]
+    """Name of the fronts in files."""
+
+    @property
+    def summary(self) -> str:
+        """One state in words."""
+
+    def forces_summary(self, status: Status) -> str:
+        """Forces of all states of a cycle that ended with a status, in words."""
 
 
 class Geometry(Protocol):
@@ -34,11 +54,7 @@ class Geometry(Protocol):
 
     @property
     def state_type(self) -> type[Any]:
-        """Dataclass of what is recorded of a front at rest.
-
-        Its fields are made by :func:`crackfront.core.variables.variable`; the first is the load,
-        and one of them the direction.
-        """
+        """Dataclass of what is recorded of a front at rest, a :class:`State`."""
 
     @property
     def sites(self) -> Array:

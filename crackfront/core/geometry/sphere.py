@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from scipy.fft import irfft, rfft
@@ -28,7 +28,7 @@ from crackfront.core.field.fields import (
 )
 from crackfront.core.geometry import base
 from crackfront.core.geometry.base import fast_site_count
-from crackfront.core.outcome import Direction, Relaxation
+from crackfront.core.outcome import Direction, Relaxation, Status
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, Variable, variable
 
@@ -41,6 +41,9 @@ RING = CONTACT_MODULUS / (2 * np.pi)
 @dataclass(frozen=True)
 class ContactState(Generic[Value]):
     """A metastable contact, or all of a cycle, one entry a state."""
+
+    load_noun: ClassVar[str] = "penetration"
+    front_name: ClassVar[str] = "radius"
 
     penetration: Value = variable("rigid body penetration", VERTICAL)
     direction: Value = variable("+1 in approach, -1 in retraction", "1")
@@ -57,12 +60,19 @@ class ContactState(Generic[Value]):
     residual: Value = variable("largest force along the motion, per front length", ADHESION)
 
     @property
-    def told(self) -> str:
+    def summary(self) -> str:
         """One state in words."""
         return (
             f"penetration {self.penetration:+.4f}, force {self.force:+.4f}, "
             f"radius {self.mean_radius:.4f}, rms {self.rms_radius:.4f}"
         )
+
+    def forces_summary(self, status: Status) -> str:
+        """Forces of jump-in and, where contact was lost, of pull-off, in words."""
+        forces = f"jump-in force {np.ravel(self.force)[0]:.4g}"
+        if status is Status.LOST_CONTACT:
+            forces += f", pull-off force {np.min(self.force):.4g}"
+        return f"{forces} (pi w_int R)"
 
 
 class Sphere(NamedTuple):
@@ -101,7 +111,7 @@ class Sphere(NamedTuple):
     def variables(self) -> tuple[Variable, Variable]:
         """Radii of a front, and the angles of its sites."""
         angle = Variable("angle", ("angle",), "rad", "angle of a site of the front")
-        return Variable("radius", ("angle",), LATERAL, "front"), angle
+        return Variable(ContactState.front_name, ("angle",), LATERAL, "front"), angle
 
     def state(
         self, found: Relaxation, load: float, direction: Direction, turn: Array

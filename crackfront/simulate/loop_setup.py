@@ -1,0 +1,80 @@
+"""What a run on a user's surface begins with, whatever the kind of contact."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import pairwise
+
+from crackfront.core.arrays import Array
+from crackfront.core.cycle.follow import Load
+from crackfront.core.field.fields import TileField
+from crackfront.data.bounds import NUMBER, Range, refuse_outside
+from crackfront.simulate.schedule import Schedule
+from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.surfaces import TileMeasures
+
+
+@dataclass(frozen=True, slots=True)
+class LoopSetup:
+    """Field, first front and loads of a run, with what is known of it beforehand."""
+
+    kind: type[Schedule]
+    """Loads whose kernels serve this run."""
+    field: TileField
+    front: Array
+    """First front, (n_site,). (Units: reduced lateral length)"""
+    loads: Iterable[Load]
+    """As of :func:`crackfront.core.cycle.follow.follow`."""
+    expected: int
+    """States that it will have, roughly."""
+    seconds: float
+    """Processor time that they will take, roughly."""
+    tolerance: float
+    """That of the solver."""
+    measures: TileMeasures
+    """Those of the tile."""
+    period: float | None = None
+    """Period of the tile over which the branches are averaged at most; None for steady parts."""
+    simulation: Simulation | None = None
+    """One of the same sizes, whose numerical errors are known; where the spectrum is stated."""
+    remark: str = ""
+    """What the result leaves to be desired, in words; empty where there is nothing."""
+
+
+class LoopContact(ABC):
+    """A contact of some kind with a user's surface, which `run_loop` and `crackfront cycle` run."""
+
+    @abstractmethod
+    def setup(
+        self,
+        loads: tuple[float, ...] | None,
+        max_penetration: float | None,
+        step: float,
+        error: float,
+    ) -> LoopSetup:
+        """What a run begins with; arguments as of :func:`crackfront.run_loop`.
+
+        Loads that are None lead up to the largest penetration and to pull-off. The step is the
+        largest difference of loads; infinity leaves them as they are.
+        """
+
+
+def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
+    """Loads of a protocol as numbers; a ValueError where there is none, or one is no number."""
+    found = []
+    for given in loads:
+        try:
+            found.append(float(given))
+        except (TypeError, ValueError):
+            raise ValueError(f"a load is {given!r}; write numbers alone") from None
+        refuse_outside("a load", found[-1], Range(-NUMBER.most, NUMBER.most))
+    if not found:
+        raise ValueError("there are no loads; give one or more")
+    return tuple(found)
+
+
+def state_count(loads: tuple[float, ...], step: float) -> float:
+    """Loads of a protocol, about."""
+    return len(loads) + sum(abs(one - other) for one, other in pairwise(loads)) / step
