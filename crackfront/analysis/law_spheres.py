@@ -13,7 +13,7 @@ from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.analysis.law import (
     PinningFactor,
     law_value,
-    mean_adhesion,
+    mean_w_loc,
     pinning_factor,
     shipped_law,
     spectral_breadth,
@@ -104,7 +104,7 @@ def held_factors(
     """
     w_rms = 2 * math.sqrt(elastic_energy)
     larkin = larkin_length(kind, spectrum, w_rms)
-    mean = mean_adhesion(kind, elastic_energy)
+    mean = mean_w_loc(kind, elastic_energy)
     breadth = spectral_breadth(kind, spectrum)
     # Contact is lost in retraction at the larger radius, which a refusal names.
     retraction, approach = (

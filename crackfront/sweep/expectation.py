@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from crackfront.analysis.law import mean_adhesion
+from crackfront.analysis.law import mean_w_loc
 from crackfront.analysis.law_spheres import held_factors
 from crackfront.analysis.steady import FEWEST_STATES
 from crackfront.core.adhesion import force_correlation_length, larkin_length
@@ -54,7 +54,7 @@ def _needed_penetration(simulation: Simulation, size: float, factor: float, n_st
     length = simulation.correlation_length
     rough = front_rms(force_correlation_length(simulation.kind, simulation.spectrum), size)
     way = length + _LAST_SITE * rough
-    mean = mean_adhesion(simulation.kind, simulation.elastic_energy)
+    mean = mean_w_loc(simulation.kind, simulation.elastic_energy)
     low = max(mean - factor * simulation.elastic_energy, 0.0)
     high = mean + factor * simulation.elastic_energy
     return simulation.schedule.steady_load(simulation, (low, high), way, n_state)
@@ -66,7 +66,7 @@ def doubts(sweep: Sweep) -> Iterator[str]:
     for item in sweep.spectra:
         needed = {
             one.elastic_energy: found
-            for one in sweep.firsts(item)
+            for one in sweep.one_per_amplitude(item)
             if (found := expectation(one).needed_penetration) is not None
         }
         if needed:

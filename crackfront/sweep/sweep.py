@@ -106,10 +106,10 @@ class Sweep:
         """Simulations, by default all: by spectrum, amplitude and realisation."""
         block = range(self.n_realisation) if realisations is None else realisations
         for one in self.spectra if item is None else (item,):
-            for first in self.firsts(one):
+            for first in self.one_per_amplitude(one):
                 yield from (replace(first, realisation=number) for number in block)
 
-    def firsts(self, item: NamedSpectrum) -> list[Simulation]:
+    def one_per_amplitude(self, item: NamedSpectrum) -> list[Simulation]:
         """First realisation of a spectrum for each amplitude."""
         return [self.simulation(item, energy, 0) for energy in self.elastic_energies]
 
@@ -120,7 +120,7 @@ class Sweep:
 
     def shard_fingerprint(self, shard: Shard) -> str:
         """The same of the simulations of a shard, none of which is made but the first ones."""
-        firsts = [simulation.stem for simulation in self.firsts(shard.item)]
+        firsts = [simulation.stem for simulation in self.one_per_amplitude(shard.item)]
         return _digits("\n".join([*firsts, repr(shard.realisations)]))
 
     @property

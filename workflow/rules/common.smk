@@ -12,7 +12,7 @@ sys.path.insert(0, str(BASE))  # where the studies stand
 from crackfront.data.fingerprint import fingerprint
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import load_configuration, results_folder
-from crackfront.sweep.needs import late_needs
+from crackfront.sweep.needs import postprocessing_costs
 from studies.boundary_elements.parameters import load_validation
 from studies.paper.figure import (
     FIGURES,
@@ -65,9 +65,9 @@ except ValueError as error:
 SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
 PAPER = f"results/figures/{SCALE}"
 ACCURACY = "results/accuracy"
-NEEDS = late_needs(SWEEP)
+NEEDS = postprocessing_costs(SWEEP)
 RANK_BYTES = max(
-    expected_cost(one).memory for item in SWEEP.spectra for one in SWEEP.firsts(item)
+    expected_cost(one).memory for item in SWEEP.spectra for one in SWEEP.one_per_amplitude(item)
 )
 ANIMATED = [name for name in FIGURES if figure(name).animate]
 
