@@ -155,15 +155,16 @@ def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
         numerical = stated_error(simulation, steady, length)
     values["w_appr_numerical_error"], values["w_retr_numerical_error"] = numerical
     values |= {item.name: getattr(steady, item.name) for item in variables(SteadyMeasures)}
-    sentences = {"result": _result_sentence(record, steady), "steady_sentence": steady.sentence}
+    result = _result_sentence(record, steady, setup.remark)
+    sentences = {"result": result, "steady_sentence": steady.sentence}
     whole = curves.assign(
         {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
     )
     return whole.drop_attrs(deep=False).assign_attrs(sentences | curves.attrs, kind=measures.kind)
 
 
-def _result_sentence(record: CycleRecord, steady: SteadyAdhesion) -> str:
-    """Result of a cycle in one line."""
+def _result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str) -> str:
+    """Result of a cycle in one line, with a remark on its works of adhesion."""
     states = record.states
     if states.direction.size == 0:
         return "no state was found"
@@ -174,7 +175,7 @@ def _result_sentence(record: CycleRecord, steady: SteadyAdhesion) -> str:
     for name in ("w_appr", "w_retr", "hysteresis"):
         value, error = getattr(steady, name), getattr(steady, f"{name}_error")
         works.append(f"{name} {with_error(value, error) if error > 0 else format(value, '.4g')}")
-    return f"{', '.join(works)} (w_int); {forces}"
+    return "; ".join(filter(None, (f"{', '.join(works)} (w_int)", remark, forces)))
 
 
 def find_instabilities(

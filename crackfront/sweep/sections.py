@@ -36,7 +36,7 @@ from crackfront.data.section import (
     within,
 )
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.line.schedule import LineLoad, SpringUnit
+from crackfront.simulate.line.schedule import LAW_LENGTH, LineLoad, SpringUnit
 from crackfront.simulate.schedule import SweepLoad
 from crackfront.simulate.simulation import Numerics
 from crackfront.simulate.sphere.cycle import FullCycle
@@ -278,7 +278,7 @@ class LineSection(Section):
 
     springs: Annotated[tuple[Positive, ...], Field(min_length=1)]
     spring_unit: SpringUnit = "correlation_length"
-    length: Annotated[Positive, Field(ge=8)]
+    length: Annotated[Positive, Field(ge=LAW_LENGTH)]
     period: Annotated[Positive, Field(ge=20)]
     transient: Annotated[Positive, Field(ge=3)]
     step: Positive

@@ -8,6 +8,7 @@ from itertools import chain
 import numpy as np
 from xarray import DataArray
 
+from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.schedule import protocol
 from crackfront.core.geometry.line import initial_front, line_field
 from crackfront.core.solver import DEFAULT_TOLERANCE
@@ -15,10 +16,12 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.arguments import refuse_no_numbers
 from crackfront.data.bounds import NUMBER, refuse_outside
 from crackfront.simulate.costs import affordable_seconds
-from crackfront.simulate.line.schedule import LineSchedule
+from crackfront.simulate.line.schedule import LAW_LENGTH, LineSchedule
 from crackfront.simulate.loop_setup import LoopContact, LoopSetup, state_count
 from crackfront.simulate.surfaces import tile_measures
 from crackfront.simulate.user_surface import surface_adhesion, surface_kind
+
+_ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +44,7 @@ class StraightFront(LoopContact):
         if loads is None or max_penetration is not None:
             raise ValueError("a straight front needs loads, and no max_penetration; give loads")
         adhesion, way = surface_adhesion(self.surface), protocol(loads, step)
+        remark = self._remark(adhesion)
         values, n_state = adhesion.work_of_adhesion, state_count(loads, step)
         # The first front lies as far behind its load as pinning may pull the springs.
         behind = 1.25 * self.spring * float(np.ptp(values)) / WORK_OF_ADHESION
@@ -63,11 +67,32 @@ class StraightFront(LoopContact):
             tolerance=DEFAULT_TOLERANCE,
             measures=measures,
             period=measures.period,
+            remark=remark,
         )
+
+    def _remark(self, adhesion: AdhesionMap) -> str:
+        """What a short front means for k; ValueError if it is shorter than its springs."""
+        length = adhesion.pixel * adhesion.work_of_adhesion.shape[1]
+        ratio = length / self.spring
+        if ratio < 1 - _ROUND_OFF:
+            raise ValueError(
+                f"spring is {self.spring:g}, longer than the front, {length:g}, which is pinned as "
+                "a whole; shorten the spring or lengthen the tile along y"
+            )
+        if ratio < LAW_LENGTH * (1 - _ROUND_OFF):
+            return (
+                f"the front is {ratio:.2g} L_kappa long, below the {LAW_LENGTH:g} of the law of k: "
+                "its hysteresis is too large"
+            )
+        return ""
 
 
 def straight_front(surface: DataArray, spring: float) -> StraightFront:
     """A straight front for :func:`crackfront.run_loop`, whose loads are places of its springs.
+
+    The front is as long as the side of the surface along y. Where this is below ten times the
+    length of the springs, the factor k is larger than that of a long front, by which the law of k
+    was measured; the result of the loop says so.
 
     Parameters
     ----------
@@ -80,7 +105,8 @@ def straight_front(surface: DataArray, spring: float) -> StraightFront:
     Raises
     ------
     ValueError
-        If the spring has no such length, or the surface another name than that of one.
+        If the spring has no such length, or the surface another name than that of one. The loop
+        refuses springs that are longer than the front.
     TypeError
         If an argument is of another type.
     """

@@ -41,6 +41,12 @@ if TYPE_CHECKING:
 
 SpringUnit = Literal["correlation_length", "larkin_length"]
 
+LAW_LENGTH = 10.0
+"""Length of a front over that of its springs on which the law of k was measured.
+
+On a shorter front k is larger: the front is pinned as a whole.
+"""
+
 _DEPTH, _ROUGHNESS = 1.43, 0.4
 """Rms of a front over the force's correlation length, 1.43 (L_kappa / Larkin length)^0.4: measured
 over all spectra, amplitudes and springs of `config/line.yaml`, within a fifth."""

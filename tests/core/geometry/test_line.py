@@ -219,9 +219,8 @@ def test_the_command_writes_a_cycle_of_the_line(command):
     assert found.y.values == pytest.approx(np.arange(32))
     mean = found.position.mean("y")
     assert found.mean_position.values == pytest.approx(mean.values, rel=1e-14)
-    assert found.pinning_force.values == pytest.approx(
-        ((found["spring_position"] - mean) / 32).values
-    )
+    stretched = found.spring_position - mean
+    assert found.pinning_force.values == pytest.approx((stretched / 32).values)
     assert np.all(found.residual <= 1e-8)
     assert np.all(found.iterations > 0)
     expected, _ = run(
@@ -230,7 +229,9 @@ def test_the_command_writes_a_cycle_of_the_line(command):
     assert np.array_equal(found.position, expected.fronts)
     most, least = float(found.pinning_force.max()), float(found.pinning_force.min())
     told = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
-    assert result.stdout.splitlines()[-1].endswith(f"hysteresis 0.051 ± 0.025 (w_int); {told}")
+    said = result.stdout.splitlines()[-1]
+    assert "hysteresis 0.051 ± 0.025 (w_int); the front is 1 L_kappa long, below" in said
+    assert said.endswith(told)
     loop, fronts = (draw(found, axes=Figure().add_subplot()) for draw in (plot_loop, plot_fronts))
     np.testing.assert_array_equal(loop.get_lines()[0].get_xdata(), loads[:7])
     np.testing.assert_array_equal(fronts.get_lines()[0].get_xdata(), found.position[6])
