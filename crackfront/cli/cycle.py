@@ -25,9 +25,10 @@ from crackfront.cli.report import (
     echo_answer,
     examples,
     refuse_unwritable,
+    whole,
 )
 from crackfront.core.solver import DEFAULT_TOLERANCE
-from crackfront.data.bounds import NUMBER, Range, regular_file
+from crackfront.data.bounds import DENSITY, NUMBER, SITES, Range, regular_file
 from crackfront.sweep.parallel import deferring_stops, stop_is_requested
 
 if TYPE_CHECKING:
@@ -97,8 +98,18 @@ def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[fl
 @click.option(
     "--error",
     type=Number(Range(0, 1)),
-    default=0.03,
-    help="Error of k that the numerics may leave, where the field states its spectrum.",
+    help="Error of k that the numerics may leave, where the field states its spectrum.  "
+    "[default: 0.03]",
+)
+@click.option(
+    "--sites",
+    type=whole(SITES),
+    help="Sites of the front, in place of an error.  [default: one a pixel or more]",
+)
+@click.option(
+    "--samples",
+    type=Number(DENSITY),
+    help="Samples a pixel along a ray, in place of an error.  [default: 2, of straight fronts 1]",
 )
 @click.option(
     "--solver",
@@ -121,7 +132,9 @@ def cycle(
     loads: tuple[float, ...] | None,
     step: float | None,
     spring: float | None,
-    error: float,
+    error: float | None,
+    sites: int | None,
+    samples: float | None,
     solver: str,
     record: tuple[str, ...],
     output: Path,
@@ -152,7 +165,7 @@ def cycle(
     from crackfront.data.files import refuse_no_file, write_dataset
     from crackfront.data.provenance import provenance
     from crackfront.simulate.line.loop import straight_front
-    from crackfront.simulate.loop_setup import LoopContact
+    from crackfront.simulate.loop_setup import LoopContact, LoopNumerics
     from crackfront.simulate.loops import loop_dataset
     from crackfront.simulate.sphere.loop import PressedSphere
     from crackfront.simulate.user_surface import read_field
@@ -166,9 +179,10 @@ def cycle(
     if spring is not None:
         contact = straight_front(surface, spring)
     step = (DEFAULT_STEP if loads is None else math.inf) if step is None else step
-    setup = contact.setup(loads, max_penetration, step, error)
+    numerics = LoopNumerics(error, sites, samples)
+    setup = contact.setup(loads, max_penetration, step, numerics)
     solution = replace(solution, tolerance=setup.tolerance)
-    key = _key(field_file, spring, loads, max_penetration, step, error, solver, record)
+    key = _key(field_file, spring, loads, max_penetration, step, numerics, solver, record)
     keeper = _Keeper(output, key, setup.field.geometry)
     announce_compilation(err=as_json)
     announce_cost(setup.seconds)

@@ -6,14 +6,16 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
+from numbers import Integral
 
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.field.fields import TileField
-from crackfront.data.bounds import NUMBER, Range, refuse_outside
+from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.data.bounds import DENSITY, NUMBER, SITES, Range, refuse_outside
 from crackfront.simulate.schedule import Schedule
 from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.surfaces import TileMeasures
+from crackfront.simulate.surfaces import TileMeasures, refuse_no_fraction
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +45,45 @@ class LoopSetup:
     """What the result leaves to be desired, in words; empty where there is nothing."""
 
 
+@dataclass(frozen=True, slots=True)
+class LoopNumerics:
+    """How a run on a user's surface is resolved.
+
+    ValueError if an error is given beside sites or samples, or a number is out of range; TypeError
+    if it is none.
+    """
+
+    error: float | None = None
+    """Standard error of the factor k that the numerics may leave, by the laws of its spectrum."""
+    sites: int | None = None
+    """Sites of the front."""
+    samples: float | None = None
+    """Samples a pixel along a ray."""
+    usual_error: float = 0.03
+    """Error where neither is given and the surface states its spectrum."""
+
+    def __post_init__(self) -> None:
+        if self.error is not None:
+            refuse_no_fraction("error", self.error)
+        for name, value in (("sites", self.sites), ("samples", self.samples)):
+            if value is not None and self.error is not None:
+                raise ValueError(
+                    f"error is {self.error:g}, which decides sites and samples; leave out {name}, "
+                    "or the error"
+                )
+        if self.sites is not None:
+            refuse_other_type("sites", self.sites, Integral, "a whole number")
+            refuse_outside("sites", self.sites, SITES)
+        if self.samples is not None:
+            refuse_no_numbers(samples=self.samples)
+            refuse_outside("samples", self.samples, DENSITY)
+
+    @property
+    def by_pixels(self) -> bool:
+        """Whether sites or samples are given, so that no law of errors decides them."""
+        return self.sites is not None or self.samples is not None
+
+
 class LoopContact(ABC):
     """A contact of some kind with a user's surface, which `run_loop` and `crackfront cycle` run."""
 
@@ -52,7 +93,7 @@ class LoopContact(ABC):
         loads: tuple[float, ...] | None,
         max_penetration: float | None,
         step: float,
-        error: float,
+        numerics: LoopNumerics,
     ) -> LoopSetup:
         """What a run begins with; arguments as of :func:`crackfront.run_loop`.
 

@@ -32,7 +32,7 @@ from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.provenance import __version__
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
-from crackfront.simulate.loop_setup import LoopContact, LoopSetup, load_values
+from crackfront.simulate.loop_setup import LoopContact, LoopNumerics, LoopSetup, load_values
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import stated_error
 from crackfront.simulate.sphere.loop import PressedSphere
@@ -46,7 +46,9 @@ def run_loop(
     loads: Iterable[float] | None = None,
     max_penetration: float | None = None,
     step: float | None = None,
-    error: float = 0.03,
+    error: float | None = None,
+    sites: int | None = None,
+    samples: float | None = None,
     solver: str = "newton",
     fronts: bool = True,
     energy: bool = False,
@@ -73,8 +75,12 @@ def run_loop(
     error : float, optional
         Standard error of the factor k of either branch that the numerics may leave; measured
         laws choose sites, samples and tolerance. They need a sphere and the attributes
-        `short_cutoff`, `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them.
-        Without these the front has a site a pixel or more, and two samples a pixel along a ray.
+        `short_cutoff`, `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them;
+        with these it is 0.03 by default, without them an error is refused.
+    sites : int, optional
+        Sites of the front, in place of an error; by default one a pixel or more.
+    samples : float, optional
+        Samples a pixel along a ray, in place of an error; by default 2, of a straight front 1.
     solver : {"newton", "reference"}, optional
         Solver; both find the same fronts.
     fronts, energy : bool, optional
@@ -126,7 +132,7 @@ def run_loop(
         step = 0.02 if visited is None else math.inf
     solution = named_solver(solver, DEFAULT_TOLERANCE)
     contact = surface if isinstance(surface, LoopContact) else PressedSphere(surface)
-    setup = contact.setup(visited, max_penetration, step, error)
+    setup = contact.setup(visited, max_penetration, step, LoopNumerics(error, sites, samples))
     compile_solver(solver, setup.kind)
     observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
@@ -186,7 +192,9 @@ def find_instabilities(
     step: float = 0.02,
     travel: float = 0.05,
     precision: float = 2e-5,
-    error: float = 0.05,
+    error: float | None = None,
+    sites: int | None = None,
+    samples: float | None = None,
 ) -> Dataset:
     """The single instabilities of a branch, from first contact or to pull-off.
 
@@ -206,6 +214,8 @@ def find_instabilities(
     precision : float, optional
         Penetration to which an instability is located. (Units: reduced vertical length)
     error : float, optional
+        As in :func:`run_loop`, by default 0.05 where the surface states its spectrum.
+    sites, samples : optional
         As in :func:`run_loop`.
 
     Returns
@@ -225,7 +235,8 @@ def find_instabilities(
         max_penetration=max_penetration, step=step, travel=travel, precision=precision
     )
     schedule = LoadSchedule(max_penetration, step)
-    contact = PressedSphere(surface).setup(None, max_penetration, step, error)
+    numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
+    contact = PressedSphere(surface).setup(None, max_penetration, step, numerics)
     compile_solver("newton")
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
     reach = travel * contact.measures.correlation_length

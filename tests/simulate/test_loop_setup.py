@@ -30,3 +30,51 @@ def test_a_front_shorter_than_ten_springs_says_that_its_hysteresis_is_too_large(
 def test_a_front_shorter_than_its_springs_is_refused(patches):
     with pytest.raises(ValueError, match=r"spring is 2\.5, longer than the front, 2, which is"):
         pulled(patches, 2.5)
+
+
+def test_an_error_is_refused_where_none_was_measured(patches):
+    with pytest.raises(ValueError, match=r"error is 0.005, but the surface does not state the spe"):
+        cf.run_loop(patches, error=0.005)
+    with pytest.raises(ValueError, match=r"error is 0.3, but errors of straight fronts on a given"):
+        cf.run_loop(cf.straight_front(patches, 0.2), loads=[0, 1], error=0.3)
+    with pytest.raises(ValueError, match=r"error is 0.3, but the surface does not state the spect"):
+        cf.find_instabilities(patches, error=0.3)
+
+
+def test_sites_and_samples_are_those_that_are_given(patches):
+    loads = [0, 0.5]
+    pressed = {n: cf.run_loop(patches, loads=loads, sites=n, samples=n / 32) for n in (48, 96, 192)}
+    assert [loop.sizes["angle"] for loop in pressed.values()] == [48, 96, 192]
+    coarse, fine, finest = (float(loop.mean_radius[-1]) for loop in pressed.values())
+    assert 0 < abs(fine - finest) < abs(coarse - finest)
+    front = cf.straight_front(patches, 0.2)
+    pulled = [cf.run_loop(front, loads=[0, 1], sites=n, samples=n / 32) for n in (32, 64)]
+    assert [loop.sizes["y"] for loop in pulled] == [32, 64]
+    usual = cf.run_loop(front, loads=[0, 1])
+    np.testing.assert_array_equal(usual.position, pulled[0].position)
+
+
+def test_given_sites_overrule_the_spectrum_that_a_surface_states():
+    surface = cf.random_surface(short_cutoff=0.4, elastic_energy=0.05, side=4, error=0.3, seed=3)
+    loop = cf.run_loop(surface, step=0.5, sites=40)
+    assert loop.sizes["angle"] == 40
+    assert np.isnan(loop.w_appr_numerical_error)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        (
+            {"error": 0.1, "sites": 40},
+            r"error is 0.1, which decides sites and samples; leave out si",
+        ),
+        ({"error": 0.1, "samples": 4}, r"error is 0.1, .*; leave out samples, or the error"),
+        ({"sites": 3}, "sites is 3; it must lie between 4 and"),
+        ({"samples": 0}, r"samples is 0; it must lie between 0.001 and"),
+    ],
+)
+def test_numerics_that_cannot_be_are_refused(patches, given, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.run_loop(patches, **given)
+    with pytest.raises(TypeError, match=r"sites is 40.5; give a whole number"):
+        cf.run_loop(patches, sites=40.5)

@@ -17,7 +17,7 @@ from crackfront.data.arguments import refuse_no_numbers
 from crackfront.data.bounds import NUMBER, refuse_outside
 from crackfront.simulate.costs import affordable_seconds
 from crackfront.simulate.line.schedule import LAW_LENGTH, LineSchedule
-from crackfront.simulate.loop_setup import LoopContact, LoopSetup, state_count
+from crackfront.simulate.loop_setup import LoopContact, LoopNumerics, LoopSetup, state_count
 from crackfront.simulate.surfaces import tile_measures
 from crackfront.simulate.user_surface import surface_adhesion, surface_kind
 
@@ -38,23 +38,38 @@ class StraightFront(LoopContact):
         loads: tuple[float, ...] | None,
         max_penetration: float | None,
         step: float,
-        error: float,
+        numerics: LoopNumerics,
     ) -> LoopSetup:
-        """What a run begins with, as of :meth:`LoopContact.setup`: one site for every y."""
+        """What a run begins with, as of :meth:`LoopContact.setup`.
+
+        By default the front has a site for every y, and a sample a pixel along a ray.
+        """
         if loads is None or max_penetration is not None:
             raise ValueError("a straight front needs loads, and no max_penetration; give loads")
+        if numerics.error is not None:
+            raise ValueError(
+                f"error is {numerics.error:g}, but errors of straight fronts on a given surface "
+                "were not measured; give sites and samples instead"
+            )
         adhesion, way = surface_adhesion(self.surface), protocol(loads, step)
         remark = self._remark(adhesion)
         values, n_state = adhesion.work_of_adhesion, state_count(loads, step)
+        samples = numerics.samples or 1.0
         # The first front lies as far behind its load as pinning may pull the springs.
         behind = 1.25 * self.spring * float(np.ptp(values)) / WORK_OF_ADHESION
         seconds = affordable_seconds(
-            n_angle=values.shape[1],
+            n_angle=numerics.sites or values.shape[1],
             n_point=values.size,
             n_state=n_state,
-            n_sample=2 * (float(np.ptp(loads)) + behind) / adhesion.pixel,
+            n_sample=2 * samples * (float(np.ptp(loads)) + behind) / adhesion.pixel,
         )
-        field = line_field(adhesion, self.spring, (min(loads), max(loads)))
+        field = line_field(
+            adhesion,
+            self.spring,
+            (min(loads), max(loads)),
+            n_site=numerics.sites,
+            spacing=adhesion.pixel / samples,
+        )
         front, measures = initial_front(field, adhesion, loads[0]), tile_measures(adhesion)
         return LoopSetup(
             kind=LineSchedule,

@@ -15,16 +15,18 @@ from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.simulate.costs import affordable_seconds
-from crackfront.simulate.loop_setup import LoopContact, LoopSetup, state_count
+from crackfront.simulate.loop_setup import LoopContact, LoopNumerics, LoopSetup, state_count
 from crackfront.simulate.simulation import missed_error, simulation_field
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.surfaces import (
     chosen_simulation,
-    refuse_no_fraction,
     stated_spectrum,
     tile_measures,
 )
 from crackfront.simulate.user_surface import surface_adhesion
+
+_SAMPLES = 2.0
+"""Samples a pixel along a ray where no spectrum is stated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,7 @@ class PressedSphere(LoopContact):
         loads: tuple[float, ...] | None,
         max_penetration: float | None,
         step: float,
-        error: float,
+        numerics: LoopNumerics,
     ) -> LoopSetup:
         """What a run begins with, as of :meth:`LoopContact.setup`."""
         if (loads is None) == (max_penetration is None):
@@ -48,32 +50,39 @@ class PressedSphere(LoopContact):
             way = LoadSchedule(max_penetration, step).loads()
             # A smooth sphere comes off there; a rough one goes somewhat further.
             n_state = 3 + (2 * max_penetration - jkr.pull_off_penetration()) / step
-            return self._setup(max_penetration, way, n_state, error)
+            return self._setup(max_penetration, way, n_state, numerics)
         if loads is None or loads[0] < 0:
             raise ValueError(
                 f"loads begin with {(loads or (0.0,))[0]:g}; a sphere touches at penetration 0, so "
                 "begin there or deeper"
             )
-        return self._setup(max(loads), protocol(loads, step), state_count(loads, step), error)
+        return self._setup(max(loads), protocol(loads, step), state_count(loads, step), numerics)
 
     def _setup(
-        self, deepest: float, way: Iterator[Load], n_state: float, error: float
+        self, deepest: float, way: Iterator[Load], n_state: float, numerics: LoopNumerics
     ) -> LoopSetup:
         """Resolve the contact by the measured laws of errors, or else by the pixels of the tile."""
-        refuse_no_fraction("error", error)
         adhesion = surface_adhesion(self.surface)
-        radius = jkr.equilibrium_radius(deepest)
+        radius, samples = jkr.equilibrium_radius(deepest), numerics.samples or _SAMPLES
         seconds = affordable_seconds(
-            n_angle=2 * math.pi * radius / adhesion.pixel,
+            n_angle=numerics.sites or 2 * math.pi * radius / adhesion.pixel,
             n_point=adhesion.work_of_adhesion.size,
             n_state=n_state,
-            n_sample=8 * radius / adhesion.pixel,
+            n_sample=4 * samples * radius / adhesion.pixel,
         )
         measures, simulation = tile_measures(adhesion), None
         spectrum = stated_spectrum(self.surface)
-        if spectrum is None or adhesion.e_el == 0:
-            field, tolerance = contact_field(adhesion, deepest), DEFAULT_TOLERANCE
+        if spectrum is None and numerics.error is not None:
+            raise ValueError(
+                f"error is {numerics.error:g}, but the surface does not state the spectrum whose "
+                "errors were measured; give sites and samples instead"
+            )
+        if spectrum is None or adhesion.e_el == 0 or numerics.by_pixels:
+            spacing = adhesion.pixel / samples
+            field = contact_field(adhesion, deepest, numerics.sites, spacing)
+            tolerance = DEFAULT_TOLERANCE
         else:
+            error = numerics.usual_error if numerics.error is None else numerics.error
             schedule = FullCycle(deepest, 1.0)  # whose step has no effect on sizes
             chosen = chosen_simulation(
                 measures.kind, spectrum, adhesion.e_el, schedule, error=error
