@@ -98,7 +98,7 @@ class Instabilities:
 
     penetration: Array = variable("penetration of the instability", VERTICAL, _JUMP)
     dissipated_energy: Array = variable("energy that the instability dissipates", ENERGY, _JUMP)
-    area: Array = variable("area that the front has swept", f"({LATERAL})^2", _JUMP)
+    area: Array = variable("area between the fronts before and after", f"({LATERAL})^2", _JUMP)
     extent: Array = variable("width of the largest patch along the perimeter", LATERAL, _JUMP)
     before: Array = variable("front before the instability", LATERAL, _JUMP, "angle")
     after: Array = variable("front after the instability", LATERAL, _JUMP, "angle")
@@ -112,7 +112,7 @@ def measured_instabilities(jumps: Sequence[Motion], field: Field, travel: float)
     return Instabilities(
         np.array([jump.end for jump in jumps]),
         np.array([dissipated_energy(jump.before, jump.after, jump.end, field) for jump in jumps]),
-        np.array([sum(part.area for part in parts) for parts in clusters]),
+        np.array([float(np.sum(swept_areas(jump.before, jump.after, geometry))) for jump in jumps]),
         np.array([parts[0].extent for parts in clusters]),
         *(front.reshape(-1, geometry.n_site) for front in fronts),
     )

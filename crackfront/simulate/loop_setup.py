@@ -41,6 +41,9 @@ class LoopSetup:
     """Period of the tile over which the branches are averaged at most; None for steady parts."""
     simulation: Simulation | None = None
     """One of the same sizes, whose numerical errors are known; where the spectrum is stated."""
+    load_stiffness: float | None = None
+    """Stiffness of the load against a front that is held, where a load step loses half of it times
+    the square of the step. (Units: reduced energy / length**2)"""
     remark: str = ""
     """What the result leaves to be desired, in words; empty where there is nothing."""
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import get_args
 
+import numpy as np
 from xarray import DataArray, Dataset
 
 from crackfront.analysis.estimate import with_error
@@ -17,10 +18,12 @@ from crackfront.analysis.steady import (
     steady_adhesion,
 )
 from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import first_touch
+from crackfront.core.geometry.base import State
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction
 from crackfront.core.solver import DEFAULT_TOLERANCE
@@ -84,7 +87,9 @@ def run_loop(
     solver : {"newton", "reference"}, optional
         Solver; both find the same fronts.
     fronts, energy : bool, optional
-        Whether to keep the fronts, and to compute the energy that each load step dissipates.
+        Whether to keep the fronts, and to compute the energy that each load step dissipates. A load
+        step loses energy even where a front would follow a slow load without loss; the comment of
+        the variable says how much of the energies of a straight front this is.
     progress : callable, optional
         Called with every state as it is found.
 
@@ -150,6 +155,9 @@ def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
     """Labelled curves of a run, and measures of the whole."""
     measures, simulation = setup.measures, setup.simulation
     curves = cycle_dataset(record, setup.field.geometry)
+    if record.dissipated_energy is not None and setup.load_stiffness is not None:
+        comment = _comment_on_steps(record.states, record.dissipated_energy, setup.load_stiffness)
+        curves["dissipated_energy"] = curves.dissipated_energy.assign_attrs(comment=comment)
     values = {name: getattr(measures, name) for name in ("e_el", "w_rms", "correlation_length")}
     length = measures.correlation_length
     if setup.period is None:
@@ -167,6 +175,16 @@ def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
         {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
     )
     return whole.drop_attrs(deep=False).assign_attrs(sentences | curves.attrs, kind=measures.kind)
+
+
+def _comment_on_steps(states: State, dissipated: Array, stiffness: float) -> str:
+    """How much of the dissipated energies is due to the size of the load steps, in words."""
+    loads = getattr(states, variables(type(states))[0].name)
+    added = stiffness / 2 * np.sum(np.diff(loads) ** 2)
+    return (
+        f"load steps add {added / np.nansum(dissipated):.2g} of the sum: half of the stiffness of "
+        "the springs times the square of each step, which smaller steps lower"
+    )
 
 
 def _result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str) -> str:
@@ -221,14 +239,21 @@ def find_instabilities(
     Returns
     -------
     xarray.Dataset
-        Over `instability` the penetration, the dissipated energy, the area, and the extent of the
-        largest patch; the fronts `before` and `after` over `angle` as well.
+        Over `instability` the penetration, the dissipated energy, the whole area between the fronts
+        before and after, and the extent of the largest patch of sites that moved by more than the
+        `travel`; these fronts, `before` and `after`, over `angle` as well.
 
     Raises
     ------
     ValueError
-        If an argument cannot be used, or a front is not found.
+        If an argument cannot be used, a front is not found, or the surface is that of a straight
+        front, which has no first contact and no pull-off to end a branch.
     """
+    if isinstance(surface, LoopContact):
+        raise ValueError(
+            "the instabilities are those of a sphere between first contact and pull-off, which a "
+            "straight front has not; give the surface itself"
+        )
     if direction not in get_args(Direction):
         raise ValueError(f"direction is {direction}; give 1 for approach or -1 for retraction")
     refuse_no_numbers(

@@ -78,3 +78,27 @@ def test_numerics_that_cannot_be_are_refused(patches, given, sentence):
         cf.run_loop(patches, **given)
     with pytest.raises(TypeError, match=r"sites is 40.5; give a whole number"):
         cf.run_loop(patches, sites=40.5)
+
+
+def test_a_front_that_moves_smoothly_loses_energy_by_its_load_steps_alone_and_says_so(patches):
+    front, sums = cf.straight_front(patches, 0.3), []
+    for step in (0.1, 0.05):
+        loop = cf.run_loop(front, loads=[0, 8, 0], step=step, energy=True)
+        sums.append(float(loop.dissipated_energy.sum()))
+        assert loop.dissipated_energy.attrs["comment"].startswith("load steps add 1 of the sum")
+    assert sums[0] == pytest.approx(2 * sums[1], rel=1e-3)
+
+
+def test_a_pinned_front_says_which_part_of_its_energy_smaller_steps_would_lower(patches):
+    front, left, parts = cf.straight_front(patches, 1.0), [], []
+    for step in (0.2, 0.05):
+        loop = cf.run_loop(front, loads=[0, 8, 0], step=step, energy=True)
+        parts.append(float(loop.dissipated_energy.attrs["comment"].split()[3]))
+        left.append(float(loop.dissipated_energy.sum()) * (1 - parts[-1]))
+    assert parts[0] > parts[1] > 0
+    assert left[0] == pytest.approx(left[1], rel=0.05)
+
+
+def test_instabilities_of_a_straight_front_are_refused_with_the_reason(patches):
+    with pytest.raises(ValueError, match="between first contact and pull-off, which a straight"):
+        cf.find_instabilities(cf.straight_front(patches, 0.2))

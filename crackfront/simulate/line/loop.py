@@ -82,6 +82,7 @@ class StraightFront(LoopContact):
             tolerance=DEFAULT_TOLERANCE,
             measures=measures,
             period=measures.period,
+            load_stiffness=field.geometry.length * field.geometry.stiffness,
             remark=remark,
         )
 
