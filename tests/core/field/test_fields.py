@@ -101,6 +101,7 @@ def test_radii_that_do_not_increase_are_refused(radii):
 
 def test_a_cubic_field_on_rays_takes_hardly_more_memory_to_make_than_to_hold():
     radii, adhesion = 0.001 * np.arange(1, 2001), np.ones((2000, 64))
+    polar_field(radii[:2], adhesion[:2], "cubic")  # imports what it needs
     tracemalloc.start()
     try:
         field = polar_field(radii, adhesion, "cubic")

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from crackfront.cli import main
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.cycle.follow import Load, follow
+from crackfront.core.cycle.follow import Load, follow, front_at
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.schedule import protocol
 from crackfront.core.field.rays import front_adhesion
@@ -181,6 +181,12 @@ def test_no_passing_holds_for_a_straight_front():
         for front, load in ((behind, 70.0), (ahead, 71.0))
     )
     assert np.all(one <= other + 1e-9)
+
+
+def test_a_front_that_is_not_found_is_named_by_its_load():
+    field = line_field(noisy(8), 20.0, (50.0, 90.0))
+    with pytest.raises(ValueError, match=r"^at load 70: "):
+        front_at(field, np.full(32, 10.0), Load(70.0, 1), Newton(1e-12, max_sweeps=1))
 
 
 @pytest.fixture
