@@ -147,9 +147,9 @@ def test_a_local_module_that_is_renamed_changes_no_key(sources):
         ("crackfront/core/spectrum.py", (r"\(-2 - 2 \* self", "(-2.1 - 2 * self")),
         ("crackfront/core/spectrum.py", (r"np.where\(q <= 1 \+ 1e-12", "np.where(q <= 1 + 1e-11")),
         ("crackfront/core/geometry/line.py", ("_spring_force.*\n.*\n    return", r"\g<0> 2 *")),
-        ("crackfront/simulate/lines.py", ("^_BEHIND = 1.3", "_BEHIND = 1.4")),
+        ("crackfront/simulate/line/schedule.py", ("^_BEHIND = 1.3", "_BEHIND = 1.4")),
         ("crackfront/core/cycle/follow.py", ("is Status.CONVERGED", "is Status.STEP_LIMIT")),
-        ("crackfront/simulate/simulation.py", (r"= 2 \* math.sqrt", "= 3 * math.sqrt")),
+        ("crackfront/simulate/tiles.py", (r"= 2 \* math.sqrt", "= 3 * math.sqrt")),
     ],
 )
 def test_what_determines_the_numbers_of_a_simulation_changes_its_key(sources, place, change):
