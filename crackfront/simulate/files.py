@@ -30,7 +30,7 @@ _FRONTS = {
 """Fronts of a checkpoint, by their fields."""
 
 _STATES: tuple[type[State], ...] = (ContactState, LineState)
-"""Records of the states of all geometries, of which a file of curves holds one."""
+"""Records of the states of all geometries; the load of one of them is in a file of curves."""
 
 _STEP = Variable(STEP, (STEP,), "1", "number of the state")
 
@@ -177,12 +177,10 @@ def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.D
 
 def cycle_record(dataset: xr.Dataset, place: File | str = "the dataset") -> CycleRecord:
     """Record that a dataset of :func:`cycle_dataset` holds, or `UnreadableFileError`."""
-    lacking = [
-        [item.name for item in variables(kind) if item.name not in dataset] for kind in _STATES
-    ]
-    missing = min(lacking, key=len)
-    states = _STATES[lacking.index(missing)]
+    known = (kind for kind in _STATES if variables(kind)[0].name in dataset)
+    states = next(known, ContactState)
     names = [item.name for item in variables(states)]
+    missing = [name for name in names if name not in dataset]
     name = str(dataset.attrs.get("status", "")).upper()
     end = f"end_{names[0]}"
     if missing or name not in Status.__members__ or end not in dataset.attrs:
