@@ -13,8 +13,8 @@ from typing import Any
 import click
 
 from crackfront.cli.report import FILE
+from crackfront.core.fingerprint import fingerprint
 from crackfront.data.files import write_text
-from crackfront.data.fingerprint import fingerprint
 from crackfront.data.provenance import provenance
 
 KEPT = Path("docs/reference/parts")
@@ -39,9 +39,17 @@ class Part:
     commit: str
     machine: str
     sources: Sequence[str]
-    """Modules whose sources it comes from."""
+    """Modules that it comes from."""
     fingerprint: str
-    """That of the sources, as they were."""
+    """:func:`sources_fingerprint` of them, as they were."""
+
+
+def sources_fingerprint(*sources: str) -> str:
+    """Twelve hexadecimal digits that change with the modules that a part comes from.
+
+    Commands do not count: what they print decides no number.
+    """
+    return fingerprint(*sources, without=["crackfront.cli"])
 
 
 def markdown_table(header: str, rows: Iterable[str | Sequence[str]]) -> str:
@@ -75,7 +83,7 @@ def keep_parts(
         "commit": str(where["git_commit"]),
         "machine": str(where.get("processor", "unknown")),
         "sources": sources,
-        "fingerprint": fingerprint(*sources) if is_here else "",
+        "fingerprint": sources_fingerprint(*sources) if is_here else "",
     }
     known = kept_parts().get(study, {})
     known |= {name: Part(text, **origin) for name, text in texts.items()}
@@ -111,7 +119,7 @@ def stale(parts: Mapping[str, Mapping[str, Part]]) -> Iterator[str]:
     commands: dict[tuple[str, str], list[str]] = {}
     for study, listed in parts.items():
         for name, part in listed.items():
-            if part.fingerprint != fingerprint(*part.sources):
+            if part.fingerprint != sources_fingerprint(*part.sources):
                 commands.setdefault((part.command, part.commit[:7]), []).append(f"{study}: {name}")
     for (command, commit), names in commands.items():
         yield f"of other sources than today's, commit {commit}, `{command}`: {', '.join(names)}"

@@ -9,18 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.analysis.standard_error import FEWEST_STATES, standard_error
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import ADHESION, LATERAL, variable
-
-FEWEST_STATES = 3
-"""Steady states from which a standard error is computed."""
-
-_DEPTHS = 3.0
-"""Rms deviations of a front from its mean after which it forgets; docs/model.md has the measure."""
 
 _ROUND_OFF = 1e-5
 """Part of a period within which places are equal."""
@@ -230,21 +225,3 @@ def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
     """A result without values, and why."""
     nan = math.nan
     return SteadyAdhesion(*(nan,) * 10, *counts, nan, nan, nan, sentence)
-
-
-def standard_error(
-    values: Array, radius: Array, roughness: Array, correlation_length: float
-) -> float:
-    """Standard error of the mean apparent work of adhesion over steady states of one branch.
-
-    States count as independent if they are at least one distance apart: the correlation length of
-    w_loc or three times the rms roughness of the front, whichever is larger. A rough front
-    has to pass its own depth before it has left what pinned it (docs/model.md). Values and their
-    error are in w_int, mean radii and rms roughness of the states in reduced lateral lengths.
-    Infinite for fewer than :data:`FEWEST_STATES` states.
-    """
-    if values.size < FEWEST_STATES:
-        return math.inf
-    distance = max(correlation_length, _DEPTHS * float(np.mean(roughness)))
-    independent = min(values.size, 1 + np.ptp(radius) / distance)
-    return float(np.std(values, ddof=1) / math.sqrt(independent))

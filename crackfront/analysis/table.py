@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.analysis.measures import RunMeasures
 from crackfront.analysis.steady import SteadyMeasures
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
@@ -21,20 +22,6 @@ PLACE = SPECTRUM, AMPLITUDE, REALISATION
 
 _SHAPE = SPECTRUM, AMPLITUDE
 _SHAPE_TEXT = "JSON of a spectrum's parameters, where not all are self-affine"
-
-
-@dataclass(frozen=True)
-class RunMeasures:
-    """What is measured on the tile of a simulation, and what the simulation cost."""
-
-    e_el: float = variable("energy of full conformity measured on the tile", ADHESION)
-    w_rms: float = variable("rms of the local work of adhesion measured on the tile", ADHESION)
-    negative_share: float = variable("part of the tile where w_loc is negative", "1")
-    seconds: float = variable("wall time of synthesis and cycle", "s")
-    cpu_seconds: float = variable("processor time of synthesis and cycle", "s")
-    peak_memory: float = variable(
-        "high-water mark of the process when the simulation ended, earlier ones included", "byte"
-    )
 
 
 @dataclass(frozen=True)

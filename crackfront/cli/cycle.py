@@ -292,7 +292,7 @@ class _Keeper:
 
 def _key(field_file: Path, *options: object) -> str:
     """Digits that change with the field, the options of a cycle and the sources of its solver."""
-    from crackfront.data.fingerprint import solver_fingerprint
+    from crackfront.core.fingerprint import solver_fingerprint
 
     with field_file.open("rb") as file:
         content = hashlib.file_digest(file, "sha256").hexdigest()

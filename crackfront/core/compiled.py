@@ -1,74 +1,18 @@
-"""Compilation of the kernels: one decorator, and a cache that a change of the sources renews.
-
-numba looks for changes only in the file that holds a kernel, not in the kernels that it calls
-from other files. The cache therefore lies in a folder named after the sources of all kernels. What
-lies there is executed, so nobody but this user may write to it.
-"""
+"""Compilation of the kernels: one decorator, and functions that the type of an argument chooses."""
 
 from __future__ import annotations
 
 import functools
-import hashlib
 import inspect
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
 from numba import types
 from numba.core import event
-from numba.core.caching import (
-    CompileResultCacheImpl,
-    FunctionCache,
-    _CacheLocator,
-    _SourceFileBackedLocatorMixin,
-)
 from numba.extending import overload
 
-from crackfront.core.private_cache import private_folder
-
-
-@functools.cache
-def cache_folder() -> Path | None:
-    """Folder of the compiled kernels of these sources, in NUMBA_CACHE_DIR where that is set.
-
-    None where this user has no private folder: every process then compiles its own kernels.
-    """
-    if numba.config.CACHE_DIR:
-        return Path(numba.config.CACHE_DIR, f"crackfront-{_digest_of_kernels()}")
-    return private_folder(_digest_of_kernels())
-
-
-def _digest_of_kernels() -> str:
-    """Twelve hexadecimal digits of the sources that hold kernels and their constants."""
-    core, digest = Path(__file__).parent, hashlib.sha256()
-    parts = (path for name in ("field", "geometry", "solver") for path in core.glob(f"{name}/*.py"))
-    for path in (core / "compiled.py", core / "units.py", *sorted(parts)):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]
-
-
-class _Locator(_SourceFileBackedLocatorMixin, _CacheLocator):  # type: ignore[misc]
-    """Place of one kernel in the folder of the compiled kernels."""
-
-    def __init__(self, function: Callable[..., Any], source: str) -> None:
-        self._py_file, self._lineno = source, function.__code__.co_firstlineno
-
-    def get_cache_path(self) -> str:
-        """Folder of the kernels of one folder of sources."""
-        return str(Path(cache_folder() or "", self.get_suitable_cache_subpath(self._py_file)))
-
-
-class _Implementation(CompileResultCacheImpl):  # type: ignore[misc]
-    """How numba stores a kernel, with the place above."""
-
-    _locator_classes = (_Locator,)
-
-
-class _Cache(FunctionCache):  # type: ignore[misc]
-    """Compiled versions of one kernel on disk."""
-
-    _impl_class = _Implementation
+from crackfront.core.kernel_cache import KernelCache
 
 
 class _FirstCompilation(event.Listener):  # type: ignore[misc]
@@ -98,8 +42,8 @@ def jit(function: Callable[..., Any] | None = None, *, cache: bool = True, **opt
     if function is None:
         return functools.partial(jit, cache=cache, **options)
     compiled = numba.njit(function, error_model="numpy", **options)
-    if cache and not numba.config.DISABLE_JIT and cache_folder() is not None:
-        compiled._cache = _Cache(function)
+    if cache and not numba.config.DISABLE_JIT:
+        compiled._cache = KernelCache(function)
     return compiled
 
 

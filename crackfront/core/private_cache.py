@@ -1,24 +1,35 @@
-"""Folders in which this user alone keeps compiled kernels and fingerprints."""
+"""The cache of the user: folders that nobody else can write to, and files that prove themselves.
+
+What lies there may be lost or damaged at any time. Each file begins with the digest of what
+follows, so that what was truncated or changed is not believed.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import stat
 import tempfile
 from pathlib import Path
 
 
-def private_folder(name: str) -> Path | None:
+class DamagedFileError(ValueError):
+    """A file of the cache is not what was written."""
+
+
+def private_folder(name: str, cache: str = "") -> Path | None:
     """A folder of this name in a cache to which nobody but this user can write, if there is one.
 
-    The cache of the user comes first, then the folder for temporary files.
+    The given cache comes first, then that of the user, then the folder for temporary files.
     """
     caches = [Path(tempfile.gettempdir(), f"crackfront-{os.geteuid()}")]
     # A container that runs as a number has neither HOME nor a name.
     with contextlib.suppress(RuntimeError):
-        cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-        caches.insert(0, Path(cache, "crackfront"))
+        home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+        caches.insert(0, Path(home, "crackfront"))
+    if cache:
+        caches.insert(0, Path(cache))
     folders = (parent / name for parent in caches if _is_private(parent))
     return next((folder for folder in folders if _is_private(folder)), None)
 
@@ -33,3 +44,29 @@ def _is_private(folder: Path) -> bool:
     own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid()
     shared = found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
     return own and not shared and os.access(folder, os.W_OK)
+
+
+def read_checked(path: Path) -> bytes:
+    """What :func:`write_checked` wrote into a file.
+
+    DamagedFileError if the file holds anything else, OSError if it cannot be read.
+    """
+    stored = path.read_bytes()
+    digest, content = stored[:_DIGEST_SIZE], stored[_DIGEST_SIZE:]
+    if digest != hashlib.sha256(content).digest():
+        raise DamagedFileError(f"{path} is damaged; remove it")
+    return content
+
+
+def write_checked(path: Path, content: bytes) -> None:
+    """Write a file with its digest, whole or not at all; OSError if it cannot be written."""
+    part = path.with_name(f"{path.name}.{os.getpid()}")
+    try:
+        part.write_bytes(hashlib.sha256(content).digest() + content)
+        part.replace(path)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise
+
+
+_DIGEST_SIZE = hashlib.sha256().digest_size

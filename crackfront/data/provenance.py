@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, distributions, version
 from pathlib import Path
 
-from crackfront.data.fingerprint import solver_fingerprint
+from crackfront.core.fingerprint import solver_fingerprint
 
 PACKAGE = Path(__file__).parents[1]
 

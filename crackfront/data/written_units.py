@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
+import shutil
 from tokenize import TokenError
 from typing import Any
 
@@ -91,7 +92,15 @@ def _registry() -> Any:
     """Registry of units, which pint keeps in the user's cache once it is made."""
     import pint
 
-    return pint.UnitRegistry(cache_folder=private_folder("pint"))
+    folder = private_folder("pint")
+    try:
+        return pint.UnitRegistry(cache_folder=folder)
+    except Exception:
+        # A damaged file of pint's cache can raise anything.
+        if folder is None:
+            raise
+        shutil.rmtree(folder)
+        return pint.UnitRegistry(cache_folder=private_folder("pint"))
 
 
 _PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}

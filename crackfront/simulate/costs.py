@@ -35,7 +35,8 @@ from crackfront.data.bounds import (
     refuse_outside,
 )
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.simulation import Numerics, Simulation
+from crackfront.simulate.numerics import Numerics
+from crackfront.simulate.simulation import Simulation
 
 _PROCESS_BYTES, _STORE_SECONDS = 300e6, 0.015
 """Memory of a rank with all imported and compiled; processor time to store a simulation."""

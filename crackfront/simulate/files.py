@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from crackfront.analysis.table import PLACE, RunMeasures, SweepAxes
+from crackfront.analysis.measures import RunMeasures
+from crackfront.analysis.table import PLACE, SweepAxes
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
 from crackfront.core.geometry.base import Geometry, State
 from crackfront.core.geometry.line import LineState

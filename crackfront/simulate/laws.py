@@ -32,13 +32,10 @@ from crackfront.core.adhesion import FieldKind, correlation_length, force_correl
 from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
+from crackfront.simulate.front_sizes import LAW_CUTOFF, LAW_SIZE, sphere_size
 
 Knob = Literal["sites", "cubic", "linear", "pixels", "tolerance"]
 KNOBS: tuple[Knob, ...] = get_args(Knob)
-
-LAW_SIZE = 4000.0
-"""Size of the fronts on which the laws were measured: states times circumference over the short
-cutoff, for eight states, cutoff 0.02 and mean radius 1.6."""
 
 _SHARES: dict[Knob, float] = {"sites": 0.95, "cubic": 0.2, "pixels": 0.2, "tolerance": 0.1}
 """Parts of an asked error, the largest for the one knob that costs; squares sum up to 0.99."""
@@ -50,9 +47,6 @@ MEASURED: dict[str, tuple[FieldKind, SelfAffineSpectrum]] = {
     "h08": ("roughness", SelfAffineSpectrum(0.02, 0.32, 0.8)),
 }
 """Shapes of the laws, and the spectra on which they were measured."""
-
-_CUTOFF = 0.02
-"""Short cutoff of all of them. (Units: reduced lateral length)"""
 
 _NARROW: dict[FieldKind, str] = {"chemical": "chemical", "roughness": "flat"}
 """The shape without long wavelengths; the broad ones serve both kinds."""
@@ -146,7 +140,7 @@ def _interpolation(
     measured = [_relative_correlation_length(*MEASURED[shape]) for shape in shapes]
     length = math.log(_relative_correlation_length(kind, spectrum))
     parts = [float(np.interp(length, np.log(measured), row)) for row in np.eye(len(shapes))]
-    correlated = force_correlation_length(kind, spectrum) * _CUTOFF / spectrum.short_cutoff
+    correlated = force_correlation_length(kind, spectrum) * LAW_CUTOFF / spectrum.short_cutoff
     # Avalanches begin where the Larkin length falls to _ONSET, within a factor of 2. Below it the
     # amplitudes count up to that with as many at the cutoff of the laws; w_rms**2 = 4 e_el w_int.
     onset = 2 * math.pi * correlated / (4 * _ONSET)
@@ -165,11 +159,6 @@ def _relative_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
     return correlation_length(kind, spectrum) / spectrum.short_cutoff
 
 
-def sphere_size(spectrum: Spectrum) -> float:
-    """Size of the front of a sphere for which knobs are chosen: eight states, mean radius 1.6."""
-    return LAW_SIZE * (_CUTOFF / spectrum.short_cutoff)
-
-
 def chosen_knobs(
     error: float,
     kind: FieldKind,
@@ -180,8 +169,8 @@ def chosen_knobs(
     """Knobs that leave an asked error in w_appr and w_retr: the coarsest that the laws allow.
 
     The error is the standard error of the factor k of either branch that the numerics may leave, on
-    fronts of the usual size, by default :func:`sphere_size`; the elastic energy is e_el / w_int.
-    ValueError if errors were not measured at such an e_el, or for spectra as narrow.
+    fronts of the usual size, by default :func:`front_sizes.sphere_size`; the elastic energy is
+    e_el / w_int. ValueError if errors were not measured at such an e_el, or for spectra as narrow.
     """
     if refusal := _beyond(kind, spectrum, elastic_energy):
         raise ValueError(f"error is {error:g}, but {refusal}")

@@ -23,6 +23,7 @@ from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import first_touch
+from crackfront.core.fingerprint import solver_fingerprint
 from crackfront.core.geometry.base import State
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction
@@ -30,14 +31,13 @@ from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
-from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.provenance import __version__
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
 from crackfront.simulate.loop_setup import LoopContact, LoopNumerics, LoopSetup, load_values
+from crackfront.simulate.numerics import stated_error
 from crackfront.simulate.run import compile_solver
-from crackfront.simulate.simulation import stated_error
 from crackfront.simulate.sphere.loop import PressedSphere
 
 _KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}

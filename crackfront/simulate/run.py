@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crackfront.analysis.table import RunMeasures
+from crackfront.analysis.measures import RunMeasures
 from crackfront.core.adhesion import chemical_adhesion
 from crackfront.core.cycle.record import Checkpoint, CycleRecord, Recorder
 from crackfront.core.solver.relax import SOLVERS

@@ -5,18 +5,19 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-from crackfront.analysis.steady import SteadyAdhesion
 from crackfront.core.adhesion import AdhesionMap, FieldKind
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.field.fields import Interpolation, TileField
 from crackfront.core.geometry.base import Geometry, fast_site_count
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
-from crackfront.simulate.laws import sphere_size
+from crackfront.simulate.front_sizes import sphere_size
 from crackfront.simulate.tiles import gaussian_adhesion
 
 if TYPE_CHECKING:
-    from crackfront.simulate.simulation import Numerics, Simulation
+    from crackfront.analysis.steady import SteadyAdhesion
+    from crackfront.simulate.numerics import Numerics
+    from crackfront.simulate.simulation import Simulation
 
 
 class ExpectedMotion(NamedTuple):
@@ -41,7 +42,7 @@ class SweepLoad(Protocol):
         """Whether sites are independent of each other, the limit of weak disorder."""
 
     def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for which knobs are chosen, as in :mod:`crackfront.simulate.laws`."""
+        """Size of a front for choosing knobs, as in :mod:`crackfront.simulate.front_sizes`."""
 
     def for_surface(
         self,
@@ -172,6 +173,6 @@ class Schedule(ABC):
     ) -> tuple[float, float, float]:
         """Sizes of the fronts that w_appr and w_retr average, and the longest (Units: length).
 
-        Sizes are as in :mod:`crackfront.simulate.laws`; states closer than a correlation length of
-        w_loc count as one.
+        Sizes are as in :mod:`crackfront.simulate.front_sizes`; states closer than a correlation
+        length of w_loc count as one.
         """

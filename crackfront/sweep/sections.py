@@ -36,9 +36,9 @@ from crackfront.data.section import (
     within,
 )
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.line.schedule import LAW_LENGTH, LineLoad, SpringUnit
+from crackfront.simulate.line.loads import LAW_LENGTH, LineLoad, SpringUnit
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.schedule import SweepLoad
-from crackfront.simulate.simulation import Numerics
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.sweep import NamedSpectrum

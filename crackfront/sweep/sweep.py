@@ -12,8 +12,9 @@ from typing import Literal
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
+from crackfront.simulate.numerics import Numerics, simulation_of
 from crackfront.simulate.schedule import SweepLoad
-from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
+from crackfront.simulate.simulation import Simulation
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,16 +32,17 @@ from crackfront.analysis.table import (
     SweepTable,
 )
 from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.fingerprint import fingerprint
 from crackfront.core.outcome import Status
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.variables import ADHESION, variables
 from crackfront.data.files import UnreadableFileError, read_dataset
-from crackfront.data.fingerprint import fingerprint
 from crackfront.data.labels import flag_words, labelled_fields
 from crackfront.data.provenance import Provenance
 from crackfront.data.records import Block, write_records_in_blocks
+from crackfront.simulate.numerics import stated_error
 from crackfront.simulate.run import SimulationResult
-from crackfront.simulate.simulation import Simulation, stated_error
+from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sweep import Sweep
 
 ROWS_AT_ONCE = 4096
@@ -152,9 +153,8 @@ def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
 
 @functools.cache
 def row_fingerprint() -> str:
-    """Twelve hexadecimal digits that change with any source that makes a row of a result."""
-    home = "crackfront.sweep.table"
-    return fingerprint(f"{home}.sweep_row", f"{home}.failed_row")
+    """Twelve hexadecimal digits that change with any module that makes a row of a result."""
+    return fingerprint(__name__)
 
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:

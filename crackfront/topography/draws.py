@@ -40,6 +40,9 @@ _BAND_OCTAVES = 0.5
 _FIRST_BINS = 3
 """Of how many of the longest bins some are left out."""
 
+_HIDDEN = 0.2
+"""Part of a density that a tip takes at most where it ends the band, as much as an optic may."""
+
 _RARE = 1.5
 """Standard error of e_el over that which a scan shows where its parts differ: it holds few of the
 rare places that matter."""
@@ -171,6 +174,8 @@ class Measured:
         options = _choices(one, item)
         found = options[chance.integers(len(options), size=count)]
         found += one.measurement.missing * chance.uniform(0, 1, (count, 1))
+        if one.band.shortest.cause == "tip":
+            found -= math.log(1 - _HIDDEN) * chance.uniform(0, 1, (count, 1))
         found += _RARE * one.unevenness * chance.standard_normal((count, 1))
         return found
 
@@ -213,8 +218,8 @@ def batches(model: Continuation, quadrature: Quadrature, seed: int | None) -> It
         yield States(fit_of(model, quadrature, states), states.logarithm, chance)
 
 
-def draws(measured: Measured, states: Iterator[States]) -> Draws:
-    """As many draws as the median and the ends of e_el need, or the most."""
+def draws(measured: Measured, states: Iterator[States], numbers: Sequence[int]) -> Draws:
+    """As many draws as the median and the ends of e_el need, in one of some numbers of batches."""
     found: list[_Drawn] = []
     logarithms: list[Array] = []
     for fit, logarithm, chance in states:
@@ -222,7 +227,7 @@ def draws(measured: Measured, states: Iterator[States]) -> Draws:
         logarithms.append(logarithm)
         if len(found) == 1:
             low, high = _interval(measured.grid, found[0], fit.weight)
-        if len(found) not in BATCHES:
+        if len(found) not in numbers:
             continue
         weight = np.exp(np.concatenate(logarithms) - np.max(logarithms))
         result = Draws(
@@ -233,7 +238,7 @@ def draws(measured: Measured, states: Iterator[States]) -> Draws:
             low=low,
             high=high,
         )
-        if len(found) == BATCHES[-1] or result.unsettled < SETTLED:
+        if len(found) == numbers[-1] or result.unsettled < SETTLED:
             break
     return result
 

@@ -35,9 +35,9 @@ _LEAST_DEPARTURE = 0.05
 _BEND = 0.3
 """Standard deviation that is expected of the difference of the two Hurst exponents."""
 
-_BEYOND, _FAR = 8.0, 1e9
+_BEYOND, _FAR = 8.0, 2.0
 """How far beyond the longest trusted wavelength a roll-off is looked for, four sides of a scan, and
-the logarithm of the factor by which one beyond it becomes less likely by e."""
+the logarithm of the factor by which one beyond it is less likely by e."""
 
 _SHARPNESS = (1.0, 4.0)
 """Exponents m: of a circular pupil, whose transfer falls linearly at first, to sharp filters."""

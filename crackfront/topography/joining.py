@@ -12,6 +12,7 @@ import numpy as np
 
 from crackfront.analysis.estimate import Estimate, normal_estimate, quantiles
 from crackfront.core.spectrum import TabulatedSpectrum
+from crackfront.topography import draws as sampling
 from crackfront.topography.bands import NYQUIST, Scan
 from crackfront.topography.densities import Density, bin_numbers
 from crackfront.topography.draws import Draws, Measured, batches, draws
@@ -94,11 +95,13 @@ class JointSpectrum:
         return float(2 * np.pi / self.density.wavevector[0])
 
 
-def joint_spectrum(scans: Sequence[Scan], seed: int | None = None) -> JointSpectrum:
+def joint_spectrum(
+    scans: Sequence[Scan], seed: int | None = None, numbers: Sequence[int] | None = None
+) -> JointSpectrum:
     """Spectrum of all scans of a surface, refused where their densities do not determine one.
 
-    The seed is that of the draws, :data:`crackfront.topography.draws.SEED` where none is given;
-    intervals hardly depend on it.
+    The seed is that of the draws, and the numbers are of batches of these; where none are given,
+    those of :mod:`crackfront.topography.draws`. Intervals hardly depend on either.
     """
     model, quadrature = quadrature_of([(one.informative, one.band.instrument) for one in scans])
     states = batches(model, quadrature, seed)
@@ -132,7 +135,7 @@ def joint_spectrum(scans: Sequence[Scan], seed: int | None = None) -> JointSpect
     return JointSpectrum(
         spectrum=spectrum,
         recorded=_recorded(density, rest),
-        draws=draws(measured, itertools.chain([first], states)),
+        draws=draws(measured, itertools.chain([first], states), numbers or sampling.BATCHES),
         density=density,
         fit=fit,
         shares=_shares(spectrum, density.wavevector, fit),

@@ -24,7 +24,7 @@ from crackfront.core.arrays import Array
 _CELLS = 24, 8, 6
 """Cells along the first outer parameters."""
 
-_ROUNDS, _TEMPER, _EVEN = 3, 0.25, 0.15
+_ROUNDS, _TEMPER, _EVEN = 4, 0.25, 0.15
 """How often the cells are divided anew, the power of the likelihood of which all of them then have
 an equal part, and the part of all cells that are divided evenly."""
 
@@ -182,7 +182,9 @@ def _fine_cells(likelihood: Likelihood) -> _Cells:
     cells = _expanded(likelihood, edges, None)
     for _ in range(_ROUNDS):
         tempered = np.exp(_TEMPER * (cells.logarithm - cells.logarithm.max()))
-        mass = (tempered * np.prod(cells.widths, axis=1)).reshape(cells.shape)
+        # The edge of a cell may be likely where its centre is not.
+        around = maximum_filter(tempered.reshape(cells.shape), size=3, mode="nearest")
+        mass = around * np.prod(cells.widths, axis=1).reshape(cells.shape)
         edges = []
         for axis, one in enumerate(cells.edges):
             part = np.sum(mass, axis=tuple(other for other in range(mass.ndim) if other != axis))

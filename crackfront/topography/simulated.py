@@ -17,10 +17,11 @@ from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.line.schedule import LineLoad
+from crackfront.simulate.line.loads import LineLoad
+from crackfront.simulate.numerics import Numerics, numerical_error, simulation_of
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.schedule import Schedule
-from crackfront.simulate.simulation import Numerics, Simulation, numerical_error, simulation_of
+from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.topography.measures import MeasuredSurface
 from crackfront.topography.prediction import surface_spectrum

@@ -11,8 +11,9 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, variable
 from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.numerics import numerical_error, stated_error
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Simulation, numerical_error, stated_error
+from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
 from studies.accuracy.scenes import HELD_OUT, Progress, Scene

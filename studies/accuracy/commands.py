@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from crackfront.cli.report import (
+    FILE,
     announce_compilation,
     announce_cost,
     examples,
@@ -18,8 +19,10 @@ from crackfront.data.bounds import Range
 from crackfront.data.files import read_attributes, write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.run import compile_solver
+from crackfront.topography.reading import read_measurements
 from studies.accuracy import energies as synthetic
 from studies.accuracy import energy_balance as balance
+from studies.accuracy import movement as settled
 from studies.accuracy import predictions as films
 from studies.accuracy import scans as instrument
 from studies.accuracy.files import STUDIES
@@ -95,8 +98,33 @@ def predictions(keep: bool) -> None:
 @keep_option
 def energies(scans: int, keep: bool) -> None:
     """Compare e_el of synthetic scans with that of their spectra; print a table."""
-    parts = {"Scans": synthetic.energy_table(synthetic.found_scans(scans))}
+    tables = {
+        "Scans": synthetic.KINDS,
+        "Roll-offs": synthetic.ROLL_OFFS,
+        "Held-out scans": synthetic.HELD_OUT,
+    }
+    parts = {
+        name: synthetic.energy_table(synthetic.found_scans(scans, kinds))
+        for name, kinds in tables.items()
+    }
     tell("accuracy", parts, "studies.accuracy.energies", keep=keep)
+
+
+@commands.command(epilog=examples("python -m studies accuracy movement examples/scans/*.al3d"))
+@click.argument("scans", type=FILE, nargs=-1)
+@keep_option
+def movement(scans: tuple[Path, ...], keep: bool) -> None:
+    """Measure how far intervals of e_el move with seeds, digits of heights and more draws.
+
+    SCANS are read one by one; without any, one synthetic scan of each kind is taken.
+    """
+    surfaces = {str(scan): list(read_measurements([scan])) for scan in scans} or {
+        kind.name: [one.measurement for one in synthetic.found_scan(kind, 0).surface.scans]
+        for kind in synthetic.KINDS
+    }
+    found = [(name, settled.movement(one)) for name, one in surfaces.items()]
+    parts = {"Movement": settled.movement_table(found)}
+    tell("accuracy", parts, "studies.accuracy.movement", keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies accuracy scans"))

@@ -14,7 +14,8 @@ from scipy.optimize import minimize_scalar
 
 from crackfront.core.arrays import Array
 from crackfront.plots import style
-from crackfront.simulate.laws import KNOBS, LAW_SIZE, ErrorLaw, Knob, abscissa
+from crackfront.simulate.front_sizes import LAW_SIZE
+from crackfront.simulate.laws import KNOBS, ErrorLaw, Knob, abscissa
 from studies.accuracy.study import SceneErrors, rms
 
 _LEAST = 3e-4

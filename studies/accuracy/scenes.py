@@ -12,7 +12,8 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.laws import KNOBS, MEASURED, Knob, Knobs, chosen_knobs
-from crackfront.simulate.simulation import Numerics, Simulation, simulation_of
+from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.cycle import FullCycle
 
 Progress = Callable[[str], None]

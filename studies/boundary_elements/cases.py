@@ -16,10 +16,10 @@ from pydantic import model_validator
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.fingerprint import fingerprint
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.data.bounds import NUMBER, Range
-from crackfront.data.fingerprint import fingerprint
 from crackfront.data.section import Positive, Section, refusal, within
 from studies.boundary_elements.contact import HalfSpaceContact, half_space_contact
 

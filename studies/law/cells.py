@@ -1,4 +1,4 @@
-"""k of straight fronts, to which the law is fitted: from sweeps of them to rows of `law.csv`."""
+"""k of straight fronts, to which the law is fitted: from sweeps of them to rows of `cells.csv`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crackfront.analysis.law import spectral_breadth
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
 from crackfront.core.variables import variable
 from crackfront.data.files import read_dataset
-from crackfront.simulate.line.schedule import LineLoad
+from crackfront.simulate.line.loads import LineLoad
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.sweep import Sweep
 
@@ -28,7 +28,7 @@ Row = TypeVar("Row")
 COLUMNS = ("e_el", "w_appr", "w_retr", "w_appr_numerical_error", "w_retr_numerical_error")
 """Columns of a sweep's table that k is made of."""
 
-MEASURED = Path(__file__).with_name("law.csv")
+MEASURED = Path(__file__).with_name("cells.csv")
 """Straight fronts that the law of the package is fitted to."""
 
 
@@ -53,7 +53,7 @@ class Means:
 
 @dataclass(frozen=True, slots=True)
 class LawCell:
-    """One spectrum, amplitude and spring: a row of `law.csv`."""
+    """One spectrum, amplitude and spring: a row of `cells.csv`."""
 
     spectrum: str = variable("name of the spectrum", "1")
     breadth: float = variable("breadth of the spectrum of the slope of w_loc", "1")
@@ -70,7 +70,7 @@ class LawCell:
 
 
 def measured_cells() -> tuple[LawCell, ...]:
-    """Rows of the kept `law.csv`."""
+    """Rows of the kept `cells.csv`."""
     return csv_rows(MEASURED.read_text(encoding="utf-8"), LawCell)
 
 

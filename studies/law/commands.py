@@ -53,8 +53,8 @@ _tables = click.option(
 def fit(configurations: tuple[Path, ...], output: Path) -> None:
     """Fit the law to straight fronts: of sweeps that have been run, or those of the last fit.
 
-    Writes law.csv, a row for every spectrum, amplitude and spring, and law.json, the law. They are
-    kept as studies/law/law.csv and crackfront/analysis/law.json, on which predictions rest.
+    Writes cells.csv, a row for every spectrum, amplitude and spring, and law.json, the law. Kept as
+    studies/law/cells.csv and crackfront/analysis/law.json they are what predictions rest on.
     """
     refuse_unwritable(output)
     cells = [cell for path in configurations for cell in law_cells(path)]
@@ -63,7 +63,7 @@ def fit(configurations: tuple[Path, ...], output: Path) -> None:
     # The fit is that of the rows as they are written, to five digits.
     known = csv_rows(text, LawCell)
     law = fitted_law(known)
-    write_text(output / "law.csv", text)
+    write_text(output / "cells.csv", text)
     write_text(output / "law.json", json.dumps(asdict(law), indent=1) + "\n")
     click.echo(f"{len(known)} rows; rms {law.rms:.1%}, worst {law.worst:.1%} for g above 1")
     click.echo(f"law: {output / 'law.json'}")

@@ -46,7 +46,7 @@ class LawPoints:
 
 
 def spectra_points(cells: Sequence[LawCell]) -> tuple[LawPoints, ...]:
-    """Straight fronts of `law.csv`, one entry a spectrum, its limit of weak disorder with it."""
+    """Straight fronts of `cells.csv`, one entry a spectrum, its limit of weak disorder with it."""
     found, names = [], [cell.spectrum.removesuffix("-weak") for cell in cells]
     for name in dict.fromkeys(names):
         rows = [cell for cell, own in zip(cells, names, strict=True) if own == name]

@@ -5,177 +5,28 @@ Those of a sphere in steady retraction, and straight ones on springs.
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FixedLocator
-from pydantic import model_validator
-from scipy.fft import rfft
 
 from crackfront.analysis.estimate import with_error
 from crackfront.core.arrays import Array
-from crackfront.data.section import Count, Positive, refusal
 from crackfront.plots.parts import label_decimals, legend_entries
 from crackfront.plots.style import BLUE, GREEN, PAGE, PURPLE, VERMILION, blank_figure, house_style
 from studies.paper.drawing import ON_WHITE, THEORY, name_panels
-from studies.paper.figure import Check, Figure, Integers, Progress
+from studies.paper.figure import Check, Figure
 from studies.paper.front_spectra import (
     RoughnessFit,
     RoughnessRecord,
     binned_spectrum,
     fitted_roughness,
 )
-from studies.paper.rough import STRONG, WEAK, RetractionParameters, circle_stiffness, surface_means
-from studies.paper.straight import StraightParameters
-
-_N_LAG = 60
-
-_SPHERE, STRONG_LINE, WEAK_LINE = (STRONG, WEAK), 2, 3
-"""Places of the fronts in a record."""
-
-_PRECISION, _WAY = 1e-3, 0.5
-"""Load that the solver may cost a straight front, in correlation lengths of the force, and the
-share of a tile's period over which its fronts are taken."""
-
-
-class LineParameters(StraightParameters):
-    """Straight fronts on one spring and the range of their fit."""
-
-    spring: Positive  # L_kappa over the Larkin length
-    fit_from: Positive  # wavelengths of the fit, over the Larkin length
-    fit_to: Positive
-
-    @model_validator(mode="after")
-    def _usable(self) -> LineParameters:
-        low, high = self.fit_from, self.fit_to
-        if low >= high:
-            raise refusal(f"fit_from is {low:g}; it must be below fit_to, {high:g}")
-        return self
-
-
-class RoughnessParameters(RetractionParameters):
-    """Fronts to take and ranges to fit."""
-
-    n_front: Count  # on each surface, at equal distances in penetration; of a line, in load
-    first_penetration: Positive
-    last_penetration: Positive
-    strong_from: Positive  # wavelengths of the fits, over the short cutoff
-    strong_to: Positive
-    weak_from: Positive
-    weak_to: Positive
-    strong_line: LineParameters  # straight fronts, on as many tiles as the sphere has surfaces
-    weak_line: LineParameters
-
-    @property
-    def lines(self) -> tuple[LineParameters, LineParameters]:
-        """Straight fronts in the order of their records."""
-        return self.strong_line, self.weak_line
-
-    @model_validator(mode="after")
-    def _usable(self) -> RoughnessParameters:
-        for name in ("strong", "weak"):
-            low, high = getattr(self, f"{name}_from"), getattr(self, f"{name}_to")
-            if low >= high:
-                raise refusal(f"{name}_from is {low:g}; it must be below {name}_to, {high:g}")
-        if self.n_surface < 2:
-            raise refusal("n_surface is 1; an interval needs 2 surfaces or more")
-        return self
-
-
-@dataclass(frozen=True, slots=True)
-class _Surface:
-    """What is measured on one surface."""
-
-    power: Array
-    radius: float
-    ring_stiffness: float
-    rms: float
-    larkin_length: float
-
-
-def roughness_record(parameters: RoughnessParameters, progress: Progress) -> RoughnessRecord:
-    """Fronts of a retraction, and straight ones, on several surfaces or tiles."""
-    cutoff, surfaces = parameters.short_cutoff, range(parameters.n_surface)
-    spheres, lines = (parameters.strong, parameters.weak), parameters.lines
-    measured = []
-    for name, energy in zip(("strong", "weak"), spheres, strict=True):
-        measured.append([_surface(parameters, energy, one) for one in surfaces])
-        progress(f"{name} disorder: {parameters.n_surface} times {parameters.n_front} fronts")
-    for line in lines:
-        measured.append([_tile(parameters, line, one) for one in surfaces])
-        progress(f"straight, spring of {line.spring:g} Larkin lengths: as many fronts")
-    count = min(surface.power.size for kind in measured for surface in kind)
-    power = np.array([[surface.power[:count] for surface in kind] for kind in measured])
-    means = surface_means(measured, "rms", "larkin_length", "radius", "ring_stiffness")
-    mode, circle = np.arange(1, count + 1), 2 * np.pi * means["radius"]
-    lag = np.geomspace(cutoff / 2, np.min(circle) / 2, _N_LAG)
-    units = np.array([cutoff, cutoff, *means["larkin_length"][STRONG_LINE:]])
-    longest = [parameters.strong_to, parameters.weak_to, *(line.fit_to for line in lines)]
-    shortest = [parameters.strong_from, parameters.weak_from, *(line.fit_from for line in lines)]
-    spectra = zip(power.mean(axis=1), circle, strict=True)
-    return RoughnessRecord(
-        short_cutoff=cutoff,
-        elastic_energy=np.array([*spheres, *(line.elastic_energy for line in lines)]),
-        **means,
-        longest=units * longest,
-        shortest=units * shortest,
-        mode=mode,
-        power=power,
-        lag=lag,
-        difference=np.array([_difference(*pair, mode, lag) for pair in spectra]),
-    )
-
-
-def _tile(parameters: RoughnessParameters, line: LineParameters, realisation: int) -> _Surface:
-    """Mean power of straight fronts on one tile."""
-    pulled = line.front(line.spring, parameters.seed, realisation, _PRECISION)
-    way = _WAY * pulled.period * np.arange(1, parameters.n_front + 1) / parameters.n_front
-    fronts = np.stack([*pulled.moved(pulled.load + way)])
-    radius = parameters.short_cutoff * pulled.field.geometry.length / (2 * np.pi)
-    return _Surface(
-        power=_power(fronts * parameters.short_cutoff, radius),
-        radius=radius,
-        ring_stiffness=pulled.field.geometry.length / (2 * np.pi * pulled.spring),
-        rms=2 * math.sqrt(line.elastic_energy),
-        larkin_length=parameters.short_cutoff * pulled.larkin_length,
-    )
-
-
-def _surface(parameters: RoughnessParameters, energy: float, realisation: int) -> _Surface:
-    """Mean power of the fronts on one surface."""
-    contact = parameters.contact(energy, 1e-6, realisation)
-    ends = parameters.first_penetration, parameters.last_penetration
-    loads = np.linspace(*ends, parameters.n_front)
-    front, taken = contact.touched(parameters.max_penetration), []
-    for load in loads:
-        front = contact.moved(front, float(load), -1)
-        taken.append(front)
-    fronts = np.stack(taken)
-    circles = np.mean(fronts, axis=1)
-    return _Surface(
-        power=_power(fronts, circles[:, None]),
-        radius=float(circles.mean()),
-        ring_stiffness=float(circle_stiffness(circles, loads).mean()),
-        rms=contact.w_rms,
-        larkin_length=contact.larkin_length,
-    )
-
-
-def _power(fronts: Array, radius: Array | float) -> Array:
-    """Mean spectral density of fronts on circles."""
-    modes = rfft(fronts, axis=1, norm="forward")[:, 1 : fronts.shape[1] // 2]
-    return np.asarray(np.mean(2 * np.pi * radius * np.abs(modes) ** 2, axis=0))
-
-
-def _difference(power: Array, circle: float, mode: Integers, lag: Array) -> Array:
-    """Root mean square difference of the radius at two points of a front."""
-    angle = 2 * np.pi * lag / circle
-    return np.sqrt(4 * (1 - np.cos(np.outer(angle, mode))) @ (power / circle))
-
+from studies.paper.rough import STRONG, WEAK
+from studies.paper.roughness import SPHERE, STRONG_LINE, WEAK_LINE, roughness_record
 
 _EXPONENTS = (0.388, 0.5, 0.388, 0.5)
 """Roughness exponents of a line with long-range elasticity at its threshold (Rosso and Krauth,
@@ -188,7 +39,7 @@ _TOLERANCE = 0.05
 def roughness_checks(record: RoughnessRecord) -> tuple[Check, ...]:
     """Exponents above and below the Larkin length."""
     fits = [fitted_roughness(record, index) for index in range(len(_EXPONENTS))]
-    strong, weak = (fits[index] for index in _SPHERE)
+    strong, weak = (fits[index] for index in SPHERE)
     claims = (
         "sphere, strong disorder, beyond the Larkin length: depinning exponent",
         "sphere, weak disorder, below the Larkin length: perturbation theory",
@@ -217,7 +68,7 @@ def _exponent_check(record: RoughnessRecord, index: int, fit: RoughnessFit, clai
         for part in (replace(record, longest=middle), replace(record, shortest=middle))
     ]
     contained = "contains it" if abs(fit.exponent - expected) <= fit.reach else "leaves it out"
-    held = "sphere's circle" if index in _SPHERE else "springs"
+    held = "sphere's circle" if index in SPHERE else "springs"
     return Check(
         claim,
         with_error(expected, _TOLERANCE),

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import with_error
-from crackfront.data.fingerprint import fingerprint
+from crackfront.core.fingerprint import fingerprint
 from crackfront.data.section import ConfigurationError, Section, content_of, validated
 from studies.paper.drawing import Animation
 
@@ -131,34 +131,39 @@ FIGURES = tuple(
 
 def figure(name: str) -> Figure:
     """Figure of a name in :data:`FIGURES`."""
-    found: Figure = importlib.import_module(f"studies.paper.{name.replace('-', '_')}").FIGURE
+    found: Figure = importlib.import_module(_module_name(name)).FIGURE
     return found
+
+
+_DRAWING = "crackfront.plots", "studies.paper.drawing"
+"""Modules that draw, and compute no number of a figure."""
 
 
 @functools.cache
 def figure_fingerprint(name: str) -> str:
-    """Twelve hexadecimal digits that change with what the data of a figure come from."""
-    found = figure(name)
-    return fingerprint(*_full_names(found.parameters, found.record, found.compute))
+    """Twelve hexadecimal digits that change with what the data of a figure come from.
+
+    It is that of the module in which the figure is computed. Where the figure is drawn in it as
+    well, a change of the drawing counts; a figure that takes minutes is computed in a module of its
+    own.
+    """
+    return fingerprint(figure(name).compute.__module__, without=_DRAWING)
 
 
 @functools.cache
 def drawing_fingerprint(name: str) -> str:
     """Twelve hexadecimal digits that change with the drawing and the animation of a figure."""
-    found = figure(name)
-    parts = [found.record, found.draw, *([found.animate] if found.animate else [])]
-    saved = "crackfront.plots.style.save_figure", "studies.paper.drawing.save_animation"
-    return fingerprint(*_full_names(*parts), *saved)
+    return fingerprint(_module_name(name))
 
 
 def checks_fingerprint() -> str:
     """Twelve hexadecimal digits that change with the checks of any figure."""
-    return fingerprint(*_full_names(checks_table, *(figure(name).checks for name in FIGURES)))
+    return fingerprint(*map(_module_name, FIGURES), without=_DRAWING)
 
 
-def _full_names(*parts: Any) -> list[str]:
-    """Names of classes and functions, with their modules."""
-    return [f"{part.__module__}.{part.__qualname__}" for part in parts]
+def _module_name(name: str) -> str:
+    """Full name of the module of a figure."""
+    return f"studies.paper.{name.replace('-', '_')}"
 
 
 SCALES = ("quick", "paper")

@@ -25,15 +25,9 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.laws import chosen_knobs, measured_energies
+from crackfront.simulate.numerics import Numerics, missed_error, simulation_of
 from crackfront.simulate.run import compile_solver
-from crackfront.simulate.simulation import (
-    Numerics,
-    Simulation,
-    missed_error,
-    simulation_adhesion,
-    simulation_field,
-    simulation_of,
-)
+from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
 from crackfront.simulate.sphere.cycle import FullCycle
 from studies.paper.figure import Check
 

@@ -19,13 +19,9 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Solver
 from crackfront.data.section import Positive, Section
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.line.schedule import LineLoad
-from crackfront.simulate.simulation import (
-    Numerics,
-    simulation_adhesion,
-    simulation_field,
-    simulation_of,
-)
+from crackfront.simulate.line.loads import LineLoad
+from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from studies.paper.rough import flat_spectrum
 
 _KIND: FieldKind = "roughness"

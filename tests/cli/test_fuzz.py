@@ -615,9 +615,9 @@ def compiled(tmp_path_factory):
 def test_no_generated_input_ends_in_a_traceback_a_hang_or_a_wrong_result(
     kind, tmp_path, monkeypatch
 ):
-    # Short chains fail where long ones do; these run at night.
-    monkeypatch.setattr("crackfront.topography.fitting._STEPS", 60)
-    monkeypatch.setattr("crackfront.topography.joining._DRAWS", 50)
+    # Few draws fail where many do.
+    monkeypatch.setattr("crackfront.topography.draws.BATCHES", (1,))
+    monkeypatch.setattr("crackfront.topography.draws.BATCH", 2**6)
     with np.errstate(all="warn", under="ignore"):
         assert faults(kind, range(50), tmp_path) == {}
         # What libraries leave open warns here, and not amid another test.

@@ -36,8 +36,8 @@ from crackfront.simulate.files import (
     read_simulation,
     simulation_dataset,
 )
+from crackfront.simulate.numerics import numerical_error
 from crackfront.simulate.run import SimulationResult, run_simulation
-from crackfront.simulate.simulation import numerical_error
 from crackfront.simulate.user_surface import read_field, surface_adhesion
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fit_files import write_fit

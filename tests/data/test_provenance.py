@@ -7,8 +7,8 @@ from unittest.mock import Mock
 import pytest
 
 from crackfront import __version__
+from crackfront.core.fingerprint import solver_fingerprint
 from crackfront.data import provenance as module
-from crackfront.data.fingerprint import solver_fingerprint
 from crackfront.data.provenance import git_commit, provenance
 
 

@@ -2,6 +2,7 @@
 
 import pytest
 
+from crackfront.data import written_units
 from crackfront.data.written_units import si_value
 
 
@@ -45,3 +46,17 @@ def test_a_missing_or_absurd_unit_is_refused_with_the_value_and_an_example(text,
         si_value(text, "Pa", what="modulus")
     assert sentence in str(caught.value)
     assert repr(text) in str(caught.value)
+
+
+@pytest.mark.parametrize("harm", [lambda content: b"", lambda content: content[:100]])
+def test_units_are_read_anew_where_their_cache_is_emptied_or_truncated(tmp_path, monkeypatch, harm):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    written_units._registry.cache_clear()
+    assert si_value("0.7MPa", "Pa", what="it") == 0.7e6
+    kept = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert kept
+    for path in kept:
+        path.write_bytes(harm(path.read_bytes()))
+    written_units._registry.cache_clear()
+    assert si_value("0.7MPa", "Pa", what="it") == 0.7e6
+    written_units._registry.cache_clear()

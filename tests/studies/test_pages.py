@@ -14,7 +14,7 @@ PAGE = "<!-- law: limit -->\nold\n<!-- end -->\nAfter <!-- speed: limit -->7<!--
 
 
 def part(text):
-    return Part(text, "studies law", "1a2b3c4d5e", "EPYC", ["studies.pages.renewed"], "")
+    return Part(text, "studies law", "1a2b3c4d5e", "EPYC", ["studies.pages"], "")
 
 
 def test_blocks_are_written_with_their_origin_and_numbers_within_a_line_alone():
@@ -34,11 +34,9 @@ def test_blocks_are_written_with_their_origin_and_numbers_within_a_line_alone():
 
 def test_parts_of_other_sources_are_told_until_they_are_measured_anew(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    keep_parts(
-        "law", {"limit": "3"}, "studies.pages.renewed", data={"command": "a", "git_commit": "b"}
-    )
+    keep_parts("law", {"limit": "3"}, "studies.pages", data={"command": "a", "git_commit": "b"})
     assert [*stale(kept_parts())] == ["of other sources than today's, commit b, `a`: law: limit"]
-    keep_parts("law", {"limit": "4", "more": "5"}, "studies.pages.renewed")
+    keep_parts("law", {"limit": "4", "more": "5"}, "studies.pages")
     assert [*stale(kept_parts())] == []
     assert kept_parts()["law"]["limit"].text == "4"
 

@@ -173,7 +173,7 @@ def test_the_table_of_energies_has_a_row_for_each_kind(found):
     lines = energy_table({one: [found(one.name)] * 2}).splitlines()
     assert lines[2].startswith("| noise | yes | ")
     assert lines[-1].startswith("2 scans: median error ")
-    assert one.truth.mean_square(0.5) == pytest.approx(MEAN_SQUARE)
+    assert one.truth(np.random.default_rng(0)).mean_square(0.5) == pytest.approx(MEAN_SQUARE)
 
 
 @pytest.mark.slow

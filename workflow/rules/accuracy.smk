@@ -43,9 +43,7 @@ rule accuracy_study:
         mem_mb=2000,
         runtime=240,
     params:
-        sources=fingerprint(
-            "studies.accuracy.files.STUDIES", "studies.accuracy.scenes.SCENES"
-        ),
+        sources=fingerprint("studies.accuracy.files", "studies.accuracy.scenes"),
         # At weak disorder few surfaces have an avalanche, on which the laws depend.
         surfaces=lambda wildcards: (
             24
@@ -92,7 +90,7 @@ rule accuracy_report:
         mem_mb=2000,
         runtime=60,
     params:
-        sources=fingerprint("studies.accuracy.report.write_report"),
+        sources=fingerprint("studies.accuracy.report"),
         results=folder,
     shell:
         f"{STUDIES} accuracy report --output {{params.results:q}}{LOGGED}"

@@ -12,11 +12,7 @@ rule aggregate:
         mem_mb=megabytes(NEEDS["aggregate"].memory),
         runtime=minutes(NEEDS["aggregate"].seconds),
     params:
-        sources=fingerprint(
-            "crackfront.sweep.table.write_hysteresis",
-            "crackfront.sweep.table.sweep_row",
-            "crackfront.sweep.table.failed_row",
-        ),
+        sources=fingerprint("crackfront.sweep.table"),
         sweep=SWEEP.fingerprint,
         configuration=configuration,
         results=folder,

@@ -9,7 +9,7 @@ from snakemake.exceptions import WorkflowError
 BASE = Path(workflow.current_basedir).parents[1]
 sys.path.insert(0, str(BASE))  # where the studies stand
 
-from crackfront.data.fingerprint import fingerprint
+from crackfront.core.fingerprint import fingerprint
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.needs import postprocessing_costs

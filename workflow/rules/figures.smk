@@ -22,10 +22,9 @@ rule sweep_figures:
         runtime=minutes(NEEDS["figures"].seconds),
     params:
         sources=fingerprint(
-            "crackfront.analysis.steady.steady_adhesion",
-            "crackfront.analysis.sweep.fit_sweep",
+            "crackfront.analysis.steady",
+            "crackfront.analysis.sweep",
             "crackfront.plots.loop",
-            "crackfront.plots.style.save_figure",
             "crackfront.plots.sweep",
         ),
         sweep=SWEEP.fingerprint,

@@ -13,9 +13,9 @@ rule fit:
         runtime=minutes(NEEDS["fit"].seconds),
     params:
         sources=fingerprint(
-            "crackfront.analysis.sweep.fit_sweep",
-            "crackfront.sweep.fit_files.write_fit",
-            "crackfront.sweep.table.read_table",
+            "crackfront.analysis.sweep",
+            "crackfront.sweep.fit_files",
+            "crackfront.sweep.table",
         ),
         sweep=SWEEP.fingerprint,
         configuration=configuration,
@@ -45,9 +45,9 @@ rule summary:
         runtime=minutes(NEEDS["summary"].seconds),
     params:
         sources=fingerprint(
-            "crackfront.analysis.sweep.fit_sweep",
-            "crackfront.analysis.report.fit_table",
-            "crackfront.sweep.summary.summary_page",
+            "crackfront.analysis.sweep",
+            "crackfront.analysis.report",
+            "crackfront.sweep.summary",
         ),
         sweep=SWEEP.fingerprint,
         configuration=configuration,

@@ -63,7 +63,7 @@ rule figure_of_sweep:
         runtime=minutes(NEEDS["fit"].seconds),
     params:
         sources=figure_fingerprint("si-5"),
-        fit=fingerprint("crackfront.analysis.sweep.fit_sweep"),
+        fit=fingerprint("crackfront.analysis.sweep"),
         settings=settings_of,
         sweep=lambda wildcards: load_configuration(Path(SWEEPS[SCALE])).fingerprint,
         file=figure_file,

@@ -22,7 +22,7 @@ rule validate:
         mem_mb=8000,
         runtime=1440,
     params:
-        sources=fingerprint("studies.boundary_elements.study.write_validation"),
+        sources=fingerprint("studies.boundary_elements.study"),
         settings=lambda wildcards: repr(load_validation(Path(VALIDATION))),
         configuration=lambda wildcards, output: VALIDATION,
         results=folder,

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from crackfront.analysis.steady import SteadyAdhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -19,6 +18,7 @@ from crackfront.core.solver.relax import Solver
 from crackfront.simulate.schedule import ExpectedMotion, Schedule
 
 if TYPE_CHECKING:
+    from crackfront.analysis.steady import SteadyAdhesion
     from crackfront.simulate.simulation import Simulation
 
 

@@ -45,7 +45,7 @@ def planted_cell(template: LawCell, truth, s, g, breadth, noise):
 def test_the_command_fits_the_law_of_the_package_to_the_kept_cells(tmp_path):
     done = CliRunner().invoke(main, ["law", "fit", "--output", str(tmp_path)])
     assert done.exit_code == 0, done.output
-    assert (tmp_path / "law.csv").read_text() == MEASURED.read_text()
+    assert (tmp_path / "cells.csv").read_text() == MEASURED.read_text()
     known, again = shipped_law(), json.loads((tmp_path / "law.json").read_text())
     np.testing.assert_allclose(again["coefficients"], known.coefficients, rtol=1e-6, atol=1e-6)
     assert again["rms"] == pytest.approx(known.rms, rel=1e-6)

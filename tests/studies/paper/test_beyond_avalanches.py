@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from studies.paper.beyond_avalanches import AvalancheRecord
-from studies.paper.events import cutoff_slope, depth_slope, event_law, event_record
+from studies.paper.avalanches import AvalancheRecord
+from studies.paper.event_laws import cutoff_slope, depth_slope, event_law
+from studies.paper.events import event_record
 from studies.paper.figure import figure
 from tests.studies.paper.made import computed, failed, is_labelled, parameters
 

@@ -1,0 +1,21 @@
+"""What is measured on the tile of a simulation, and what the simulation cost."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from crackfront.core.variables import ADHESION, variable
+
+
+@dataclass(frozen=True)
+class RunMeasures:
+    """What is measured on the tile of a simulation, and what the simulation cost."""
+
+    e_el: float = variable("energy of full conformity measured on the tile", ADHESION)
+    w_rms: float = variable("rms of the local work of adhesion measured on the tile", ADHESION)
+    negative_share: float = variable("part of the tile where w_loc is negative", "1")
+    seconds: float = variable("wall time of synthesis and cycle", "s")
+    cpu_seconds: float = variable("processor time of synthesis and cycle", "s")
+    peak_memory: float = variable(
+        "high-water mark of the process when the simulation ended, earlier ones included", "byte"
+    )
