@@ -19,16 +19,16 @@ if TYPE_CHECKING:
     from crackfront.plots.library import plot_loop as plot_loop
     from crackfront.plots.library import plot_spectrum as plot_spectrum
     from crackfront.plots.library import plot_surface as plot_surface
-    from crackfront.simulate.cases import straight_front as straight_front
     from crackfront.simulate.files import load_result as load_result
     from crackfront.simulate.files import save_result as save_result
-    from crackfront.simulate.given import surface as surface
+    from crackfront.simulate.line.loop import straight_front as straight_front
     from crackfront.simulate.loops import find_instabilities as find_instabilities
     from crackfront.simulate.loops import run_loop as run_loop
     from crackfront.simulate.si_units import Scales as Scales
     from crackfront.simulate.si_units import in_reduced_units as in_reduced_units
     from crackfront.simulate.si_units import in_si_units as in_si_units
     from crackfront.simulate.surfaces import random_surface as random_surface
+    from crackfront.simulate.user_surface import surface as surface
     from crackfront.sweep.library import run_sweep as run_sweep
     from crackfront.topography.library import predict as predict
     from crackfront.topography.library import read_scan as read_scan

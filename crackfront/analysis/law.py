@@ -257,12 +257,12 @@ def pinning_factor(
         statistical=statistical,
         numerical=numerical,
         model=model,
-        negative_share=float(ndtr(-mean_adhesion(kind, w_rms**2 / 4) / w_rms)),
+        negative_share=float(ndtr(-mean_w_loc(kind, w_rms**2 / 4) / w_rms)),
         warning=warning,
     )
 
 
-def mean_adhesion(kind: FieldKind, elastic_energy: float) -> float:
+def mean_w_loc(kind: FieldKind, elastic_energy: float) -> float:
     """Mean of w_loc (Units: w_int)."""
     return 1 - elastic_energy if kind == "roughness" else 1.0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import astuple, dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.analysis.law import (
     PinningFactor,
     law_value,
-    mean_adhesion,
+    mean_w_loc,
     pinning_factor,
     shipped_law,
     spectral_breadth,
@@ -80,23 +81,46 @@ def sphere_factors(
     if not 0 < contact_radius < math.inf:
         raise ValueError(f"contact radius is {contact_radius:g}; it must be positive and finite")
     refuse_outside("contact radius", contact_radius, LENGTH)
+
+    def spring(work_of_adhesion: float) -> float:
+        return jkr.spring(contact_radius, work_of_adhesion)
+
+    found = held_factors(kind, spectrum, elastic_energy, spring)
+    approach, retraction = _on_a_circle(found.approach), _on_a_circle(found.retraction)
+    both = _mean(approach.factor, retraction.factor)
+    return replace(found, approach=approach, retraction=retraction, both=both)
+
+
+def held_factors(
+    kind: FieldKind,
+    spectrum: Spectrum,
+    elastic_energy: float,
+    spring: Callable[[float], float],
+) -> SphereFactors:
+    """Factors k of a front that springs hold, whose length a work of adhesion (w_int) decides.
+
+    The function `spring` returns this length L_kappa (Units: that of the spectrum), and raises a
+    ValueError where nothing holds the front. The errors are those of a straight front.
+    """
     w_rms = 2 * math.sqrt(elastic_energy)
     larkin = larkin_length(kind, spectrum, w_rms)
-    mean = mean_adhesion(kind, elastic_energy)
+    mean = mean_w_loc(kind, elastic_energy)
     breadth = spectral_breadth(kind, spectrum)
     # Contact is lost in retraction at the larger radius, which a refusal names.
     retraction, approach = (
         pinning_factor(
-            w_rms, _branch_size(w_rms, larkin, mean, sign, contact_radius, breadth), kind, breadth
+            w_rms, _branch_size(w_rms, larkin, mean, sign, spring, breadth), kind, breadth
         )
         for sign in (1, -1)
     )
-    approach, retraction = _on_a_circle(approach), _on_a_circle(retraction)
-    # Errors of the law are the same for both branches.
-    branches = zip(astuple(approach.factor), astuple(retraction.factor), strict=True)
-    both = Estimate(*((one + other) / 2 for one, other in branches))
-    spring = jkr.spring(contact_radius, mean)
-    return SphereFactors(approach, retraction, both, spring, larkin, spring / larkin)
+    both, smooth = _mean(approach.factor, retraction.factor), spring(mean)
+    return SphereFactors(approach, retraction, both, smooth, larkin, smooth / larkin)
+
+
+def _mean(one: Estimate[float], other: Estimate[float]) -> Estimate[float]:
+    """Mean of the factors of both branches, whose errors are the same."""
+    branches = zip(astuple(one), astuple(other), strict=True)
+    return Estimate(*((left + right) / 2 for left, right in branches))
 
 
 def _on_a_circle(found: PinningFactor) -> PinningFactor:
@@ -109,7 +133,12 @@ def _on_a_circle(found: PinningFactor) -> PinningFactor:
 
 
 def _branch_size(
-    w_rms: float, larkin: float, mean: float, sign: int, contact_radius: float, breadth: float
+    w_rms: float,
+    larkin: float,
+    mean: float,
+    sign: int,
+    spring: Callable[[float], float],
+    breadth: float,
 ) -> float:
     """G of a branch, whose work of adhesion mean + sign k e_el depends on k itself."""
     coefficients = shipped_law().coefficients
@@ -118,10 +147,12 @@ def _branch_size(
         return max(mean + sign * factor * w_rms**2 / 4, _LEAST_ADHESION)
 
     def excess(factor: float) -> float:
-        # Towards pull-off nothing holds the edge; whether it is beyond, the root decides.
-        held = contact_radius > jkr.pull_off_radius(adhesion(factor))
-        size = jkr.spring(contact_radius, adhesion(factor)) / larkin if held else math.inf
+        try:
+            size = spring(adhesion(factor)) / larkin
+        except ValueError:
+            # Towards pull-off nothing holds the edge; whether it is beyond, the root decides.
+            size = math.inf
         return float(law_value(coefficients, w_rms, size, breadth)) - factor
 
     root = float(brentq(excess, 0.0, coefficients[0], xtol=1e-6))
-    return jkr.spring(contact_radius, adhesion(root)) / larkin
+    return spring(adhesion(root)) / larkin

@@ -46,26 +46,26 @@ class SweepLaw:
         return mean_estimate(np.where(self.table.finite, self.table.e_el, np.nan))[0].value
 
     @property
-    def holds(self) -> Array:
+    def support_lengths(self) -> Array:
         """Springs of straight fronts, or contact radii, (n_spectrum, n_amplitude)."""
         table = self.table
         if table.straight:
             return table.spring
         return mean_estimate(np.where(table.finite, table.contact_radius, np.nan))[0].value
 
-    def factor(self, index: int, energy: float, hold: float) -> tuple[Estimate[float], float]:
+    def factor(self, index: int, energy: float, support: float) -> tuple[Estimate[float], float]:
         """Factor k of a spectrum at an e_el and a spring or contact radius, and g; else NaN."""
-        if not (0 < energy < 1 and 0 < hold < math.inf):
+        if not (0 < energy < 1 and 0 < support < math.inf):
             return _UNKNOWN, math.nan
         spectrum = self.table.shape_of(index)
         if self.table.straight:
             w_rms = 2 * math.sqrt(energy)
-            size = hold / larkin_length(self.kind, spectrum, w_rms)
+            size = support / larkin_length(self.kind, spectrum, w_rms)
             disorder = WEAKEST if self.uncorrelated else w_rms
             breadth = spectral_breadth(self.kind, spectrum)
             return pinning_factor(disorder, size, self.kind, breadth).factor, size
         try:
-            found = sphere_factors(self.kind, spectrum, energy, hold)
+            found = sphere_factors(self.kind, spectrum, energy, support)
         except ValueError:
             # So close to pull-off that nothing holds the edge.
             return _UNKNOWN, math.nan
@@ -73,10 +73,10 @@ class SweepLaw:
 
     def cells(self) -> tuple[Estimate, Array]:
         """Factors k and sizes g at every spectrum and amplitude, (n_spectrum, n_amplitude)."""
-        energies, holds = self.energy, self.holds
+        energies, supports = self.energy, self.support_lengths
         values, sizes = np.empty((4, *energies.shape)), np.empty(energies.shape)
         for cell in np.ndindex(energies.shape):
-            found, sizes[cell] = self.factor(cell[0], float(energies[cell]), float(holds[cell]))
+            found, sizes[cell] = self.factor(cell[0], float(energies[cell]), float(supports[cell]))
             values[:, cell[0], cell[1]] = astuple(found)
         return Estimate(*values), sizes
 
@@ -86,16 +86,16 @@ class SweepLaw:
         Between amplitudes springs and radii are interpolated, in the logarithm of both. Where g is
         below the sizes of the law k is NaN.
         """
-        energies, holds = self.energy[index], self.holds[index]
-        known = np.isfinite(energies) & np.isfinite(holds)
+        energies, supports = self.energy[index], self.support_lengths[index]
+        known = np.isfinite(energies) & np.isfinite(supports)
         if np.count_nonzero(known) < 2:
             return np.empty(0), np.empty(0)
         order = np.argsort(energies[known])
-        places, lengths = np.log(energies[known][order]), np.log(holds[known][order])
+        places, lengths = np.log(energies[known][order]), np.log(supports[known][order])
         between = np.linspace(places[0], places[-1], _CURVE)
         factors, least = np.full(_CURVE, np.nan), shipped_law().size[0]
-        for number, hold in enumerate(np.interp(between, places, lengths)):
-            found, size = self.factor(index, math.exp(between[number]), math.exp(hold))
+        for number, support in enumerate(np.interp(between, places, lengths)):
+            found, size = self.factor(index, math.exp(between[number]), math.exp(support))
             if size >= least:
                 factors[number] = found.value
         return np.exp(between), factors

@@ -76,11 +76,12 @@ def compile_solvers() -> None:
     """
     import multiprocessing
 
+    from crackfront.simulate.line.schedule import LineSchedule
     from crackfront.simulate.run import compile_solver
 
     announce_compilation()
     with multiprocessing.get_context("spawn").Pool(1) as pool:
-        line = pool.apply_async(compile_solver, ("newton", True))
+        line = pool.apply_async(compile_solver, ("newton", LineSchedule))
         compile_solver("newton")
         line.get()
 

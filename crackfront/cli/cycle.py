@@ -25,9 +25,10 @@ from crackfront.cli.report import (
     echo_answer,
     examples,
     refuse_unwritable,
+    whole,
 )
 from crackfront.core.solver import DEFAULT_TOLERANCE
-from crackfront.data.bounds import NUMBER, Range, regular_file
+from crackfront.data.bounds import DENSITY, NUMBER, SITES, Range, regular_file
 from crackfront.sweep.checkpoints import CheckpointFile
 from crackfront.sweep.parallel import deferring_stops
 
@@ -51,7 +52,7 @@ _MOST_BYTES = 1e8
 
 def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[float, ...] | None:
     """Loads of a text with commas, or of a file, in which what stands behind # is none."""
-    from crackfront.simulate.cases import load_values
+    from crackfront.simulate.loop_setup import load_values
 
     if given is None:
         return None
@@ -98,8 +99,18 @@ def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[fl
 @click.option(
     "--error",
     type=Number(Range(0, 1)),
-    default=0.03,
-    help="Error of k that the numerics may leave, where the field states its spectrum.",
+    help="Error of k that the numerics may leave, where the field states its spectrum.  "
+    "[default: 0.03]",
+)
+@click.option(
+    "--sites",
+    type=whole(SITES),
+    help="Sites of the front, in place of an error.  [default: one a pixel or more]",
+)
+@click.option(
+    "--samples",
+    type=Number(DENSITY),
+    help="Samples a pixel along a ray, in place of an error.  [default: 2, of straight fronts 1]",
 )
 @click.option(
     "--solver",
@@ -122,7 +133,9 @@ def cycle(
     loads: tuple[float, ...] | None,
     step: float | None,
     spring: float | None,
-    error: float,
+    error: float | None,
+    sites: int | None,
+    samples: float | None,
     solver: str,
     record: tuple[str, ...],
     output: Path,
@@ -152,36 +165,41 @@ def cycle(
     from crackfront.core.solver.relax import named_solver
     from crackfront.data.files import refuse_no_file, write_dataset
     from crackfront.data.provenance import provenance
-    from crackfront.simulate.cases import problem_of, straight_front
-    from crackfront.simulate.given import read_field
+    from crackfront.simulate.line.loop import straight_front
+    from crackfront.simulate.loop_setup import LoopContact, LoopNumerics
     from crackfront.simulate.loops import loop_dataset
+    from crackfront.simulate.sphere.loop import PressedSphere
+    from crackfront.simulate.user_surface import read_field
 
     refuse_no_file(output)
     for path in (output, figure or output):
         refuse_unwritable(path.parent)
     solution = named_solver(solver, DEFAULT_TOLERANCE)
     surface = read_field(field_file)
-    pressed = surface if spring is None else straight_front(surface, spring)
+    contact: LoopContact = PressedSphere(surface)
+    if spring is not None:
+        contact = straight_front(surface, spring)
     step = (DEFAULT_STEP if loads is None else math.inf) if step is None else step
-    problem = problem_of(pressed, loads, max_penetration, step, error)
-    solution = replace(solution, tolerance=problem.tolerance)
-    key = _key(field_file, spring, loads, max_penetration, step, error, solver, record)
-    keeper = _States(output, key, problem.field.geometry)
+    numerics = LoopNumerics(error, sites, samples)
+    setup = contact.setup(loads, max_penetration, step, numerics)
+    solution = replace(solution, tolerance=setup.tolerance)
+    key = _key(field_file, spring, loads, max_penetration, step, numerics, solver, record)
+    keeper = _States(output, key, setup.field.geometry)
     announce_compilation(err=as_json)
-    announce_cost(problem.seconds)
-    with deferring_stops(), _progress(problem.expected, every_state=watch) as shown:
+    announce_cost(setup.seconds)
+    with deferring_stops(), _progress(setup.expected, every_state=watch) as shown:
         recorder = Recorder(
             fronts="fronts" in record,
             energy="energy" in record,
             observers=[shown, keeper],
             resume=keeper.found(),
         )
-        recorder.run(problem.field, problem.front, problem.loads, solution)
-    found = loop_dataset(recorder.record(), problem)
+        recorder.run(setup.field, setup.front, setup.loads, solution)
+    found = loop_dataset(recorder.record(), setup)
     write_dataset(output, found, provenance())
     keeper.path.unlink(missing_ok=True)
     drawn = () if figure is None else _draw(found, figure)
-    end = f"{recorder.load_name} {recorder.load:.6g}"
+    end = f"{recorder.load_noun} {recorder.load:.6g}"
     lines = [f"{len(recorder.states)} states: {output}", *(f"figure: {path}" for path in drawn)]
     lines.append(found.attrs["result"])
     if recorder.status is Status.LOST_CONTACT:
@@ -193,7 +211,7 @@ def cycle(
 
 def _content(recorder: Recorder, found: Dataset, output: Path) -> dict[str, object]:
     """How a cycle ended and what it found, for JSON."""
-    forces = [state.force for state in recorder.states if hasattr(state, "force")]
+    forces = found["force"].values.tolist() if "force" in found else []
     return {
         "output": output,
         "states": len(recorder.states),
@@ -216,12 +234,12 @@ def _progress(expected: int, *, every_state: bool) -> Iterator[Observer]:
         def shown(recorder: Recorder) -> None:
             nonlocal following
             count, last = len(recorder.states), recorder.states[-1]
-            bar.set_postfix_str(last.told, refresh=False)
+            bar.set_postfix_str(last.summary, refresh=False)
             bar.update(count - bar.n)
             if every_state or (bar.disable and time.monotonic() >= following):
                 following = time.monotonic() + _SECONDS_IN_LOG
                 branch = "approach" if last.direction > 0 else "retraction"
-                bar.write(f"state {count}, {branch}: {last.told}", file=sys.stderr)
+                bar.write(f"state {count}, {branch}: {last.summary}", file=sys.stderr)
 
         yield shown
 

@@ -282,7 +282,7 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
     if field is None or scales is None:
         return
     from crackfront.simulate.files import save_result
-    from crackfront.simulate.given import surface_adhesion
+    from crackfront.simulate.user_surface import surface_adhesion
     from crackfront.topography.tile import scan_surface
 
     pressed = scan_surface(found.scans[0], scales)

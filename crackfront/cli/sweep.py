@@ -59,11 +59,13 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
     """Print what a sweep would run, shard by shard, what is stored and what the rest costs."""
     from crackfront.sweep.expectation import doubts, expectation
     from crackfront.sweep.library import opened
-    from crackfront.sweep.needs import late_needs
+    from crackfront.sweep.needs import postprocessing_costs
 
     sweep, store, _ = opened(configuration, output)
-    shards, late = sweep.shards(block), late_needs(sweep)
-    expected = {item.name: [*map(expectation, sweep.firsts(item))] for item in sweep.spectra}
+    shards, late = sweep.shards(block), postprocessing_costs(sweep)
+    expected = {
+        item.name: [*map(expectation, sweep.one_per_amplitude(item))] for item in sweep.spectra
+    }
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     missing = [one for found in progress.values() for one in found.missing]
     content = {
@@ -99,7 +101,7 @@ def _plan_lines(
     spectra, left = [], []
     for item in sweep.spectra:
         found = progress[item.name]
-        shape, sizes = item.spectrum, [one.resolution for one in sweep.firsts(item)]
+        shape, sizes = item.spectrum, [one.resolution for one in sweep.one_per_amplitude(item)]
         spectra.append(
             (
                 item.name,

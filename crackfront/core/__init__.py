@@ -15,7 +15,6 @@ from crackfront.core.lazy import lazy_names
 if TYPE_CHECKING:
     from crackfront.core.adhesion import chemical_adhesion as chemical_adhesion
     from crackfront.core.adhesion import rough_adhesion as rough_adhesion
-    from crackfront.core.contact import contact_field as contact_field
     from crackfront.core.cycle.follow import Load as Load
     from crackfront.core.cycle.follow import follow as follow
     from crackfront.core.cycle.record import Recorder as Recorder
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from crackfront.core.cycle.schedule import protocol as protocol
     from crackfront.core.cycle.touch import first_touch as first_touch
     from crackfront.core.geometry.line import line_field as line_field
+    from crackfront.core.geometry.sphere import contact_field as contact_field
     from crackfront.core.solver.relax import SOLVERS as SOLVERS
     from crackfront.core.spectrum import SelfAffineSpectrum as SelfAffineSpectrum
     from crackfront.core.synthesis import gaussian_field as gaussian_field

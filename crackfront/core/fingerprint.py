@@ -104,7 +104,7 @@ def module_digests(*modules: str, without: Collection[str] = ()) -> dict[str, st
 @functools.cache
 def solver_fingerprint() -> str:
     """Twelve hexadecimal digits that change with what determines the fronts of a simulation."""
-    parts = "cycle.run", "geometry.line", "solver.relax"
+    parts = "cycle.run", "geometry.line", "geometry.sphere", "solver.relax"
     return fingerprint(*(f"crackfront.core.{part}" for part in parts))
 
 

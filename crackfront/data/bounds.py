@@ -40,6 +40,9 @@ ADHESION = Range(-1e4, 1e4)
 DENSITY = Range(1e-3, 1e3)
 """Sites, samples or points per length of a surface."""
 
+SITES = Range(4, 10**15)
+"""Sites of a front; fewer resolve no distortion."""
+
 SEED = Range(0, 2**63 - 1)
 """Seeds: what a netCDF file can hold as an attribute."""
 

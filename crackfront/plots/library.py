@@ -21,9 +21,9 @@ from crackfront.plots.loop import draw_loop, draw_pinning
 from crackfront.plots.style import shown_axes
 from crackfront.plots.units import REDUCED, AxisUnits
 from crackfront.simulate.files import cycle_record
-from crackfront.simulate.given import surface_adhesion, surface_kind
 from crackfront.simulate.si_units import Labelled, in_reduced_units, stated_scales
 from crackfront.simulate.surfaces import stated_spectrum, tile_modes
+from crackfront.simulate.user_surface import surface_adhesion, surface_kind
 
 _ORDERS = (0.0, 0.5, 1.0)
 _REST = 0.1

@@ -16,6 +16,7 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.geometry.line import LineState
+from crackfront.core.outcome import Status
 from crackfront.plots.parts import Series, draw_arrow
 from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
 from crackfront.plots.units import REDUCED, AxisUnits
@@ -71,7 +72,7 @@ def simulation_figure(result: SimulationResult) -> Figure:
         works = steady.w_appr, steady.w_retr
         drawn = states, works, (steady.lowest_radius, steady.highest_radius)
         # Steady parts have no loop to draw but the one that they stand for.
-        if not schedule.full_cycle and np.all(np.isfinite(works)):
+        if result.record.status is Status.STEADY and np.all(np.isfinite(works)):
             return steady_loop_figure(
                 *drawn, elastic_energy=energy, kind=simulation.kind, title=title
             )
@@ -243,11 +244,11 @@ def draw_pinning(
     ValueError
         If there is no state, or a branch has fewer of them than a period.
     """
-    if states.load.size == 0:
+    if states.spring_position.size == 0:
         raise ValueError("the record holds no state; there is no loop to draw")
     for direction, name, colour in ((1, "forward", BLUE), (-1, "back", VERMILION)):
         branch = states.direction == direction
-        load, pinning = states.load[branch], states.pinning_force[branch]
+        load, pinning = states.spring_position[branch], states.pinning_force[branch]
         axes.plot(load, pinning, color=colour, linewidth=0.8, label=name, zorder=3)
         if n_period is None or elastic_energy is None:
             continue

@@ -25,9 +25,8 @@ from scipy.optimize import least_squares
 
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
-from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.solver import DEFAULT_TOLERANCE
-from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
+from crackfront.core.spectrum import Spectrum
 from crackfront.data.bounds import (
     LENGTH,
     PENETRATION,
@@ -36,10 +35,8 @@ from crackfront.data.bounds import (
     refuse_outside,
 )
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.lines import LineSchedule
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.steady import SteadySchedule
 
 _PROCESS_BYTES, _STORE_SECONDS = 300e6, 0.015
 """Memory of a rank with all imported and compiled; processor time to store a simulation."""
@@ -52,14 +49,6 @@ _FILE_BYTES, _STATE_BYTES, _FRONT_PART = 27e3, 112.0, 0.72
 
 _RECORD_BYTES = 1e3
 """Memory of a state that is recorded."""
-
-_LEAD_IN, _FEWEST_STEADY = 1.0, 9.0
-"""States of a branch before it is steady; the fewest of an approach."""
-
-_NOISE, _SHARED = 0.6, 0.17
-"""Variance of k from state to state, relative to that of as many independent sites as the front has
-correlation lengths; e_el below which both branches share most of it, over that length: a contact of
-fewer sites is pinned as a whole."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +159,7 @@ def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepe
 def features(simulation: Simulation) -> Features:
     """Features of a simulation."""
     sizes, spectrum, schedule = simulation.resolution, simulation.spectrum, simulation.schedule
-    travel, n_state = _expected_way(schedule, simulation)
+    travel, n_state, full_cycle = schedule.expected_motion(simulation)
     return Features(
         n_angle=sizes.n_angle,
         n_point=math.sqrt(math.prod(simulation.tile[0])),
@@ -178,7 +167,7 @@ def features(simulation: Simulation) -> Features:
         tolerance=simulation.solver.tolerance,
         breadth=spectrum.longest_feature / spectrum.short_cutoff,
         travel=travel,
-        full_cycle=schedule.full_cycle,
+        full_cycle=full_cycle,
         n_state=n_state,
     )
 
@@ -196,57 +185,6 @@ def measured_runs() -> list[Measured]:
 def predicted_seconds(runs: Sequence[Measured]) -> Array:
     """Processor times that the law gives for measured runs, in seconds."""
     return _seconds(_coefficients(), _columns([run.features for run in runs]))
-
-
-@functools.singledispatch
-def _expected_way(schedule: Schedule, simulation: Simulation) -> tuple[float, float]:
-    """Way of a smooth front from state to state, in correlation lengths, and number of states."""
-    raise NotImplementedError(f"no cost is known of {type(schedule).__name__}")
-
-
-@_expected_way.register
-def _(schedule: LoadSchedule, simulation: Simulation) -> tuple[float, float]:
-    travel = schedule.step / jkr.penetration_slope(schedule.max_penetration)
-    # The hysteresis lifts w_retr by about twice e_el, and contact is lost that much later.
-    lost_at = jkr.pull_off_penetration(1 + 2 * simulation.elastic_energy)
-    n_state = (2 * schedule.max_penetration - lost_at) / schedule.step
-    return travel / simulation.correlation_length, n_state
-
-
-@_expected_way.register
-def _(schedule: LineSchedule, simulation: Simulation) -> tuple[float, float]:
-    steps = math.ceil(schedule.lead_in / schedule.period * schedule.n_period)
-    travel = schedule.step / simulation.correlation_length
-    return travel, 2.0 * (steps + schedule.n_period + 1)
-
-
-@_expected_way.register
-def _(schedule: SteadySchedule, simulation: Simulation) -> tuple[float, float]:
-    length = simulation.correlation_length
-    step = schedule.travel * length * jkr.penetration_slope(schedule.start)
-    n_most = 1 + math.floor((schedule.max_penetration - schedule.start) / step)
-    alike = length * integral_breadth(simulation)
-    n_independent = 2 * math.pi * jkr.equilibrium_radius(schedule.start) / alike
-    variance = _NOISE / ((simulation.elastic_energy + _SHARED * alike) * n_independent)
-    n_least = max(_FEWEST_STEADY, _LEAD_IN + variance / schedule.standard_error**2)
-    return schedule.travel, 2 * min(n_most, n_least)
-
-
-def integral_breadth(simulation: Simulation) -> float:
-    """Mean of q times mean of 1/q in the variance of w_loc, relative to those of a flat surface.
-
-    The mean of w_loc along a front varies by its longest waves, the mean of 1/q, and the
-    correlation length is that of the mean of q.
-    """
-    spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
-    flat = SelfAffineSpectrum(1.0, 1.0, hurst=1.0)
-    means = [
-        shape.mean_square(order + 0.5)
-        * shape.mean_square(order - 0.5)
-        / shape.mean_square(order) ** 2
-        for shape in (spectrum, flat)
-    ]
-    return means[0] / means[1]
 
 
 @functools.cache

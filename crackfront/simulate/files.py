@@ -11,7 +11,7 @@ import xarray as xr
 from crackfront.analysis.measures import RunMeasures
 from crackfront.analysis.table import PLACE, SweepAxes
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
-from crackfront.core.geometry.base import Geometry
+from crackfront.core.geometry.base import Geometry, State
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
@@ -29,6 +29,9 @@ _FRONTS = {
     "turn": Variable("turning_front", ("angle",), LATERAL, "front at which its branch began"),
 }
 """Fronts of a checkpoint, by their fields."""
+
+_STATES: tuple[type[State], ...] = (ContactState, LineState)
+"""Records of the states of all geometries; the load of one of them is in a file of curves."""
 
 _STEP = Variable(STEP, (STEP,), "1", "number of the state")
 
@@ -175,7 +178,8 @@ def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.D
 
 def cycle_record(dataset: xr.Dataset, place: File | str = "the dataset") -> CycleRecord:
     """Record that a dataset of :func:`cycle_dataset` holds, or `UnreadableFileError`."""
-    states = LineState if "mean_position" in dataset else ContactState
+    known = (kind for kind in _STATES if variables(kind)[0].name in dataset)
+    states = next(known, ContactState)
     names = [item.name for item in variables(states)]
     missing = [name for name in names if name not in dataset]
     name = str(dataset.attrs.get("status", "")).upper()
@@ -184,7 +188,7 @@ def cycle_record(dataset: xr.Dataset, place: File | str = "the dataset") -> Cycl
         what = ", ".join(missing) or "a known status"
         raise UnreadableFileError(f"{place} holds no cycle: it lacks {what}")
     pull_off = dataset.attrs.get("pull_off_energy")
-    fronts = dataset.get("position" if states is LineState else "radius")
+    fronts = dataset.get(states.front_name)
     lost = dataset.get("dissipated_energy")
     return CycleRecord(
         status=Status[name],

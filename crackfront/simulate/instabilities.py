@@ -65,13 +65,14 @@ def resolved_motion(
     tries: list[Load] = []
     steps = follow(field, front, iter(tries.pop, None), solver)
 
-    def front_at(penetration: float) -> Array | None:
-        tries.append(Load(penetration, direction, front))
+    def front_at(value: float) -> Array | None:
+        tries.append(Load(value, direction, front))
         found = next(steps)
         if found.status is Status.LOST_CONTACT:
             return None
         if found.status is not Status.CONVERGED:
-            raise ValueError(f"at penetration {penetration:.6g}: {found.status.value}")
+            noun = field.geometry.state_type.load_noun
+            raise ValueError(f"at {noun} {value:.6g}: {found.status.value}")
         return found.front
 
     for load in loads:
@@ -97,7 +98,7 @@ class Instabilities:
 
     penetration: Array = variable("penetration of the instability", VERTICAL, _JUMP)
     dissipated_energy: Array = variable("energy that the instability dissipates", ENERGY, _JUMP)
-    area: Array = variable("area that the front has swept", f"({LATERAL})^2", _JUMP)
+    area: Array = variable("area between the fronts before and after", f"({LATERAL})^2", _JUMP)
     extent: Array = variable("width of the largest patch along the perimeter", LATERAL, _JUMP)
     before: Array = variable("front before the instability", LATERAL, _JUMP, "angle")
     after: Array = variable("front after the instability", LATERAL, _JUMP, "angle")
@@ -111,7 +112,7 @@ def measured_instabilities(jumps: Sequence[Motion], field: Field, travel: float)
     return Instabilities(
         np.array([jump.end for jump in jumps]),
         np.array([dissipated_energy(jump.before, jump.after, jump.end, field) for jump in jumps]),
-        np.array([sum(part.area for part in parts) for parts in clusters]),
+        np.array([float(np.sum(swept_areas(jump.before, jump.after, geometry))) for jump in jumps]),
         np.array([parts[0].extent for parts in clusters]),
         *(front.reshape(-1, geometry.n_site) for front in fronts),
     )

@@ -32,13 +32,10 @@ from crackfront.core.adhesion import FieldKind, correlation_length, force_correl
 from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
+from crackfront.simulate.front_sizes import LAW_CUTOFF, LAW_SIZE, sphere_size
 
 Knob = Literal["sites", "cubic", "linear", "pixels", "tolerance"]
 KNOBS: tuple[Knob, ...] = get_args(Knob)
-
-LAW_SIZE = 4000.0
-"""Size of the fronts on which the laws were measured: states times circumference over the short
-cutoff, for eight states, cutoff 0.02 and mean radius 1.6."""
 
 _SHARES: dict[Knob, float] = {"sites": 0.95, "cubic": 0.2, "pixels": 0.2, "tolerance": 0.1}
 """Parts of an asked error, the largest for the one knob that costs; squares sum up to 0.99."""
@@ -50,9 +47,6 @@ MEASURED: dict[str, tuple[FieldKind, SelfAffineSpectrum]] = {
     "h08": ("roughness", SelfAffineSpectrum(0.02, 0.32, 0.8)),
 }
 """Shapes of the laws, and the spectra on which they were measured."""
-
-_CUTOFF = 0.02
-"""Short cutoff of all of them. (Units: reduced lateral length)"""
 
 _NARROW: dict[FieldKind, str] = {"chemical": "chemical", "roughness": "flat"}
 """The shape without long wavelengths; the broad ones serve both kinds."""
@@ -92,7 +86,7 @@ class Knobs:
 
 
 @dataclass(frozen=True, slots=True)
-class Law:
+class ErrorLaw:
     """Error of one knob for one shape of spectrum, one amplitude and one branch."""
 
     shape: str
@@ -125,8 +119,8 @@ def abscissa(knob: Knob, values: ArrayLike) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
-    """Where a spectrum and an amplitude lie among those that were measured."""
+class _Interpolation:
+    """Measured shapes and amplitudes from which the errors of others are interpolated."""
 
     shapes: tuple[tuple[str, float], ...]
     """Measured shapes, and the parts that they have in the error."""
@@ -138,19 +132,21 @@ class _Place:
 
 
 @functools.cache
-def _place(kind: FieldKind, spectrum: Spectrum, elastic_energy: float, straight: bool) -> _Place:
+def _interpolation(
+    kind: FieldKind, spectrum: Spectrum, elastic_energy: float, size: float
+) -> _Interpolation:
     """Shapes with the next correlation lengths, and amplitudes with as early an onset."""
     shapes = (_NARROW[kind], "h03", "h08")
     measured = [_relative_correlation_length(*MEASURED[shape]) for shape in shapes]
     length = math.log(_relative_correlation_length(kind, spectrum))
     parts = [float(np.interp(length, np.log(measured), row)) for row in np.eye(len(shapes))]
-    correlated = force_correlation_length(kind, spectrum) * _CUTOFF / spectrum.short_cutoff
+    correlated = force_correlation_length(kind, spectrum) * LAW_CUTOFF / spectrum.short_cutoff
     # Avalanches begin where the Larkin length falls to _ONSET, within a factor of 2. Below it the
     # amplitudes count up to that with as many at the cutoff of the laws; w_rms**2 = 4 e_el w_int.
     onset = 2 * math.pi * correlated / (4 * _ONSET)
-    shorter = usual_size(spectrum, straight) / LAW_SIZE
+    shorter = size / LAW_SIZE
     highest = max(elastic_energy, min(2 * elastic_energy * shorter, onset))
-    return _Place(
+    return _Interpolation(
         tuple((shape, part) for shape, part in zip(shapes, parts, strict=True) if part > 0),
         elastic_energy,
         highest,
@@ -163,29 +159,24 @@ def _relative_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
     return correlation_length(kind, spectrum) / spectrum.short_cutoff
 
 
-def usual_size(spectrum: Spectrum, straight: bool) -> float:
-    """Size of a front for which knobs are chosen: eight states, of a mean radius of 1.6."""
-    return LAW_SIZE * (1.0 if straight else _CUTOFF / spectrum.short_cutoff)
-
-
 def chosen_knobs(
     error: float,
     kind: FieldKind,
     spectrum: Spectrum,
     elastic_energy: float,
-    *,
-    straight: bool = False,
+    usual_size: float | None = None,
 ) -> Knobs:
     """Knobs that leave an asked error in w_appr and w_retr: the coarsest that the laws allow.
 
     The error is the standard error of the factor k of either branch that the numerics may leave, on
-    fronts of :func:`usual_size`; the elastic energy is e_el / w_int. ValueError if errors were not
-    measured at such an e_el, or for spectra as narrow.
+    fronts of the usual size, by default :func:`front_sizes.sphere_size`; the elastic energy is
+    e_el / w_int. ValueError if errors were not measured at such an e_el, or for spectra as narrow.
     """
     if refusal := _beyond(kind, spectrum, elastic_energy):
         raise ValueError(f"error is {error:g}, but {refusal}")
-    place = _place(kind, spectrum, elastic_energy, straight)
-    found = _chosen_values(error, place, usual_size(spectrum, straight) * place.independent)
+    usual = sphere_size(spectrum) if usual_size is None else usual_size
+    interpolation = _interpolation(kind, spectrum, elastic_energy, usual)
+    found = _chosen_values(error, interpolation, usual * interpolation.independent)
     return Knobs(
         angles=None,
         angles_per_cutoff=found["sites"],
@@ -224,11 +215,11 @@ def measured_energies() -> tuple[float, float]:
 
 
 @functools.cache
-def _chosen_values(error: float, place: _Place, size: float) -> dict[Knob, float]:
+def _chosen_values(error: float, interpolation: _Interpolation, size: float) -> dict[Knob, float]:
     """Coarsest values of all knobs whose errors together are at most the asked one."""
     tried = {knob: _values(knob) for knob in _SHARES}
-    parts = {knob: _parts(place, knob, values) for knob, values in tried.items()}
-    rarity = _rarity(error, place, size)
+    parts = {knob: _parts(interpolation, knob, values) for knob, values in tried.items()}
+    rarity = _rarity(error, interpolation, size)
     for of in parts.values():
         of[1] *= rarity * math.sqrt(LAW_SIZE / size)
     single = {knob: np.hypot(*of).max(axis=0) for knob, of in parts.items()}
@@ -248,13 +239,13 @@ def _chosen_values(error: float, place: _Place, size: float) -> dict[Knob, float
     return {knob: float(tried[knob][index]) for knob, index in chosen(low).items()}
 
 
-def _rarity(error: float, place: _Place, size: float) -> float:
+def _rarity(error: float, interpolation: _Interpolation, size: float) -> float:
     """By how much scatter is to stay below an asked error, as few surfaces have an avalanche."""
     largest = 0.0
-    for shape, part in place.shapes:
+    for shape, part in interpolation.shapes:
         laws = _laws()[shape, "sites", 1]
         sizes = np.array([[law.avalanche] for law in laws])
-        largest += part * float(_largest_between(laws, sizes, place)[0])
+        largest += part * float(_largest_between(laws, sizes, interpolation)[0])
     largest *= LAW_SIZE / size
     # The mean square of eight surfaces has the mean s^2 and, of avalanches of one size a, the
     # variance s^2 (a^2 + 2 s^2) / 8: the mean and three standard deviations are the bound.
@@ -276,8 +267,7 @@ def combined_error(
     elastic_energy: float,
     values: Mapping[Knob, float],
     size: float,
-    *,
-    straight: bool = False,
+    usual_size: float | None = None,
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that values of all knobs leave (Units: w_int).
 
@@ -287,9 +277,10 @@ def combined_error(
     """
     if _beyond(kind, spectrum, elastic_energy):
         return math.nan, math.nan
-    place = _place(kind, spectrum, elastic_energy, straight)
-    parts = {knob: _parts(place, knob, value) for knob, value in values.items()}
-    approach, retraction = _combined(parts, size * place.independent)
+    usual = sphere_size(spectrum) if usual_size is None else usual_size
+    interpolation = _interpolation(kind, spectrum, elastic_energy, usual)
+    parts = {knob: _parts(interpolation, knob, value) for knob, value in values.items()}
+    approach, retraction = _combined(parts, size * interpolation.independent)
     return elastic_energy * approach, elastic_energy * retraction
 
 
@@ -303,13 +294,16 @@ def _combined(parts: Mapping[Knob, Array], size: float) -> tuple[float, float]:
     return float(approach), float(retraction)
 
 
-def _parts(place: _Place, knob: Knob, values: ArrayLike) -> Array:
+def _parts(interpolation: _Interpolation, knob: Knob, values: ArrayLike) -> Array:
     """Errors at values of a knob, (bias or scatter, branch, values) (Units: e_el)."""
     # Not their logarithms are interpolated: the geometric mean of a bias and none is none.
     branches = [
         np.tensordot(
-            [part for _, part in place.shapes],
-            [_largest(_laws()[shape, knob, branch], place, values) for shape, _ in place.shapes],
+            [part for _, part in interpolation.shapes],
+            [
+                _largest(_laws()[shape, knob, branch], interpolation, values)
+                for shape, _ in interpolation.shapes
+            ],
             axes=1,
         )
         for branch in (1, -1)
@@ -317,34 +311,36 @@ def _parts(place: _Place, knob: Knob, values: ArrayLike) -> Array:
     return np.stack(branches, axis=1)
 
 
-def _largest(laws: Sequence[Law], place: _Place, values: ArrayLike) -> Array:
-    """Bias and scatter of one shape, the largest among the amplitudes of a place."""
-    return _largest_between(laws, np.array([law.parts(values) for law in laws]), place)
+def _largest(laws: Sequence[ErrorLaw], interpolation: _Interpolation, values: ArrayLike) -> Array:
+    """Bias and scatter of one shape, the largest among the amplitudes of an interpolation."""
+    return _largest_between(laws, np.array([law.parts(values) for law in laws]), interpolation)
 
 
-def _largest_between(laws: Sequence[Law], measured: Array, place: _Place) -> Array:
-    """The largest of what laws of rising amplitudes have, among the amplitudes of a place."""
+def _largest_between(
+    laws: Sequence[ErrorLaw], measured: Array, interpolation: _Interpolation
+) -> Array:
+    """Largest of the values of laws of rising amplitudes, among those of an interpolation."""
     energies = np.array([law.elastic_energy for law in laws])
-    between = (energies > place.lowest) & (energies < place.highest)
-    amplitudes = np.log([place.lowest, *energies[between], place.highest])
+    between = (energies > interpolation.lowest) & (energies < interpolation.highest)
+    amplitudes = np.log([interpolation.lowest, *energies[between], interpolation.highest])
     parts = [np.interp(amplitudes, np.log(energies), row) for row in np.eye(energies.size)]
     return np.max(np.tensordot(np.transpose(parts), measured, axes=1), axis=0)
 
 
 @functools.cache
-def _laws() -> dict[tuple[str, Knob, int], list[Law]]:
+def _laws() -> dict[tuple[str, Knob, int], list[ErrorLaw]]:
     """All laws by shape, knob and direction, with increasing amplitudes."""
-    found: dict[tuple[str, Knob, int], list[Law]] = {}
+    found: dict[tuple[str, Knob, int], list[ErrorLaw]] = {}
     for law in sorted(read_laws(), key=lambda law: law.elastic_energy):
         found.setdefault((law.shape, law.knob, law.direction), []).append(law)
     return found
 
 
-def read_laws() -> Iterator[Law]:
+def read_laws() -> Iterator[ErrorLaw]:
     """Laws that come with the package."""
     with files("crackfront.simulate").joinpath("laws.csv").open(encoding="utf-8") as lines:
         for row in csv.DictReader(line for line in lines if not line.startswith("#")):
-            yield Law(
+            yield ErrorLaw(
                 row["shape"],
                 float(row["elastic_energy"]),
                 cast(Knob, row["knob"]),

@@ -18,36 +18,40 @@ from crackfront.analysis.steady import (
     steady_adhesion,
 )
 from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import first_touch
 from crackfront.core.fingerprint import solver_fingerprint
-from crackfront.core.geometry.line import LineState
+from crackfront.core.geometry.base import State
 from crackfront.core.geometry.sphere import ContactState
-from crackfront.core.outcome import Direction, Status
+from crackfront.core.outcome import Direction
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.provenance import __version__
-from crackfront.simulate.cases import Problem, StraightFront, load_values, problem_of
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
+from crackfront.simulate.loop_setup import LoopContact, LoopNumerics, LoopSetup, load_values
 from crackfront.simulate.numerics import stated_error
 from crackfront.simulate.run import compile_solver
+from crackfront.simulate.sphere.loop import PressedSphere
 
 _KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
 
 
 def run_loop(
-    surface: DataArray | StraightFront,
+    surface: DataArray | LoopContact,
     *,
     loads: Iterable[float] | None = None,
     max_penetration: float | None = None,
     step: float | None = None,
-    error: float = 0.03,
+    error: float | None = None,
+    sites: int | None = None,
+    samples: float | None = None,
     solver: str = "newton",
     fronts: bool = True,
     energy: bool = False,
@@ -74,12 +78,18 @@ def run_loop(
     error : float, optional
         Standard error of the factor k of either branch that the numerics may leave; measured
         laws choose sites, samples and tolerance. They need a sphere and the attributes
-        `short_cutoff`, `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them.
-        Without these the front has a site a pixel or more, and two samples a pixel along a ray.
+        `short_cutoff`, `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them;
+        with these it is 0.03 by default, without them an error is refused.
+    sites : int, optional
+        Sites of the front, in place of an error; by default one a pixel or more.
+    samples : float, optional
+        Samples a pixel along a ray, in place of an error; by default 2, of a straight front 1.
     solver : {"newton", "reference"}, optional
         Solver; both find the same fronts.
     fronts, energy : bool, optional
-        Whether to keep the fronts, and to compute the energy that each load step dissipates.
+        Whether to keep the fronts, and to compute the energy that each load step dissipates. A load
+        step loses energy even where a front would follow a slow load without loss; the comment of
+        the variable says how much of the energies of a straight front this is.
     progress : callable, optional
         Called with every state as it is found.
 
@@ -121,68 +131,75 @@ def run_loop(
     if not callable(progress):
         refuse_other_type("progress", progress, type(None), "a function of a state")
     visited = None if loads is None else load_values(loads)
-    straight = isinstance(surface, StraightFront)
-    if not straight and visited is None and max_penetration is None:
+    if visited is None and max_penetration is None:
         max_penetration = 1.0
     if step is None:
         step = 0.02 if visited is None else math.inf
     solution = named_solver(solver, DEFAULT_TOLERANCE)
-    problem = problem_of(surface, visited, max_penetration, step, error)
-    compile_solver(solver, straight)
+    contact = surface if isinstance(surface, LoopContact) else PressedSphere(surface)
+    setup = contact.setup(visited, max_penetration, step, LoopNumerics(error, sites, samples))
+    compile_solver(solver, setup.kind)
     observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
-    solution = replace(solution, tolerance=problem.tolerance)
-    recorder.run(problem.field, problem.front, problem.loads, solution)
-    return loop_dataset(recorder.record(), problem).assign_attrs(
+    solution = replace(solution, tolerance=setup.tolerance)
+    recorder.run(setup.field, setup.front, setup.loads, solution)
+    return loop_dataset(recorder.record(), setup).assign_attrs(
         solver=solver,
-        tolerance=problem.tolerance,
+        tolerance=setup.tolerance,
         crackfront_version=__version__,
         solver_fingerprint=solver_fingerprint(),
     )
 
 
-def loop_dataset(record: CycleRecord, problem: Problem) -> Dataset:
+def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
     """Labelled curves of a run, and measures of the whole."""
-    measures, simulation = problem.measures, problem.simulation
-    curves = cycle_dataset(record, problem.field.geometry)
+    measures, simulation = setup.measures, setup.simulation
+    curves = cycle_dataset(record, setup.field.geometry)
+    if record.dissipated_energy is not None and setup.load_stiffness is not None:
+        comment = _comment_on_steps(record.states, record.dissipated_energy, setup.load_stiffness)
+        curves["dissipated_energy"] = curves.dissipated_energy.assign_attrs(comment=comment)
     values = {name: getattr(measures, name) for name in ("e_el", "w_rms", "correlation_length")}
     length = measures.correlation_length
-    if isinstance(record.states, ContactState):
+    if setup.period is None:
         steady = steady_adhesion(record, length)
     else:
-        steady = passing_adhesion(record, length, measures.mean, measures.period)
+        steady = passing_adhesion(record, length, measures.mean, setup.period)
     numerical = (math.nan, math.nan)
     if simulation is not None and not steady.sentence:
         numerical = stated_error(simulation, steady, length)
     values["w_appr_numerical_error"], values["w_retr_numerical_error"] = numerical
     values |= {item.name: getattr(steady, item.name) for item in variables(SteadyMeasures)}
-    sentences = {"result": _result_sentence(record, steady), "steady_sentence": steady.sentence}
+    result = _result_sentence(record, steady, setup.remark)
+    sentences = {"result": result, "steady_sentence": steady.sentence}
     whole = curves.assign(
         {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
     )
     return whole.drop_attrs(deep=False).assign_attrs(sentences | curves.attrs, kind=measures.kind)
 
 
-def _result_sentence(record: CycleRecord, steady: SteadyAdhesion) -> str:
-    """Result of a cycle in one line."""
+def _comment_on_steps(states: State, dissipated: Array, stiffness: float) -> str:
+    """How much of the dissipated energies is due to the size of the load steps, in words."""
+    loads = getattr(states, variables(type(states))[0].name)
+    added = stiffness / 2 * np.sum(np.diff(loads) ** 2)
+    return (
+        f"load steps add {added / np.nansum(dissipated):.2g} of the sum: half of the stiffness of "
+        "the springs times the square of each step, which smaller steps lower"
+    )
+
+
+def _result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str) -> str:
+    """Result of a cycle in one line, with a remark on its works of adhesion."""
     states = record.states
     if states.direction.size == 0:
         return "no state was found"
-    if isinstance(states, LineState):
-        most, least = float(np.max(states.pinning_force)), float(np.min(states.pinning_force))
-        forces = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
-    else:
-        forces = f"jump-in force {states.force[0]:.4g}"
-        if record.status is Status.LOST_CONTACT:
-            forces += f", pull-off force {np.min(states.force):.4g}"
-        forces += " (pi w_int R)"
+    forces = states.forces_summary(record.status)
     if steady.sentence:
         return f"no steady part: w_appr and w_retr are unknown; {forces}"
     works = []
     for name in ("w_appr", "w_retr", "hysteresis"):
         value, error = getattr(steady, name), getattr(steady, f"{name}_error")
         works.append(f"{name} {with_error(value, error) if error > 0 else format(value, '.4g')}")
-    return f"{', '.join(works)} (w_int); {forces}"
+    return "; ".join(filter(None, (f"{', '.join(works)} (w_int)", remark, forces)))
 
 
 def find_instabilities(
@@ -193,7 +210,9 @@ def find_instabilities(
     step: float = 0.02,
     travel: float = 0.05,
     precision: float = 2e-5,
-    error: float = 0.05,
+    error: float | None = None,
+    sites: int | None = None,
+    samples: float | None = None,
 ) -> Dataset:
     """The single instabilities of a branch, from first contact or to pull-off.
 
@@ -213,26 +232,36 @@ def find_instabilities(
     precision : float, optional
         Penetration to which an instability is located. (Units: reduced vertical length)
     error : float, optional
+        As in :func:`run_loop`, by default 0.05 where the surface states its spectrum.
+    sites, samples : optional
         As in :func:`run_loop`.
 
     Returns
     -------
     xarray.Dataset
-        Over `instability` the penetration, the dissipated energy, the area, and the extent of the
-        largest patch; the fronts `before` and `after` over `angle` as well.
+        Over `instability` the penetration, the dissipated energy, the whole area between the fronts
+        before and after, and the extent of the largest patch of sites that moved by more than the
+        `travel`; these fronts, `before` and `after`, over `angle` as well.
 
     Raises
     ------
     ValueError
-        If an argument cannot be used, or a front is not found.
+        If an argument cannot be used, a front is not found, or the surface is that of a straight
+        front, which has no first contact and no pull-off to end a branch.
     """
+    if isinstance(surface, LoopContact):
+        raise ValueError(
+            "the instabilities are those of a sphere between first contact and pull-off, which a "
+            "straight front has not; give the surface itself"
+        )
     if direction not in get_args(Direction):
         raise ValueError(f"direction is {direction}; give 1 for approach or -1 for retraction")
     refuse_no_numbers(
         max_penetration=max_penetration, step=step, travel=travel, precision=precision
     )
     schedule = LoadSchedule(max_penetration, step)
-    contact = problem_of(surface, None, max_penetration, step, error)
+    numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
+    contact = PressedSphere(surface).setup(None, max_penetration, step, numerics)
     compile_solver("newton")
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
     reach = travel * contact.measures.correlation_length

@@ -11,12 +11,11 @@ from scipy.fft import next_fast_len
 
 from crackfront.analysis.steady import SteadyAdhesion
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.contact import n_site
-from crackfront.core.cycle.schedule import Schedule
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.spectrum import Spectrum
-from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error, usual_size
+from crackfront.simulate.laws import Knob, Knobs, chosen_knobs, combined_error
+from crackfront.simulate.schedule import Schedule
 from crackfront.simulate.simulation import Resolution, Simulation
 
 
@@ -37,12 +36,16 @@ class Numerics:
     """A name in :data:`crackfront.core.solver.relax.SOLVERS`."""
 
     def knobs_of(
-        self, kind: FieldKind, spectrum: Spectrum, elastic_energy: float, *, straight: bool = False
+        self,
+        kind: FieldKind,
+        spectrum: Spectrum,
+        elastic_energy: float,
+        usual_size: float | None = None,
     ) -> Knobs:
-        """Knobs for one spectrum and amplitude."""
+        """Knobs for one spectrum and amplitude; size as of :func:`laws.chosen_knobs`."""
         if isinstance(self.knobs, Knobs):
             return self.knobs
-        return chosen_knobs(self.knobs, kind, spectrum, elastic_energy, straight=straight)
+        return chosen_knobs(self.knobs, kind, spectrum, elastic_energy, usual_size)
 
     def tile_side(self, spectrum: Spectrum) -> float:
         """Least side of a tile (Units: that of the spectrum)."""
@@ -59,12 +62,12 @@ def resolution(
 
     Examples
     --------
-    >>> from crackfront.core.cycle.schedule import LoadSchedule
     >>> from crackfront.core.spectrum import SelfAffineSpectrum
+    >>> from crackfront.simulate.sphere.cycle import FullCycle
     >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
     >>> knobs = Knobs(None, 2, 4, "cubic", 4, 1e-6)
     >>> numerics = Numerics(knobs, tile_roll_offs=10, tile_cutoffs=20)
-    >>> resolution(flat, numerics, knobs, LoadSchedule(max_penetration=1.0, step=0.1))
+    >>> resolution(flat, numerics, knobs, FullCycle(max_penetration=1.0, step=0.1))
     Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
     cutoff = spectrum.short_cutoff
@@ -73,7 +76,7 @@ def resolution(
     points = math.ceil(side / cutoff * knobs.pixels_per_cutoff * (1 - 1e-12))
     n_point = next_fast_len(points, real=True)
     return Resolution(
-        n_angle=n_point if schedule.uncorrelated else knobs.angles or n_site(sites),
+        n_angle=schedule.site_count(knobs.angles, sites, n_point),
         spacing=spacing,
         interpolation=knobs.interpolation,
         tile_side=side,
@@ -98,7 +101,7 @@ def simulation_of(
     The name is that of the spectrum, the numerics are how it is resolved and solved, and `record`
     is what is kept beside the curves; the rest is as in :class:`Simulation`.
     """
-    knobs = numerics.knobs_of(kind, spectrum, elastic_energy, straight=schedule.straight)
+    knobs = numerics.knobs_of(kind, spectrum, elastic_energy, schedule.usual_size(spectrum))
     return Simulation(
         spectrum_name=name,
         kind=kind,
@@ -133,20 +136,20 @@ def numerical_error(
     sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
     if front_length is None:
         front_length = simulation.schedule.front_length
+    usual_size = simulation.schedule.usual_size(simulation.spectrum)
     values: dict[Knob, float] = {
         "sites": sizes.n_angle * cutoff / front_length,
         sizes.interpolation: cutoff / sizes.spacing,
         "pixels": cutoff * sizes.n_point / sizes.tile_side,
         "tolerance": simulation.solver.tolerance,
     }
-    straight = simulation.schedule.straight
     return combined_error(
         simulation.kind,
         simulation.spectrum,
         simulation.elastic_energy,
         values,
-        usual_size(simulation.spectrum, straight) if size is None else size,
-        straight=straight,
+        usual_size if size is None else size,
+        usual_size,
     )
 
 
@@ -157,13 +160,9 @@ def stated_error(
 
     States closer than a correlation length of w_loc count as one.
     """
-    cutoff = simulation.spectrum.short_cutoff
-    if simulation.schedule.straight:
-        period, length = simulation.tile[1]
-        return numerical_error(simulation, length / cutoff * (1 + period / correlation_length))
-    low, high = steady.lowest_radius, steady.highest_radius
-    cutoffs, longest = math.pi * (low + high) / cutoff, 2 * math.pi * high
-    apart = 1 + (high - low) / correlation_length
-    approach, _ = numerical_error(simulation, cutoffs * min(steady.n_approach, apart), longest)
-    _, retraction = numerical_error(simulation, cutoffs * min(steady.n_retraction, apart), longest)
+    *sizes, longest = simulation.schedule.averaged_sizes(
+        steady, correlation_length, simulation.spectrum.short_cutoff
+    )
+    approach, _ = numerical_error(simulation, sizes[0], longest)
+    _, retraction = numerical_error(simulation, sizes[1], longest)
     return approach, retraction

@@ -14,11 +14,11 @@ import numpy as np
 from crackfront.analysis.measures import RunMeasures
 from crackfront.core.adhesion import chemical_adhesion
 from crackfront.core.cycle.record import Checkpoint, CycleRecord, Recorder
-from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.solver.window import HALF_BAND
-from crackfront.simulate.lines import LineSchedule
+from crackfront.simulate.schedule import Schedule
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
+from crackfront.simulate.sphere.cycle import FullCycle
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ def run_simulation(
     new state with a function that makes what a later run goes on from. ValueError if the realised
     surface does not allow full conformity, e_el >= w_int.
     """
-    compile_solver(simulation.solver.name, simulation.schedule.straight)
+    compile_solver(simulation.solver.name, type(simulation.schedule))
     before = (0.0, 0.0) if resume is None else (resume.seconds, resume.cpu_seconds)
     wall, cpu = time.perf_counter() - before[0], time.process_time() - before[1]
 
@@ -89,14 +89,12 @@ def run_simulation(
 
 
 @functools.cache
-def compile_solver(name: str, straight: bool = False) -> None:
-    """Compile what a simulation calls, or load it, once a process, on a tiny smooth tile.
+def compile_solver(name: str, kind: type[Schedule] = FullCycle) -> None:
+    """Compile what a simulation of a kind calls, or load it, once a process, on a smooth tile.
 
     The front is longer than those that are left to the reference.
     """
-    schedule: Schedule = LoadSchedule(0.0, 0.5)
-    if straight:
-        schedule = LineSchedule(spring=1.0, length=4.0, period=1.0, lead_in=1.0, step=1.0)
+    schedule = kind.smallest()
     smooth = chemical_adhesion(np.zeros((4, 4)), pixel=1.0)
     field = schedule.field(smooth, 4 * HALF_BAND, 0.1, "cubic")
     solver, recorder = SOLVERS[name](1e-3), Recorder(energy=True)

@@ -9,8 +9,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
-import math
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, dataclass
 from typing import Any, cast
 
 import numpy as np
@@ -18,18 +17,15 @@ import numpy as np
 from crackfront.core.adhesion import (
     AdhesionMap,
     FieldKind,
-    chemical_adhesion,
     correlation_length,
-    rough_adhesion,
 )
-from crackfront.core.arrays import Array
-from crackfront.core.cycle.schedule import LoadSchedule, Schedule
 from crackfront.core.field.fields import Interpolation, TileField
 from crackfront.core.fingerprint import fingerprint
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
-from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
+from crackfront.simulate.schedule import Schedule
+from crackfront.simulate.sphere.cycle import FullCycle
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,39 +139,7 @@ class Simulation:
 
 def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
     """Work of adhesion on the tile of a simulation."""
-    points, sides = simulation.tile
-    pixel = sides[1] / points[1]
-    if simulation.schedule.uncorrelated:
-        return _uncorrelated_adhesion(simulation, pixel)
-    adhesion = rough_adhesion if simulation.kind == "roughness" else chemical_adhesion
-    return adhesion(simulation_values(simulation), pixel)
-
-
-def simulation_values(simulation: Simulation) -> Array:
-    """Heights on the tile (Units: reduced vertical length), or deviations of w_loc (Units: w_int).
-
-    The noise of a realisation is scaled to the amplitude, so that all amplitudes of a spectrum
-    see the same surface.
-    """
-    unit, rng = simulation.spectrum.with_elastic_energy(1.0), np.random.default_rng(simulation.seed)
-    values = gaussian_field(unit, *simulation.tile, rng)
-    if simulation.kind == "roughness":
-        values *= math.sqrt(simulation.elastic_energy)
-    else:
-        values *= 2 * math.sqrt(simulation.elastic_energy / unit.mean_square(0.0))
-    return values
-
-
-def _uncorrelated_adhesion(simulation: Simulation, pixel: float) -> AdhesionMap:
-    """Rows of the spectrum of w_loc integrated along the front; e_el is a quarter of its f_2."""
-    spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
-    rng = np.random.default_rng(simulation.seed)
-    rows = uncorrelated_rows(spectrum, order, simulation.tile[0], pixel, rng)
-    ratio = spectrum.mean_square(order - 0.5) / spectrum.mean_square(order)
-    adhesion = chemical_adhesion(rows, pixel)
-    rows *= math.sqrt(8 * simulation.elastic_energy * ratio / pixel)
-    energy = simulation.elastic_energy * adhesion.w_rms**2
-    return replace(chemical_adhesion(rows, pixel), e_el=energy)
+    return simulation.schedule.adhesion(simulation)
 
 
 def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None) -> TileField:
@@ -193,6 +157,6 @@ def _digest(content: Any) -> str:
 
 
 @functools.cache
-def simulation_fingerprint(kind: type[Schedule] = LoadSchedule) -> str:
+def simulation_fingerprint(kind: type[Schedule] = FullCycle) -> str:
     """Twelve hexadecimal digits that change with what determines a simulation of a kind of load."""
     return fingerprint("crackfront.simulate.run", kind.__module__)

@@ -12,15 +12,16 @@ from xarray import DataArray
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind
 from crackfront.core.arrays import Array
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import SEED, refuse_beyond_memory
 from crackfront.simulate.costs import expected_cost, refuse_oversized
-from crackfront.simulate.given import refuse_unknown_kind, surface_array
 from crackfront.simulate.numerics import Numerics, simulation_of
-from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_values
+from crackfront.simulate.simulation import Simulation, simulation_adhesion
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.tiles import gaussian_values
+from crackfront.simulate.user_surface import refuse_unknown_kind, surface_array
 
 
 def random_surface(
@@ -82,14 +83,14 @@ def random_surface(
         kind,
         spectrum,
         elastic_energy,
-        LoadSchedule(0.0, 1.0),  # without effect on the surface
+        FullCycle(0.0, 1.0),  # without effect on the surface
         error=error,
         side=side,
         seed=seed,
         realisation=realisation,
     )
     if kind == "roughness":
-        values = simulation_values(simulation)
+        values = gaussian_values(simulation)
     else:
         values = simulation_adhesion(simulation).work_of_adhesion / WORK_OF_ADHESION
     tile = simulation.resolution
@@ -115,7 +116,7 @@ def chosen_simulation(
     kind: FieldKind,
     spectrum: Spectrum,
     elastic_energy: float,
-    schedule: LoadSchedule,
+    schedule: FullCycle,
     *,
     error: float,
     side: float | None = None,

@@ -155,7 +155,8 @@ def _refuse_infeasible(sweep: Sweep) -> None:
     seconds, numerics, schedule = 0.0, sweep.numerics, sweep.schedule
     coarser = "use fewer, coarser or larger load steps, or smaller tiles"
     for item, energy in product(sweep.spectra, sweep.elastic_energies):
-        knobs = numerics.knobs_of(sweep.kind, item.spectrum, energy, straight=schedule.straight)
+        size = schedule.usual_size(item.spectrum)
+        knobs = numerics.knobs_of(sweep.kind, item.spectrum, energy, size)
         refuse_oversized(item.spectrum, numerics, knobs, schedule.max_penetration)
         simulation = sweep.simulation(item, energy, 0)
         cost = expected_cost(simulation)
@@ -171,11 +172,7 @@ def _refuse_too_coarse(simulation: Simulation, requested: Knobs | float) -> None
     name, energy = simulation.spectrum_name, simulation.elastic_energy
     larkin = larkin_length(simulation.kind, simulation.spectrum, 2 * math.sqrt(energy))
     site = sizes.tile_side / sizes.n_angle
-    if simulation.schedule.straight and larkin < 2 * site:
-        raise ValueError(
-            f"numerics: the Larkin length of {name} at e_el {energy:g} is {larkin:.3g}, below two "
-            f"sites ({2 * site:.3g}); lower the amplitude or use more sites"
-        )
+    simulation.schedule.refuse_few_sites(f"{name} at e_el {energy:g}", larkin, site)
     round_off = sys.float_info.epsilon * sizes.n_angle
     if tolerance < round_off:
         raise ValueError(

@@ -6,15 +6,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from crackfront.analysis.law import mean_adhesion, pinning_factor, spectral_breadth
-from crackfront.analysis.law_spheres import sphere_factors
+from crackfront.analysis.law import mean_w_loc
+from crackfront.analysis.law_spheres import held_factors
 from crackfront.analysis.standard_error import FEWEST_STATES
-from crackfront.core import jkr
 from crackfront.core.adhesion import force_correlation_length, larkin_length
-from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.simulate.line_loads import front_rms
+from crackfront.simulate.line.loads import front_rms
 from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.steady import SteadySchedule
 from crackfront.sweep.sweep import Sweep
 
 _LAST_SITE = 1.0
@@ -39,16 +36,11 @@ def expectation(simulation: Simulation) -> Expectation:
     """What the realisations of a simulation are expected to find."""
     kind, spectrum, energy = simulation.kind, simulation.spectrum, simulation.elastic_energy
     schedule, disorder = simulation.schedule, 2 * math.sqrt(energy)
-    larkin = larkin_length(kind, spectrum, disorder)
-    if schedule.straight:
-        size, breadth = schedule.spring / larkin, spectral_breadth(kind, spectrum)
-        found = pinning_factor(disorder, size, kind, breadth).factor.value
-        return Expectation(disorder, size, found)
-    radius = float(jkr.equilibrium_radius(schedule.max_penetration))
     try:
-        factors = sphere_factors(kind, spectrum, energy, radius)
+        factors = held_factors(kind, spectrum, energy, schedule.spring_at)
     except ValueError:
-        return Expectation(disorder, jkr.spring(radius) / larkin, None)
+        larkin = larkin_length(kind, spectrum, disorder)
+        return Expectation(disorder, schedule.spring_at(1.0) / larkin, None)
     size, factor = factors.size, factors.both.value
     if _needed_penetration(simulation, size, factor, FEWEST_STATES) <= schedule.max_penetration:
         return Expectation(disorder, size, factor)
@@ -58,24 +50,14 @@ def expectation(simulation: Simulation) -> Expectation:
 
 
 def _needed_penetration(simulation: Simulation, size: float, factor: float, n_state: int) -> float:
-    """Penetration at which so many states are steady on both branches."""
-    schedule, length = simulation.schedule, simulation.correlation_length
+    """Penetration from which on so many states are steady on both branches."""
+    length = simulation.correlation_length
     rough = front_rms(force_correlation_length(simulation.kind, simulation.spectrum), size)
     way = length + _LAST_SITE * rough
-    mean = mean_adhesion(simulation.kind, simulation.elastic_energy)
+    mean = mean_w_loc(simulation.kind, simulation.elastic_energy)
     low = max(mean - factor * simulation.elastic_energy, 0.0)
     high = mean + factor * simulation.elastic_energy
-    if isinstance(schedule, SteadySchedule):
-        # It begins a correlation length behind, and the retraction behind the end.
-        begin = jkr.equilibrium_radius(schedule.start, low) - length
-        needed = way + n_state * schedule.travel * length
-    elif isinstance(schedule, LoadSchedule):
-        begin = max(jkr.equilibrium_radius(0.0, low), jkr.pull_off_radius(high) - way)
-        step = schedule.step / jkr.penetration_slope(schedule.max_penetration)
-        needed = 2 * way + n_state * step
-    else:
-        return -math.inf
-    return float(jkr.equilibrium_penetration(begin + needed, low))
+    return simulation.schedule.steady_load(simulation, (low, high), way, n_state)
 
 
 def doubts(sweep: Sweep) -> Iterator[str]:
@@ -84,7 +66,7 @@ def doubts(sweep: Sweep) -> Iterator[str]:
     for item in sweep.spectra:
         needed = {
             one.elastic_energy: found
-            for one in sweep.firsts(item)
+            for one in sweep.one_per_amplitude(item)
             if (found := expectation(one).needed_penetration) is not None
         }
         if needed:

@@ -18,7 +18,7 @@ _DRAWN_SECONDS, _DRAWN_BYTES, _MOST_DRAWN = 4.2e-8, 16.0, 1.35e8
 """Seconds of a row in a bootstrap sample; bytes of a realisation in one, and the most of them."""
 
 
-def late_needs(sweep: Sweep) -> dict[str, Cost]:
+def postprocessing_costs(sweep: Sweep) -> dict[str, Cost]:
     """Expected cost of the commands that follow the simulations, by their names, in their order."""
     n_row, n_sample = sweep.n_simulation, sweep.fit.n_bootstrap
     drawn = min(_MOST_DRAWN, _DRAWN_BYTES * n_sample * sweep.n_realisation)

@@ -18,7 +18,6 @@ from pydantic import (
 )
 
 from crackfront.analysis.sweep import FEWEST_BOOTSTRAP
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
@@ -37,9 +36,11 @@ from crackfront.data.section import (
     within,
 )
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.line_loads import LineLoad, SpringUnit
+from crackfront.simulate.line.loads import LAW_LENGTH, LineLoad, SpringUnit
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.schedule import SweepLoad
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.sweep import NamedSpectrum
 from crackfront.topography.options import ReadingOptions, reading_options
 from crackfront.topography.spectrum.measures import MeasuredSurface, read_surface
@@ -280,7 +281,7 @@ class LineSection(Section):
 
     springs: Annotated[tuple[Positive, ...], Field(min_length=1)]
     spring_unit: SpringUnit = "correlation_length"
-    length: Annotated[Positive, Field(ge=8)]
+    length: Annotated[Positive, Field(ge=LAW_LENGTH)]
     period: Annotated[Positive, Field(ge=20)]
     transient: Annotated[Positive, Field(ge=3)]
     step: Positive
@@ -323,14 +324,14 @@ class LoadSection(Section):
             )
         return self
 
-    def schedule(self, vertical: float) -> LoadSchedule | SteadySchedule | LineLoad:
+    def schedule(self, vertical: float) -> SweepLoad:
         """Penetrations to visit, lengths divided by a unit, or straight fronts."""
         if self.line is not None:
             return LineLoad(**self.line.model_dump(exclude={"springs"}))
         given: Any = self
         deepest, steady = given.max_penetration / vertical, given.steady
         if steady is None:
-            return LoadSchedule(deepest, given.step / vertical)
+            return FullCycle(deepest, given.step / vertical)
         return SteadySchedule(steady.start / vertical, deepest, steady.travel, steady.error)
 
 

@@ -64,7 +64,7 @@ def write_shard(
     alone = replace(sweep, spectra=(shard.item,))
     about = {
         "spectrum_name": shard.item.name,
-        "fingerprint": shard_fingerprint(sweep.firsts(shard.item), shard.realisations),
+        "fingerprint": shard_fingerprint(sweep.one_per_amplitude(shard.item), shard.realisations),
         "first_realisation": np.int64(shard.realisations.start),
         "last_realisation": np.int64(shard.realisations.stop - 1),
         "failed": np.int64(sum(row.status not in COMPLETE for row in rows)),

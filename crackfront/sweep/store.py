@@ -150,14 +150,14 @@ class Store:
     def is_finished(self, sweep: Sweep, shard: Shard) -> bool:
         """Whether the file of a shard is there, by its fingerprint alone."""
         found = finished_shard(self.shard_path(shard))
-        wanted = shard_fingerprint(sweep.firsts(shard.item), shard.realisations)
+        wanted = shard_fingerprint(sweep.one_per_amplitude(shard.item), shard.realisations)
         return found is not None and found.fingerprint == wanted
 
     def finished(
         self, sweep: Sweep, item: NamedSpectrum
     ) -> tuple[list[tuple[FinishedShard, range]], list[range]]:
         """Files of shards of a spectrum with what is taken of each, and what none of them has."""
-        firsts = sweep.firsts(item)
+        firsts = sweep.one_per_amplitude(item)
         found = map(finished_shard, sorted((self.folder / "shards").glob(f"{item.name}.*nc")))
         known = (
             one
@@ -242,7 +242,9 @@ class Store:
         found = NOTHING
         for shard, taken in chosen:
             size = len(sweep.elastic_energies) * len(taken)
-            cost = sum(expected_cost(one).seconds for one in sweep.firsts(item)) * len(taken)
+            cost = sum(expected_cost(one).seconds for one in sweep.one_per_amplitude(item)) * len(
+                taken
+            )
             share = len(taken) / len(shard.realisations)
             failed = min(shard.failed, size)
             found += Inventory(

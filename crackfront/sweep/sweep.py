@@ -10,11 +10,10 @@ from dataclasses import dataclass, fields, replace
 from typing import Literal
 
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.cycle.schedule import Schedule
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
-from crackfront.simulate.line_loads import LineLoad
 from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.schedule import SweepLoad
 from crackfront.simulate.simulation import Simulation
 
 
@@ -71,7 +70,7 @@ class Sweep:
     """Realisations of the noise for every spectrum."""
     numerics: Numerics
     """How simulations are resolved and solved."""
-    schedule: Schedule | LineLoad
+    schedule: SweepLoad
     """Loads of all simulations, or how straight fronts are held."""
     record: tuple[Literal["fronts", "energy"], ...]
     """What to record beside the curves."""
@@ -108,10 +107,10 @@ class Sweep:
         """Simulations, by default all: by spectrum, amplitude and realisation."""
         block = range(self.n_realisation) if realisations is None else realisations
         for one in self.spectra if item is None else (item,):
-            for first in self.firsts(one):
+            for first in self.one_per_amplitude(one):
                 yield from (replace(first, realisation=number) for number in block)
 
-    def firsts(self, item: NamedSpectrum) -> list[Simulation]:
+    def one_per_amplitude(self, item: NamedSpectrum) -> list[Simulation]:
         """First realisation of a spectrum for each amplitude."""
         return [self.simulation(item, energy, 0) for energy in self.elastic_energies]
 

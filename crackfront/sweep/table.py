@@ -179,7 +179,7 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
     """Coordinates of a sweep, and of some of its realisations."""
     spectra = [item.spectrum for item in sweep.spectra]
     energies = np.array(sweep.elastic_energies)
-    firsts = [sweep.firsts(item) for item in sweep.spectra]
+    firsts = [sweep.one_per_amplitude(item) for item in sweep.spectra]
     stated = all(isinstance(one, SelfAffineSpectrum) for one in spectra)
     texts = [json.dumps(one.parameters, default=np.ndarray.tolist) for one in spectra]
 

@@ -67,8 +67,8 @@ def fill(
         _Task(one, store, origin, checkpoint_seconds, bool(begun) and one.stem in begun)
         for one in longest_first
     ]
-    for solver, straight in {(one.solver.name, one.schedule.straight) for one in simulations}:
-        compile_solver(solver, straight)
+    for solver, kind in {(one.solver.name, type(one.schedule)) for one in simulations}:
+        compile_solver(solver, kind)
     with (
         store.packs(simulations) as packs,
         closing(parallel.run_tasks(_run_task, tasks, functools.partial(_keep, packs))) as outcomes,

@@ -35,7 +35,7 @@ def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
     periodic is a tile as it stands. ValueError if the measurement is a line.
     """
     # A prediction needs the radius below, and no field.
-    from crackfront.simulate.given import surface_array
+    from crackfront.simulate.user_surface import surface_array
 
     measurement = scan.trusted_measurement
     notes = scan_remarks([scan], zero_load_radius(sphere))

@@ -9,13 +9,13 @@ from scipy import stats
 
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.arrays import Array
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.variables import ADHESION, variable
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.numerics import numerical_error, stated_error
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.steady import SteadySchedule
 from studies.accuracy.scenes import HELD_OUT, Progress, Scene
 from studies.accuracy.study import branches_seconds, measured_branches
 
@@ -121,7 +121,7 @@ def _other(scene: Scene, knob: str, value: float, number: int) -> Simulation:
     if knob == "tile":
         scene = replace(scene, tile_cutoffs=value)
     schedule = (
-        LoadSchedule(_DEEPEST, value)
+        FullCycle(_DEEPEST, value)
         if knob == "step"
         else SteadySchedule(_START, _DEEPEST, value if knob == "travel" else _TRAVEL, _NO_STOP)
     )

@@ -14,7 +14,8 @@ from scipy.optimize import minimize_scalar
 
 from crackfront.core.arrays import Array
 from crackfront.plots import style
-from crackfront.simulate.laws import KNOBS, LAW_SIZE, Knob, Law, abscissa
+from crackfront.simulate.front_sizes import LAW_SIZE
+from crackfront.simulate.laws import KNOBS, ErrorLaw, Knob, abscissa
 from studies.accuracy.study import SceneErrors, rms
 
 _LEAST = 3e-4
@@ -52,7 +53,7 @@ _AXES: dict[Knob, str] = {
 }
 
 
-def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[Law]:
+def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[ErrorLaw]:
     """Law of every knob, amplitude and branch, fitted to the errors of scenes.
 
     A bias counts where it is twice its standard error; elsewhere only scatter is seen, that of
@@ -88,7 +89,7 @@ def _knob_errors(study: SceneErrors, knob: Knob) -> tuple[Array, Array]:
     return values, np.array(added) / study.scene.elastic_energy
 
 
-def _laws(study: SceneErrors, knob: Knob, avalanche: float) -> Iterator[Law]:
+def _laws(study: SceneErrors, knob: Knob, avalanche: float) -> Iterator[ErrorLaw]:
     """Laws of one knob, the approach before the retraction."""
     tried, values = _knob_errors(study, knob)
     x = abscissa(knob, tried)
@@ -103,7 +104,7 @@ def _laws(study: SceneErrors, knob: Knob, avalanche: float) -> Iterator[Law]:
         seen = np.count_nonzero(certain) > 1
         bias_line = _falling_line(x[certain], bias[certain, branch], slowest) if seen else _NO_BIAS
         shape, energy = study.scene.shape, study.scene.elastic_energy
-        yield Law(shape, energy, knob, direction, bias_line, scatter_line, avalanche)
+        yield ErrorLaw(shape, energy, knob, direction, bias_line, scatter_line, avalanche)
 
 
 def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
@@ -124,7 +125,7 @@ def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float
     return start(slope), float(slope)
 
 
-def laws_text(laws: Iterable[Law]) -> str:
+def laws_text(laws: Iterable[ErrorLaw]) -> str:
     """Laws as the lines of `laws.csv`, five digits each."""
     text = io.StringIO()
     columns = ("shape", "elastic_energy", "knob", "direction")
@@ -136,7 +137,7 @@ def laws_text(laws: Iterable[Law]) -> str:
     return text.getvalue()
 
 
-def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
+def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]) -> Figure:
     """Measured errors of k of w_retr of one shape against every knob, and the fitted laws."""
     with style.house_style():
         figure = style.blank_figure(style.PAGE, 1.1 * style.COLUMN)
@@ -155,7 +156,9 @@ def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[Law]) -> Figure:
         return figure
 
 
-def _draw_laws(axes: Axes, knob: Knob, studies: Sequence[SceneErrors], laws: Sequence[Law]) -> None:
+def _draw_laws(
+    axes: Axes, knob: Knob, studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]
+) -> None:
     """Draw the errors of one knob and their laws, a colour a scene."""
     for study, colour, marker in zip(studies, style.COLOURS, style.MARKERS, strict=False):
         scene = study.scene

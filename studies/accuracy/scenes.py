@@ -10,11 +10,11 @@ import numpy as np
 
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.laws import KNOBS, MEASURED, Knob, Knobs, chosen_knobs
 from crackfront.simulate.numerics import Numerics, simulation_of
 from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.sphere.cycle import FullCycle
 
 Progress = Callable[[str], None]
 """What is called with a line when a part of a study is done."""
@@ -137,7 +137,7 @@ class Scene:
             self.kind,
             self.spectrum,
             self.elastic_energy,
-            LoadSchedule(1.0, self.step),
+            FullCycle(1.0, self.step),
             Numerics(knobs, tile_roll_offs=1.0, tile_cutoffs=self.tile_cutoffs),
             seed=_SEED,
             realisation=realisation,

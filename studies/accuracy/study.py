@@ -19,7 +19,7 @@ from crackfront.core.variables import ADHESION, FORCE, variable
 from crackfront.simulate.costs import featured_cost, features
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.simulation import simulation_field
-from crackfront.simulate.steady import forward_circle
+from crackfront.simulate.sphere.steady import forward_circle
 from studies.accuracy.scenes import Progress, Scene, Setting
 
 _RUN, _BRANCH, _PER_CUTOFF = "realisation", "branch", "1 / short cutoff"

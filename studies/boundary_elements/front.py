@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.touch import checked_touch
-from crackfront.core.field.fields import RayField, polar_field
-from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.field.fields import RayField
+from crackfront.core.geometry.sphere import ContactState, polar_field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from studies.boundary_elements.cases import Case

@@ -19,6 +19,7 @@ from crackfront.analysis.law import spectral_breadth
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
 from crackfront.core.variables import variable
 from crackfront.data.files import read_dataset
+from crackfront.simulate.line.loads import LineLoad
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.sweep import Sweep
 
@@ -128,7 +129,7 @@ def law_cells(configuration: Path) -> list[LawCell]:
     """Cells of one sweep of straight fronts that has been run; spheres are a ValueError."""
     sweep = load_configuration(configuration)
     load = sweep.schedule
-    if not load.straight:
+    if not isinstance(load, LineLoad):
         raise ValueError(f"{configuration} runs spheres; the law is measured on straight fronts")
     dataset, cells = read_dataset(results_folder(configuration) / "hysteresis.nc"), []
     for (place, amplitude), found in cell_means(sweep.kind, dataset).items():

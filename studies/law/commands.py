@@ -12,7 +12,7 @@ import click
 from crackfront.cli.report import FILE, examples, refuse_unwritable
 from crackfront.data.files import write_text
 from crackfront.plots.style import save_picture
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 from studies.law.cells import LawCell, csv_rows, csv_text, law_cells, measured_cells
 from studies.law.drawing import law_figure, spectra_points

@@ -17,7 +17,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.files import read_dataset
 from crackfront.simulate.numerics import Numerics, simulation_of
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.table import sweep_row
 from studies.law.cells import COLUMNS, Means, cell_means, csv_rows, mean_factors
@@ -66,7 +66,7 @@ def sphere_rows(configuration: Path) -> Iterator[SphereRow]:
     Full cycles, straight fronts, and spectra that are not self-affine are a ValueError.
     """
     sweep = load_configuration(configuration)
-    if sweep.schedule.straight or sweep.schedule.full_cycle:
+    if not isinstance(sweep.schedule, SteadySchedule):
         raise ValueError(f"{configuration} does not run the steady branches of spheres")
     dataset = read_dataset(results_folder(configuration) / "hysteresis.nc")
     radius = (dataset.lowest_radius + dataset.highest_radius).mean("realisation") / 2

@@ -14,7 +14,7 @@ from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import polar_field
+from crackfront.core.geometry.sphere import polar_field
 from crackfront.core.outcome import Direction
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable

@@ -13,12 +13,12 @@ from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.data.section import Positive, refusal
 from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.sphere.cycle import FullCycle
 from studies.paper.figure import Integers
 from studies.paper.film import FilmSection
 from studies.paper.measured import ForceRadius, read_force_radius
@@ -90,7 +90,7 @@ class NanodiamondParameters(RoughParameters, FilmSection):
         # The approach is pinned: at this force it is smaller than a sphere with the mean adhesion.
         largest = jkr.radius_at_force(self.largest_force / scales.force, 1 - energy)
         deepest = float(jkr.equilibrium_penetration(largest, 1 - energy))
-        schedule = LoadSchedule(deepest, self.step / scales.vertical)
+        schedule = FullCycle(deepest, self.step / scales.vertical)
         return self.simulation_of(reduced, energy, schedule)
 
     def points(self) -> ForceRadius:

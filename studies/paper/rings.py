@@ -15,7 +15,8 @@ from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, Step, follow
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import RayField, polar_field
+from crackfront.core.field.fields import RayField
+from crackfront.core.geometry.sphere import polar_field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION

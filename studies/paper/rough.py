@@ -16,7 +16,6 @@ from crackfront.core.adhesion import larkin_length
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import first_touch, refuse_outgrown
 from crackfront.core.field.fields import TileField
 from crackfront.core.outcome import Direction, Status
@@ -29,6 +28,7 @@ from crackfront.simulate.laws import chosen_knobs, measured_energies
 from crackfront.simulate.numerics import Numerics, missed_error, simulation_of
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
+from crackfront.simulate.sphere.cycle import FullCycle
 from studies.paper.figure import Check
 
 ONE_DIGIT = 0.5
@@ -49,7 +49,7 @@ class RoughParameters(Section):
     tile_roll_offs: Positive  # side of the periodic tile, 200 short cutoffs or more
 
     def simulation_of(
-        self, spectrum: SelfAffineSpectrum, elastic_energy: float, schedule: LoadSchedule
+        self, spectrum: SelfAffineSpectrum, elastic_energy: float, schedule: FullCycle
     ) -> Simulation:
         """Simulation of the first surface of the seed; refused if its numerics miss the error."""
         numerics = Numerics(self.error, self.tile_roll_offs)
@@ -91,9 +91,9 @@ class RoughCycleParameters(RoughParameters):
         return flat_spectrum(self.short_cutoff)
 
     @property
-    def schedule(self) -> LoadSchedule:
+    def schedule(self) -> FullCycle:
         """Penetrations to visit."""
-        return LoadSchedule(self.max_penetration, self.step)
+        return FullCycle(self.max_penetration, self.step)
 
     def simulation(self) -> Simulation:
         """The simulation."""
@@ -123,7 +123,7 @@ class DisorderParameters(Section):
             "roughness",
             spectrum,
             elastic_energy,
-            LoadSchedule(self.max_penetration, max(self.max_penetration, 1.0)),
+            FullCycle(self.max_penetration, max(self.max_penetration, 1.0)),
             Numerics(knobs, side / self.short_cutoff, tile_cutoffs=1.0),
             seed=self.seed,
             realisation=realisation,

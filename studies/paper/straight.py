@@ -14,12 +14,12 @@ from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, follow
 from crackfront.core.field.fields import TileField
-from crackfront.core.geometry.line import straight_front
+from crackfront.core.geometry.line import initial_front
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Solver
 from crackfront.data.section import Positive, Section
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.line_loads import LineLoad
+from crackfront.simulate.line.loads import LineLoad
 from crackfront.simulate.numerics import Numerics, simulation_of
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from studies.paper.rough import flat_spectrum
@@ -68,7 +68,7 @@ class StraightParameters(Section):
         begun = StraightFront(
             field=field,
             solver=simulation.solver,
-            front=straight_front(field, adhesion, 0.0),
+            front=initial_front(field, adhesion, 0.0),
             load=schedule.lead_in,
             period=schedule.period,
             spring=schedule.spring,

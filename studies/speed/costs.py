@@ -14,19 +14,19 @@ from itertools import product
 
 import numpy as np
 
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.costs import Features, Measured, features, measured_runs, predicted_seconds
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.numerics import Numerics, simulation_of
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.steady import SteadySchedule
 
 KNOBS = Knobs(None, 2.4, 4, "cubic", 4, 1e-4)
 ENERGIES = (0.002, 0.01, 0.05, 0.15)
 STEADY = SteadySchedule(start=1.0, max_penetration=1.5, travel=1.5, standard_error=0.1)
-CYCLE = LoadSchedule(1.0, 0.1)
+CYCLE = FullCycle(1.0, 0.1)
 
 _PASSES, _LONG = 4, 20.0
 """Times that a simulation is run, and seconds from which once is enough."""
@@ -36,7 +36,7 @@ def _simulation(
     name: str,
     shape: tuple[float, float, float],
     energy: float,
-    schedule: LoadSchedule | SteadySchedule,
+    schedule: FullCycle | SteadySchedule,
     knobs: Knobs = KNOBS,
     cutoffs: float = 200.0,
 ) -> Simulation:
@@ -80,10 +80,10 @@ def held_out() -> Iterator[Simulation]:
         yield _simulation("flat", (0.0125, 0.0125, 1.0), energy, STEADY)
         yield _simulation("h03", (0.008, 0.16, 0.3), energy, STEADY)
         yield _simulation("h08", (0.025, 0.2, 0.8), energy, longer, finer)
-        yield _simulation("h08", (0.02, 0.32, 0.8), energy, LoadSchedule(1.0, 0.05))
-        yield _simulation("flat", (0.015, 0.015, 1.0), energy, LoadSchedule(0.5, 0.05), finer)
-        yield _simulation("h08", (0.2, 0.8, 0.8), energy, LoadSchedule(1.0, 0.05), cutoffs=30)
-        yield _simulation("flat", (0.4, 0.4, 1.0), energy, LoadSchedule(2.0, 0.1), finer, 20)
+        yield _simulation("h08", (0.02, 0.32, 0.8), energy, FullCycle(1.0, 0.05))
+        yield _simulation("flat", (0.015, 0.015, 1.0), energy, FullCycle(0.5, 0.05), finer)
+        yield _simulation("h08", (0.2, 0.8, 0.8), energy, FullCycle(1.0, 0.05), cutoffs=30)
+        yield _simulation("flat", (0.4, 0.4, 1.0), energy, FullCycle(2.0, 0.1), finer, 20)
     for energy in (0.02, 0.1):
         yield _simulation("h08", (0.0008, 0.0128, 0.8), energy, STEADY)
 

@@ -16,9 +16,9 @@ import numpy as np
 
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import Field, first_place, polar_field
+from crackfront.core.field.fields import Field, first_place
 from crackfront.core.field.samples import make_memory
+from crackfront.core.geometry.sphere import polar_field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -31,7 +31,8 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.numerics import Numerics, simulation_of
 from crackfront.simulate.run import compile_solver, run_simulation
 from crackfront.simulate.simulation import Simulation, simulation_field
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.steady import SteadySchedule
 from studies.pages import markdown_table
 from studies.speed.machine import peak_memory, restart_peak
 
@@ -50,14 +51,14 @@ class Scene:
 
     spectrum: SelfAffineSpectrum
     tile_cutoffs: float
-    cycle: LoadSchedule
+    cycle: FullCycle
     steady: SteadySchedule
 
 
 SCENE = Scene(
     SelfAffineSpectrum(0.0025, 0.04, 0.8),
     tile_cutoffs=200,
-    cycle=LoadSchedule(1.0, 0.05),
+    cycle=FullCycle(1.0, 0.05),
     steady=SteadySchedule(start=0.5, max_penetration=1.0, travel=1.5, standard_error=0.1),
 )
 """The surface h08 of config/default.yaml at its numerics and e_el = 0.05 w_int."""
@@ -131,7 +132,7 @@ def ring_field(scene: Scene, rays: int) -> Field:
 def measured(scene: Scene, need: Need) -> Row:
     """Cost of one request, kernels loaded; then its file, whose dataset first imports xarray."""
     compile_solver("newton")
-    run_cycle(ring_field(SMALL, 1), LoadSchedule(0.0, 1.0))
+    run_cycle(ring_field(SMALL, 1), FullCycle(0.0, 1.0))
     before, start = restart_peak(), time.process_time()
     field: Field
     if need.rays:

@@ -28,7 +28,7 @@ from crackfront.simulate.files import simulation_dataset
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry
-from crackfront.sweep.needs import late_needs
+from crackfront.sweep.needs import postprocessing_costs
 from crackfront.sweep.parallel import default_launcher
 from crackfront.sweep.store import Store
 from crackfront.sweep.table import row_fingerprint, sweep_row
@@ -194,7 +194,7 @@ def late_table(sizes: Sequence[int]) -> str:
     for n_row in sizes:
         with tempfile.TemporaryDirectory() as folder:
             path = synthetic(Path(folder), n_row)
-            for name, cost in late_needs(load_configuration(path)).items():
+            for name, cost in postprocessing_costs(load_configuration(path)).items():
                 seconds, peak = in_fresh_process(late, path, name)
                 numbers = seconds, cost.seconds, peak / 1e6, cost.memory / 1e6
                 rows.append([name, f"{n_row}", *(f"{number:.0f}" for number in numbers)])

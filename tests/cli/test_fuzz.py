@@ -160,7 +160,7 @@ NUMERICS = {
     "max_sweeps": 100000,
     "solver": "newton",
 }
-LINE = {"springs": [4.0], "length": 8.0, "period": 20.0, "transient": 3.0, "step": 2.0}
+LINE = {"springs": [4.0], "length": 10.0, "period": 20.0, "transient": 3.0, "step": 2.0}
 
 
 def good_configuration(rng):

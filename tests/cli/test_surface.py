@@ -12,7 +12,7 @@ import crackfront as cf
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.core.variables import variables
-from crackfront.simulate.given import read_field, surface_adhesion
+from crackfront.simulate.user_surface import read_field, surface_adhesion
 from crackfront.topography.prediction.prediction import Prediction, predicted
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import measured_surface, read_surface

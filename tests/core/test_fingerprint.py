@@ -10,8 +10,10 @@ import pytest
 
 from crackfront.core import fingerprint as module
 from crackfront.core.fingerprint import fingerprint, module_digests, solver_fingerprint
+from crackfront.simulate.line.schedule import LineSchedule
 from crackfront.simulate.simulation import simulation_fingerprint
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.table import row_fingerprint
 from studies.paper.figure import checks_fingerprint, drawing_fingerprint, figure_fingerprint
 
@@ -38,9 +40,9 @@ def edited(path, *changes):
     path.write_text(text, "utf-8")
 
 
-def key_part():
-    """What the key of a simulation has of the sources."""
-    return simulation_fingerprint.__wrapped__()
+def key_part(kind=FullCycle):
+    """What the key of a simulation under a kind of load has of the sources."""
+    return simulation_fingerprint.__wrapped__(kind)
 
 
 def parameters():
@@ -121,6 +123,9 @@ def test_docstrings_comments_and_blank_lines_change_nothing(sources):
     assert parameters() == before
 
 
+LINE = "crackfront/simulate/line/schedule.py"
+
+
 @pytest.mark.parametrize(
     ("place", "change"),
     [
@@ -129,14 +134,35 @@ def test_docstrings_comments_and_blank_lines_change_nothing(sources):
         ("crackfront/core/units.py", ("CONTACT_MODULUS = 0.75", "CONTACT_MODULUS = 0.7500001")),
         ("crackfront/core/spectrum.py", (r"\(-2 - 2 \* self", "(-2.1 - 2 * self")),
         ("crackfront/core/geometry/line.py", ("_spring_force.*\n.*\n    return", r"\g<0> 2 *")),
-        ("crackfront/simulate/lines.py", ("^_BEHIND = 1.3", "_BEHIND = 1.4")),
+        (LINE, ("^_BEHIND = 1.3", "_BEHIND = 1.4")),
+        ("crackfront/simulate/tiles.py", (r"= 2 \* math.sqrt", "= 3 * math.sqrt")),
         ("crackfront/core/cycle/follow.py", ("is Status.CONVERGED", "is Status.STEP_LIMIT")),
     ],
 )
 def test_what_determines_the_numbers_of_a_simulation_changes_its_key(sources, place, change):
+    before = key_part(LineSchedule)
+    edited(sources / place, change)
+    assert key_part(LineSchedule) != before
+
+
+@pytest.mark.parametrize(
+    ("place", "change"),
+    [
+        (KERNEL, ("^_BETWEEN = 13", "_BETWEEN = 14")),
+        ("crackfront/core/geometry/sphere.py", ("perimeter", "circumference")),
+        ("crackfront/simulate/sphere/cycle.py", (r"2 \* math.pi", "3 * math.pi")),
+    ],
+)
+def test_what_determines_the_numbers_of_a_sphere_changes_its_key(sources, place, change):
     before = key_part()
     edited(sources / place, change)
     assert key_part() != before
+
+
+def test_what_determines_straight_fronts_alone_changes_no_key_of_spheres(sources):
+    before = key_part()
+    edited(sources / LINE, ("^_BEHIND = 1.3", "_BEHIND = 1.4"))
+    assert key_part() == before
 
 
 def test_every_module_that_a_simulation_runs_counts_in_its_key():
@@ -170,12 +196,14 @@ assert called <= counted.keys(), called - counted.keys()
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("kind", ["crackfront.simulate.run", SteadySchedule.__module__])
+@pytest.mark.parametrize(
+    "kind", ["crackfront.simulate.run", LineSchedule.__module__, SteadySchedule.__module__]
+)
 def test_what_shows_plans_stores_or_evaluates_simulations_is_no_part_of_them(kind):
     counted = [name.removeprefix("crackfront.") for name in module_digests(kind)]
     outside = {name for name in counted if not name.startswith(("core.", "simulate."))}
     assert outside <= {"analysis.measures", "analysis.standard_error"}
-    planned = {f"simulate.{name}" for name in ("laws", "numerics", "costs", "line_loads", "files")}
+    planned = {f"simulate.{name}" for name in ("laws", "numerics", "costs", "line.loads", "files")}
     assert not planned & {*counted}
 
 

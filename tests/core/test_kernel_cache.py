@@ -192,7 +192,7 @@ def test_a_cache_of_which_each_file_is_damaged_does_not_end_a_command(tmp_path):
 
 def test_the_folder_bears_the_fingerprint_of_all_modules_that_hold_kernels(fresh_cache):
     assert kernel_cache.kernel_folder().name == f"kernels-{solver_fingerprint()}"
-    parts = "cycle.run", "geometry.line", "solver.relax"
+    parts = "cycle.run", "geometry.line", "geometry.sphere", "solver.relax"
     counted = module_digests(*(f"crackfront.core.{part}" for part in parts))
     holding = {
         ".".join(path.relative_to(ROOT).with_suffix("").parts)

@@ -36,9 +36,9 @@ from crackfront.simulate.files import (
     read_simulation,
     simulation_dataset,
 )
-from crackfront.simulate.given import read_field, surface_adhesion
 from crackfront.simulate.numerics import numerical_error
 from crackfront.simulate.run import SimulationResult, run_simulation
+from crackfront.simulate.user_surface import read_field, surface_adhesion
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fit_files import write_fit
 from crackfront.sweep.table import read_statuses, read_table, rows_dataset, sweep_row

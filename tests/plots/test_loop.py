@@ -9,8 +9,8 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import polar_field
 from crackfront.core.geometry.line import LineState
+from crackfront.core.geometry.sphere import polar_field
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.loop import draw_loop, draw_pinning, steady_loop_figure
@@ -47,7 +47,7 @@ def line_states(n_step=9):
     pinning = np.where(load < 4, 0.0, 0.2)
     zero = np.zeros(2 * n_step)
     return LineState(
-        load=np.concatenate([load, load[::-1]]),
+        spring_position=np.concatenate([load, load[::-1]]),
         direction=np.repeat([1, -1], n_step),
         mean_position=zero,
         rms_position=zero,

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from crackfront.core.adhesion import correlation_length, rough_adhesion
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.simulate.costs import expected_cost, features, integral_breadth, measured_runs
+from crackfront.simulate.costs import expected_cost, features, measured_runs
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.steady import integral_breadth
 from crackfront.sweep.configuration import load_configuration
 from studies.speed import costs as benchmark
 
@@ -52,7 +53,7 @@ def test_numbers_of_states_are_predicted_too():
 
 @pytest.mark.parametrize("step", [0.05, 0.2])
 def test_a_cycle_finds_the_states_that_were_expected(step):
-    simulation = replace(ONE, schedule=LoadSchedule(1.0, step))
+    simulation = replace(ONE, schedule=FullCycle(1.0, step))
     measured = benchmark.measured(simulation, held=True)
     assert measured.n_state == pytest.approx(measured.features.n_state, abs=1.5)
 
@@ -69,7 +70,7 @@ def test_more_sites_cost_more_time_and_more_points_more_memory():
 
 
 def test_a_state_takes_time_however_near_the_last_one_is():
-    near, nearer = (replace(ONE, schedule=LoadSchedule(1.0, step)) for step in (1e-6, 1e-7))
+    near, nearer = (replace(ONE, schedule=FullCycle(1.0, step)) for step in (1e-6, 1e-7))
     assert expected_cost(near).seconds > 5e-5 * features(near).n_state
     assert expected_cost(nearer).seconds == pytest.approx(10 * expected_cost(near).seconds, rel=0.1)
 

@@ -6,19 +6,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.data.files import UnreadableFileError
 from crackfront.data.provenance import provenance
 from crackfront.simulate.files import read_checkpoint, write_checkpoint
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 
 CONFIG = Path(__file__).parents[2] / "config"
 SWEEP, LINES = (load_configuration(CONFIG / name) for name in ("test.yaml", "line-test.yaml"))
 CYCLE = replace(
     SWEEP.simulation(SWEEP.spectra[1], 0.1, 0),
-    schedule=LoadSchedule(0.5, 0.125),
+    schedule=FullCycle(0.5, 0.125),
     record_fronts=True,
     record_energy=True,
 )
@@ -65,7 +65,7 @@ def test_a_record_without_fronts_and_energies_goes_on_too(tmp_path):
 def test_a_checkpoint_of_another_load_is_refused():
     _, found = checkpoints(CYCLE)
     with pytest.raises(ValueError, match="it is that of another load"):
-        run_simulation(replace(CYCLE, schedule=LoadSchedule(0.5, 0.25)), resume=found[5])
+        run_simulation(replace(CYCLE, schedule=FullCycle(0.5, 0.25)), resume=found[5])
 
 
 def test_a_truncated_checkpoint_and_that_of_another_simulation_are_refused(tmp_path):

@@ -8,9 +8,8 @@ from scipy.optimize import brentq
 
 from crackfront.core.adhesion import AdhesionMap, correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.field.fields import polar_field
-from crackfront.core.geometry.line import line_field, straight_front
-from crackfront.core.geometry.sphere import sphere
+from crackfront.core.geometry.line import initial_front, line_field
+from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.solver.relax import Newton, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
@@ -136,7 +135,7 @@ def test_a_straight_front_on_a_wave_jumps_once_a_period_from_where_its_load_turn
     wave = 1 + amplitude * np.sin(q * np.arange(wavelength))
     adhesion = AdhesionMap(WORK_OF_ADHESION * np.repeat(wave[:, None], n_y, axis=1), 1.0, 0.0, 0.0)
     field = line_field(adhesion, spring, (0.0, 300.0))
-    front = straight_front(field, adhesion, 100.0)
+    front = initial_front(field, adhesion, 100.0)
     solver = Newton(1e-11)
     front = relax(front, 100.0, 1, field, solver).front
     options = {"travel": 1.0, "precision": 1e-6, "solver": solver}

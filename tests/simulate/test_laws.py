@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
-from crackfront.simulate.laws import KNOBS, LAW_SIZE, chosen_knobs, combined_error, read_laws
+from crackfront.simulate.front_sizes import LAW_SIZE
+from crackfront.simulate.laws import KNOBS, chosen_knobs, combined_error, read_laws
 from crackfront.simulate.numerics import numerical_error
 from studies.accuracy.scenes import SCENES, with_knob
 
@@ -189,9 +190,7 @@ def test_few_cutoffs_along_the_front_ask_for_finer_numerics():
 
 def test_a_straight_front_asks_for_the_same_in_all_units():
     found = {
-        chosen_knobs(
-            0.03, "roughness", SelfAffineSpectrum(size, 4 * size, 0.8), 0.005, straight=True
-        )
+        chosen_knobs(0.03, "roughness", SelfAffineSpectrum(size, 4 * size, 0.8), 0.005, LAW_SIZE)
         for size in (1e-3, 0.02, 1.0)
     }
     assert len(found) == 1

@@ -8,7 +8,6 @@ import pytest
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import correlation_length
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton, Reference
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -17,6 +16,7 @@ from crackfront.simulate.laws import Knobs
 from crackfront.simulate.numerics import Numerics, resolution
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation, simulation_adhesion
+from crackfront.simulate.sphere.cycle import FullCycle
 
 KNOBS = Knobs(None, 2, 4, "cubic", 4, 1e-6)
 NUMERICS = Numerics(KNOBS, 10, 20, max_sweeps=100_000, solver="reference")
@@ -30,11 +30,11 @@ SIMULATION = Simulation(
     resolution=Resolution(
         n_angle=64, spacing=0.025, interpolation="cubic", tile_side=4.0, n_point=80
     ),
-    schedule=LoadSchedule(0.5, 0.25),
+    schedule=FullCycle(0.5, 0.25),
     solver=Reference(1e-6, max_sweeps=100_000),
 )
 
-CYCLE = LoadSchedule(1.0, 0.1)
+CYCLE = FullCycle(1.0, 0.1)
 
 
 def test_the_tile_resolves_the_cutoff_and_holds_the_roll_off():
@@ -75,7 +75,7 @@ def test_given_angles_are_taken_as_they_are():
         {"realisation": 1},
         {"sweep_seed": 2},
         {"resolution": Resolution(64, 0.025, "cubic", 4.0, 81)},
-        {"schedule": LoadSchedule(0.5, 0.125)},
+        {"schedule": FullCycle(0.5, 0.125)},
         {"solver": Reference(1e-7, max_sweeps=100_000)},
         {"solver": Reference(1e-6, max_sweeps=1)},
         {"solver": Newton(1e-6, max_sweeps=100_000)},

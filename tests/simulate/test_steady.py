@@ -9,20 +9,24 @@ import pytest
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import correlation_length
-from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import first_touch
-from crackfront.core.field.fields import polar_field
 from crackfront.core.field.rays import front_adhesion
+from crackfront.core.geometry.sphere import contact_field, polar_field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation, simulation_adhesion
-from crackfront.simulate.steady import SteadySchedule, forward_circle, own_part, standard_error
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.steady import (
+    SteadySchedule,
+    forward_circle,
+    own_part,
+    standard_error,
+)
 
 SPECTRUM = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
 LENGTH = correlation_length("roughness", SPECTRUM)
@@ -149,7 +153,7 @@ def test_the_hysteresis_agrees_with_that_of_the_full_cycle_at_a_part_of_the_work
     for realisation in range(6):
         one = simulation(realisation=realisation)
         steady = run_simulation(one).record
-        cycle = run_simulation(replace(one, schedule=LoadSchedule(1.6, 0.05))).record
+        cycle = run_simulation(replace(one, schedule=FullCycle(1.6, 0.05))).record
         differences.append(
             steady_adhesion(steady, LENGTH).hysteresis - steady_adhesion(cycle, LENGTH).hysteresis
         )

@@ -15,7 +15,7 @@ from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.data.section import ConfigurationError, movable_text
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.table import failed_row, read_table, rows_dataset
 from crackfront.topography.options import ReadingOptions

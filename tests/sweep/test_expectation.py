@@ -5,16 +5,16 @@ from dataclasses import replace
 import pytest
 
 from crackfront.analysis.steady import steady_adhesion
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.numerics import Numerics, simulation_of
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.expectation import expectation
 
 NUMERICS = Numerics(Knobs(None, 4, 4, "cubic", 4, 1e-5), tile_roll_offs=4, tile_cutoffs=40)
-SHALLOW = (LoadSchedule(0.1, 0.02), SteadySchedule(0.0, 0.1, 0.5, 0.05))
+SHALLOW = (FullCycle(0.1, 0.02), SteadySchedule(0.0, 0.1, 0.5, 0.05))
 
 
 @pytest.mark.parametrize("schedule", SHALLOW, ids=["cycle", "steady"])

@@ -20,7 +20,7 @@ FLAT, ROUGH = SWEEP.shards()
 
 def fingerprint(sweep=SWEEP, shard=FLAT):
     """Fingerprint of a shard of a sweep."""
-    return shard_fingerprint(sweep.firsts(shard.item), shard.realisations)
+    return shard_fingerprint(sweep.one_per_amplitude(shard.item), shard.realisations)
 
 
 def rows(shard=FLAT):

@@ -9,7 +9,7 @@ import pytest
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.given import surface_adhesion
+from crackfront.simulate.user_surface import surface_adhesion
 from crackfront.topography.density.bands import scan as scan_of
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import read_measurements

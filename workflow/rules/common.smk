@@ -12,7 +12,7 @@ sys.path.insert(0, str(BASE))  # where the studies stand
 from crackfront.core.fingerprint import fingerprint
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import load_configuration, results_folder
-from crackfront.sweep.needs import late_needs
+from crackfront.sweep.needs import postprocessing_costs
 from crackfront.sweep.shards import shard_fingerprint
 from studies.boundary_elements.parameters import load_validation
 from studies.paper.figure import (
@@ -66,8 +66,8 @@ except ValueError as error:
 SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
 PAPER = f"results/figures/{SCALE}"
 ACCURACY = "results/accuracy"
-NEEDS = late_needs(SWEEP)
-FIRSTS = {item.name: SWEEP.firsts(item) for item in SWEEP.spectra}
+NEEDS = postprocessing_costs(SWEEP)
+FIRSTS = {item.name: SWEEP.one_per_amplitude(item) for item in SWEEP.spectra}
 RANK_BYTES = max(
     expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts
 )

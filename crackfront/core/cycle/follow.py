@@ -17,7 +17,7 @@ class Load(NamedTuple):
     """A load and how it is reached."""
 
     value: float
-    """Penetration of a sphere. (Units: reduced vertical length)"""
+    """Penetration (Units: reduced vertical length), or place of springs (Units: lateral)."""
     direction: Direction
     """Direction in which it is reached."""
     start: Array | None = None
@@ -90,5 +90,6 @@ def front_at(field: Field, front: Array, load: Load, solver: Solver | None = Non
     """
     step = next(follow(field, front, [load], solver))
     if step.status is not Status.CONVERGED:
-        raise ValueError(f"at penetration {load.value:.6g}: {step.status.value}")
+        noun = field.geometry.state_type.load_noun
+        raise ValueError(f"at {noun} {load.value:.6g}: {step.status.value}")
     return step.front

@@ -120,7 +120,7 @@ class Recorder:
             known = getattr(state, fields(state)[0].name), state.direction
             if known != (load.value, load.direction):
                 raise ValueError(
-                    f"the checkpoint goes to penetration {known[0]} where this run goes to "
+                    f"the checkpoint goes to {state.load_noun} {known[0]} where this run goes to "
                     f"{load.value}; it is that of another load"
                 )
             self.states.append(state)
@@ -147,6 +147,12 @@ class Recorder:
             self._fronts.append(step.front)
         for observer in self._observers:
             observer(self)
+
+    @property
+    def load_noun(self) -> str:
+        """What messages call the load."""
+        noun: str = self._field.geometry.state_type.load_noun
+        return noun
 
     @property
     def load_name(self) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.field.fields import Field
 from crackfront.core.solver.relax import Solver
 
@@ -38,4 +39,6 @@ def run_cycle(
         If a smooth sphere would already outgrow the field at the largest penetration, or the field
         begins too far outside to make contact in.
     """
-    return schedule.run(field, solver, recorder or Recorder())
+    recorder = recorder or Recorder()
+    recorder.run(field, checked_touch(field, schedule.max_penetration), schedule.loads(), solver)
+    return recorder.record()

@@ -1,25 +1,14 @@
-"""Kinds of load with the methods that simulations use, and the loads of a full cycle."""
+"""Loads of a full cycle of a sphere, and loads in any order."""
 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
-from crackfront.core import jkr
-from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.contact import contact_field
 from crackfront.core.cycle.follow import Load
-from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.touch import checked_touch
-from crackfront.core.field.fields import Field, Interpolation, TileField
-from crackfront.core.geometry.base import Geometry
-from crackfront.core.geometry.sphere import sphere
 from crackfront.core.outcome import Direction
-from crackfront.core.solver.relax import Solver
 
 DEFAULT_STEP = 0.004
 """Load step that leaves the dissipated energies of a full cycle within 1% of the quasi-static loop.
@@ -28,111 +17,8 @@ docs/experiments/hard-cases.md has the measure. (Units: reduced vertical length)
 """
 
 
-class Schedule(ABC):
-    """A kind of load, with the methods that simulations use.
-
-    A kind is a frozen dataclass, whose fields enter the keys of simulations, with these attributes
-    and the methods that are abstract here.
-    """
-
-    __slots__ = ()
-
-    straight: bool
-    """Whether the front is a straight one on springs."""
-    full_cycle = False
-    """Whether the load goes from first contact to pull-off."""
-    uncorrelated: bool
-    """Whether sites are independent of each other."""
-    max_penetration: float
-    """Largest penetration of a sphere; else 0. (Units: reduced vertical length)"""
-    spring: float
-    """Length of the springs of a straight front; else NaN. (Units: length)"""
-
-    @property
-    @abstractmethod
-    def n_period(self) -> int | None:
-        """States at the end of each branch that are averaged; None where travel decides."""
-
-    @property
-    @abstractmethod
-    def front_length(self) -> float:
-        """Length of the longest front that is smooth (Units: length)."""
-
-    @abstractmethod
-    def fitted(self, side: float, spacing: float) -> tuple[float, float]:
-        """Side of the tile along the front, of a least one, and distance of samples, of a largest.
-
-        (Units: length)
-        """
-
-    @abstractmethod
-    def tile(self, n_point: int, side: float) -> tuple[tuple[int, int], tuple[float, float]]:
-        """Points and sides along x and y of a tile with so many points on its side along y."""
-
-    @abstractmethod
-    def geometry(self, n_site: int) -> Geometry:
-        """Contact, whose springs do not pull at w_int."""
-
-    @abstractmethod
-    def field(
-        self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
-    ) -> TileField:
-        """Field of a tile, as of :func:`crackfront.core.contact.contact_field`."""
-
-    @abstractmethod
-    def run(
-        self,
-        field: Any,
-        solver: Solver,
-        recorder: Recorder,
-        *,
-        correlation_length: float,
-        elastic_energy: float,
-    ) -> CycleRecord:
-        """States of the whole load on a field of a correlation length and an e_el (w_int)."""
-
-    def for_surface(self, *_: object) -> Schedule:
-        """Loads on one surface, by default the same on all."""
-        return self
-
-
-class SphereSchedule(Schedule):
-    """Loads of a sphere on a square tile, up to a largest penetration."""
-
-    __slots__ = ()
-
-    straight = uncorrelated = False
-    spring = math.nan
-    n_period = None
-
-    @property
-    def front_length(self) -> float:
-        """Length of the longest front that is smooth (Units: length)."""
-        return 2 * math.pi * float(jkr.equilibrium_radius(self.max_penetration))
-
-    def fitted(self, side: float, spacing: float) -> tuple[float, float]:
-        """The side and the distance themselves."""
-        return side, spacing
-
-    def tile(self, n_point: int, side: float) -> tuple[tuple[int, int], tuple[float, float]]:
-        """As many points along x."""
-        return (n_point, n_point), (side, side)
-
-    def geometry(self, n_site: int) -> Geometry:
-        """Sphere with so many rays."""
-        return sphere(n_site)
-
-    def field(
-        self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
-    ) -> TileField:
-        """Field of a tile up to the largest penetration."""
-        return contact_field(
-            adhesion, self.max_penetration, n_site, spacing, interpolation, band_limited=True
-        )
-
-
 @dataclass(frozen=True, slots=True)
-class LoadSchedule(SphereSchedule):
+class LoadSchedule:
     """Penetrations 0, step, 2 step ... max, and back until contact is lost.
 
     Parameters
@@ -157,8 +43,6 @@ class LoadSchedule(SphereSchedule):
 
     max_penetration: float
     step: float
-
-    full_cycle = True
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.step) and self.step > 0):
@@ -194,13 +78,6 @@ class LoadSchedule(SphereSchedule):
         """Penetrations of a whole cycle, without end, each with its direction."""
         yield from (Load(penetration, 1) for penetration in self.approach())
         yield from (Load(penetration, -1) for penetration in self.retraction())
-
-    def run(
-        self, field: Field, solver: Solver | None, recorder: Recorder, **_: float
-    ) -> CycleRecord:
-        """States from first contact to pull-off."""
-        recorder.run(field, checked_touch(field, self.max_penetration), self.loads(), solver)
-        return recorder.record()
 
 
 def protocol(loads: Sequence[float], step: float = math.inf) -> Iterator[Load]:

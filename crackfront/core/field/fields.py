@@ -10,7 +10,6 @@ from scipy.ndimage import spline_filter
 
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.arrays import Array
-from crackfront.core.geometry.sphere import sphere
 
 Interpolation = Literal["cubic", "linear"]
 
@@ -81,65 +80,6 @@ def last_place(field: Field) -> float:
     return field.n_sample * field.spacing + field.origin
 
 
-def polar_field(
-    radii: Array, work_of_adhesion: Array, interpolation: Interpolation = "linear"
-) -> RayField:
-    """Field from samples on rays at equally spaced angles.
-
-    Parameters
-    ----------
-    radii : (n_sample,) array
-        Increasing radii. A leading zero is dropped: the product vanishes there.
-        (Units: reduced lateral length)
-    work_of_adhesion : (n_sample, n_angle) or (n_sample,) array
-        Local work of adhesion; on rings, where it depends on the radius alone, one ray is enough.
-        (Units: reduced energy / area, w_int = 1/pi)
-    interpolation : {"linear", "cubic"}, optional
-        Radius times work of adhesion between the samples of a ray: straight, or a cubic spline
-        through all of them.
-
-    Returns
-    -------
-    RayField
-        Field whose front has `n_angle` sites; a single one is a circle, without line elasticity.
-
-    Raises
-    ------
-    ValueError
-        If shapes disagree, radii do not increase or are negative, fewer than two samples, or two
-        or three angles are given, a value is not finite, or the interpolation is unknown.
-    """
-    _refuse_unknown(interpolation)
-    radii = np.asarray(radii, dtype=float)
-    values = np.asarray(work_of_adhesion, dtype=float)
-    if radii.ndim != 1 or values.ndim not in (1, 2) or values.shape[0] != radii.size:
-        raise ValueError(
-            f"work of adhesion has shape {values.shape} for {radii.size} radii; it must be "
-            "(radius, angle), or (radius) for rings"
-        )
-    if not np.all(np.isfinite(radii)) or np.any(np.diff(radii) <= 0) or np.any(radii < 0):
-        raise ValueError("radii must be finite, not negative and strictly increasing; sort them")
-    _refuse_unusable(values, names=("radius", "angle")[: values.ndim])
-    rays = np.atleast_2d(values.T)
-    if radii[0] == 0:
-        radii, rays = radii[1:], rays[:, 1:]
-    if radii.size < 2 or len(rays) in (0, 2, 3):
-        raise ValueError(
-            f"field has {radii.size} positive radii and {len(rays)} angles; at least 2 radii and "
-            "4 angles are needed, or 1 angle for rings"
-        )
-    products = np.ascontiguousarray(radii * rays)
-    slopes = np.empty((0, 0))
-    if interpolation == "cubic":
-        from scipy.interpolate import CubicSpline
-
-        # Ray by ray: the coefficients of all rays at once need seven times the memory.
-        slopes = np.empty_like(products)
-        for slope, product in zip(slopes, products, strict=True):
-            slope[:] = CubicSpline(radii, product)(radii, 1)
-    return RayField(sphere(len(rays)), radii.copy(), products, slopes)
-
-
 def tile_field(
     adhesion: AdhesionMap,
     geometry: Any,
@@ -182,9 +122,9 @@ def tile_field(
         If a count or length is too small, a value of the tile is not finite, or the interpolation
         is unknown.
     """
-    _refuse_unknown(interpolation)
+    refuse_unknown_interpolation(interpolation)
     values = np.asarray(adhesion.work_of_adhesion, dtype=float)
-    _refuse_unusable(values, names=("x", "y"))
+    refuse_unusable(values, names=("x", "y"))
     if values.ndim != 2:
         raise ValueError(f"work of adhesion has shape {values.shape}; a tile must be (x, y)")
     if not 0 < adhesion.pixel < np.inf:
@@ -221,14 +161,14 @@ def _mode_coefficients(values: Array) -> Array:
     return np.asarray(irfft2(modes, s=(n_x, n_y)))
 
 
-def _refuse_unknown(interpolation: str) -> None:
+def refuse_unknown_interpolation(interpolation: str) -> None:
     """Raise if there is no such interpolation."""
     if interpolation not in get_args(Interpolation):
         known = ", ".join(get_args(Interpolation))
         raise ValueError(f"interpolation is {interpolation!r}; choose one of {known}")
 
 
-def _refuse_unusable(values: Array, names: tuple[str, ...]) -> None:
+def refuse_unusable(values: Array, names: tuple[str, ...]) -> None:
     """Raise if a field holds NaN or infinity, or nothing but zeros."""
     finite = np.isfinite(values)
     if not np.all(finite):

@@ -10,12 +10,35 @@ line, which is diagonal in the modes of the front.
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+import math
+from typing import Any, ClassVar, Protocol
+
+from scipy.fft import next_fast_len
 
 from crackfront.core.arrays import Array
 from crackfront.core.compiled import dispatched, jit
-from crackfront.core.outcome import Direction, Relaxation
+from crackfront.core.outcome import Direction, Relaxation, Status
 from crackfront.core.variables import Variable
+
+
+class State(Protocol):
+    """Record of a front at rest, or of all of a cycle: a dataclass, one entry or array a field.
+
+    Its fields are made by :func:`crackfront.core.variables.variable`. The first is the load; others
+    are `direction`, `least_travel`, `iterations`, `updates` and `residual`.
+    """
+
+    load_noun: ClassVar[str]
+    """What messages call the load."""
+    front_name: ClassVar[str]
+    """Name of the fronts in files."""
+
+    @property
+    def summary(self) -> str:
+        """One state in words."""
+
+    def forces_summary(self, status: Status) -> str:
+        """Forces of all states of a cycle that ended with a status, in words."""
 
 
 class Geometry(Protocol):
@@ -31,11 +54,7 @@ class Geometry(Protocol):
 
     @property
     def state_type(self) -> type[Any]:
-        """Dataclass of what is recorded of a front at rest.
-
-        Its fields are made by :func:`crackfront.core.variables.variable`; the first is the load,
-        and one of them the direction.
-        """
+        """Dataclass of what is recorded of a front at rest, a :class:`State`."""
 
     @property
     def sites(self) -> Array:
@@ -110,3 +129,14 @@ def self_modes(n_site: int) -> float:
     The mean number of a mode: N/4 for even N, (N^2 - 1)/4N for odd N.
     """
     return n_site / 4 if n_site % 2 == 0 else (n_site**2 - 1) / (4 * n_site)
+
+
+def fast_site_count(least: float) -> int:
+    """Even number of sites, 4 or more and not below a number, whose transforms are fast.
+
+    Transforms are fast of lengths without large prime factors. From 256 sites on the number is a
+    multiple of 8, so that four pairs of sites are transformed at once; from 16384 on, of 32.
+    """
+    least = max(4.0, least * (1 - 1e-12))
+    together = 2 if least < 256 else 8 if least < 16384 else 32
+    return together * int(next_fast_len(math.ceil(least / together), real=True))

@@ -11,7 +11,7 @@ locally such a line: see docs/model.md.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from scipy.fft import rfft
@@ -21,7 +21,7 @@ from crackfront.core.arrays import Array
 from crackfront.core.compiled import implements
 from crackfront.core.field.fields import Interpolation, TileField, tile_field
 from crackfront.core.geometry import base
-from crackfront.core.outcome import Direction, Relaxation
+from crackfront.core.outcome import Direction, Relaxation, Status
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LENGTH, Variable, variable
 
@@ -32,7 +32,10 @@ Value = TypeVar("Value", float, Array)
 class LineState(Generic[Value]):
     """A metastable straight front, or all of a cycle, one entry a state."""
 
-    load: Value = variable("place of the springs' other end", LENGTH)
+    load_noun: ClassVar[str] = "load"
+    front_name: ClassVar[str] = "position"
+
+    spring_position: Value = variable("place of the springs' other end, the load", LENGTH)
     direction: Value = variable("+1 where the load advances, -1 where it recedes", "1")
     mean_position: Value = variable("mean place of the front", LENGTH)
     rms_position: Value = variable("rms deviation of the front from its mean", LENGTH)
@@ -43,12 +46,17 @@ class LineState(Generic[Value]):
     residual: Value = variable("largest force along the motion, per front length", ADHESION)
 
     @property
-    def told(self) -> str:
+    def summary(self) -> str:
         """One state in words."""
         return (
-            f"load {self.load:+.6g}, pinning force {self.pinning_force:+.4f}, "
+            f"load {self.spring_position:+.6g}, pinning force {self.pinning_force:+.4f}, "
             f"mean position {self.mean_position:.6g}, rms {self.rms_position:.4g}"
         )
+
+    def forces_summary(self, status: Status) -> str:
+        """Largest pinning forces of the states of a cycle, in words."""
+        most, least = np.max(self.pinning_force), np.min(self.pinning_force)
+        return f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
 
 
 class Line(NamedTuple):
@@ -98,7 +106,7 @@ class Line(NamedTuple):
     def variables(self) -> tuple[Variable, Variable]:
         """Places of a front, and those of its sites."""
         site = Variable("y", ("y",), LENGTH, "place of a site along the front")
-        return Variable("position", ("y",), LENGTH, "front"), site
+        return Variable(LineState.front_name, ("y",), LENGTH, "front"), site
 
     def state(
         self, found: Relaxation, load: float, direction: Direction, turn: Array
@@ -106,7 +114,7 @@ class Line(NamedTuple):
         """Quantities that are recorded of a front in equilibrium."""
         mean = float(np.mean(found.front))
         return LineState(
-            load=load,
+            spring_position=load,
             direction=direction,
             mean_position=mean,
             rms_position=float(np.std(found.front)),
@@ -181,7 +189,7 @@ def line_field(
     )
 
 
-def straight_front(field: TileField, adhesion: AdhesionMap, load: float) -> Array:
+def initial_front(field: TileField, adhesion: AdhesionMap, load: float) -> Array:
     """Straight front so far behind a load that every site is driven forward.
 
     Parameters

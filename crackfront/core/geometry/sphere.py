@@ -9,16 +9,26 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from scipy.fft import irfft, rfft
 
 from crackfront.core import jkr
+from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.arrays import Array
 from crackfront.core.compiled import implements
+from crackfront.core.field.fields import (
+    Interpolation,
+    RayField,
+    TileField,
+    refuse_unknown_interpolation,
+    refuse_unusable,
+    tile_field,
+)
 from crackfront.core.geometry import base
-from crackfront.core.outcome import Direction, Relaxation
+from crackfront.core.geometry.base import fast_site_count
+from crackfront.core.outcome import Direction, Relaxation, Status
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, Variable, variable
 
@@ -31,6 +41,9 @@ RING = CONTACT_MODULUS / (2 * np.pi)
 @dataclass(frozen=True)
 class ContactState(Generic[Value]):
     """A metastable contact, or all of a cycle, one entry a state."""
+
+    load_noun: ClassVar[str] = "penetration"
+    front_name: ClassVar[str] = "radius"
 
     penetration: Value = variable("rigid body penetration", VERTICAL)
     direction: Value = variable("+1 in approach, -1 in retraction", "1")
@@ -47,12 +60,19 @@ class ContactState(Generic[Value]):
     residual: Value = variable("largest force along the motion, per front length", ADHESION)
 
     @property
-    def told(self) -> str:
+    def summary(self) -> str:
         """One state in words."""
         return (
             f"penetration {self.penetration:+.4f}, force {self.force:+.4f}, "
             f"radius {self.mean_radius:.4f}, rms {self.rms_radius:.4f}"
         )
+
+    def forces_summary(self, status: Status) -> str:
+        """Forces of jump-in and, where contact was lost, of pull-off, in words."""
+        forces = f"jump-in force {np.ravel(self.force)[0]:.4g}"
+        if status is Status.LOST_CONTACT:
+            forces += f", pull-off force {np.min(self.force):.4g}"
+        return f"{forces} (pi w_int R)"
 
 
 class Sphere(NamedTuple):
@@ -91,7 +111,7 @@ class Sphere(NamedTuple):
     def variables(self) -> tuple[Variable, Variable]:
         """Radii of a front, and the angles of its sites."""
         angle = Variable("angle", ("angle",), "rad", "angle of a site of the front")
-        return Variable("radius", ("angle",), LATERAL, "front"), angle
+        return Variable(ContactState.front_name, ("angle",), LATERAL, "front"), angle
 
     def state(
         self, found: Relaxation, load: float, direction: Direction, turn: Array
@@ -137,6 +157,112 @@ def sphere(n_angle: int) -> Sphere:
 def _angles(count: int) -> Array:
     """Equally spaced angles, the first 0."""
     return 2 * np.pi * np.arange(count) / count
+
+
+def polar_field(
+    radii: Array, work_of_adhesion: Array, interpolation: Interpolation = "linear"
+) -> RayField:
+    """Field from samples on rays at equally spaced angles.
+
+    Parameters
+    ----------
+    radii : (n_sample,) array
+        Increasing radii. A leading zero is dropped: the product vanishes there.
+        (Units: reduced lateral length)
+    work_of_adhesion : (n_sample, n_angle) or (n_sample,) array
+        Local work of adhesion; on rings, where it depends on the radius alone, one ray is enough.
+        (Units: reduced energy / area, w_int = 1/pi)
+    interpolation : {"linear", "cubic"}, optional
+        Radius times work of adhesion between the samples of a ray: straight, or a cubic spline
+        through all of them.
+
+    Returns
+    -------
+    RayField
+        Field whose front has `n_angle` sites; a single one is a circle, without line elasticity.
+
+    Raises
+    ------
+    ValueError
+        If shapes disagree, radii do not increase or are negative, fewer than two samples, or two
+        or three angles are given, a value is not finite, or the interpolation is unknown.
+    """
+    refuse_unknown_interpolation(interpolation)
+    radii = np.asarray(radii, dtype=float)
+    values = np.asarray(work_of_adhesion, dtype=float)
+    if radii.ndim != 1 or values.ndim not in (1, 2) or values.shape[0] != radii.size:
+        raise ValueError(
+            f"work of adhesion has shape {values.shape} for {radii.size} radii; it must be "
+            "(radius, angle), or (radius) for rings"
+        )
+    if not np.all(np.isfinite(radii)) or np.any(np.diff(radii) <= 0) or np.any(radii < 0):
+        raise ValueError("radii must be finite, not negative and strictly increasing; sort them")
+    refuse_unusable(values, names=("radius", "angle")[: values.ndim])
+    rays = np.atleast_2d(values.T)
+    if radii[0] == 0:
+        radii, rays = radii[1:], rays[:, 1:]
+    if radii.size < 2 or len(rays) in (0, 2, 3):
+        raise ValueError(
+            f"field has {radii.size} positive radii and {len(rays)} angles; at least 2 radii and "
+            "4 angles are needed, or 1 angle for rings"
+        )
+    products = np.ascontiguousarray(radii * rays)
+    slopes = np.empty((0, 0))
+    if interpolation == "cubic":
+        from scipy.interpolate import CubicSpline
+
+        # Ray by ray: the coefficients of all rays at once need seven times the memory.
+        slopes = np.empty_like(products)
+        for slope, product in zip(slopes, products, strict=True):
+            slope[:] = CubicSpline(radii, product)(radii, 1)
+    return RayField(sphere(len(rays)), radii.copy(), products, slopes)
+
+
+def contact_field(
+    adhesion: AdhesionMap,
+    max_penetration: float,
+    n_angle: int | None = None,
+    spacing: float | None = None,
+    interpolation: Interpolation = "cubic",
+    *,
+    band_limited: bool = False,
+) -> TileField:
+    """Field of a sphere on a tile, which no front can leave up to a penetration.
+
+    By no passing, a front stays inside the circle in equilibrium with the tile's largest work of
+    adhesion; a tenth more allows for the overshoot of the splines between the points.
+
+    Parameters
+    ----------
+    adhesion : AdhesionMap
+        Work of adhesion on the tile, which may be smaller than the contact.
+    max_penetration : float
+        Largest penetration. (Units: reduced vertical length)
+    n_angle : int, optional
+        Sites of the front; by default at least one a pixel on the smooth contact's largest circle.
+    spacing : float, optional
+        Distance of samples along a ray; by default half a pixel, or a quarter where straight
+        pieces join the samples. (Units: reduced lateral length)
+    interpolation, band_limited
+        As of :func:`crackfront.core.field.fields.tile_field`.
+
+    Raises
+    ------
+    ValueError
+        If the penetration is below pull-off, or as :func:`crackfront.core.field.fields.tile_field`.
+    """
+    if n_angle is None:
+        circle = 2 * math.pi * jkr.equilibrium_radius(max_penetration)
+        n_angle = fast_site_count(circle / adhesion.pixel)
+    if spacing is None:
+        spacing = adhesion.pixel / (2 if interpolation == "cubic" else 4)
+    values = adhesion.work_of_adhesion
+    # The refusal of values that are not finite, with their place, is tile_field's.
+    strongest = float(np.max(values, where=np.isfinite(values), initial=WORK_OF_ADHESION))
+    largest = 1.1 * jkr.equilibrium_radius(max_penetration, strongest / WORK_OF_ADHESION)
+    return tile_field(
+        adhesion, sphere(n_angle), spacing, largest, interpolation, band_limited=band_limited
+    )
 
 
 def half_laplacian(radius: Array) -> Array:

@@ -14,15 +14,15 @@ from crackfront.analysis.estimate import Estimate, mean_estimate
 from crackfront.analysis.steady import mean_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
-from crackfront.core.cycle.schedule import Schedule
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.line_loads import LineLoad
+from crackfront.simulate.line.loads import LineLoad
 from crackfront.simulate.numerics import Numerics, numerical_error, simulation_of
 from crackfront.simulate.run import run_simulation
+from crackfront.simulate.schedule import Schedule
 from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.topography.prediction.conditions import zero_load_radius
 from crackfront.topography.prediction.prediction import Prediction
 from crackfront.topography.prediction.works import surface_spectrum

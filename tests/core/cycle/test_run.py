@@ -11,9 +11,9 @@ from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import first_place, polar_field, tile_field
+from crackfront.core.field.fields import first_place, tile_field
 from crackfront.core.field.rays import front_adhesion
-from crackfront.core.geometry.sphere import sphere
+from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum

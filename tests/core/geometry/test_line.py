@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 
 from crackfront.cli import main
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.cycle.follow import Load, follow
+from crackfront.core.cycle.follow import Load, follow, front_at
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.schedule import protocol
 from crackfront.core.field.rays import front_adhesion
-from crackfront.core.geometry.line import line_field, straight_front
+from crackfront.core.geometry.line import initial_front, line_field
 from crackfront.core.solver.forces import line_force
 from crackfront.core.solver.relax import SOLVERS, Newton, Reference, front_force
 from crackfront.core.units import WORK_OF_ADHESION
@@ -42,7 +42,7 @@ def run(adhesion, spring, way, solver, interpolation="linear"):
     ends = min(load.value for load in way), max(load.value for load in way)
     field = line_field(adhesion, spring, ends, interpolation=interpolation)
     recorder = Recorder(fronts=True, energy=True)
-    front = straight_front(field, adhesion, way[0].value)
+    front = initial_front(field, adhesion, way[0].value)
     recorder.run(field, front, [way[0]._replace(start=front), *way[1:]], solver)
     return recorder.record(), field
 
@@ -52,7 +52,9 @@ def run(adhesion, spring, way, solver, interpolation="linear"):
 def test_without_disorder_the_front_is_where_the_load_is(solver, interpolation):
     way = [*protocol([0.3, 20.1, 0.3], 2.2)]
     record, _ = run(tile(np.ones((8, 16))), 5.0, way, SOLVERS[solver](1e-12), interpolation)
-    assert np.allclose(record.states.mean_position, record.states.load, rtol=0, atol=1e-10)
+    assert np.allclose(
+        record.states.mean_position, record.states.spring_position, rtol=0, atol=1e-10
+    )
     assert np.allclose(record.states.pinning_force, 0.0, atol=1e-11)
     assert np.all(np.ptp(record.fronts, axis=1) < 1e-10)
 
@@ -118,7 +120,7 @@ def test_a_front_solves_the_equation_of_a_line_on_springs():
     values, (n_x, n_y) = adhesion.work_of_adhesion, adhesion.work_of_adhesion.shape
     numbers = np.abs(np.fft.fftfreq(n_y)) * 2 * np.pi
     for front, load, direction in zip(
-        record.fronts, record.states.load, record.states.direction, strict=True
+        record.fronts, record.states.spring_position, record.states.direction, strict=True
     ):
         low = np.floor(front).astype(int)
         below, above = (values[(low + k) % n_x, np.arange(n_y)] for k in (0, 1))
@@ -181,6 +183,12 @@ def test_no_passing_holds_for_a_straight_front():
     assert np.all(one <= other + 1e-9)
 
 
+def test_a_front_that_is_not_found_is_named_by_its_load():
+    field = line_field(noisy(8), 20.0, (50.0, 90.0))
+    with pytest.raises(ValueError, match=r"^at load 70: "):
+        front_at(field, np.full(32, 10.0), Load(70.0, 1), Newton(1e-12, max_sweeps=1))
+
+
 @pytest.fixture
 def command(tmp_path):
     """Result of `crackfront cycle` on a noisy tile as a straight front."""
@@ -210,14 +218,15 @@ def test_the_command_writes_a_cycle_of_the_line(command):
     assert result.exit_code == 0, result.output
     found = xr.load_dataset(command.output)
     loads = [*range(300, 361, 10), *range(350, 299, -10)]
-    assert found["load"].values == pytest.approx(loads)
+    assert found["spring_position"].values == pytest.approx(loads)
     assert found.direction.values.tolist() == [1] * 7 + [-1] * 6
     assert found.attrs["status"] == "converged"
     assert found.position.dims == ("step", "y")
     assert found.y.values == pytest.approx(np.arange(32))
     mean = found.position.mean("y")
     assert found.mean_position.values == pytest.approx(mean.values, rel=1e-14)
-    assert found.pinning_force.values == pytest.approx(((found["load"] - mean) / 32).values)
+    stretched = found.spring_position - mean
+    assert found.pinning_force.values == pytest.approx((stretched / 32).values)
     assert np.all(found.residual <= 1e-8)
     assert np.all(found.iterations > 0)
     expected, _ = run(
@@ -226,7 +235,9 @@ def test_the_command_writes_a_cycle_of_the_line(command):
     assert np.array_equal(found.position, expected.fronts)
     most, least = float(found.pinning_force.max()), float(found.pinning_force.min())
     told = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
-    assert result.stdout.splitlines()[-1].endswith(f"hysteresis 0.051 ± 0.025 (w_int); {told}")
+    said = result.stdout.splitlines()[-1]
+    assert "hysteresis 0.051 ± 0.025 (w_int); the front is 1 L_kappa long, below" in said
+    assert said.endswith(told)
     loop, fronts = (draw(found, axes=Figure().add_subplot()) for draw in (plot_loop, plot_fronts))
     np.testing.assert_array_equal(loop.get_lines()[0].get_xdata(), loads[:7])
     np.testing.assert_array_equal(fronts.get_lines()[0].get_xdata(), found.position[6])

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from crackfront.core.field.fields import polar_field
-from crackfront.core.geometry.sphere import sphere
+from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.solver.filters import apply_filter, make_filter, set_filter
 from crackfront.core.solver.forces import line_force

@@ -8,13 +8,12 @@ import yaml
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
-from crackfront.core.contact import contact_field
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import polar_field, tile_field
+from crackfront.core.field.fields import tile_field
 from crackfront.core.field.rays import front_adhesion
-from crackfront.core.geometry.sphere import half_laplacian, sphere
+from crackfront.core.geometry.sphere import contact_field, half_laplacian, polar_field, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.spectrum import SelfAffineSpectrum

@@ -17,8 +17,8 @@ from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import first_place, last_place, polar_field, tile_field
-from crackfront.core.geometry.sphere import sphere
+from crackfront.core.field.fields import first_place, last_place, tile_field
+from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.units import WORK_OF_ADHESION

@@ -15,10 +15,10 @@ from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
-from crackfront.core.field.fields import first_place, last_place, polar_field, tile_field
+from crackfront.core.field.fields import first_place, last_place, tile_field
 from crackfront.core.field.rays import front_products, segment_below
 from crackfront.core.field.samples import make_memory
-from crackfront.core.geometry.sphere import sphere
+from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.jkr import energy_release_rate
 from crackfront.core.outcome import Status
 from crackfront.core.solver.forces import hardening, make_problem
@@ -188,7 +188,7 @@ def test_the_number_of_threads_has_no_say():
     # Libraries of linear algebra share vectors of more than 10000 numbers among threads.
     program = (
         "import hashlib, numpy as np\n"
-        "from crackfront.core.field.fields import polar_field\n"
+        "from crackfront.core.geometry.sphere import polar_field\n"
         "from crackfront.core.solver.relax import Newton, relax\n"
         "rng = np.random.default_rng(1)\n"
         "field = polar_field(np.arange(1.0, 2.6, 0.1),"

@@ -8,9 +8,9 @@ from scipy.ndimage import gaussian_filter
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.field.fields import polar_field, tile_field
+from crackfront.core.field.fields import tile_field
 from crackfront.core.field.rays import front_adhesion, sampled_on_rays
-from crackfront.core.geometry.sphere import sphere
+from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS, front_force, named_solver, relax
 from crackfront.core.units import WORK_OF_ADHESION, Scales

@@ -8,13 +8,13 @@ import pytest
 
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.laws import chosen_knobs
 from crackfront.simulate.simulation import simulation_field
+from crackfront.simulate.sphere.cycle import FullCycle
 from studies.accuracy.files import errors_dataset, read_errors
 from studies.accuracy.scenes import SCENES, with_knob
 from studies.accuracy.study import (
@@ -84,7 +84,7 @@ def test_a_branch_has_the_states_of_a_full_cycle_at_the_same_loads():
     branches = measured_branches(SMALL, numerics, 1)
     simulation = SMALL.simulation(numerics, 1)
     field = simulation_field(simulation)
-    cycle = run_cycle(field, LoadSchedule(1.0, 0.1), Newton(1e-9), Recorder(fronts=True))
+    cycle = run_cycle(field, FullCycle(1.0, 0.1), Newton(1e-9), Recorder(fronts=True))
     approach = cycle.states.direction > 0
     assert np.allclose(SMALL.penetrations, cycle.states.penetration[approach][-8:])
     assert np.allclose(branches.radius[0], cycle.fronts[approach][-8:], rtol=0, atol=1e-7)

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from crackfront.simulate.lines import LineSchedule
+from crackfront.simulate.line.schedule import LineSchedule
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.steady import SteadySchedule
+from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.topography.prediction.prediction import predicted
 from crackfront.topography.prediction.simulated import prediction_plan, simulated
 from crackfront.topography.scan.reading import read_measurements

@@ -7,8 +7,8 @@ import pytest
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion
-from crackfront.core.contact import contact_field
 from crackfront.core.field.fields import last_place
+from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.units import WORK_OF_ADHESION
 
 

@@ -16,10 +16,17 @@ from crackfront.core.adhesion import (
 )
 from crackfront.core.spectrum import Spectrum
 from crackfront.data.bounds import refuse_beyond_memory
-from crackfront.simulate.lines import LineSchedule
+from crackfront.simulate.front_sizes import LAW_SIZE
+from crackfront.simulate.line.schedule import LineSchedule
 from crackfront.simulate.numerics import Numerics
 
 SpringUnit = Literal["correlation_length", "larkin_length"]
+
+LAW_LENGTH = 10.0
+"""Length of a front over that of its springs on which the law of k was measured.
+
+On a shorter front k is larger: the front is pinned as a whole.
+"""
 
 _DEPTH, _ROUGHNESS = 1.43, 0.4
 """Rms of a front over the force's correlation length, 1.43 (L_kappa / Larkin length)^0.4: measured
@@ -46,9 +53,11 @@ class LineLoad:
     uncorrelated: bool = False
     """Whether sites know nothing of each other: the limit of weak disorder."""
 
-    straight: ClassVar[bool] = True
-    full_cycle: ClassVar[bool] = False
     max_penetration: ClassVar[float] = 0.0
+
+    def usual_size(self, spectrum: Spectrum) -> float:
+        """Size of a front for which knobs are chosen, whatever its spectrum."""
+        return LAW_SIZE
 
     def for_surface(
         self,
@@ -65,7 +74,7 @@ class LineLoad:
         larkin = larkin_length(kind, spectrum, 2 * math.sqrt(elastic_energy))
         length = correlation_length(kind, spectrum)
         spring *= length if self.spring_unit == "correlation_length" else larkin
-        knobs = numerics.knobs_of(kind, spectrum, elastic_energy, straight=True)
+        knobs = numerics.knobs_of(kind, spectrum, elastic_energy, self.usual_size(spectrum))
         pixel = spectrum.short_cutoff / knobs.pixels_per_cutoff
         least = numerics.tile_side(spectrum)
         rms = front_rms(force_correlation_length(kind, spectrum), spring / larkin)

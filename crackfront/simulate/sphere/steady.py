@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,14 +19,19 @@ from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder, columns
-from crackfront.core.cycle.schedule import SphereSchedule
 from crackfront.core.cycle.touch import first_touch, refuse_outgrown
 from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Solver
+from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.schedule import ExpectedMotion
+from crackfront.simulate.sphere.cycle import SphereSchedule
+
+if TYPE_CHECKING:
+    from crackfront.simulate.simulation import Simulation
 
 _FEWEST_TO_TURN = 8
 """Steady states before the approach may turn."""
@@ -42,6 +48,14 @@ Single sites may move back: where some repel, no circle with an open edge drives
 _LARGEST_FACTOR, _FAR_BEHIND = 2.6, 20.0
 """A circle may also be a start this many correlation lengths behind where the largest k holds one:
 on fine spectra the drive above needs hundreds; fronts deviate by 7 at most."""
+
+_LEAD_IN, _FEWEST_STEADY = 1.0, 9.0
+"""States of a branch before it is steady; the fewest of an approach."""
+
+_NOISE, _SHARED = 0.6, 0.17
+"""Variance of k from state to state, relative to that of as many independent sites as the front has
+correlation lengths; e_el below which both branches share most of it, over that length: a contact of
+fewer sites is pinned as a whole."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +104,7 @@ class SteadySchedule(SphereSchedule):
         branch is once every site has travelled a correlation length. The status is `STEADY` where
         both branches were measured. The energy that the first step of a branch dissipates has no
         meaning and is NaN. Parameters are those of
-        :meth:`crackfront.core.cycle.schedule.Schedule.run`. ValueError if a smooth sphere would
+        :meth:`crackfront.simulate.schedule.Schedule.run`. ValueError if a smooth sphere would
         outgrow the field.
         """
         refuse_outgrown(field, self.max_penetration)
@@ -130,6 +144,45 @@ class SteadySchedule(SphereSchedule):
         while recorder.status is Status.CONVERGED and recorder.states[-1].mean_radius >= lowest:
             penetration -= step
             yield Load(penetration, -1)
+
+    def expected_motion(self, simulation: Simulation) -> ExpectedMotion:
+        """States of both branches until k has the requested standard error."""
+        length = simulation.correlation_length
+        step = self.travel * length * jkr.penetration_slope(self.start)
+        n_most = 1 + math.floor((self.max_penetration - self.start) / step)
+        alike = length * integral_breadth(simulation)
+        n_independent = 2 * math.pi * jkr.equilibrium_radius(self.start) / alike
+        variance = _NOISE / ((simulation.elastic_energy + _SHARED * alike) * n_independent)
+        n_least = max(_FEWEST_STEADY, _LEAD_IN + variance / self.standard_error**2)
+        return ExpectedMotion(self.travel, 2 * min(n_most, n_least), full_cycle=False)
+
+    def steady_load(
+        self, simulation: Simulation, works: tuple[float, float], travel: float, n_state: int
+    ) -> float:
+        """Penetration that leaves the approach so many steady states."""
+        low, _ = works
+        length = simulation.correlation_length
+        # It begins a correlation length behind, and the retraction behind the end.
+        begin = jkr.equilibrium_radius(self.start, low) - length
+        needed = travel + n_state * self.travel * length
+        return float(jkr.equilibrium_penetration(begin + needed, low))
+
+
+def integral_breadth(simulation: Simulation) -> float:
+    """Mean of q times mean of 1/q in the variance of w_loc, relative to those of a flat surface.
+
+    The mean of w_loc along a front varies by its longest waves, the mean of 1/q, and the
+    correlation length is that of the mean of q.
+    """
+    spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
+    flat = SelfAffineSpectrum(1.0, 1.0, hurst=1.0)
+    means = [
+        shape.mean_square(order + 0.5)
+        * shape.mean_square(order - 0.5)
+        / shape.mean_square(order) ** 2
+        for shape in (spectrum, flat)
+    ]
+    return means[0] / means[1]
 
 
 def _retraction_start(field: Field, last: ContactState[float]) -> float:

@@ -1,4 +1,4 @@
-"""Straight fronts of a sweep, pulled over a whole period of their tile, forward and back.
+"""Loads of straight fronts, over a whole period of their tile, forward and back.
 
 By no passing, the state after one period is the same state shifted as soon as the start is
 forgotten: a mean over the next period is the exact mean over the tile.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,13 +16,20 @@ from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.schedule import Schedule
 from crackfront.core.field.fields import Interpolation, TileField
-from crackfront.core.geometry.base import Geometry
+from crackfront.core.geometry.base import Geometry, fast_site_count
 from crackfront.core.geometry.line import Line, line_field
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Solver
+from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.front_sizes import LAW_SIZE
+from crackfront.simulate.schedule import ExpectedMotion, Schedule
+from crackfront.simulate.tiles import gaussian_adhesion, uncorrelated_adhesion
+
+if TYPE_CHECKING:
+    from crackfront.analysis.steady import SteadyAdhesion
+    from crackfront.simulate.simulation import Simulation
 
 _BEHIND = 1.3
 """Pinning force of the first front over that of second-order theory; none is larger."""
@@ -47,7 +55,6 @@ class LineSchedule(Schedule):
     uncorrelated: bool = False
     """Whether sites know nothing of each other: the limit of weak disorder."""
 
-    straight = True
     max_penetration = 0.0
 
     def __post_init__(self) -> None:
@@ -73,6 +80,14 @@ class LineSchedule(Schedule):
         """Period of the front (Units: length)."""
         return self.length
 
+    def usual_size(self, spectrum: Spectrum) -> float:
+        """Size of a front for which knobs are chosen, whatever its spectrum."""
+        return LAW_SIZE
+
+    def site_count(self, requested: int | None, least: float, n_point: int) -> int:
+        """As many sites as are needed, or one a point where they are independent."""
+        return n_point if self.uncorrelated else requested or fast_site_count(least)
+
     def fitted(self, side: float, spacing: float) -> tuple[float, float]:
         """Period of the front, and whole samples, so that a period further on all is the same."""
         return self.length, self.period / math.ceil(self.period / spacing)
@@ -84,6 +99,12 @@ class LineSchedule(Schedule):
     def geometry(self, n_site: int) -> Geometry:
         """Line on springs that do not pull at w_int."""
         return Line(n_site, self.length, WORK_OF_ADHESION / self.spring, WORK_OF_ADHESION)
+
+    def adhesion(self, simulation: Simulation) -> AdhesionMap:
+        """That of a Gaussian surface, or independent rows in the limit of weak disorder."""
+        if self.uncorrelated:
+            return uncorrelated_adhesion(simulation)
+        return gaussian_adhesion(simulation)
 
     def field(
         self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
@@ -110,7 +131,7 @@ class LineSchedule(Schedule):
     ) -> CycleRecord:
         """Both branches over the lead-in and a period, `STEADY` where both are whole.
 
-        Parameters are those of :meth:`crackfront.core.cycle.schedule.Schedule.run`; e_el decides
+        Parameters are those of :meth:`crackfront.simulate.schedule.Schedule.run`; e_el decides
         how far behind the load a branch begins, and the correlation length has no effect.
         """
         behind = _BEHIND * 4 * elastic_energy * self.spring + self.step
@@ -122,3 +143,37 @@ class LineSchedule(Schedule):
             loads += [Load(first, direction, start), *(Load(one, direction) for one in others)]
         recorder.run(field, np.full(field.geometry.n_site, -behind), loads, solver)
         return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
+
+    @classmethod
+    def smallest(cls) -> Schedule:
+        """A front of one spring over a tile of one point."""
+        return cls(spring=1.0, length=4.0, period=1.0, lead_in=1.0, step=1.0)
+
+    def expected_motion(self, simulation: Simulation) -> ExpectedMotion:
+        """States of the lead-in and of the period, in both directions."""
+        steps = math.ceil(self.lead_in / self.period * self.n_period)
+        travel, n_state = self.step / simulation.correlation_length, steps + self.n_period + 1
+        return ExpectedMotion(travel, 2.0 * n_state, full_cycle=False)
+
+    def spring_at(self, work_of_adhesion: float) -> float:
+        """Length of the springs, whatever the work of adhesion."""
+        return self.spring
+
+    def steady_load(self, *_: object) -> float:
+        """Minus infinity: the lead-in is long enough."""
+        return -math.inf
+
+    def refuse_few_sites(self, name: str, larkin_length: float, site: float) -> None:
+        """Raise ValueError if the Larkin length has fewer than two sites."""
+        if larkin_length < 2 * site:
+            raise ValueError(
+                f"numerics: the Larkin length of {name} is {larkin_length:.3g}, below two sites "
+                f"({2 * site:.3g}); lower the amplitude or use more sites"
+            )
+
+    def averaged_sizes(
+        self, steady: SteadyAdhesion, correlation_length: float, short_cutoff: float
+    ) -> tuple[float, float, float]:
+        """Those of one period of the tile, the same for both branches."""
+        size = self.length / short_cutoff * (1 + self.period / correlation_length)
+        return size, size, self.length

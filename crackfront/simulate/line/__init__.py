@@ -1,0 +1,1 @@
+"""Straight fronts on springs: over a period of a tile, and on a user's surface."""

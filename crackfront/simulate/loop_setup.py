@@ -1,0 +1,124 @@
+"""What a run on a user's surface begins with, whatever the kind of contact."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import pairwise
+from numbers import Integral
+
+from crackfront.core.arrays import Array
+from crackfront.core.cycle.follow import Load
+from crackfront.core.field.fields import TileField
+from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.data.bounds import DENSITY, NUMBER, SITES, Range, refuse_outside
+from crackfront.simulate.schedule import Schedule
+from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.surfaces import TileMeasures, refuse_no_fraction
+
+
+@dataclass(frozen=True, slots=True)
+class LoopSetup:
+    """Field, first front and loads of a run, with what is known of it beforehand."""
+
+    kind: type[Schedule]
+    """Loads whose kernels serve this run."""
+    field: TileField
+    front: Array
+    """First front, (n_site,). (Units: reduced lateral length)"""
+    loads: Iterable[Load]
+    """As of :func:`crackfront.core.cycle.follow.follow`."""
+    expected: int
+    """States that it will have, roughly."""
+    seconds: float
+    """Processor time that they will take, roughly."""
+    tolerance: float
+    """That of the solver."""
+    measures: TileMeasures
+    """Those of the tile."""
+    period: float | None = None
+    """Period of the tile over which the branches are averaged at most; None for steady parts."""
+    simulation: Simulation | None = None
+    """One of the same sizes, whose numerical errors are known; where the spectrum is stated."""
+    load_stiffness: float | None = None
+    """Stiffness of the load against a front that is held, where a load step loses half of it times
+    the square of the step. (Units: reduced energy / length**2)"""
+    remark: str = ""
+    """What the result leaves to be desired, in words; empty where there is nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopNumerics:
+    """How a run on a user's surface is resolved.
+
+    ValueError if an error is given beside sites or samples, or a number is out of range; TypeError
+    if it is none.
+    """
+
+    error: float | None = None
+    """Standard error of the factor k that the numerics may leave, by the laws of its spectrum."""
+    sites: int | None = None
+    """Sites of the front."""
+    samples: float | None = None
+    """Samples a pixel along a ray."""
+    usual_error: float = 0.03
+    """Error where neither is given and the surface states its spectrum."""
+
+    def __post_init__(self) -> None:
+        if self.error is not None:
+            refuse_no_fraction("error", self.error)
+        for name, value in (("sites", self.sites), ("samples", self.samples)):
+            if value is not None and self.error is not None:
+                raise ValueError(
+                    f"error is {self.error:g}, which decides sites and samples; leave out {name}, "
+                    "or the error"
+                )
+        if self.sites is not None:
+            refuse_other_type("sites", self.sites, Integral, "a whole number")
+            refuse_outside("sites", self.sites, SITES)
+        if self.samples is not None:
+            refuse_no_numbers(samples=self.samples)
+            refuse_outside("samples", self.samples, DENSITY)
+
+    @property
+    def by_pixels(self) -> bool:
+        """Whether sites or samples are given, so that no law of errors decides them."""
+        return self.sites is not None or self.samples is not None
+
+
+class LoopContact(ABC):
+    """A contact of some kind with a user's surface, which `run_loop` and `crackfront cycle` run."""
+
+    @abstractmethod
+    def setup(
+        self,
+        loads: tuple[float, ...] | None,
+        max_penetration: float | None,
+        step: float,
+        numerics: LoopNumerics,
+    ) -> LoopSetup:
+        """What a run begins with; arguments as of :func:`crackfront.run_loop`.
+
+        Loads that are None lead up to the largest penetration and to pull-off. The step is the
+        largest difference of loads; infinity leaves them as they are.
+        """
+
+
+def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
+    """Loads of a protocol as numbers; a ValueError where there is none, or one is no number."""
+    found = []
+    for given in loads:
+        try:
+            found.append(float(given))
+        except (TypeError, ValueError):
+            raise ValueError(f"a load is {given!r}; write numbers alone") from None
+        refuse_outside("a load", found[-1], Range(-NUMBER.most, NUMBER.most))
+    if not found:
+        raise ValueError("there are no loads; give one or more")
+    return tuple(found)
+
+
+def state_count(loads: tuple[float, ...], step: float) -> float:
+    """Loads of a protocol, about."""
+    return len(loads) + sum(abs(one - other) for one, other in pairwise(loads)) / step

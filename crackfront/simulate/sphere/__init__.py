@@ -1,0 +1,1 @@
+"""Spheres: full cycles, steady parts of their branches, and runs on a user's surface."""

@@ -1,0 +1,104 @@
+"""Runs on a user's surface: what they refuse, and what their results say of themselves."""
+
+import numpy as np
+import pytest
+
+import crackfront as cf
+
+
+@pytest.fixture(scope="module")
+def patches():
+    """A chemical surface of side 2 with one wave along the front and four along its motion."""
+    x, y = np.meshgrid(np.arange(32) / 32, np.arange(32) / 32, indexing="ij")
+    values = 1 + 0.4 * np.cos(8 * np.pi * x) * np.cos(2 * np.pi * y)
+    return cf.surface(values, side=2.0, kind="chemical", units="w_int")
+
+
+def pulled(surface, spring):
+    """Loop of a straight front over four periods of the surface, and back."""
+    return cf.run_loop(cf.straight_front(surface, spring), loads=[0, 8, 0], step=0.1)
+
+
+def test_a_front_shorter_than_ten_springs_says_that_its_hysteresis_is_too_large(patches):
+    long, short = pulled(patches, 0.2), pulled(patches, 0.5)
+    assert np.isfinite(long.hysteresis)
+    assert "L_kappa" not in long.attrs["result"]
+    sentence = "the front is 4 L_kappa long, below the 10 of the law of k: its hysteresis is too"
+    assert sentence in short.attrs["result"]
+
+
+def test_a_front_shorter_than_its_springs_is_refused(patches):
+    with pytest.raises(ValueError, match=r"spring is 2\.5, longer than the front, 2, which is"):
+        pulled(patches, 2.5)
+
+
+def test_an_error_is_refused_where_none_was_measured(patches):
+    with pytest.raises(ValueError, match=r"error is 0.005, but the surface does not state the spe"):
+        cf.run_loop(patches, error=0.005)
+    with pytest.raises(ValueError, match=r"error is 0.3, but errors of straight fronts on a given"):
+        cf.run_loop(cf.straight_front(patches, 0.2), loads=[0, 1], error=0.3)
+    with pytest.raises(ValueError, match=r"error is 0.3, but the surface does not state the spect"):
+        cf.find_instabilities(patches, error=0.3)
+
+
+def test_sites_and_samples_are_those_that_are_given(patches):
+    loads = [0, 0.5]
+    pressed = {n: cf.run_loop(patches, loads=loads, sites=n, samples=n / 32) for n in (48, 96, 192)}
+    assert [loop.sizes["angle"] for loop in pressed.values()] == [48, 96, 192]
+    coarse, fine, finest = (float(loop.mean_radius[-1]) for loop in pressed.values())
+    assert 0 < abs(fine - finest) < abs(coarse - finest)
+    front = cf.straight_front(patches, 0.2)
+    pulled = [cf.run_loop(front, loads=[0, 1], sites=n, samples=n / 32) for n in (32, 64)]
+    assert [loop.sizes["y"] for loop in pulled] == [32, 64]
+    usual = cf.run_loop(front, loads=[0, 1])
+    np.testing.assert_array_equal(usual.position, pulled[0].position)
+
+
+def test_given_sites_overrule_the_spectrum_that_a_surface_states():
+    surface = cf.random_surface(short_cutoff=0.4, elastic_energy=0.05, side=4, error=0.3, seed=3)
+    loop = cf.run_loop(surface, step=0.5, sites=40)
+    assert loop.sizes["angle"] == 40
+    assert np.isnan(loop.w_appr_numerical_error)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        (
+            {"error": 0.1, "sites": 40},
+            r"error is 0.1, which decides sites and samples; leave out si",
+        ),
+        ({"error": 0.1, "samples": 4}, r"error is 0.1, .*; leave out samples, or the error"),
+        ({"sites": 3}, "sites is 3; it must lie between 4 and"),
+        ({"samples": 0}, r"samples is 0; it must lie between 0.001 and"),
+    ],
+)
+def test_numerics_that_cannot_be_are_refused(patches, given, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.run_loop(patches, **given)
+    with pytest.raises(TypeError, match=r"sites is 40.5; give a whole number"):
+        cf.run_loop(patches, sites=40.5)
+
+
+def test_a_front_that_moves_smoothly_loses_energy_by_its_load_steps_alone_and_says_so(patches):
+    front, sums = cf.straight_front(patches, 0.3), []
+    for step in (0.1, 0.05):
+        loop = cf.run_loop(front, loads=[0, 8, 0], step=step, energy=True)
+        sums.append(float(loop.dissipated_energy.sum()))
+        assert loop.dissipated_energy.attrs["comment"].startswith("load steps add 1 of the sum")
+    assert sums[0] == pytest.approx(2 * sums[1], rel=1e-3)
+
+
+def test_a_pinned_front_says_which_part_of_its_energy_smaller_steps_would_lower(patches):
+    front, left, parts = cf.straight_front(patches, 1.0), [], []
+    for step in (0.2, 0.05):
+        loop = cf.run_loop(front, loads=[0, 8, 0], step=step, energy=True)
+        parts.append(float(loop.dissipated_energy.attrs["comment"].split()[3]))
+        left.append(float(loop.dissipated_energy.sum()) * (1 - parts[-1]))
+    assert parts[0] > parts[1] > 0
+    assert left[0] == pytest.approx(left[1], rel=0.05)
+
+
+def test_instabilities_of_a_straight_front_are_refused_with_the_reason(patches):
+    with pytest.raises(ValueError, match="between first contact and pull-off, which a straight"):
+        cf.find_instabilities(cf.straight_front(patches, 0.2))
