@@ -28,7 +28,8 @@ from crackfront.cli.report import (
 )
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.data.bounds import NUMBER, Range, regular_file
-from crackfront.sweep.parallel import deferring_stops, stop_is_requested
+from crackfront.sweep.checkpoints import CheckpointFile
+from crackfront.sweep.parallel import deferring_stops
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -165,7 +166,7 @@ def cycle(
     problem = problem_of(pressed, loads, max_penetration, step, error)
     solution = replace(solution, tolerance=problem.tolerance)
     key = _key(field_file, spring, loads, max_penetration, step, error, solver, record)
-    keeper = _Keeper(output, key, problem.field.geometry)
+    keeper = _States(output, key, problem.field.geometry)
     announce_compilation(err=as_json)
     announce_cost(problem.seconds)
     with deferring_stops(), _progress(problem.expected, every_state=watch) as shown:
@@ -225,13 +226,13 @@ def _progress(expected: int, *, every_state: bool) -> Iterator[Observer]:
         yield shown
 
 
-class _Keeper:
-    """Stores the states of a cycle beside its output, and ends it when a stop is requested."""
+class _States:
+    """The states of a cycle in a file beside its output, from which the same command goes on."""
 
     def __init__(self, output: Path, key: str, geometry: Geometry) -> None:
         self.path = output.with_name(f"{output.stem}.checkpoint.nc")
         self._key, self._geometry = key, geometry
-        self._next = time.monotonic() + _SECONDS_BETWEEN_CHECKPOINTS
+        self._file = CheckpointFile(self.path, _SECONDS_BETWEEN_CHECKPOINTS)
 
     def found(self) -> Checkpoint | None:
         """Checkpoint of an earlier run of the same cycle, if there is one."""
@@ -259,13 +260,11 @@ class _Keeper:
         from crackfront.data.provenance import provenance
         from crackfront.simulate.files import checkpoint_dataset
 
-        stop = stop_is_requested()
-        if not stop and time.monotonic() < self._next:
-            return
-        kept = checkpoint_dataset(recorder.checkpoint(), self._key, self._geometry)
-        write_dataset(self.path, kept, provenance())
-        self._next = time.monotonic() + _SECONDS_BETWEEN_CHECKPOINTS
-        if stop:
+        def write(path: Path) -> None:
+            kept = checkpoint_dataset(recorder.checkpoint(), self._key, self._geometry)
+            write_dataset(path, kept, provenance())
+
+        if self._file.keep(write):
             count = len(recorder.states)
             raise StoppedError(
                 f"{count} states are stored in {self.path}; run the same command to continue"

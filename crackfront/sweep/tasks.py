@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import time
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ from crackfront.simulate.files import read_checkpoint, simulation_dataset, write
 from crackfront.simulate.run import PartialRun, SimulationResult, compile_solver, run_simulation
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
+from crackfront.sweep.checkpoints import CheckpointFile
 from crackfront.sweep.journal import Entry
 from crackfront.sweep.store import Store
 from crackfront.sweep.table import failed_row, row_fingerprint, sweep_row
@@ -107,7 +107,6 @@ class _Outcome:
     finished: Finished
     entry: Entry | None = None
     curve: bytes = b""
-    has_checkpoint: bool = False
 
 
 def _keep(packs: Mapping[str, Pack], task: _Task, outcome: _Outcome) -> Finished:
@@ -115,8 +114,7 @@ def _keep(packs: Mapping[str, Pack], task: _Task, outcome: _Outcome) -> Finished
     if outcome.entry is not None:
         try:
             packs[task.simulation.spectrum_name].append(outcome.entry.files(outcome.curve))
-            if outcome.has_checkpoint:
-                task.store.checkpoint(task.simulation).unlink(missing_ok=True)
+            task.store.checkpoint(task.simulation).unlink(missing_ok=True)
         except OSError as error:
             return _not_stored(error)
     return outcome.finished
@@ -128,35 +126,23 @@ def _not_stored(error: Exception) -> Finished:
     return Finished(_NOT_STORED, sentence=f"{sentence}threads and run the same command again")
 
 
-class _Keeper:
-    """Stores checkpoints of a task, and ends it with the last one when the process is to stop."""
+def _result(task: _Task) -> tuple[SimulationResult, str]:
+    """Result of a task, from its checkpoint on if that is of use, and why it was of none."""
+    simulation = task.simulation
+    file = CheckpointFile(task.store.checkpoint(simulation), task.checkpoint_seconds)
 
-    def __init__(self, task: _Task) -> None:
-        self._task = task
-        self._path = task.store.checkpoint(task.simulation)
-        self.has_file = task.resumes
-        self._written = time.monotonic()
-
-    def result(self) -> tuple[SimulationResult, str]:
-        """Result of the task, from its checkpoint on if that is of use, and why it was of none."""
-        simulation, wrong = self._task.simulation, ""
-        if self.has_file:
-            try:
-                resume = read_checkpoint(self._path, simulation)
-                return run_simulation(simulation, resume=resume, keep=self._keep), ""
-            except (*_OF_PHYSICS, LookupError, TypeError) as error:
-                wrong = f"begun anew without its checkpoint: {error}"
-        return run_simulation(simulation, keep=self._keep), wrong
-
-    def _keep(self, make: Callable[[], PartialRun]) -> None:
-        """Store a checkpoint when it is time for one; leave when the process is to stop."""
-        stop = parallel.stop_is_requested()
-        if stop or time.monotonic() - self._written >= self._task.checkpoint_seconds:
-            self.has_file = True
-            write_checkpoint(self._path, make(), self._task.origin)
-            self._written = time.monotonic()
-        if stop:
+    def keep(make: Callable[[], PartialRun]) -> None:
+        if file.keep(lambda path: write_checkpoint(path, make(), task.origin)):
             raise _StopRequestedError
+
+    wrong = ""
+    if task.resumes:
+        try:
+            resume = read_checkpoint(file.path, simulation)
+            return run_simulation(simulation, resume=resume, keep=keep), ""
+        except (*_OF_PHYSICS, LookupError, TypeError) as error:
+            wrong = f"begun anew without its checkpoint: {error}"
+    return run_simulation(simulation, keep=keep), wrong
 
 
 def _run_task(task: _Task) -> _Outcome:
@@ -180,10 +166,10 @@ _OF_PHYSICS = (ValueError, ArithmeticError, DefectError)
 
 def _run(task: _Task) -> _Outcome:
     """Run one simulation to its row and its curve."""
-    simulation, keeper = task.simulation, _Keeper(task)
+    simulation = task.simulation
     origin = task.origin.here()
     try:
-        result, wrong = keeper.result()
+        result, wrong = _result(task)
     except TooLargeError:
         raise
     except _OF_PHYSICS as error:
@@ -197,7 +183,7 @@ def _run(task: _Task) -> _Outcome:
         row, sentence, seconds = sweep_row(result), wrong, result.measures.seconds
     named = simulation.stem, simulation.parts, row_fingerprint()
     entry = Entry(*named, row, origin.arithmetic)
-    return _Outcome(Finished(row.status, seconds, sentence), entry, curve, keeper.has_file)
+    return _Outcome(Finished(row.status, seconds, sentence), entry, curve)
 
 
 class _StopRequestedError(Exception):
