@@ -58,11 +58,11 @@ def read_records(path: Path, kind: type[Record], along: str) -> tuple[Record, ..
     """Records that :func:`write_records` wrote along a dimension; as :func:`read_record`."""
     dataset = read_dataset(path)
     columns = _columns(path, dataset, kind, along)
-    rows = (
-        {name: values[row].item() if values.ndim == 1 else values[row] for name, values in columns}
+    values = {name: one.tolist() if one.ndim == 1 else one for name, one in columns}
+    return tuple(
+        kind(**{name: one[row] for name, one in values.items()})
         for row in range(dataset.sizes[along])
     )
-    return tuple(kind(**row) for row in rows)
 
 
 def _columns(

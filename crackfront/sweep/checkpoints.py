@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from crackfront.sweep.parallel import stop_is_requested
+from crackfront.sweep import parallel
 
 
 class CheckpointFile:
@@ -19,7 +19,7 @@ class CheckpointFile:
 
     def keep(self, write: Callable[[Path], None]) -> bool:
         """Let a function write the file where it is time for that; whether the run is to stop."""
-        stop = stop_is_requested()
+        stop = parallel.stop_is_requested()
         if stop or time.monotonic() - self._written >= self._seconds:
             write(self.path)
             self._written = time.monotonic()
