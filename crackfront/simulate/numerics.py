@@ -42,7 +42,10 @@ class Numerics:
         elastic_energy: float,
         usual_size: float | None = None,
     ) -> Knobs:
-        """Knobs for one spectrum and amplitude; size as of :func:`laws.chosen_knobs`."""
+        """Knobs for one spectrum and amplitude.
+
+        The size is as of :func:`crackfront.simulate.laws.chosen_knobs`.
+        """
         if isinstance(self.knobs, Knobs):
             return self.knobs
         return chosen_knobs(self.knobs, kind, spectrum, elastic_energy, usual_size)
@@ -99,7 +102,8 @@ def simulation_of(
     """The simulation of a surface; the largest penetration of the schedule decides its sites.
 
     The name is that of the spectrum, the numerics are how it is resolved and solved, and `record`
-    is what is kept beside the curves; the rest is as in :class:`Simulation`.
+    is what is kept beside the curves; the rest is as in
+    :class:`crackfront.simulate.simulation.Simulation`.
     """
     knobs = numerics.knobs_of(kind, spectrum, elastic_energy, schedule.usual_size(spectrum))
     return Simulation(

@@ -42,7 +42,8 @@ def shard_fingerprint(firsts: Sequence[Simulation], realisations: range) -> str:
     """Twelve hexadecimal digits that change with the simulations of a shard, and how rows are made.
 
     They follow from the first realisation of each amplitude
-    (:meth:`crackfront.sweep.sweep.Sweep.firsts`), at the same cost for any number of realisations.
+    (:meth:`crackfront.sweep.sweep.Sweep.one_per_amplitude`), at the same cost for any number of
+    realisations.
     """
     text = "\n".join([*(one.stem for one in firsts), repr(realisations), row_fingerprint()])
     return hashlib.sha256(text.encode()).hexdigest()[:12]

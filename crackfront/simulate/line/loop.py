@@ -41,7 +41,7 @@ class StraightFront(LoopContact):
         step: float,
         numerics: LoopNumerics,
     ) -> LoopSetup:
-        """What a run begins with, as of :meth:`LoopContact.setup`.
+        """What a run begins with, as of :meth:`crackfront.simulate.loop_setup.LoopContact.setup`.
 
         By default the front has a site for every y, and a sample a pixel along a ray.
         """

@@ -44,7 +44,7 @@ class PressedSphere(LoopContact):
         step: float,
         numerics: LoopNumerics,
     ) -> LoopSetup:
-        """What a run begins with, as of :meth:`LoopContact.setup`."""
+        """As :meth:`crackfront.simulate.loop_setup.LoopContact.setup`."""
         if (loads is None) == (max_penetration is None):
             raise ValueError("a sphere needs max_penetration or loads; give one of the two")
         if max_penetration is not None:
