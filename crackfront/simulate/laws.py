@@ -170,7 +170,8 @@ def chosen_knobs(
 
     The error is the standard error of the factor k of either branch that the numerics may leave, on
     fronts of the usual size, by default :func:`crackfront.simulate.front_sizes.sphere_size`; the
-    elastic energy is e_el / w_int. ValueError if errors were not measured at such an e_el, or for spectra as narrow.
+    elastic energy is e_el / w_int. ValueError if errors were not measured at such an e_el, or for
+    spectra as narrow.
     """
     if refusal := _beyond(kind, spectrum, elastic_energy):
         raise ValueError(f"error is {error:g}, but {refusal}")
