@@ -1,6 +1,7 @@
 """The package: its version from git or without, its wheel, and what cites it."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -176,3 +177,14 @@ def test_the_numbers_of_the_paper_stand_on_the_pages():
 
 def test_the_job_script_is_one_that_bash_can_read():
     told("bash", "-n", ROOT / "workflow/sbatch.sh")
+
+
+def test_it_is_imported_in_the_folder_beside_its_clone(tmp_path):
+    """A folder that bears its name, and holds no package itself, does not hide it."""
+    (tmp_path / "crackfront").symlink_to(ROOT, target_is_directory=True)
+    code = "import crackfront; print(crackfront.__version__)"
+    environment = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
+    ran = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert ran.returncode == 0, ran.stderr
