@@ -111,11 +111,11 @@ def steady_loop_figure(
         legends = (axes.get_legend_handles_labels() for axes in (right, left))
         handles, labels = (one + other for one, other in zip(*legends, strict=True))
         right.get_legend().remove()
-        figure.legend(handles, labels, loc="outside upper center", ncols=4)
+        figure.legend(handles, labels, loc="outside upper center", ncols=4, title=title)
         for axes, letter in ((left, "a"), (right, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
-        left.set_title(f"{title}: the loop of its works of adhesion", fontsize=7)
-        right.set_title("the steady parts, which were simulated", fontsize=7)
+        left.set_title("loop of its works of adhesion", fontsize=7)
+        right.set_title("steady parts, which were simulated", fontsize=7)
         return figure
 
 

@@ -16,6 +16,7 @@ from crackfront.simulate.run import compile_solver
 from studies.pages import keep_option, output_option, tell
 from studies.speed import costs as cost_model
 from studies.speed import needs as requests
+from studies.speed import profile as kernels
 from studies.speed import scaling as sweeps
 from studies.speed import solvers as pairs
 from studies.speed.machine import in_fresh_process
@@ -66,6 +67,20 @@ def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path, ke
             click.echo(f"{row.label}: {row.ratio:.1f} times, error {row.error:.1e}")
     parts = {"solvers": "\n\n".join(pairs.sections(rows, repeats))}
     _write(output / "solvers", "The solvers against the reference", parts, rows, keep=keep)
+
+
+@commands.command(epilog=examples("python -m studies speed profile"))
+@_output
+@keep_option
+def profile(output: Path, keep: bool) -> None:
+    """Share out the time of default simulations by kernel, by Linux's perf."""
+    refuse_unwritable(output)
+    try:
+        rows = kernels.shares()
+    except RuntimeError as error:
+        raise click.ClickException(str(error)) from error
+    parts = {"profile": kernels.page(rows)}
+    _write(output / "profile", "Where the time of a simulation goes", parts, rows, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies speed needs"))

@@ -1,0 +1,223 @@
+"""Where the processor time of default simulations goes, by kernel, as Linux's perf samples it.
+
+The kernels are machine code without a file: perf is told their names and addresses in a map, from
+the objects that numba loads.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from crackfront.analysis.measures import RunMeasures
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.variables import variable
+from crackfront.simulate.files import simulation_dataset
+from crackfront.simulate.run import SimulationResult, compile_solver
+from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
+from crackfront.sweep.configuration import load_configuration
+from studies.pages import markdown_table
+
+CONFIGURATION = Path("config/default.yaml")
+
+CASES = (("flat", 0.01), ("flat", 0.1), ("h08", 0.1), ("h03", 0.05))
+"""Simulations of the default sweep: spectrum and elastic energy, relative to w_int."""
+
+_REPEATS = 2
+
+_PARTS = {
+    "bounds on the way ahead": r"forces\.harden|forces\.largest|window\._own",
+    "splines of the tile": r"samples\.|_fill|_store",
+    "windows: solving and moving": r"window\.",
+    "steps of the whole front, transforms": r"newton\.|filters\.|rocket_fft|ducc0",
+}
+"""What a part of the solver is called, and the pattern of its kernels."""
+
+_REST = "rest of the solver"
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """Processor time of a part of the simulations."""
+
+    part: str = variable("part of a simulation", "1")
+    seconds: float = variable("processor time a simulation", "s")
+    share: float = variable("part of the processor time of a simulation", "1")
+
+
+def _simulations() -> list[Simulation]:
+    sweep = load_configuration(CONFIGURATION)
+    return [sweep.simulation(sweep.named(name), energy, 0) for name, energy in CASES]
+
+
+def shares() -> list[Share]:
+    """Shares of the parts of a simulation, the largest first.
+
+    RuntimeError where there is no perf, or it may not sample this user's processes.
+    """
+    if shutil.which("perf") is None:
+        raise RuntimeError("there is no perf on this machine; install linux-perf or linux-tools")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        samples, control = folder / "samples", folder / "control"
+        os.mkfifo(control)
+        perf = ["perf", "record", "--quiet", "--event", "cpu-clock:u", "--freq", "997"]
+        perf += ["--delay", "-1", "--control", f"fifo:{control}", "--output", str(samples), "--"]
+        code = "import sys; from studies.speed.profile import run; run(sys.argv[1])"
+        ran = subprocess.run(
+            [*perf, sys.executable, "-c", code, str(control)],
+            check=False,
+            capture_output=True,
+            text=True,
+        )
+        if ran.returncode:
+            raise RuntimeError(f"perf cannot sample this process: {ran.stderr.strip()[-300:]}")
+        tile, loads, store = (float(word) for word in ran.stdout.split()[-3:])
+        told = subprocess.run(
+            ["perf", "report", "--stdio", "--input", str(samples), "--sort", "dso,sym"],
+            check=True,
+            capture_output=True,
+            text=True,
+        )
+    solver = _solver_shares(told.stdout)
+    seconds = {part: loads * share for part, share in solver.items()}
+    seconds |= {"making the tile and its splines": tile, "making and packing the dataset": store}
+    total = sum(seconds.values())
+    ordered = sorted(seconds.items(), key=lambda item: -item[1])
+    return [Share(part, spent, spent / total) for part, spent in ordered]
+
+
+def _solver_shares(report: str) -> dict[str, float]:
+    """Shares of the parts of the solver from what perf prints, which add up to 1."""
+    found: Counter[str] = Counter()
+    for percent, rest in re.findall(r"^\s+([\d.]+)%\s+(.*)$", report, re.MULTILINE):
+        kernel = _kernel(rest)
+        parts = (part for part, pattern in _PARTS.items() if re.search(pattern, kernel))
+        found[next(parts, _REST)] += float(percent)
+    total = sum(found.values())
+    return {part: share / total for part, share in found.items()}
+
+
+def _kernel(symbol: str) -> str:
+    """`module.function` of a kernel; anything else as it is."""
+    _, mangled, rest = symbol.partition("_ZN")
+    names = []
+    while mangled and (size := re.match(r"\d+", rest)):
+        end = size.end() + int(size[0])
+        names.append(rest[size.end() : end])
+        rest = rest[end:]
+    return ".".join(names[-2:]) if names else symbol
+
+
+def run(control: str) -> None:
+    """Run the simulations while perf looks at the load steps.
+
+    Prints the processor seconds a simulation of making the tile, of the load steps and of the
+    dataset.
+    """
+    objects = _loaded_objects()
+    spent = [0.0, 0.0, 0.0]
+    simulations = _simulations()
+    for simulation in simulations:
+        compile_solver(simulation.solver.name, type(simulation.schedule))
+        for _ in range(_REPEATS):
+            before = time.process_time()
+            adhesion = simulation_adhesion(simulation)
+            field = simulation_field(simulation, adhesion)
+            made = time.process_time()
+            _tell(control, "enable")
+            start = time.process_time()
+            record = simulation.schedule.run(
+                field,
+                simulation.solver,
+                Recorder(),
+                correlation_length=simulation.correlation_length,
+                elastic_energy=simulation.elastic_energy,
+            )
+            end = time.process_time()
+            _tell(control, "disable")
+            measures = RunMeasures(adhesion.e_el, adhesion.w_rms, 0.0, 0.0, 0.0, 0.0)
+            stored = time.process_time()
+            simulation_dataset(SimulationResult(simulation, record, measures)).to_netcdf()
+            spent[0] += made - before
+            spent[1] += end - start
+            spent[2] += time.process_time() - stored
+    Path(f"/tmp/perf-{os.getpid()}.map").write_text("".join(_map_lines(objects)), encoding="utf-8")
+    count = _REPEATS * len(simulations)
+    print(*(seconds / count for seconds in spent))
+
+
+def _tell(control: str, word: str) -> None:
+    """Tell perf to sample or to stop; it looks at its pipe some times a second."""
+    Path(control).write_text(f"{word}\n", encoding="utf-8")
+    time.sleep(0.3)
+
+
+def _loaded_objects() -> list[bytes]:
+    """A list that every object is appended to that numba loads or compiles from now on."""
+    from numba.core.codegen import CPUCodeLibrary
+
+    objects: list[bytes] = []
+    keep = CPUCodeLibrary._set_compiled_object
+
+    def also_list(library: Any, content: bytes) -> Any:
+        objects.append(content)
+        return keep(library, content)
+
+    CPUCodeLibrary._set_compiled_object = also_list
+    return objects
+
+
+def _map_lines(objects: list[bytes]) -> Iterator[str]:
+    """Lines of perf's map: address, size and name of every function of the objects."""
+    from numba.core.registry import cpu_target
+
+    engine = cpu_target.target_context.codegen()._engine._ee
+    for content in objects:
+        for name, size in _functions(content):
+            if address := engine.get_function_address(name):
+                yield f"{address:x} {size:x} {name}\n"
+
+
+def _functions(content: bytes) -> Iterator[tuple[str, int]]:
+    """Names and sizes of the functions in an object file (ELF, 64 bits)."""
+    (start,) = struct.unpack_from("<Q", content, 0x28)
+    size, count = struct.unpack_from("<HH", content, 0x3A)
+    sections = [
+        struct.unpack_from("<IIQQQQIIQQ", content, start + i * size) for i in range(count)
+    ]
+    symbols, function = 2, 2
+    for section in sections:
+        if section[1] != symbols:
+            continue
+        names = sections[section[6]][4]
+        for place in range(section[4], section[4] + section[5], 24):
+            name, kind, *_, length = struct.unpack_from("<IBBHQQ", content, place)
+            if kind & 15 == function:
+                first = names + name
+                yield content[first : content.index(b"\0", first)].decode(), length
+
+
+def page(rows: list[Share]) -> str:
+    """Table of the shares, and what each part would bring if it cost nothing."""
+    lines = (
+        f"{row.part} | {row.seconds:.3f} | {row.share:.0%} | {1 / (1 - row.share):.2f}"
+        for row in rows
+    )
+    cases = ", ".join(f"{name} at {energy:g}" for name, energy in CASES)
+    table = markdown_table("part | s a simulation | share | times faster without it", lines)
+    return (
+        f"Simulations of `{CONFIGURATION}`: {cases} w_int; processor time of one core, "
+        f"kernels sampled by perf, {_REPEATS} runs each.\n\n{table}"
+    )
