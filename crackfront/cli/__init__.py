@@ -11,7 +11,7 @@ from crackfront.cli.cycle import cycle
 from crackfront.cli.integrity import checksums, compare, repair, verify
 from crackfront.cli.law import law
 from crackfront.cli.report import StoppedError, announce_compilation, examples
-from crackfront.cli.results import aggregate, archive, figures, fit, summary
+from crackfront.cli.results import aggregate, archive, curves, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.sweep.parallel import stopping_as_ctrl_c
@@ -90,7 +90,7 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Predictions": (predict, surface, law),
     "One contact": (cycle,),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
-    "Stored results": (verify, repair, checksums, compare),
+    "Stored results": (curves, verify, repair, checksums, compare),
     "The machine": (compile_solvers,),
 }
 """All commands, by what they are for."""
