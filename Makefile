@@ -32,13 +32,17 @@ endif
 unexport PYTHONDONTWRITEBYTECODE
 export PYTHONNOUSERSITE := 1
 
-RESULTS  = results/$(basename $(notdir $(SWEEP)))/
+# Of a path with spaces or quotes: the name of its results, and itself as a shell reads it.
+stem     = $(basename $(notdir $(subst $() $(),?,$(1))))
+quoted   = '$(subst ','\'',$(1))'
+
+RESULTS  = results/$(call stem,$(SWEEP))/
 FRONTS   = $(if $(filter file,$(origin SWEEP)),$(LINE))
-fronts   = $(if $(FRONTS),; of straight fronts results/$(basename $(notdir $(LINE)))/$(1))
-VALIDATED = results/$(basename $(notdir $(VALIDATION)))/
+fronts   = $(if $(FRONTS),; of straight fronts results/$(call stem,$(LINE))/$(1))
+VALIDATED = results/$(call stem,$(VALIDATION))/
 REPORT   = results/tests/junit.xml
 IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1
-SNAKE    = $(IN_ENV) .venv/bin/python workflow/run.py --profile $(PROFILE)
+SNAKE    = $(IN_ENV) .venv/bin/python workflow/run.py --profile $(call quoted,$(PROFILE))
 REPAIR   = $(IN_ENV) .venv/bin/crackfront repair
 # uv installs, or pip where uv cannot be had or where PIP_NO_INDEX says that only pip knows the files.
 FLAGS    = --no-deps --no-build-isolation --quiet
@@ -58,9 +62,9 @@ locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
   lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
-	@$(REPAIR) $(SWEEP) $(FRONTS)
-	$(SNAKE) --config sweep=$(SWEEP)
-	$(if $(FRONTS),$(SNAKE) --config sweep=$(FRONTS))
+	@$(REPAIR) $(call quoted,$(SWEEP)) $(if $(FRONTS),$(call quoted,$(FRONTS)))
+	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
+	$(if $(FRONTS),$(SNAKE) --config sweep=$(call quoted,$(FRONTS)))
 	@sed -n '/^# /p; /^- /p; /^## /q' $(RESULTS)fit.md
 	@echo "Figures: $(addprefix $(RESULTS)figures/,hysteresis.png factor.png loop.png)"
 	@echo "Page:    $(RESULTS)summary.html$(call fronts,summary.html)"
@@ -194,7 +198,7 @@ accuracy: env  ## Errors of all numerics of docs/experiments/numerics.md (45 min
 
 validate: env  ## The model against boundary elements (6 minutes); VALIDATION=config/validation-512.yaml
 	$(if $(wildcard $(VALIDATED)),@$(REPAIR) $(VALIDATED))
-	$(SNAKE) --config validation=$(VALIDATION) -- validation
+	$(SNAKE) --config validation=$(call quoted,$(VALIDATION)) -- validation
 	@echo "Results: $(VALIDATED)validation.md"
 
 figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=paper (25)
@@ -203,9 +207,9 @@ figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=pape
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
 
 report: env  ## The sweep SWEEP, run where it is not, as one page of HTML: fit, figures, configuration
-	@$(REPAIR) $(SWEEP)
-	$(SNAKE) --config sweep=$(SWEEP)
-	$(SNAKE) --config sweep=$(SWEEP) --report $(RESULTS)report.html
+	@$(REPAIR) $(call quoted,$(SWEEP))
+	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
+	$(SNAKE) --config sweep=$(call quoted,$(SWEEP)) --report $(RESULTS)report.html
 	@echo "Report: $(RESULTS)report.html"
 
 docs: env  ## Pages in docs/_build/html, examples executed, warnings as errors (a minute)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 from typing import Any
 
 import click
@@ -10,8 +11,9 @@ import click
 from crackfront.cli.cycle import cycle
 from crackfront.cli.integrity import checksums, compare, repair, verify
 from crackfront.cli.law import law
+from crackfront.cli.output import output_that_may_close
 from crackfront.cli.report import StoppedError, announce_compilation, examples
-from crackfront.cli.results import aggregate, archive, figures, fit, summary
+from crackfront.cli.results import aggregate, archive, curves, figures, fit, summary
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.sweep.parallel import stopping_as_ctrl_c
@@ -28,8 +30,10 @@ class Commands(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
+        # Results are renamed when they are whole; file systems may lack the locks that HDF5 sets.
+        os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")
         try:
-            with stopping_as_ctrl_c():
+            with output_that_may_close(), stopping_as_ctrl_c():
                 return super().invoke(ctx)
         except KeyboardInterrupt as error:
             raise StoppedError(
@@ -37,8 +41,6 @@ class Commands(click.Group):
                 or "Nothing is half-written; run the same command to continue from its last "
                 "checkpoint, or to begin anew where it has none"
             ) from error
-        except BrokenPipeError:
-            raise
         except MemoryError as error:
             sentence = "the memory does not suffice; compute less, or on a machine with more"
             raise click.ClickException(sentence) from error
@@ -90,7 +92,7 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Predictions": (predict, surface, law),
     "One contact": (cycle,),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
-    "Stored results": (verify, repair, checksums, compare),
+    "Stored results": (curves, verify, repair, checksums, compare),
     "The machine": (compile_solvers,),
 }
 """All commands, by what they are for."""

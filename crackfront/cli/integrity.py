@@ -20,7 +20,8 @@ def verify(place: Path, as_json: bool) -> None:
 
     `sha256sum --check SHA256SUMS` in the folder does the same. Files that the list does not name
     are checked where they have checksums of their own: netCDF files, and curves in packs. The exit
-    code is 1 where a file is damaged, or missing although a row or the list names it.
+    code is 1 where a file is damaged, or missing although a row or the list names it, or where the
+    configuration, the table, its rows and its curves are of different sweeps.
     """
     from crackfront.sweep.store import mixture_sentence
     from crackfront.sweep.verification import verification
@@ -30,13 +31,19 @@ def verify(place: Path, as_json: bool) -> None:
         f"{found.listed} files in SHA256SUMS, {found.unlisted} others",
         *(f"damaged: {name}" for name in found.damaged),
         *(f"missing: {name}" for name in found.missing),
+        *found.mixture,
         *filter(None, [mixture_sentence(found.arithmetic)]),
     ]
-    if is_whole := not (found.damaged or found.missing):
+    if is_whole := not (found.damaged or found.missing or found.mixture):
         lines.append(f"{place}: nothing is damaged or missing")
     content = {**asdict(found), "arithmetic": sorted(found.arithmetic)}
     echo_answer(content, lines, as_json=as_json)
     if not is_whole:
+        if found.mixture and not (found.damaged or found.missing):
+            raise click.ClickException(
+                f"{place} holds files of different sweeps; run crackfront simulate and crackfront "
+                "aggregate with one configuration, or make"
+            )
         raise click.ClickException(
             f"{place}: {len(found.damaged)} files are damaged and {len(found.missing)} missing; "
             "make computes them anew, an archive is to be packed again"

@@ -138,9 +138,29 @@ def summary(configuration: Path, output: Path | None) -> None:
 def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
     """Pack the results of a sweep into a ZIP file with checksums, SHA256SUMS."""
     from crackfront.sweep.store import Store
+    from crackfront.sweep.verification import mixture_sentences
 
+    for sentence in mixture_sentences(Store(folder)):
+        raise ValueError(
+            f"{sentence}; run crackfront simulate and crackfront aggregate with one configuration, "
+            "or make, before it is archived"
+        )
     path = folder.with_name(f"{folder.name}.zip") if output is None else output
     click.echo(f"archive: {path}, {Store(folder).archive(path, curves=not no_curves)} files")
+
+
+@click.command(epilog=examples("crackfront curves results/default --output curves"))
+@click.argument("folder", type=FILE)
+@click.option("--output", type=FILE, required=True, help="Folder of the files of the curves.")
+def curves(folder: Path, output: Path) -> None:
+    """Unpack the curves of the table of a sweep, a netCDF file for each simulation.
+
+    Packs may also hold curves of other numerics, from before the configuration was changed; these
+    are left out.
+    """
+    from crackfront.sweep.store import Store
+
+    click.echo(f"curves: {Store(folder).unpack_curves(output)} files in {output}")
 
 
 def fit_of_sweep(configuration: Path) -> SweepFit:

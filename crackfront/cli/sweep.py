@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
 from collections import Counter
@@ -235,6 +236,7 @@ def simulate(
             parallel.serve_tasks("crackfront.sweep.tasks")
         return
     # MPI has to begin before what reads a sweep is imported.
+    from crackfront.sweep.claims import claimed
     from crackfront.sweep.expectation import doubts
     from crackfront.sweep.library import opened
 
@@ -265,26 +267,39 @@ def simulate(
             arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
             arguments += [] if spectrum is None else ["--spectrum", spectrum]
             arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
-            _launch(arguments, busy, launcher, store.checkpoints)
+            store.checkpoints.mkdir(parents=True, exist_ok=True)
+            code = parallel.launch_ranks(arguments, busy, launcher, store.checkpoints)
+            _refuse_unfinished(code, sweep, store, shards, launcher)
             return
-    try:
-        fill_store(store, missing, origin, checkpoint)
-    except KeyboardInterrupt as stop:
-        # A second Ctrl-C, which ends the process at once, has no sentence.
-        if not (str(stop) and parallel.launcher_knows_of_stop()):
-            raise
-        StoppedError(str(stop)).show()
+    with contextlib.ExitStack() as held:
+        if missing and held.enter_context(claimed(store.curves, shards, _warn)):
+            missing = store.unfinished(sweep, shards).missing
+        try:
+            fill_store(store, missing, origin, checkpoint)
+        except KeyboardInterrupt as stop:
+            # A second Ctrl-C, which ends the process at once, has no sentence.
+            if not (str(stop) and parallel.launcher_knows_of_stop()):
+                raise
+            StoppedError(str(stop)).show()
+            return
+        for shard in shards:
+            click.echo(f"rows: {store.finish_shard(sweep, shard, origin)}")
+
+
+def _warn(sentence: str) -> None:
+    """Print a warning."""
+    click.echo(f"Warning: {sentence}", err=True)
+
+
+def _refuse_unfinished(
+    code: int | None, sweep: Sweep, store: Store, shards: Sequence[Shard], launcher: str | None
+) -> None:
+    """End where ranks did not finish the shards, whatever the exit code of their launcher."""
+    unfinished = [shard for shard in shards if not store.is_finished(sweep, shard)]
+    if not unfinished:
+        if code not in (0, None):
+            _warn(f"the ranks ended with exit code {code}, after all was stored")
         return
-    for shard in shards:
-        click.echo(f"rows: {store.finish_shard(sweep, shard, origin)}")
-
-
-def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path) -> None:
-    """Run a command on ranks, and end where they failed."""
-    from crackfront.sweep import parallel
-
-    folder.mkdir(parents=True, exist_ok=True)
-    code = parallel.launch_ranks(arguments, ranks, launcher, folder)
     if code is None or code == StoppedError.exit_code:
         sys.exit(StoppedError.exit_code)  # the manager has printed its sentence
     if code != 0:
@@ -294,6 +309,13 @@ def _launch(arguments: list[str], ranks: int, launcher: str | None, folder: Path
             err=True,
         )
         sys.exit(2 if code == 2 else 1)  # a launcher has codes of its own
+    left = store.unfinished(sweep, unfinished)
+    total = left.stored + len(left.missing)
+    raise click.ClickException(
+        f"the launcher {launcher or 'mpiexec'!r} ended without an error, but {len(left.missing)} "
+        f"of {total} simulations are not stored, and {len(unfinished)} of {len(shards)} shards "
+        "have no rows; name one that starts the command that follows its -n and a number"
+    )
 
 
 def fill_store(

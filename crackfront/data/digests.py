@@ -47,7 +47,7 @@ def read_sums(folder: Path) -> dict[str, str]:
     path = folder / SUMS
     if not path.is_file():
         return {}
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = path.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
     return {name: digest for digest, _, name in (line.partition("  ") for line in lines)}
 
 

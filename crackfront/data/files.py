@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import fcntl
 import os
 import secrets
 import tempfile
@@ -41,6 +42,40 @@ NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 
 class UnreadableFileError(ValueError):
     """A file that is missing, damaged, or not what its reader needs."""
+
+
+class FileSystemError(OSError):
+    """What the file system cannot do or does not allow now, with its remedy."""
+
+
+_LOCKING = "HDF5_USE_FILE_LOCKING"
+"""Environment variable by which HDF5 opens files without a lock, as the command sets it."""
+
+
+def refuse_failing_system(path: Path, error: Exception) -> None:
+    """Raise an OSError if a file, which HDF5 refused, cannot be read or locked by the system."""
+    with path.open("rb", buffering=0) as file:
+        _refuse_without_locks(path, file.fileno(), error)
+        while file.read(2**24):
+            pass
+
+
+def _refuse_without_locks(path: Path, number: int, error: Exception) -> None:
+    """Raise if an open file cannot be locked, as HDF5 does it, for the sake of a path."""
+    if os.environ.get(_LOCKING, "").upper() in ("FALSE", "0"):
+        return
+    try:
+        fcntl.flock(number, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise FileSystemError(
+            f"{path} is locked by another process that writes it; wait until that has closed it"
+        ) from error
+    except OSError as failed:
+        raise FileSystemError(
+            f"{path} cannot be locked: {failed.strerror}; set {_LOCKING}=FALSE in the environment "
+            "before the program starts"
+        ) from error
+    fcntl.flock(number, fcntl.LOCK_UN)
 
 
 def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
@@ -84,8 +119,9 @@ def _encoding(values: xr.Variable) -> dict[str, Any]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file atomically."""
-    replace_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
+    """Write a text file atomically; names of files in the text stay the bytes that they are."""
+    content = text.encode("utf-8", "surrogateescape")
+    replace_atomically(path, lambda part: part.write_bytes(content))
 
 
 def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
@@ -104,8 +140,8 @@ def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
             os.fsync(file.fileno())
         part.replace(path)
     except Exception as error:
-        # What netCDF says of a full disk names anything but the disk.
-        _refuse_full_disk(path, error)
+        # What netCDF says of a full disk or of locks names anything but these.
+        _refuse_failing_folder(path, error)
         raise
     finally:
         part.unlink(missing_ok=True)
@@ -119,16 +155,25 @@ def refuse_no_file(path: Path) -> None:
         raise OSError(errno.EINVAL, "it is a device or pipe, which is not replaced", str(path))
 
 
-def _refuse_full_disk(path: Path, error: Exception) -> None:
-    """Raise that the disk is full if not a mebibyte can be written in the folder."""
+def _refuse_failing_folder(path: Path, error: Exception) -> None:
+    """Raise if not a mebibyte can be written in the folder of a path, or no file locked there."""
     try:
         with tempfile.TemporaryFile(dir=path.parent) as probe:
             probe.write(bytes(2**20))
             probe.flush()
             os.fsync(probe.fileno())
+            if not _is_of_system(error):
+                _refuse_without_locks(path, probe.fileno(), error)
+    except FileSystemError:
+        raise
     except OSError as full:
         if full.errno in NO_ROOM:
             raise OSError(full.errno, os.strerror(full.errno), str(path)) from error
+
+
+def _is_of_system(error: Exception) -> bool:
+    """Whether an error has a number of the system; those of netCDF are negative."""
+    return isinstance(error, OSError) and (error.errno or 0) > 0
 
 
 def leftover_parts(folder: Path) -> Iterator[Path]:
@@ -171,8 +216,10 @@ def read_dataset(
     except (TooLargeError, MemoryError):
         raise
     except Exception as error:  # a damaged file may be wrong in any way
-        if isinstance(error, OSError) and (error.errno or 0) > 0:
-            raise  # the machine's; the library's own numbers are negative
+        if _is_of_system(error):
+            raise
+        if isinstance(source, Path):
+            refuse_failing_system(source, error)
         raise UnreadableFileError(
             f"{path} is no complete netCDF file; write it again, or name another"
         ) from error

@@ -10,6 +10,7 @@ import contextlib
 import fcntl
 import hashlib
 import os
+import tempfile
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,6 +22,9 @@ PACK = ".tar"
 
 SECONDS_TO_DISK = 0.5
 """What a machine that crashes may lose of a pack; a process that is killed loses nothing."""
+
+_SECONDS_IN_USE = 60.0
+"""Time after a change during which a pack counts as in use where there are no locks."""
 
 LONGEST_NAME = 100
 """Letters that the name of a file in a pack may have."""
@@ -63,9 +67,11 @@ def members(path: Path) -> tuple[list[Member], int]:
         place, n_damaged, known = 0, int(not end), True
         while place < end:
             with contextlib.suppress(HeaderError):
-                head = TarInfo.frombuf(os.pread(file.fileno(), BLOCKSIZE, place), "ascii", "strict")
+                block = os.pread(file.fileno(), BLOCKSIZE, place)
+                # Another program may have written it, with any bytes in a name.
+                head = TarInfo.frombuf(block, "utf-8", "surrogateescape")
                 start = place + BLOCKSIZE
-                if start + head.size <= end:
+                if head.size >= 0 and start + head.size <= end:
                     found.append(Member(path, head.name, start, head.size, head.linkname))
                     place, known = start + _padded(head.size), True
                     continue
@@ -107,9 +113,13 @@ class Pack:
     def append(self, files: Mapping[str, bytes]) -> None:
         """Append files; the pack is created with the first ones, and on disk from time to time.
 
-        OSError if that is impossible; what was there before stays.
+        It is created anew where it was renamed or removed. OSError if that is impossible; what was
+        there before stays.
         """
+        if self._number is not None and not self._is_in_place(self._number):
+            self.close()
         if self._number is None:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
             self._number = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o666)
             _lock(self._number)
         rest = memoryview(b"".join(record(*item) for item in files.items()))
@@ -127,6 +137,13 @@ class Pack:
                 os.close(self._number)
                 self._number = None
             raise
+
+    def _is_in_place(self, number: int) -> bool:
+        """Whether an open file still is that of the path."""
+        try:
+            return os.path.samestat(os.fstat(number), self._path.stat())
+        except FileNotFoundError:
+            return False
 
     def close(self) -> None:
         """Have all of it on disk, and unlock it; an OSError where that is impossible."""
@@ -147,12 +164,25 @@ def _lock(number: int) -> None:
 
 
 def is_locked(path: Path) -> bool:
-    """Whether a process holds the lock on a pack, as far as the file system says so."""
+    """Whether a process holds the lock on a pack, as far as the file system says so.
+
+    Where it has no locks, whether the pack has changed within the last minute.
+    """
     with path.open("rb") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
         except BlockingIOError:
             return True
         except OSError:
-            return False  # a file system without locks
+            return _now(path.parent) - os.fstat(file.fileno()).st_mtime < _SECONDS_IN_USE
     return False
+
+
+def _now(folder: Path) -> float:
+    """Time by the clock of the file system of a folder, or of this machine where it is read-only.
+
+    (Units: s)
+    """
+    with contextlib.suppress(OSError), tempfile.NamedTemporaryFile(prefix=".", dir=folder) as new:
+        return Path(new.name).stat().st_mtime
+    return time.time()

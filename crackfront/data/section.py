@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import difflib
+import os
 import re
 import reprlib
 from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
+from urllib.parse import quote_from_bytes, unquote_to_bytes
 
 import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo
@@ -62,13 +64,18 @@ InputFile = Annotated[Path, Field(strict=False), AfterValidator(beside)]
 _HOME = "# Relative paths begin in "
 """First line of a configuration that is stored in another folder than it was in."""
 
+_PRINTED = "".join(map(chr, range(32, 127))).replace("%", "")
+"""Letters that stand in it as they are."""
+
 
 def movable_text(path: Path) -> str:
     """Text of a configuration that means the same wherever it is stored."""
     text = path.read_text(encoding="utf-8")
     if text.startswith(_HOME) or not re.search(r"\bsurface\s*:", text):
         return text
-    return f"{_HOME}{path.resolve().parent}\n{text}"
+    # Names of folders are bytes, of which texts hold what is printed.
+    home = quote_from_bytes(os.fsencode(path.resolve().parent), safe=_PRINTED)
+    return f"{_HOME}{home}\n{text}"
 
 
 class ConfigurationError(ValueError):
@@ -92,8 +99,10 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
     """
     try:
         first, *_ = path.read_text(encoding="utf-8").splitlines() or [""]
-        folder = first.removeprefix(_HOME) if first.startswith(_HOME) else path.resolve().parent
-        return schema.model_validate(content, context=Path(folder))
+        folder = path.resolve().parent
+        if first.startswith(_HOME):
+            folder = Path(os.fsdecode(unquote_to_bytes(first.removeprefix(_HOME))))
+        return schema.model_validate(content, context=folder)
     except ValidationError as error:
         found = error.errors(include_url=False, include_context=False)
         around = {item["loc"][:depth] for item in found for depth in range(len(item["loc"]))}

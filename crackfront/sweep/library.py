@@ -18,6 +18,7 @@ from crackfront.data.files import read_dataset, write_sums
 from crackfront.data.labels import flag_words
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.data.section import movable_text
+from crackfront.sweep.claims import claimed
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.store import Store
@@ -72,16 +73,18 @@ def run_sweep(
     found, store, origin = opened(Path(configuration), None if output is None else Path(output))
     shards = found.shards()
     missing = store.unfinished(found, shards).missing
-    shown = bool(progress and missing)
-    with (
-        deferring_stops(),
-        tqdm(total=len(missing), unit="simulation", disable=not shown, file=sys.stderr) as bar,
-        contextlib.closing(fill(store, missing, origin)) as outcomes,
-    ):
-        for _ in outcomes:
+    with contextlib.ExitStack() as held:
+        held.enter_context(deferring_stops())
+        if missing and held.enter_context(claimed(store.curves, shards, warnings.warn)):
+            missing = store.unfinished(found, shards).missing
+        shown = bool(progress and missing)
+        bar = held.enter_context(
+            tqdm(total=len(missing), unit="simulation", disable=not shown, file=sys.stderr)
+        )
+        for _ in held.enter_context(contextlib.closing(fill(store, missing, origin))):
             bar.update()
-    for shard in shards:
-        store.finish_shard(found, shard, origin)
+        for shard in shards:
+            store.finish_shard(found, shard, origin)
     table = store.aggregate(found, origin)
     write_sums(store.folder)
     failed, sentence = without_value(table)

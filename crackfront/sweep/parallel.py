@@ -38,8 +38,23 @@ _ENDED = "ended"
 _ALIVE = b"\n"
 """What the process that starts a launcher writes into the input of the ranks and then holds."""
 
-_SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE")
-"""Environment variables in which launchers state how many processes they start."""
+_SIZES = (
+    *("PMI_SIZE", "MPI_LOCALNRANKS", "OMPI_COMM_WORLD_SIZE", "MV2_COMM_WORLD_SIZE"),
+    *("SLURM_STEP_NUM_TASKS", "JSM_NAMESPACE_SIZE", "FLUX_JOB_SIZE"),
+)
+"""Environment variables in which launchers state how many processes they start.
+
+SLURM_NTASKS is not among them: a batch script, which is one process, has that of its job.
+"""
+
+_RANKS = (
+    *("PMI_RANK", "PMIX_RANK", "MPI_LOCALRANKID", "OMPI_COMM_WORLD_RANK", "MV2_COMM_WORLD_RANK"),
+    *("SLURM_PROCID", "PALS_RANKID", "ALPS_APP_PE", "JSM_NAMESPACE_RANK", "FLUX_TASK_RANK"),
+)
+"""Those in which they number the processes, from 0; some state nothing else."""
+
+_GRACE = 10.0
+"""Time that a launcher has to end its ranks before it is killed. (Units: s)"""
 
 _SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Signals that request a stop; one that was ignored at the start of the process stays ignored."""
@@ -126,11 +141,9 @@ def is_manager(n_worker: int) -> bool:
     whole work.
     """
     if not under_mpi():
-        count = max(int(os.environ.get(name, "1")) for name in _SIZES)
-        # A shell on the first of several tasks has what they have, and is alone.
-        if count > 1 and "SLURM_PTY_PORT" not in os.environ:
+        if launched := _launched_several_times():
             raise ValueError(
-                f"a launcher has started this command {count} times; leave that to --ranks and "
+                f"a launcher has started this command {launched}; leave that to --ranks and "
                 "--launcher, or start ranks as python -m mpi4py -m crackfront"
             )
         return True
@@ -149,6 +162,23 @@ def is_manager(n_worker: int) -> bool:
         f"MPI started {world.size} rank(s) where {n_worker + 1} were expected ({n_worker} workers "
         "and a manager); launch workers + 1, by the launcher that belongs to mpi4py's MPI library"
     )
+
+
+def _launched_several_times() -> str:
+    """How often a launcher has started this command, in words; empty if once, or it is unknown."""
+    for name in _RANKS:
+        if (rank := _stated(name)) > 0:
+            return f"several times, {name} is {rank}"
+    # A shell on the first of several tasks has what they have, and is alone.
+    sizes = () if "SLURM_PTY_PORT" in os.environ else _SIZES
+    name = max(sizes, key=_stated, default="")
+    return f"{count} times, as {name} says" if name and (count := _stated(name)) > 1 else ""
+
+
+def _stated(name: str) -> int:
+    """Whole number in an environment variable; 0 where there is none."""
+    text = os.environ.get(name, "").strip()
+    return int(text) if text.isdecimal() else 0
 
 
 def _end_with_launcher(abort: Callable[[int], object]) -> None:
@@ -222,13 +252,14 @@ def launch_ranks(
     """Exit code of a crackfront command that is run on a manager and a number of workers.
 
     It is None if the manager stopped on request. The first signal that requests a stop leaves the
-    ranks a file in the folder, which all ranks see; the second ends the launcher. The launcher
+    ranks a file in the folder, which all ranks see; the second ends the launcher, which is killed
+    where it does not end. What the ranks print is passed on as long as it is read. The launcher
     takes `-n` and a number, as "srun -K1 --mpi=pmi2" does. ValueError if there is none, or it
     cannot be started.
     """
     # Under -m mpi4py a rank that fails ends the job, where it would else hang.
     command = [
-        *shlex.split(launcher or default_launcher()),
+        *_words(launcher or default_launcher()),
         *("-n", str(n_worker + 1)),
         *(sys.executable, "-m", "mpi4py", "-m", "crackfront"),
         *arguments,
@@ -239,7 +270,13 @@ def launch_ranks(
         # A group of its own: Ctrl-C reaches this process alone, and not the launcher, which would
         # kill the ranks. From the background none of them may read the terminal.
         process = subprocess.Popen(
-            command, bufsize=0, env=environment, stdin=subprocess.PIPE, process_group=0
+            command,
+            bufsize=0,
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            process_group=0,
         )
     except OSError as error:
         raise ValueError(
@@ -252,18 +289,58 @@ def launch_ranks(
             _say_what_is_awaited()
         except OSError:  # the second time, or where nothing can be written
             process.terminate()
+            # Ranks that wait in a library for each other end no other way.
+            killer = threading.Timer(_GRACE, process.kill)
+            killer.daemon = True
+            killer.start()
 
     assert process.stdin is not None, "it is a pipe"
+    streams = [one for one in (process.stdout, process.stderr) if one is not None]
+    readers = [
+        threading.Thread(target=_pass_on, args=(stream.fileno(), number), daemon=True)
+        for number, stream in enumerate(streams, start=1)
+    ]
     try:
         with _handling_stops(leave_file):
+            for reader in readers:
+                reader.start()
             with contextlib.suppress(BrokenPipeError):
                 process.stdin.write(_ALIVE)
             code = process.wait()
+            for reader in readers:
+                reader.join(_GRACE)  # a process that outlives the launcher may hold its output
         ended = file.exists() and file.read_text(encoding="utf-8") == _ENDED
         return None if code == 0 and ended else code
     finally:
         if process.poll() is None:
             process.terminate()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(_GRACE)
+            process.kill()
             process.wait()
         process.stdin.close()
+        for reader, stream in zip(readers, streams, strict=True):
+            if not reader.is_alive():
+                stream.close()
         file.unlink(missing_ok=True)
+
+
+def _words(launcher: str) -> list[str]:
+    """Name and options of a launcher."""
+    try:
+        if words := shlex.split(launcher):
+            return words
+    except ValueError as error:
+        raise ValueError(f"launcher {launcher!r} cannot be read: {error}") from error
+    raise ValueError(f"launcher {launcher!r} names none; leave it out for mpiexec")
+
+
+def _pass_on(source: int, number: int) -> None:
+    """Copy what is written into a pipe to an output, and to nowhere once nobody reads that."""
+    while chunk := os.read(source, 2**16):
+        rest = memoryview(chunk)
+        while rest:
+            try:
+                rest = rest[os.write(number, rest) :]
+            except OSError:
+                break

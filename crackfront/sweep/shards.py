@@ -11,7 +11,7 @@ import netCDF4
 import numpy as np
 
 from crackfront.analysis.table import SweepRow
-from crackfront.data.files import read_dataset, write_dataset
+from crackfront.data.files import read_dataset, refuse_failing_system, write_dataset
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sweep import Shard, Sweep
@@ -77,7 +77,10 @@ def write_shard(
 
 
 def finished_shard(path: Path) -> FinishedShard | None:
-    """What the attributes of a file say; None if it is not the file of a shard."""
+    """What the attributes of a file say; None if it is not the file of a shard.
+
+    OSError if the system cannot read it.
+    """
     try:
         with netCDF4.Dataset(path) as file:
             return FinishedShard(
@@ -89,7 +92,9 @@ def finished_shard(path: Path) -> FinishedShard | None:
                 cpu_seconds=float(file.cpu_seconds),
                 arithmetic=frozenset(filter(None, str(file.arithmetic_of_rows).split(_BETWEEN))),
             )
-    except (OSError, AttributeError, ValueError):
+    except (OSError, AttributeError, ValueError) as error:
+        if path.is_file():
+            refuse_failing_system(path, error)
         return None  # emptied, cut, or of something else
 
 

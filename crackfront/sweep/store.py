@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import itertools
 from collections import Counter, defaultdict
@@ -23,7 +24,7 @@ from crackfront.data.files import (
     set_aside_damaged,
     write_text,
 )
-from crackfront.data.packs import Pack, members
+from crackfront.data.packs import Member, Pack, members
 from crackfront.data.provenance import Provenance
 from crackfront.data.section import movable_text
 from crackfront.simulate.costs import expected_cost
@@ -340,6 +341,28 @@ class Store:
         write_hysteresis(self.hysteresis, sweep, parts, origin)
         return self.hysteresis
 
+    def unpack_curves(self, folder: Path) -> int:
+        """Write the curves of the table into a folder, a file each; their number.
+
+        Curves of other numerics, which the packs may hold too, are left out. ValueError if any is
+        missing or damaged, before a file is written.
+        """
+        wanted = dict.fromkeys(curve_names(self.hysteresis))
+        found: dict[str, Member] = {}
+        for path in pack_paths(self.curves):
+            for member in members(path)[0]:
+                if member.name in wanted and member.content() is not None:
+                    found.setdefault(member.name, member)
+        if lost := [name for name in wanted if name not in found]:
+            raise ValueError(
+                f"{len(lost)} of {len(wanted)} curves of {self.hysteresis} are missing or damaged "
+                f"in {self.curves}, the first is {lost[0]}; run crackfront repair and make"
+            )
+        for name, member in found.items():
+            content = member.content() or b""
+            replace_atomically(folder / name, functools.partial(Path.write_bytes, data=content))
+        return len(found)
+
     def archive(self, path: Path, *, curves: bool) -> int:
         """Write the files of the sweep and their checksums into a ZIP file; the number of files.
 
@@ -364,8 +387,18 @@ class Store:
                 "run make, which makes them anew, before it is archived"
             )
 
+        root = Path(self.folder.name)
+        for name in found.values():
+            try:
+                str(root / name).encode()
+            except UnicodeEncodeError as error:
+                raise ValueError(
+                    f"{self.folder / name} has a name that is no UTF-8 text, as those in a ZIP "
+                    "file must be; rename it"
+                ) from error
+
         def write(part: Path) -> None:
-            root, digests = Path(self.folder.name), {}
+            digests = {}
             with ZipFile(part, "w") as archive:
                 for file, name in found.items():
                     content = file.read_bytes()

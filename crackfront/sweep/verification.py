@@ -10,9 +10,18 @@ from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
 from crackfront.data.digests import read_sums, result_files
-from crackfront.data.files import NO_ROOM, UnreadableFileError, damaged_files
-from crackfront.sweep.shards import finished_shard
-from crackfront.sweep.store import lost_curves
+from crackfront.data.files import (
+    NO_ROOM,
+    UnreadableFileError,
+    damaged_files,
+    read_attributes,
+)
+from crackfront.data.packs import members
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.journal import pack_paths
+from crackfront.sweep.shards import curve_names, finished_shard
+from crackfront.sweep.store import Store, lost_curves
+from crackfront.sweep.table import SWEEP_FINGERPRINT
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +36,8 @@ class Verification:
     damaged: tuple[str, ...]
     missing: tuple[str, ...]
     """Files that are not as they were written, and absent ones that a list or a row names."""
+    mixture: tuple[str, ...] = ()
+    """Sentences that say which files are of different sweeps."""
 
 
 def verification(place: Path) -> Verification:
@@ -41,14 +52,42 @@ def verification(place: Path) -> Verification:
         missing = sorted({*listed} - {*names}) + list(lost_curves(folder))
         shards = map(finished_shard, (folder / "shards").glob("*.nc"))
         arithmetic = frozenset[str]().union(*(one.arithmetic for one in shards if one))
+        mixture = tuple(
+            sentence.replace(f"{folder}/", "") for sentence in mixture_sentences(Store(folder))
+        )
         if place.is_file() and not listed:
             damaged.append(place.name)  # the list is the last file of an archive
         elif not names and not listed:
             raise UnreadableFileError(f"{place} holds no file; name a folder of results")
     unlisted = len({*names} - {*listed})
-    return Verification(
-        len(listed), unlisted, arithmetic, tuple(damaged), tuple(dict.fromkeys(missing))
-    )
+    absent = tuple(dict.fromkeys(missing))
+    return Verification(len(listed), unlisted, arithmetic, tuple(damaged), absent, mixture)
+
+
+def mixture_sentences(store: Store) -> Iterator[str]:
+    """Sentences that say which files of a folder are of different sweeps."""
+    if not store.hysteresis.is_file():
+        return
+    shards = sorted((store.folder / "shards").glob("*.nc"))
+    try:
+        about, listed = read_attributes(store.hysteresis), set(curve_names(store.hysteresis))
+        rows = {name for path in shards for name in curve_names(path)}
+    except (UnreadableFileError, KeyError):
+        return  # what is damaged is said elsewhere
+    path = store.configuration
+    if path.is_file() and path.read_bytes() != about.get("configuration", "").encode():
+        # Another text may mean the same. What it reads may be on another machine.
+        with contextlib.suppress(ValueError, OSError):
+            if load_configuration(path).table_fingerprint != about.get(SWEEP_FINGERPRINT):
+                yield f"{store.hysteresis} is the table of another sweep than {path}"
+    if shards and (others := listed - rows):
+        yield (
+            f"{len(others)} of {len(listed)} rows of {store.hysteresis} are in no file of "
+            f"{shards[0].parent}, which are of another sweep"
+        )
+    known = {one.name for pack in pack_paths(store.curves) for one in members(pack)[0]}
+    if known and listed and not listed & known:
+        yield f"{store.curves} holds no curve of {store.hysteresis}, but those of another sweep"
 
 
 @contextlib.contextmanager
@@ -60,11 +99,32 @@ def _folder(place: Path) -> Iterator[Path]:
     if not place.is_file():
         raise UnreadableFileError(f"{place} does not exist; name a folder of results or an archive")
     with tempfile.TemporaryDirectory() as temporary:
-        try:
-            with ZipFile(place) as archive:
-                archive.extractall(temporary)
-        except (BadZipFile, EOFError, ValueError, OSError, NotImplementedError) as error:
-            if isinstance(error, OSError) and error.errno in NO_ROOM:
-                raise
+        _unpack(place, Path(temporary))
         inner = list(Path(temporary).iterdir())
         yield inner[0] if len(inner) == 1 else Path(temporary)
+
+
+_ENCRYPTED = 1
+"""Bit of an entry in a ZIP file whose content is encrypted."""
+
+
+def _unpack(place: Path, folder: Path) -> None:
+    """Unpack what can be unpacked of an archive; the rest lacks or is cut, and is found as that."""
+    try:
+        archive = ZipFile(place)
+    except (BadZipFile, EOFError, ValueError, NotImplementedError):
+        return
+    with archive:
+        entries = archive.infolist()
+        if entries and all(entry.flag_bits & _ENCRYPTED for entry in entries):
+            raise UnreadableFileError(
+                f"{place} is encrypted; unpack it with its password, and verify the folder"
+            )
+        for entry in entries:
+            try:
+                archive.extract(entry, folder)
+            except MemoryError:
+                raise
+            except Exception as error:  # a damaged entry may be wrong in any way
+                if isinstance(error, OSError) and error.errno in NO_ROOM:
+                    raise

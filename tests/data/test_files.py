@@ -1,9 +1,14 @@
 """Files: what is written is read back, what is broken is refused, nothing is written by half."""
 
+import errno
+import fcntl
 import json
 import math
 import os
 import re
+import shutil
+import subprocess
+import sys
 import time
 from dataclasses import asdict, fields, replace
 from pathlib import Path
@@ -22,6 +27,7 @@ from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
 from crackfront.data.files import (
+    FileSystemError,
     UnreadableFileError,
     date_back,
     read_dataset,
@@ -336,3 +342,71 @@ def test_a_fit_is_written_for_machines_and_for_people(tmp_path, hysteresis):
     assert set(content["columns"]) == set(dataset.variables)
     assert "pooled" in text.read_text(encoding="utf-8")
     assert dataset.attrs["git_commit"] == content["origin"]["git_commit"] == "abc"
+
+
+@pytest.mark.parametrize(
+    ("number", "sentence"),
+    [
+        (errno.ENOLCK, "cannot be locked: No locks available; set HDF5_USE_FILE_LOCKING=FALSE"),
+        (errno.ENOSYS, "cannot be locked: Function not implemented; set HDF5_USE_FILE_LOCKING"),
+        (errno.EOPNOTSUPP, "cannot be locked: Operation not supported; set HDF5_USE_FILE_LOC"),
+        (errno.EWOULDBLOCK, "is locked by another process that writes it; wait until"),
+    ],
+)
+def test_what_the_file_system_cannot_lock_is_no_damage(tmp_path, monkeypatch, number, sentence):
+    def refused(*arguments):
+        raise OSError(number, os.strerror(number))
+
+    path = tmp_path / "file.nc"
+    path.write_bytes(b"what HDF5 does not open")
+    monkeypatch.setattr(fcntl, "flock", refused)
+    monkeypatch.setenv("HDF5_USE_FILE_LOCKING", "TRUE")
+    with pytest.raises(FileSystemError, match=re.escape(f"{path} {sentence}")):
+        read_dataset(path)
+    monkeypatch.setenv("HDF5_USE_FILE_LOCKING", "FALSE")
+    with pytest.raises(UnreadableFileError, match="is no complete netCDF file"):
+        read_dataset(path)
+
+
+NO_LOCKS = """
+#include <errno.h>
+int flock(int number, int operation) { errno = ENOLCK; return -1; }
+"""
+
+READ = """
+import sys
+from pathlib import Path
+from crackfront.data.files import read_dataset, write_text
+from crackfront.sweep.shards import finished_shard
+for read in (read_dataset, finished_shard):
+    try:
+        print(read(Path(sys.argv[1])))
+    except OSError as error:
+        print(error)
+"""
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a compiler of C")
+def test_files_are_whole_where_locks_are_absent(tmp_path):
+    source, library = tmp_path / "locks.c", tmp_path / "locks.so"
+    source.write_text(NO_LOCKS)
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source], check=True)
+    folder = tmp_path / "results"
+    write_dataset(folder / "file.nc", xr.Dataset({"a": 1.0}), Provenance(*"abcde"))
+    environment = os.environ | {"LD_PRELOAD": str(library)}
+    environment.pop("HDF5_USE_FILE_LOCKING", None)
+
+    def output(*arguments):
+        done = subprocess.run(
+            [sys.executable, *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            check=False,
+            env=environment,
+        )
+        return done.stdout + done.stderr
+
+    assert "nothing is damaged or missing" in output("-m", "crackfront", "verify", folder)
+    told = output("-c", READ, folder / "file.nc")
+    remedy = "cannot be locked: No locks available; set HDF5_USE_FILE_LOCKING=FALSE in the envi"
+    assert told.count(remedy) == 2

@@ -1,8 +1,11 @@
 """Tasks over ranks: dynamic, the same as without, and no failure that hangs or stays silent."""
 
 import os
+import signal
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +20,7 @@ from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.parallel import default_launcher, launch_ranks, run_tasks
 from crackfront.sweep.store import Store
 from tests.commands import curves, datasets
+from tests.commands import run as run_command
 
 ROOT = Path(__file__).parents[2]
 TEST = str(ROOT / "config/test.yaml")
@@ -56,16 +60,111 @@ def test_without_mpi_tasks_run_one_after_the_other_in_order():
     assert not parallel.under_mpi()
 
 
-@pytest.mark.parametrize("name", ["PMI_SIZE", "OMPI_COMM_WORLD_SIZE"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "PMI_SIZE",
+        "MPI_LOCALNRANKS",
+        "OMPI_COMM_WORLD_SIZE",
+        "MV2_COMM_WORLD_SIZE",
+        "SLURM_STEP_NUM_TASKS",
+        "JSM_NAMESPACE_SIZE",
+        "FLUX_JOB_SIZE",
+    ],
+)
 def test_a_command_that_a_launcher_starts_several_times_is_refused(monkeypatch, name):
     monkeypatch.setenv(name, "3")
-    with pytest.raises(ValueError, match="a launcher has started this command 3 times; leave"):
+    sentence = f"a launcher has started this command 3 times, as {name} says; leave"
+    with pytest.raises(ValueError, match=sentence):
         parallel.is_manager(2)
     monkeypatch.setenv("SLURM_PTY_PORT", "40000")
     assert parallel.is_manager(2)
     monkeypatch.delenv("SLURM_PTY_PORT")
+    for alone in ("1", "", "none", "-1"):
+        monkeypatch.setenv(name, alone)
+        assert parallel.is_manager(2)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "PMI_RANK",
+        "PMIX_RANK",
+        "MPI_LOCALRANKID",
+        "OMPI_COMM_WORLD_RANK",
+        "MV2_COMM_WORLD_RANK",
+        "SLURM_PROCID",
+        "PALS_RANKID",
+        "ALPS_APP_PE",
+        "JSM_NAMESPACE_RANK",
+        "FLUX_TASK_RANK",
+    ],
+)
+def test_a_process_that_a_launcher_numbers_beyond_the_first_is_refused(monkeypatch, name):
+    monkeypatch.setenv("SLURM_PTY_PORT", "40000")  # of a shell in which the launcher was called
     monkeypatch.setenv(name, "1")
+    sentence = f"a launcher has started this command several times, {name} is 1; leave"
+    with pytest.raises(ValueError, match=sentence):
+        parallel.is_manager(2)
+    monkeypatch.setenv(name, "0")
     assert parallel.is_manager(2)
+
+
+def test_a_batch_script_is_one_process_of_a_job_of_many_tasks(monkeypatch):
+    for name, value in {"SLURM_NTASKS": "33", "SLURM_PROCID": "0", "SLURM_LOCALID": "0"}.items():
+        monkeypatch.setenv(name, value)
+    assert parallel.is_manager(32)
+
+
+@pytest.mark.parametrize("launcher", ["true", "echo", "bash -c", "python"])
+def test_a_launcher_that_starts_nothing_is_no_success(tmp_path, launcher):
+    told = ("simulate", TEST, "--output", tmp_path, "--ranks", "2", "--launcher", launcher)
+    if launcher == "python":
+        (tmp_path / "python").write_text("#!/bin/sh\nexit 75\n")
+        (tmp_path / "python").chmod(0o755)
+        assert run_command(*told[:-1], tmp_path / "python").exit_code == 75
+        return
+    done = run_command(*told)
+    assert done.exit_code == 1
+    assert f"the launcher '{launcher}' ended without an error, but 8 of 8 sim" in done.stderr
+    assert done.stderr.count("Error") == 1
+
+
+@pytest.mark.parametrize(("launcher", "reason"), [(" ", "names none"), ("'a", "No closing quot")])
+def test_a_launcher_that_is_no_command_line_is_refused(launcher, reason):
+    with pytest.raises(ValueError, match=reason):
+        launch_ranks(["plan"], 2, launcher, Path())
+
+
+@pytest.mark.usefixtures("_heeded_signals")
+def test_ranks_that_heed_no_signal_end_soon_after_the_second(tmp_path, monkeypatch):
+    monkeypatch.setattr(parallel, "_GRACE", 0.3)
+    deaf = tmp_path / "deaf"
+    deaf.write_text("#!/bin/sh\ntrap '' TERM INT HUP\ntouch $0.begun\nexec sleep 600\n")
+    deaf.chmod(0o755)
+
+    def send():
+        for name in ("deaf.begun", ".stop-*"):
+            while not any(tmp_path.glob(name)):
+                time.sleep(0.05)
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    threading.Thread(target=send, daemon=True).start()
+    assert launch_ranks(["plan"], 2, str(deaf), tmp_path) == -signal.SIGKILL
+
+
+def test_ranks_do_not_depend_on_who_reads_what_they_print():
+    (source, end), (reader, number) = os.pipe(), os.pipe()
+    os.close(reader)
+    written = threading.Thread(target=parallel._pass_on, args=(source, number))
+    written.start()
+    for _ in range(20):
+        os.write(end, bytes(2**16))  # more than a pipe holds: all of it is taken
+    os.close(end)
+    written.join(20)
+    assert not written.is_alive()
+    os.close(source)
+    os.close(number)
 
 
 def test_a_launcher_that_does_not_exist_is_refused():
@@ -104,6 +203,38 @@ def test_results_are_the_same_bits_for_any_number_of_ranks_and_without_mpi(tmp_p
         found = datasets(outputs[name])
         for stem, one in datasets(outputs["serial"]).items():
             assert one.equals(found[stem])
+
+
+OWN = """
+seed: 0
+field: roughness
+scales: {radius: 60.0e-6, work_of_adhesion: 63.0e-3, contact_modulus: 0.9333e6}
+spectra:
+  - {name: film, surface: {file: scan.npy, size: 50, unit: um, height_unit: nm, mask: mask.npy}}
+amplitudes: {elastic_energy: [0.02]}
+realisations: 2
+numerics:
+  {angles: 64, samples_per_cutoff: 4, interpolation: cubic, pixels_per_cutoff: 4,
+   tile: {roll_offs: 4, cutoffs: 8}, tolerance: 1.0e-6, max_sweeps: 100000, solver: newton}
+load: {max_penetration: 4.0e-6, step: 4.0e-7}
+fit: {lowest_elastic_energy: 1.0e-3, highest_elastic_energy: 0.1, bootstrap: 200}
+"""
+
+
+@pytest.mark.mpi
+def test_a_surface_and_a_mask_in_npy_are_read_by_the_manager_alone(tmp_path, rng):
+    # By NuMPI all ranks of its communicator would read them together.
+    waves = np.hypot(*np.meshgrid(np.fft.fftfreq(256), np.fft.fftfreq(256)))
+    filtered = np.fft.fft2(rng.standard_normal((256, 256))) * np.maximum(waves, 0.03) ** -1.8
+    heights, masked = np.fft.ifft2(filtered).real, np.zeros((256, 256))
+    masked[10:20, 30:40] = 1.0
+    np.save(tmp_path / "scan.npy", 20 * heights / np.std(heights))
+    np.save(tmp_path / "mask.npy", masked)
+    (tmp_path / "own.yaml").write_text(OWN)
+    told = ("simulate", str(tmp_path / "own.yaml"), "--output", str(tmp_path / "own"))
+    done = crackfront(*told, "--ranks", "2")
+    assert done.returncode == 0, done.stderr
+    assert "[2/2]" in done.stdout
 
 
 @pytest.mark.mpi

@@ -3,6 +3,7 @@
 import itertools
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -31,7 +32,7 @@ from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, RowIndex, new_pack, pack_paths
 from crackfront.sweep.store import Store
-from crackfront.sweep.verification import verification
+from crackfront.sweep.verification import mixture_sentences, verification
 from tests.commands import curves
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
@@ -517,6 +518,93 @@ def test_a_folder_and_its_archive_are_verified(whole, tmp_path):
     result = CliRunner().invoke(main, ["verify", str(archive)])
     assert result.exit_code in (1, 2)
     assert "Traceback" not in result.output
+
+
+@pytest.mark.parametrize("encrypted", ["all", "one"])
+def test_an_encrypted_archive_is_told_and_an_encrypted_entry_is_damaged(whole, tmp_path, encrypted):
+    archive = tmp_path / "sweep.zip"
+    whole.archive(archive, curves=True)
+    content = bytearray(archive.read_bytes())
+    # The bit stands in the head of each entry and in the list at the end.
+    heads = {b"PK\x03\x04": 6, b"PK\x01\x02": 8}
+    for sign, place in heads.items():
+        starts = [match.start() for match in re.finditer(re.escape(sign), bytes(content))]
+        for start in starts[: None if encrypted == "all" else 1]:
+            content[start + place] |= 1
+    archive.write_bytes(content)
+    result = CliRunner().invoke(main, ["verify", str(archive)])
+    assert "Traceback" not in result.output
+    if encrypted == "all":
+        assert result.exit_code == 2
+        assert f"{archive} is encrypted; unpack it with its password" in result.output
+    else:
+        assert result.exit_code == 1
+        [line] = [one for one in result.output.splitlines() if one.startswith("missing: ")]
+        assert line.endswith("configuration.yaml")
+
+
+def test_a_damaged_entry_costs_no_other_one(whole, tmp_path):
+    archive = tmp_path / "sweep.zip"
+    whole.archive(archive, curves=True)
+    with zipfile.ZipFile(archive) as opened:
+        first = opened.infolist()[0]
+    content = bytearray(archive.read_bytes())
+    begin = first.header_offset + 30 + len(first.filename)
+    content[begin : begin + 8] = bytes([255] * 8)
+    archive.write_bytes(content)
+    found = verification(archive)
+    assert len({*found.damaged, *found.missing}) == 1
+
+
+def test_a_folder_with_files_of_different_sweeps_is_told_and_not_archived(whole, tmp_path):
+    other = tmp_path / "other"
+    changed = replace(SWEEP, seed=SWEEP.seed + 1)
+    text = TEST.read_text(encoding="utf-8")
+    finish(Store(other), changed)
+    assert list(mixture_sentences(whole)) == []
+    whole.configuration.write_text(text.replace("hurst: 0.8", "hurst: 0.8 # as in the paper"))
+    assert list(mixture_sentences(whole)) == []
+    # The configuration, then the curves, then the rows of the other one.
+    whole.configuration.write_text(text.replace("seed: 1", "seed: 2"))
+    [told] = mixture_sentences(whole)
+    assert told.endswith(f"hysteresis.nc is the table of another sweep than {whole.configuration}")
+    result = CliRunner().invoke(main, ["archive", str(whole.folder)])
+    assert result.exit_code == 2
+    assert "is the table of another sweep than" in result.output
+    assert not whole.folder.with_name("sweep.zip").exists()
+    whole.configuration.write_text(text)
+    for part, words in (
+        ("curves", "holds no curve of"),
+        ("shards", "8 of 8 rows of .*/hysteresis.nc are in no file of"),
+    ):
+        shutil.move(whole.folder / part, tmp_path / part)
+        shutil.copytree(other / part, whole.folder / part)
+        [told] = mixture_sentences(whole)
+        assert re.search(words, told)
+        result = CliRunner().invoke(main, ["verify", str(whole.folder)])
+        assert result.exit_code == 1
+        assert re.search(words.replace(".*/", ""), result.output)
+        shutil.rmtree(whole.folder / part)
+        shutil.move(tmp_path / part, whole.folder / part)
+
+
+def test_the_curves_of_the_table_are_unpacked_without_those_of_other_numerics(whole, tmp_path):
+    finer = replace(FLAT[0], solver=replace(FLAT[0].solver, tolerance=1e-5))
+    fill(whole, [finer])
+    assert f"{finer.stem}.nc" in curves(whole.folder)
+    folder = tmp_path / "curves"
+    result = CliRunner().invoke(main, ["curves", str(whole.folder), "--output", str(folder)])
+    assert result.exit_code == 0, result.output
+    assert result.output == f"curves: 8 files in {folder}\n"
+    assert {path.name for path in folder.iterdir()} == {
+        f"{one.stem}.nc" for one in SWEEP.simulations()
+    }
+    flip_curve(whole, FLAT[1])
+    shutil.rmtree(folder)
+    result = CliRunner().invoke(main, ["curves", str(whole.folder), "--output", str(folder)])
+    assert result.exit_code == 2
+    assert f"1 of 8 curves of {whole.hysteresis} are missing or damaged" in result.output
+    assert not folder.exists()
 
 
 def test_two_stores_of_one_sweep_agree_in_bits_and_another_sweep_does_not(whole, tmp_path):

@@ -4,6 +4,7 @@ import base64
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -284,6 +285,27 @@ def test_a_clone_may_stand_under_a_name_with_quotes_and_braces(tmp_path):
         )
         assert done.returncode == 0, done.stderr
         assert (clone / target).is_file()
+
+
+def test_make_takes_a_configuration_in_a_folder_of_any_name():
+    name = b"my \xff dir/it's; $$(one)/mine.yaml"
+    told = [b"make", b"--dry-run", b"all", b"SWEEP=" + name]
+    done = subprocess.run(told, capture_output=True, check=True, timeout=60, cwd=ROOT)
+    lines = os.fsdecode(done.stdout).splitlines()
+    taken = os.fsdecode(name).replace("$$", "$")
+    [repaired] = [shlex.split(line) for line in lines if "/crackfront repair " in line]
+    assert repaired[-2:] == ["repair", taken]
+    [planned] = [shlex.split(line) for line in lines if "--config" in line]
+    assert planned[-2:] == ["--config", f"sweep={taken}"]
+    assert any("results/mine/fit.md" in line for line in lines)
+
+
+@pytest.mark.parametrize("given", ["{a: b.yaml}", slow("[a]"), slow("1")])
+def test_a_configuration_that_snakemake_reads_as_no_text_is_refused(tmp_path, given):
+    done = snakemake(tmp_path, "--dry-run", sweep=given)
+    assert done.returncode != 0
+    assert re.search(r"sweep is .*; give the name of a file", done.stderr)
+    assert "Traceback" not in done.stderr
 
 
 @pytest.mark.parametrize(

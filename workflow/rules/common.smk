@@ -55,6 +55,9 @@ SWEEPS = {
 }
 CONFIGURATION = config.get("sweep", SWEEPS[SCALE])
 VALIDATION = config.get("validation", shipped("config/validation.yaml"))
+for key, name in (("sweep", CONFIGURATION), ("validation", VALIDATION)):
+    if not isinstance(name, str):  # what Snakemake reads as another value
+        raise WorkflowError(f"{key} is {name!r}; give the name of a file")
 try:
     RESULTS = str(results_folder(Path(CONFIGURATION)))
     SWEEP = load_configuration(Path(CONFIGURATION))

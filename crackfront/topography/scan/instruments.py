@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import re
-import sys
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -18,7 +17,7 @@ import numpy as np
 from crackfront.data.optional_libraries import MissingExtraError
 from crackfront.data.written_units import prefixed
 from crackfront.topography.options import ReadingOptions
-from crackfront.topography.scan.deferred_import import import_without_executing
+from crackfront.topography.scan.deferred_import import import_without_executing, import_without_mpi
 from crackfront.topography.scan.files import readable, refuse_too_many_points, refuse_unreadable
 
 _LIBRARY = "SurfaceTopography"
@@ -91,17 +90,12 @@ def surface_library() -> Any:
 @contextmanager
 def _importing() -> Iterator[None]:
     """Import the library without MPI, or say how it is installed."""
-    # Scans are read by one process; nodes without jobs may refuse to start MPI.
-    modules: dict[str, Any] = sys.modules
-    without_mpi = modules.setdefault("mpi4py", None) is None
     try:
         with _silenced():
+            import_without_mpi()
             yield
     except ModuleNotFoundError as error:
         raise MissingExtraError("measured surfaces", error, "surfaces") from error
-    finally:
-        if without_mpi:
-            del modules["mpi4py"]
 
 
 @contextmanager
