@@ -30,7 +30,7 @@ from crackfront.data.packs import (
     record,
 )
 from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.table import row_fingerprint
+from crackfront.sweep.rows import row_fingerprint
 
 _CURVE, _ROW = ".nc", ".json"
 """Endings of the names of curves and rows in packs."""
@@ -51,7 +51,7 @@ class Entry:
     parts: dict[str, str]
     """Those of its key."""
     definition: str
-    """:func:`crackfront.sweep.table.row_fingerprint` of its row."""
+    """:func:`crackfront.sweep.rows.row_fingerprint` of its row."""
     row: SweepRow | None
     """Its row, if rows have the same definition now."""
     arithmetic: str = ""

@@ -14,8 +14,9 @@ from crackfront.analysis.table import SweepRow
 from crackfront.data.files import read_dataset, write_dataset
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.simulation import Simulation
+from crackfront.sweep.rows import COMPLETE, row_fingerprint
 from crackfront.sweep.sweep import Shard, Sweep
-from crackfront.sweep.table import COMPLETE, row_fingerprint, rows_dataset
+from crackfront.sweep.table import rows_dataset
 
 _BETWEEN = "; "
 """What stands between arithmetics in the attribute of a file."""

@@ -31,6 +31,7 @@ from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.journal import RowIndex, new_pack, pack_paths, renew_packs
+from crackfront.sweep.rows import COMPLETE, sweep_row
 from crackfront.sweep.shards import (
     FinishedShard,
     covering,
@@ -40,13 +41,7 @@ from crackfront.sweep.shards import (
     write_shard,
 )
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
-from crackfront.sweep.table import (
-    COMPLETE,
-    SWEEP_FINGERPRINT,
-    read_table,
-    sweep_row,
-    write_hysteresis,
-)
+from crackfront.sweep.table import SWEEP_FINGERPRINT, read_table, write_hysteresis
 
 _COMPRESSED = {".nc", ".png", ".pdf", ".gif", ".zip"}
 """Files that become no smaller."""

@@ -30,8 +30,8 @@ from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry
 from crackfront.sweep.needs import postprocessing_costs
 from crackfront.sweep.parallel import default_launcher
+from crackfront.sweep.rows import row_fingerprint, sweep_row
 from crackfront.sweep.store import Store
-from crackfront.sweep.table import row_fingerprint, sweep_row
 from studies.pages import markdown_table
 from studies.speed.machine import in_fresh_process, peak_memory
 

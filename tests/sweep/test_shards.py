@@ -10,9 +10,9 @@ from crackfront.data.files import read_dataset
 from crackfront.data.provenance import provenance
 from crackfront.sweep import shards
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.rows import failed_row
 from crackfront.sweep.shards import covering, finished_shard, shard_fingerprint, write_shard
 from crackfront.sweep.store import Store
-from crackfront.sweep.table import failed_row
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 FLAT, ROUGH = SWEEP.shards()

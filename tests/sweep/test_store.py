@@ -26,10 +26,10 @@ from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import write_checkpoint
 from crackfront.simulate.run import run_simulation
-from crackfront.sweep import table as tables
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, RowIndex, new_pack, pack_paths
+from crackfront.sweep.rows import failed_row, row_fingerprint
 from crackfront.sweep.store import Store
 from crackfront.sweep.verification import verification
 from tests.commands import curves
@@ -132,8 +132,8 @@ def test_a_store_of_mixed_origin_is_told_where_it_is_planned_and_verified(store)
     assert "numpy" in here
     assert store.inventory(FLAT).arithmetic == {here}
     for one in FLAT[1:]:
-        row = tables.failed_row(one, "refused", "")
-        entry = Entry(one.stem, one.parts, tables.row_fingerprint(), row, "another")
+        row = failed_row(one, "refused", "")
+        entry = Entry(one.stem, one.parts, row_fingerprint(), row, "another")
         new_pack(store.curves, "flat", range(2)).append(entry.files())
     words = f"and may in their last digits: another; {here}"
     plan = ["plan", str(TEST), "--output", str(store.folder)]
