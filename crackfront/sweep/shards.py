@@ -11,9 +11,10 @@ import netCDF4
 import numpy as np
 
 from crackfront.analysis.table import SweepRow
-from crackfront.data.files import read_dataset, write_dataset
+from crackfront.data.digests import digest_beside, file_digest
+from crackfront.data.files import read_dataset, write_dataset, write_digest
 from crackfront.data.provenance import Provenance
-from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.simulation import Simulation, stems
 from crackfront.sweep.rows import COMPLETE, row_fingerprint
 from crackfront.sweep.sweep import Shard, Sweep
 from crackfront.sweep.table import rows_dataset
@@ -46,7 +47,7 @@ def shard_fingerprint(firsts: Sequence[Simulation], realisations: range) -> str:
     (:meth:`crackfront.sweep.sweep.Sweep.one_per_amplitude`), at the same cost for any number of
     realisations.
     """
-    text = "\n".join([*(one.stem for one in firsts), repr(realisations), row_fingerprint()])
+    text = "\n".join([*stems(firsts), repr(realisations), row_fingerprint()])
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
@@ -58,7 +59,7 @@ def write_shard(
     arithmetic: Iterable[str],
     origin: Provenance,
 ) -> None:
-    """Write the file of a shard, atomically.
+    """Write the file of a shard, atomically, and its checksum beside it.
 
     The rows are those of :meth:`crackfront.sweep.sweep.Sweep.simulations`, in their order. The
     layout is that of the file of the whole sweep.
@@ -75,11 +76,15 @@ def write_shard(
     }
     dataset = rows_dataset(alone, rows, shard.realisations)
     write_dataset(path, dataset.assign_attrs(about), origin)
+    write_digest(path)
 
 
 def finished_shard(path: Path) -> FinishedShard | None:
-    """What the attributes of a file say; None if it is not the file of a shard."""
+    """What the attributes of a file say; None if it is damaged or not the file of a shard."""
     try:
+        # HDF5 never sees a damaged file: it may believe it, or not return.
+        if digest_beside(path) != file_digest(path):
+            return None
         with netCDF4.Dataset(path) as file:
             return FinishedShard(
                 path=path,
