@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from crackfront.analysis.steady import SteadyAdhesion, SteadyMeasures, mean_adhesion
 from crackfront.analysis.table import PLACE, SweepRow
@@ -82,14 +83,25 @@ def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
     return status, record.status.value
 
 
-def row_columns(rows: Sequence[SweepRow], shape: tuple[int, int, int]) -> dict[str, xr.Variable]:
-    """Variables of a file that hold rows: spectra, amplitudes and realisations of a shape."""
-    columns = {}
-    for variable in variables(SweepRow, *PLACE):
-        values = np.array([getattr(row, variable.name) for row in rows])
-        words = _STATUSES if variable.name == "status" else ()
-        if words:
-            values = np.array([words.index(value) for value in values], np.int8)
-        about = label(variable, words)
-        columns[variable.name] = xr.Variable(variable.dims, values.reshape(shape), about)
-    return columns
+def row_columns(
+    rows: Sequence[SweepRow], shape: tuple[int, int, int]
+) -> dict[str, NDArray[np.generic]]:
+    """Values of rows as a file has them: spectra, amplitudes and realisations of a shape."""
+    columns = {
+        item.name: np.array([getattr(row, item.name) for row in rows]).reshape(shape)
+        for item in variables(SweepRow)
+    }
+    places = [_STATUSES.index(row.status) for row in rows]
+    return columns | {"status": np.array(places, np.int8).reshape(shape)}
+
+
+def labelled_columns(columns: Mapping[str, NDArray[np.generic]]) -> dict[str, xr.Variable]:
+    """Variables of a file for columns as of :func:`row_columns`; texts may be bytes of UTF-8."""
+    found = {}
+    for item in variables(SweepRow, *PLACE):
+        values = columns[item.name]
+        about = label(item, _STATUSES if item.name == "status" else ())
+        if values.dtype.kind == "S":
+            about |= {"_Encoding": "utf-8"}  # as xarray writes for texts
+        found[item.name] = xr.Variable(item.dims, values, about)
+    return found

@@ -26,7 +26,6 @@ from crackfront.data.files import (
     UnreadableFileError,
     is_damaged,
     read_attributes,
-    read_dataset,
     replace_atomically,
     set_aside_damaged,
     write_text,
@@ -45,6 +44,7 @@ from crackfront.sweep.shards import (
     covering,
     curve_names,
     finished_shard,
+    shard_columns,
     shard_fingerprint,
     write_shard,
 )
@@ -341,10 +341,7 @@ class Store:
                 f"{self.folder}; run `crackfront simulate` with this configuration and output, or "
                 "`make` again"
             )
-        parts = [
-            [read_dataset(one.path).sel(realisation=list(taken)) for one, taken in chosen]
-            for chosen in shards
-        ]
+        parts = [[shard_columns(one, taken) for one, taken in chosen] for chosen in shards]
         forget_sums(self.folder)
         write_hysteresis(self.hysteresis, sweep, parts, origin)
         return self.hysteresis

@@ -16,18 +16,13 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.analysis.steady import STEADY_DEFINITION
-from crackfront.analysis.table import (
-    REALISATION,
-    SPECTRUM,
-    SweepAxes,
-    SweepRow,
-    SweepTable,
-)
+from crackfront.analysis.table import SweepAxes, SweepRow, SweepTable
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.variables import variables
 from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
 from crackfront.data.labels import flag_words, labelled_fields
 from crackfront.data.provenance import Provenance
-from crackfront.sweep.rows import row_columns
+from crackfront.sweep.rows import labelled_columns, row_columns
 from crackfront.sweep.sweep import Sweep
 
 SWEEP_FINGERPRINT = "sweep_fingerprint"
@@ -44,26 +39,30 @@ def rows_dataset(sweep: Sweep, rows: Sequence[SweepRow], realisations: range) ->
     """
     axes = _axes(sweep, realisations)
     shape = axes.spectrum.size, axes.amplitude.size, axes.realisation.size
-    columns = row_columns(rows, shape)
+    columns = labelled_columns(row_columns(rows, shape))
     return xr.Dataset(columns, labelled_fields(axes), _attributes(sweep))
 
 
 def write_hysteresis(
-    path: Path, sweep: Sweep, shards: Sequence[Sequence[xr.Dataset]], origin: Provenance
+    path: Path,
+    sweep: Sweep,
+    shards: Sequence[Sequence[dict[str, NDArray[np.generic]]]],
+    origin: Provenance,
 ) -> None:
-    """Write the file of a sweep: for each spectrum its shards, one after the other.
+    """Write the file of a sweep: for each spectrum the columns of its shards, in their order.
 
-    The shards of a spectrum are datasets of :func:`rows_dataset` that have all its realisations in
-    their order.
+    The shards of a spectrum have all its realisations. Their columns are taken out of them, so that
+    they need not be in memory twice.
     """
-    spectra = [
-        xr.concat([one.drop_vars(list(one.coords)) for one in parts], REALISATION)
-        for parts in shards
-    ]
+    columns = {}
+    for variable in variables(SweepRow):
+        spectra = [
+            np.concatenate([one.pop(variable.name) for one in parts], axis=2) for parts in shards
+        ]
+        columns[variable.name] = np.concatenate(spectra)
     axes = labelled_fields(_axes(sweep, range(sweep.n_realisation)))
-    # What the files say of their storage is theirs, as the length of their longest text.
-    whole = xr.concat(spectra, SPECTRUM).drop_encoding().assign_coords(axes)
-    write_dataset(path, whole.drop_attrs(deep=False).assign_attrs(_attributes(sweep)), origin)
+    dataset = xr.Dataset(labelled_columns(columns), axes, _attributes(sweep))
+    write_dataset(path, dataset, origin)
 
 
 def read_table(path: Path) -> SweepTable:

@@ -70,7 +70,7 @@ def test_the_file_of_a_shard_has_the_rows_and_says_which_they_are(path):
 
 def test_what_is_finished_is_known_without_a_look_at_rows_and_packs(path, monkeypatch):
     store = Store(path.parents[1])
-    monkeypatch.setattr("crackfront.sweep.store.read_dataset", None)
+    monkeypatch.setattr("crackfront.sweep.store.shard_columns", None)
     monkeypatch.setattr("crackfront.sweep.store.RowIndex", None)
     assert store.is_finished(SWEEP, FLAT)
     assert not store.is_finished(SWEEP, ROUGH)
