@@ -328,7 +328,7 @@ def fill_store(
     from tqdm import tqdm
 
     from crackfront.sweep.parallel import deferring_stops
-    from crackfront.sweep.table import COMPLETE
+    from crackfront.sweep.rows import COMPLETE
     from crackfront.sweep.tasks import NotStoredError, fill
 
     if missing:

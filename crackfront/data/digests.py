@@ -12,6 +12,9 @@ from pathlib import Path
 SUMS = "SHA256SUMS"
 """Name of the list of checksums in a folder."""
 
+_BESIDE = ".sha256"
+"""What follows the name of a file in that of the list which states its checksum alone."""
+
 DAMAGED_SUFFIX = ".damaged"
 """Ending of the name of a file that was set aside."""
 
@@ -35,6 +38,19 @@ def file_digest(path: Path) -> str:
     """SHA-256 of the content of a file, in hexadecimal digits."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def place_of_digest(path: Path) -> Path:
+    """File beside another one that states its checksum, as `sha256sum --check` reads it."""
+    return path.with_name(path.name + _BESIDE)
+
+
+def digest_beside(path: Path) -> str | None:
+    """Checksum that the file beside one states of it; None without such a file."""
+    try:
+        return place_of_digest(path).read_text(encoding="utf-8", errors="replace").partition(" ")[0]
+    except FileNotFoundError:
+        return None
 
 
 def sums_text(digests: Mapping[str, str]) -> str:

@@ -21,8 +21,10 @@ from crackfront.data.bounds import TooLargeError, refuse_beyond_memory
 from crackfront.data.digests import (
     DAMAGED_SUFFIX,
     SUMS,
+    digest_beside,
     file_digest,
     forget_sums,
+    place_of_digest,
     read_sums,
     result_files,
     sums_text,
@@ -122,6 +124,15 @@ def write_text(path: Path, text: str) -> None:
     """Write a text file atomically; names of files in the text stay the bytes that they are."""
     content = text.encode("utf-8", "surrogateescape")
     replace_atomically(path, lambda part: part.write_bytes(content))
+
+
+def write_digest(path: Path) -> None:
+    """Write the checksum of a file beside it, for readers to check before they open the file.
+
+    The checksums of HDF5 leave the metadata of a file open: a flipped bit there may change what is
+    read, and HDF5 does not return from some of them.
+    """
+    write_text(place_of_digest(path), sums_text({path.name: file_digest(path)}))
 
 
 def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
@@ -229,13 +240,14 @@ _DAMAGED = "is damaged, its checksum is wrong; restore it or write it again"
 
 
 def is_damaged(path: Path, digest: str | None) -> bool:
-    """Whether a file is not as it was written, by the checksum of it that a list states.
+    """Whether a file is not as it was written, by the checksum that a list or a file beside states.
 
     Without one, the arrays of a netCDF file are checked, which have their own, and the files in a
     pack; whatever else is there counts as whole.
     """
-    if digest is not None:
-        return file_digest(path) != digest
+    known = digest_beside(path) if digest is None else digest
+    if known is not None:
+        return file_digest(path) != known
     if path.suffix == PACK:
         return checked(path)[1] > 0 and not is_locked(path)
     if path.suffix == ".nc":

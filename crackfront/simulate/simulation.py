@@ -8,8 +8,11 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import itertools
 import json
-from dataclasses import astuple, dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import astuple, dataclass, fields
+from operator import attrgetter
 from typing import Any, cast
 
 import numpy as np
@@ -71,7 +74,7 @@ class Simulation:
     @property
     def key(self) -> str:
         """Sixteen hexadecimal digits that change with anything that determines the result."""
-        return _digest(self._content())[:16]
+        return self.stem.rpartition("-")[2]
 
     @property
     def parts(self) -> dict[str, str]:
@@ -116,8 +119,8 @@ class Simulation:
 
     @property
     def stem(self) -> str:
-        """Name of its file, without a suffix."""
-        return f"{self.spectrum_name}-e{self.elastic_energy:g}-r{self.realisation}-{self.key}"
+        """Name of its file, without a suffix; the key ends it."""
+        return next(stems([self]))
 
     @property
     def seed(self) -> int:
@@ -137,6 +140,30 @@ class Simulation:
         return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))
 
 
+def stems(simulations: Iterable[Simulation]) -> Iterator[str]:
+    """Names of files as :attr:`Simulation.stem`.
+
+    What realisations in sequence have in common is digested once: all but their number.
+    """
+    for _, alike in itertools.groupby(simulations, _WITHOUT_NUMBER):
+        first = next(alike)
+        text = _text(first._content() | {"realisation": None})
+        before, number, after = text.partition('"realisation": ')
+        common = hashlib.sha256((before + number).encode())
+        rest = after.removeprefix("null")
+        name = f"{first.spectrum_name}-e{first.elastic_energy:g}-r"
+        for one in itertools.chain([first], alike):
+            digest = common.copy()
+            digest.update(f"{one.realisation}{rest}".encode())
+            yield f"{name}{one.realisation}-{digest.hexdigest()[:16]}"
+
+
+_WITHOUT_NUMBER = attrgetter(
+    *(item.name for item in fields(Simulation) if item.name != "realisation")
+)
+"""All fields of a simulation but the number of its realisation."""
+
+
 def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
     """Work of adhesion on the tile of a simulation."""
     return simulation.schedule.adhesion(simulation)
@@ -152,8 +179,12 @@ def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None
 
 def _digest(content: Any) -> str:
     """Hexadecimal digits that change with the content."""
-    text = json.dumps(content, sort_keys=True, allow_nan=False)
-    return hashlib.sha256(text.encode()).hexdigest()
+    return hashlib.sha256(_text(content).encode()).hexdigest()
+
+
+def _text(content: Any) -> str:
+    """Content as JSON, in one way."""
+    return json.dumps(content, sort_keys=True, allow_nan=False)
 
 
 @functools.cache

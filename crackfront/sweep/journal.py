@@ -29,8 +29,7 @@ from crackfront.data.packs import (
     members,
     record,
 )
-from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.table import row_fingerprint
+from crackfront.sweep.rows import row_fingerprint
 
 _CURVE, _ROW = ".nc", ".json"
 """Endings of the names of curves and rows in packs."""
@@ -51,7 +50,7 @@ class Entry:
     parts: dict[str, str]
     """Those of its key."""
     definition: str
-    """:func:`crackfront.sweep.table.row_fingerprint` of its row."""
+    """:func:`crackfront.sweep.rows.row_fingerprint` of its row."""
     row: SweepRow | None
     """Its row, if rows have the same definition now."""
     arithmetic: str = ""
@@ -145,7 +144,7 @@ def _entry(member: Member) -> Entry | None:
 
 
 class RowIndex:
-    """Simulations in the packs of a spectrum and some consecutive realisations.
+    """Simulations in the packs of a spectrum and some consecutive realisations, by their stems.
 
     A row counts if its curve is whole; unless `checked`, if there is a curve.
     """
@@ -154,49 +153,40 @@ class RowIndex:
         self._checked = checked
         self._members: dict[str, list[Member]] = defaultdict(list)
         self._latest: dict[str, Member] = {}
-        self._known: set[str] = set()
-        found = [one for path in pack_paths(folder, spectrum, block) for one in members(path)[0]]
-        for member in found:
-            name = Path(member.name).stem[: -_KEY - 1]
-            self._members[member.name].append(member)
-            self._known.add(name)
-            if member.name.endswith(_ROW):
-                self._latest[name] = member
+        for path in pack_paths(folder, spectrum, block):
+            for member in members(path)[0]:
+                self._members[member.name].append(member)
+                stem, dot, suffix = member.name.rpartition(".")
+                if dot + suffix == _ROW:
+                    self._latest[_without_key(stem)] = member
 
-    def entry(self, simulation: Simulation) -> Entry | None:
+    def entry(self, stem: str) -> Entry | None:
         """Entry of a simulation with a row, if there is one and its curve is as that says."""
-        for member in self._of(simulation, _ROW):
+        for member in self._members.get(stem + _ROW, ()):
             entry = _entry(member)
             if entry is None or entry.row is None:
                 continue
-            if not entry.row.curve or self._has_curve(simulation):
+            if not entry.row.curve or self._has_curve(stem):
                 return entry
         return None
 
-    def _has_curve(self, simulation: Simulation) -> bool:
+    def _has_curve(self, stem: str) -> bool:
         """Whether there is a whole curve, or any where they are not to be checked."""
-        curves = self.curves(simulation)
+        curves = self.curves(stem)
         if not self._checked:
             return bool(curves)
         return any(one.content() is not None for one in curves)
 
-    def curves(self, simulation: Simulation) -> list[Member]:
+    def curves(self, stem: str) -> list[Member]:
         """Curves that are stored of a simulation."""
-        return self._of(simulation, _CURVE)
+        return self._members.get(stem + _CURVE, [])
 
-    def _of(self, simulation: Simulation, suffix: str) -> list[Member]:
-        """Files of one kind of a simulation."""
-        if _without_key(simulation) not in self._known:
-            return []  # before its key is computed, which is slow
-        return self._members.get(simulation.stem + suffix, [])
-
-    def latest(self, simulation: Simulation) -> Entry | None:
+    def latest(self, stem: str) -> Entry | None:
         """Entry with which a simulation was stored last, with whatever key."""
-        member = self._latest.get(_without_key(simulation))
+        member = self._latest.get(_without_key(stem))
         return None if member is None else _entry(member)
 
 
-def _without_key(simulation: Simulation) -> str:
+def _without_key(stem: str) -> str:
     """Name of a simulation without its key."""
-    one = simulation
-    return f"{one.spectrum_name}-e{one.elastic_energy:g}-r{one.realisation}"
+    return stem[: -_KEY - 1]

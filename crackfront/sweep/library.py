@@ -21,9 +21,9 @@ from crackfront.data.section import movable_text
 from crackfront.sweep.claims import claimed
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.parallel import deferring_stops
+from crackfront.sweep.rows import COMPLETE
 from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import Sweep
-from crackfront.sweep.table import COMPLETE
 from crackfront.sweep.tasks import fill
 
 

@@ -14,12 +14,19 @@ from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 from crackfront.analysis.table import SweepRow, SweepTable
-from crackfront.data.digests import SUMS, forget_sums, read_sums, result_files, sums_text
+from crackfront.data.digests import (
+    SUMS,
+    digest_beside,
+    forget_sums,
+    place_of_digest,
+    read_sums,
+    result_files,
+    sums_text,
+)
 from crackfront.data.files import (
     UnreadableFileError,
     is_damaged,
     read_attributes,
-    read_dataset,
     replace_atomically,
     set_aside_damaged,
     write_text,
@@ -30,24 +37,20 @@ from crackfront.data.section import movable_text
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
-from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.simulation import Simulation, stems
 from crackfront.sweep.journal import RowIndex, new_pack, pack_paths, renew_packs
+from crackfront.sweep.rows import COMPLETE, sweep_row
 from crackfront.sweep.shards import (
     FinishedShard,
     covering,
     curve_names,
     finished_shard,
+    shard_columns,
     shard_fingerprint,
     write_shard,
 )
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
-from crackfront.sweep.table import (
-    COMPLETE,
-    SWEEP_FINGERPRINT,
-    read_table,
-    sweep_row,
-    write_hysteresis,
-)
+from crackfront.sweep.table import SWEEP_FINGERPRINT, read_table, write_hysteresis
 
 _COMPRESSED = {".nc", ".png", ".pdf", ".gif", ".zip"}
 """Files that become no smaller."""
@@ -184,7 +187,7 @@ class Store:
         for spectrum, group in itertools.groupby(simulations, attrgetter("spectrum_name")):
             alike = list(group)
             index = RowIndex(self.curves, spectrum, _span(alike), checked=checked)
-            yield from (_stored_result(one, index) for one in alike)
+            yield from map(_stored_result, alike, stems(alike), itertools.repeat(index))
 
     @contextlib.contextmanager
     def packs(self, simulations: Iterable[Simulation]) -> Iterator[dict[str, Pack]]:
@@ -203,7 +206,7 @@ class Store:
     def result(self, simulation: Simulation) -> SimulationResult:
         """Stored result of a simulation; `UnreadableFileError` where there is none."""
         name, block = simulation.spectrum_name, _span([simulation])
-        for member in RowIndex(self.curves, name, block).curves(simulation):
+        for member in RowIndex(self.curves, name, block).curves(simulation.stem):
             return read_simulation(member, simulation)
         raise UnreadableFileError(f"{self.curves} has no curve of {simulation.label}; simulate it")
 
@@ -306,6 +309,11 @@ class Store:
         """
         if not self.folder.is_dir():
             return
+        for path in sorted((self.folder / "shards").glob("*.nc")):
+            if digest_beside(path) is None:
+                forget_sums(self.folder)
+                path.unlink()
+                yield f"{path} is made anew, as no file beside it states its checksum"
         yield from set_aside_damaged(self.folder)
         yield from renew_packs(pack_paths(self.curves))
         if (self.folder / "shards").is_dir() and not self.configuration.is_file():
@@ -315,6 +323,7 @@ class Store:
             if lost := [name for name in curve_names(path) if name not in known]:
                 forget_sums(self.folder)
                 path.unlink()
+                place_of_digest(path).unlink(missing_ok=True)
                 yield f"{path} is made anew, as {len(lost)} curve(s) of its simulations are gone"
 
     def aggregate(self, sweep: Sweep, origin: Provenance) -> Path:
@@ -333,10 +342,7 @@ class Store:
                 f"{self.folder}; run `crackfront simulate` with this configuration and output, or "
                 "`make` again"
             )
-        parts = [
-            [read_dataset(one.path).sel(realisation=list(taken)) for one, taken in chosen]
-            for chosen in shards
-        ]
+        parts = [[shard_columns(one, taken) for one, taken in chosen] for chosen in shards]
         forget_sums(self.folder)
         write_hysteresis(self.hysteresis, sweep, parts, origin)
         return self.hysteresis
@@ -425,16 +431,16 @@ def lost_curves(folder: Path) -> Iterator[str]:
     """Curves that belong to rows of finished shards in a folder, and are in no pack."""
     known = {one.name for path in pack_paths(folder / "curves") for one in members(path)[0]}
     for path in sorted((folder / "shards").glob("*.nc")):
-        with contextlib.suppress(UnreadableFileError):
+        if finished_shard(path) is not None:
             yield from (name for name in curve_names(path) if name not in known)
 
 
-def _stored_result(simulation: Simulation, index: RowIndex) -> StoredResult:
+def _stored_result(simulation: Simulation, stem: str, index: RowIndex) -> StoredResult:
     """What an index has of a simulation."""
-    if (entry := index.entry(simulation)) is not None:
+    if (entry := index.entry(stem)) is not None:
         return StoredResult(simulation, entry.row, "", arithmetic=entry.arithmetic)
-    unreadable, latest = "", index.latest(simulation)
-    for member in index.curves(simulation):
+    unreadable, latest = "", index.latest(stem)
+    for member in index.curves(stem):
         try:
             row = sweep_row(read_simulation(member, simulation))
         except UnreadableFileError as error:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import functools
 import json
 import math
 from collections import Counter
 from collections.abc import Collection, Sequence
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -16,47 +15,21 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crackfront.analysis.steady import (
-    STEADY_DEFINITION,
-    SteadyAdhesion,
-    SteadyMeasures,
-    mean_adhesion,
-)
-from crackfront.analysis.table import (
-    PLACE,
-    REALISATION,
-    SPECTRUM,
-    SweepAxes,
-    SweepRow,
-    SweepTable,
-)
-from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.fingerprint import fingerprint
-from crackfront.core.outcome import Status
+from crackfront.analysis.steady import STEADY_DEFINITION
+from crackfront.analysis.table import SweepAxes, SweepRow, SweepTable
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.core.variables import ADHESION, variables
+from crackfront.core.variables import variables
 from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
-from crackfront.data.labels import flag_words, label, labelled_fields
+from crackfront.data.labels import flag_words, labelled_fields
 from crackfront.data.provenance import Provenance
-from crackfront.simulate.numerics import stated_error
-from crackfront.simulate.run import SimulationResult
-from crackfront.simulate.simulation import Simulation
+from crackfront.sweep.rows import labelled_columns, row_columns
 from crackfront.sweep.sweep import Sweep
-
-COMPLETE = ("lost_contact", "steady")
-"""Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
 
 SWEEP_FINGERPRINT = "sweep_fingerprint"
 """Attribute that says of which configuration a table is."""
 
 _WINDOW = ("lowest_radius", "highest_radius")
 """Ends of the steady window."""
-
-NO_STEADY_PART = "no_steady_part"
-"""Status of a complete cycle without enough steady states."""
-
-_STATUSES = (*(one.name.lower() for one in Status), NO_STEADY_PART, "refused", "defect")
-"""What `status` may be; the file of a sweep has their places."""
 
 
 def rows_dataset(sweep: Sweep, rows: Sequence[SweepRow], realisations: range) -> xr.Dataset:
@@ -66,32 +39,30 @@ def rows_dataset(sweep: Sweep, rows: Sequence[SweepRow], realisations: range) ->
     """
     axes = _axes(sweep, realisations)
     shape = axes.spectrum.size, axes.amplitude.size, axes.realisation.size
-    columns = {}
-    for variable in variables(SweepRow, *PLACE):
-        values = np.array([getattr(row, variable.name) for row in rows])
-        words = _STATUSES if variable.name == "status" else ()
-        if words:
-            values = np.array([words.index(value) for value in values], np.int8)
-        columns[variable.name] = (variable.dims, values.reshape(shape), label(variable, words))
+    columns = labelled_columns(row_columns(rows, shape))
     return xr.Dataset(columns, labelled_fields(axes), _attributes(sweep))
 
 
 def write_hysteresis(
-    path: Path, sweep: Sweep, shards: Sequence[Sequence[xr.Dataset]], origin: Provenance
+    path: Path,
+    sweep: Sweep,
+    shards: Sequence[Sequence[dict[str, NDArray[np.generic]]]],
+    origin: Provenance,
 ) -> None:
-    """Write the file of a sweep: for each spectrum its shards, one after the other.
+    """Write the file of a sweep: for each spectrum the columns of its shards, in their order.
 
-    The shards of a spectrum are datasets of :func:`rows_dataset` that have all its realisations in
-    their order.
+    The shards of a spectrum have all its realisations. Their columns are taken out of them, so that
+    they need not be in memory twice.
     """
-    spectra = [
-        xr.concat([one.drop_vars(list(one.coords)) for one in parts], REALISATION)
-        for parts in shards
-    ]
+    columns = {}
+    for variable in variables(SweepRow):
+        spectra = [
+            np.concatenate([one.pop(variable.name) for one in parts], axis=2) for parts in shards
+        ]
+        columns[variable.name] = np.concatenate(spectra)
     axes = labelled_fields(_axes(sweep, range(sweep.n_realisation)))
-    # What the files say of their storage is theirs, as the length of their longest text.
-    whole = xr.concat(spectra, SPECTRUM).drop_encoding().assign_coords(axes)
-    write_dataset(path, whole.drop_attrs(deep=False).assign_attrs(_attributes(sweep)), origin)
+    dataset = xr.Dataset(labelled_columns(columns), axes, _attributes(sweep))
+    write_dataset(path, dataset, origin)
 
 
 def read_table(path: Path) -> SweepTable:
@@ -123,56 +94,6 @@ def _read(path: Path, names: Collection[str]) -> xr.Dataset:
     if missing:
         raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; aggregate the sweep again")
     return dataset
-
-
-def sweep_row(result: SimulationResult) -> SweepRow:
-    """What the file of a sweep says about one simulation."""
-    record, simulation = result.record, result.simulation
-    length = simulation.correlation_length
-    mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
-    steady = mean_adhesion(record, length, simulation.schedule.n_period, mean)
-    status, sentence = _status(record, steady)
-    known, cycle = status in COMPLETE, status == COMPLETE[0]
-    numerical = stated_error(simulation, steady, length) if known else (np.nan, np.nan)
-    measures: dict[str, Any] = {
-        item.name: getattr(steady, item.name) if known or item.units != ADHESION else np.nan
-        for item in variables(SteadyMeasures)
-    }
-    return SweepRow(
-        **measures | asdict(result.measures),
-        w_appr_numerical_error=numerical[0],
-        w_retr_numerical_error=numerical[1],
-        iterations=int(np.sum(record.states.iterations)),
-        n_step=record.states.direction.size,
-        pull_off_force=float(np.min(record.states.force, initial=np.inf)) if cycle else np.nan,
-        end_penetration=record.end_load,
-        status=status,
-        status_sentence=sentence,
-        seed=simulation.seed,
-        curve=f"{simulation.stem}.nc",
-    )
-
-
-def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
-    """The same about a simulation that cannot be done, and why, in a word and in a sentence."""
-    unknown: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
-    nothing = dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
-    known = {"status": status, "status_sentence": sentence, "seed": simulation.seed, "curve": ""}
-    return SweepRow(**(unknown | nothing | known))
-
-
-@functools.cache
-def row_fingerprint() -> str:
-    """Twelve hexadecimal digits that change with any module that makes a row of a result."""
-    return fingerprint(__name__)
-
-
-def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
-    """How a simulation ended, in a word and in a sentence."""
-    status = record.status.name.lower()
-    if status in COMPLETE and steady.sentence:
-        return NO_STEADY_PART, steady.sentence
-    return status, record.status.value
 
 
 def _axes(sweep: Sweep, realisations: range) -> SweepAxes:

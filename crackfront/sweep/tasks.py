@@ -22,8 +22,8 @@ from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
 from crackfront.sweep.checkpoints import CheckpointFile
 from crackfront.sweep.journal import Entry
+from crackfront.sweep.rows import failed_row, row_fingerprint, sweep_row
 from crackfront.sweep.store import Store
-from crackfront.sweep.table import failed_row, row_fingerprint, sweep_row
 
 _STOPPED, _NOT_STORED = "stopped", "not_stored"
 """Statuses of tasks after which a run ends; they have no row."""

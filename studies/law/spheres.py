@@ -19,7 +19,7 @@ from crackfront.simulate.numerics import Numerics, simulation_of
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration, results_folder
-from crackfront.sweep.table import sweep_row
+from crackfront.sweep.rows import sweep_row
 from studies.law.cells import COLUMNS, Means, cell_means, csv_rows, mean_factors
 from studies.law.drawing import LawPoints
 from studies.pages import markdown_table

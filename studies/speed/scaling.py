@@ -2,7 +2,7 @@
 
 Dispatch is measured with curves that are stored, on real ranks of MPI. The million simulations are
 played through event by event, with the times of the cost model and the recorded deviations from it,
-for 1 to 4096 ranks. What follows is run on copies of stored curves.
+for 1 to 4096 ranks. What follows is run on copies of stored rows and curves.
 """
 
 from __future__ import annotations
@@ -19,19 +19,22 @@ from pathlib import Path
 
 import numpy as np
 
+from crackfront.analysis.table import SweepRow
 from crackfront.cli import main
 from crackfront.core.arrays import Array
-from crackfront.data.files import dataset_content
+from crackfront.data.files import dataset_content, write_text
 from crackfront.data.provenance import provenance
-from crackfront.simulate.costs import expected_cost, measured_runs, predicted_seconds
+from crackfront.simulate.costs import Cost, expected_cost, measured_runs, predicted_seconds
 from crackfront.simulate.files import simulation_dataset
 from crackfront.simulate.run import run_simulation
+from crackfront.simulate.simulation import stems
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry
 from crackfront.sweep.needs import postprocessing_costs
 from crackfront.sweep.parallel import default_launcher
+from crackfront.sweep.rows import row_fingerprint, sweep_row
+from crackfront.sweep.shards import write_shard
 from crackfront.sweep.store import Store
-from crackfront.sweep.table import row_fingerprint, sweep_row
 from studies.pages import markdown_table
 from studies.speed.machine import in_fresh_process, peak_memory
 
@@ -42,6 +45,12 @@ SUBMIT_SECONDS = 1.0
 """Between two submissions of Snakemake."""
 
 RANKS_OF_A_JOB = 32
+
+REALISATIONS_OF_A_SHARD = 2000
+"""Of a synthetic sweep: its two amplitudes make shards of 4000 simulations, 250 of a million."""
+
+_MOST_PACKED = 10**5
+"""Simulations up to which the curves of a synthetic sweep are stored: a million take 60 GB."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,45 +169,72 @@ def start_seconds() -> float:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def synthetic(folder: Path, n_simulation: int) -> Path:
-    """Configuration of a stored sweep, whose realisations have the curves of the first ones."""
+def synthetic(folder: Path, n_simulation: int, *, packed: bool = True) -> Path:
+    """Configuration of a finished sweep, whose realisations have the rows of the first ones.
+
+    Its shards have :data:`REALISATIONS_OF_A_SHARD`. Unless `packed` there are no curves, which
+    nothing reads of a finished sweep but what checks them.
+    """
     path = folder / "test.yaml"
     text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
     path.write_text(text.replace("realisations: 2", f"realisations: {n_simulation // 4}"))
     sweep, rng = load_configuration(path), np.random.default_rng(1)
-    store = Store(folder)
-    with store.packs(sweep.simulations()) as packs:
-        for one in sweep.simulations():
-            if one.realisation == 0:
-                result = run_simulation(one)
-                curve = dataset_content(simulation_dataset(result), provenance())
-                first = sweep_row(result)
-            row = replace(first, w_appr=first.w_appr * rng.normal(1, 0.01), seed=one.seed)
-            entry = Entry(one.stem, one.parts, row_fingerprint(), row)
-            packs[one.spectrum_name].append(entry.files(curve))
-    for shard in sweep.shards():
-        store.finish_shard(sweep, shard, provenance())
+    store, origin = Store(folder), provenance()
+    write_text(store.configuration, path.read_text(encoding="utf-8"))
+    first: dict[tuple[str, float], tuple[SweepRow, bytes]] = {}
+    for shard in sweep.shards(REALISATIONS_OF_A_SHARD):
+        simulations, rows = list(sweep.simulations(shard.item, shard.realisations)), []
+        with store.packs(simulations) as packs:
+            for one, stem in zip(simulations, stems(simulations), strict=True):
+                place = one.spectrum_name, one.elastic_energy
+                if place not in first:
+                    result = run_simulation(one)
+                    content = dataset_content(simulation_dataset(result), origin)
+                    first[place] = sweep_row(result), content
+                row, curve = first[place]
+                w_appr = row.w_appr * rng.normal(1, 0.01)
+                rows.append(replace(row, w_appr=w_appr, seed=one.seed, curve=f"{stem}.nc"))
+                if packed:
+                    entry = Entry(stem, one.parts, row_fingerprint(), rows[-1], origin.arithmetic)
+                    packs[one.spectrum_name].append(entry.files(curve))
+        write_shard(store.shard_path(shard), sweep, shard, rows, [origin.arithmetic], origin)
     return path
 
 
 def late(configuration: Path, command: str) -> tuple[float, float]:
     """Processor time and memory of a process for a command on a stored sweep. (Units: s, bytes)."""
-    output = str(configuration.parent)
-    main([command, str(configuration), "--output", output], standalone_mode=False)
+    folder = str(configuration.parent)
+    whole = command in ("status", "verify")
+    arguments = [folder] if whole else [str(configuration), "--output", folder]
+    main([command, *arguments], standalone_mode=False)
     return time.process_time(), 1e6 * peak_memory()
 
 
 def late_table(sizes: Sequence[int]) -> str:
-    """What the commands that follow the simulations take, and what the law in use says."""
+    """What the commands that follow the simulations take, and what the law in use says.
+
+    The last `plan` is that of a sweep one of whose shards has all its rows, but no file.
+    """
     rows = []
     for n_row in sizes:
         with tempfile.TemporaryDirectory() as folder:
-            path = synthetic(Path(folder), n_row)
-            for name, cost in postprocessing_costs(load_configuration(path)).items():
-                seconds, peak = in_fresh_process(late, path, name)
-                numbers = seconds, cost.seconds, peak / 1e6, cost.memory / 1e6
-                rows.append([name, f"{n_row}", *(f"{number:.0f}" for number in numbers)])
+            path = synthetic(Path(folder), n_row, packed=(packed := n_row <= _MOST_PACKED))
+            costs = postprocessing_costs(load_configuration(path))
+            rows += [
+                [name, f"{n_row}", *_late_cells(path, name, costs.get(name))]
+                for name in ("plan", "status", *costs, *["verify"] * packed)
+            ]
+            if packed:
+                next(Path(folder, "shards").glob("*.nc")).unlink()
+                rows.append(["plan, a shard left", f"{n_row}", *_late_cells(path, "plan", None)])
     return markdown_table("command | simulations | CPU s | by the law | MB | by the law", rows)
+
+
+def _late_cells(path: Path, command: str, cost: Cost | None) -> list[str]:
+    """Measured and expected seconds and megabytes of a command; some have no expectation."""
+    seconds, peak = in_fresh_process(late, path, command)
+    expected = ("-", "-") if cost is None else (f"{cost.seconds:.0f}", f"{cost.memory / 1e6:.0f}")
+    return [f"{seconds:.0f}", expected[0], f"{peak / 1e6:.0f}", expected[1]]
 
 
 def parts() -> dict[str, str]:
@@ -215,7 +251,7 @@ def parts() -> dict[str, str]:
         for rows in zip(*(played(shards, losses) for shards in sweeps), strict=True)
     ]
     return {
-        "late": late_table((10**4, 10**5)),
+        "late": late_table((10**4, 10**5, 10**6)),
         "efficiency": f"{sum(map(len, sweeps[0]))} simulations of {useful:.0f} core hours; "
         f"{1e3 * losses.hand_out:.2f} ms to hand out and store one, {losses.start:.1f} s to start "
         f"a job.\n\n{markdown_table(header, cells)}",

@@ -14,7 +14,7 @@ from crackfront.simulate.line.schedule import LineSchedule
 from crackfront.simulate.simulation import simulation_fingerprint
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
-from crackfront.sweep.table import row_fingerprint
+from crackfront.sweep.rows import row_fingerprint
 from studies.paper.figure import checks_fingerprint, drawing_fingerprint, figure_fingerprint
 
 KERNEL = "crackfront/core/solver/monotone.py"
@@ -121,6 +121,16 @@ def test_docstrings_comments_and_blank_lines_change_nothing(sources):
         ("Radius of the stable smooth contact", "Radius of a stable smooth contact"),
     )
     assert parameters() == before
+
+
+def test_an_edit_of_the_table_of_a_sweep_makes_no_row_and_no_shard_anew(sources):
+    before = parameters()
+    edited(sources / "crackfront/sweep/table.py", ("adhesion hysteresis, ", "hysteresis of "))
+    after = parameters()
+    assert after["row"] == before["row"]
+    assert after["aggregate"] != before["aggregate"]
+    edited(sources / "crackfront/sweep/rows.py", ('"refused", "defect"', '"defect", "refused"'))
+    assert parameters()["row"] != before["row"]
 
 
 LINE = "crackfront/simulate/line/schedule.py"

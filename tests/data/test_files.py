@@ -47,7 +47,8 @@ from crackfront.simulate.run import SimulationResult, run_simulation
 from crackfront.simulate.user_surface import read_field, surface_adhesion
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fit_files import write_fit
-from crackfront.sweep.table import read_statuses, read_table, rows_dataset, sweep_row
+from crackfront.sweep.rows import sweep_row
+from crackfront.sweep.table import read_statuses, read_table, rows_dataset
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 ORIGIN = Provenance("1.2.3", "abc", "f00", "crackfront test", "seed: 1\n")

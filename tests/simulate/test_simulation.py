@@ -1,5 +1,7 @@
 """One simulation of a sweep: its sizes, its seed, its key, its field and its result."""
 
+import hashlib
+import json
 import tracemalloc
 from dataclasses import replace
 
@@ -15,7 +17,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.numerics import Numerics, resolution
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Resolution, Simulation, simulation_adhesion
+from crackfront.simulate.simulation import Resolution, Simulation, simulation_adhesion, stems
 from crackfront.simulate.sphere.cycle import FullCycle
 
 KNOBS = Knobs(None, 2, 4, "cubic", 4, 1e-6)
@@ -86,6 +88,17 @@ def test_given_angles_are_taken_as_they_are():
 )
 def test_the_key_changes_with_everything_that_determines_the_result(change):
     assert replace(SIMULATION, **change).key != SIMULATION.key
+
+
+def test_the_keys_of_a_block_are_digests_of_what_determines_each_simulation():
+    other = replace(SIMULATION, elastic_energy=0.07, spectrum_name="other")
+    block = [replace(one, realisation=n) for one in (SIMULATION, other) for n in (0, 7, 12345)]
+    block += [SIMULATION, other, replace(SIMULATION, sweep_seed=9)]
+    for one, stem in zip(block, stems(block), strict=True):
+        text = json.dumps(one._content(), sort_keys=True)
+        key = hashlib.sha256(text.encode()).hexdigest()[:16]
+        place = f"{one.spectrum_name}-e{one.elastic_energy:g}-r{one.realisation}"
+        assert (stem, one.key) == (f"{place}-{key}", key)
 
 
 def test_the_name_is_not_in_the_key():

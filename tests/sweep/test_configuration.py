@@ -17,7 +17,8 @@ from crackfront.data.section import ConfigurationError, movable_text
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.table import failed_row, read_table, rows_dataset
+from crackfront.sweep.rows import failed_row
+from crackfront.sweep.table import read_table, rows_dataset
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import measured_surface

@@ -9,7 +9,7 @@ import pytest
 from crackfront.data.packs import LONGEST_NAME, checked, record
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.journal import Entry, RowIndex, new_pack, pack_paths, renew_packs
-from crackfront.sweep.table import failed_row, row_fingerprint
+from crackfront.sweep.rows import failed_row, row_fingerprint
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 ONE = next(SWEEP.simulations())
@@ -38,8 +38,8 @@ def test_what_is_appended_is_read_back_in_order_and_to_the_last_bit(tmp_path, pa
     expected = [f"{OTHER.stem}.nc", f"{OTHER.stem}.json", f"{ONE.stem}.json"]
     assert names(tmp_path) == (expected, 0)
     index = RowIndex(tmp_path, "flat", range(2))
-    assert index.entry(ONE).row.w_appr == 0.1 + 0.2
-    assert index.latest(ONE).parts == ONE.parts
+    assert index.entry(ONE.stem).row.w_appr == 0.1 + 0.2
+    assert index.latest(ONE.stem).parts == ONE.parts
 
 
 @pytest.mark.parametrize("left", [1, 300, 512, 700, 5000, -1])
@@ -128,8 +128,8 @@ def test_packs_are_found_by_spectrum_and_realisations(tmp_path, pack, spectrum, 
 def test_a_row_of_another_definition_does_not_count(tmp_path, pack):
     pack.append(replace(ENTRY, definition="earlier").files())
     index = RowIndex(tmp_path, "flat", range(2))
-    assert index.entry(ONE) is None
-    assert index.latest(ONE).parts == ONE.parts
+    assert index.entry(ONE.stem) is None
+    assert index.latest(ONE.stem).parts == ONE.parts
 
 
 def test_what_the_disk_does_not_take_leaves_nothing(tmp_path, monkeypatch, pack):

@@ -6,13 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crackfront.data.files import read_dataset
+from crackfront.data.digests import file_digest, place_of_digest
+from crackfront.data.files import damaged_files, read_dataset
 from crackfront.data.provenance import provenance
 from crackfront.sweep import shards
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.rows import failed_row
 from crackfront.sweep.shards import covering, finished_shard, shard_fingerprint, write_shard
-from crackfront.sweep.store import Store
-from crackfront.sweep.table import failed_row
+from crackfront.sweep.store import Store, lost_curves
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 FLAT, ROUGH = SWEEP.shards()
@@ -69,7 +70,7 @@ def test_the_file_of_a_shard_has_the_rows_and_says_which_they_are(path):
 
 def test_what_is_finished_is_known_without_a_look_at_rows_and_packs(path, monkeypatch):
     store = Store(path.parents[1])
-    monkeypatch.setattr("crackfront.sweep.store.read_dataset", None)
+    monkeypatch.setattr("crackfront.sweep.store.shard_columns", None)
     monkeypatch.setattr("crackfront.sweep.store.RowIndex", None)
     assert store.is_finished(SWEEP, FLAT)
     assert not store.is_finished(SWEEP, ROUGH)
@@ -85,6 +86,58 @@ def test_a_shard_of_another_sweep_counts_where_its_simulations_are_the_same(path
         assert found.stored == 2 * min(n_realisation, 2)
         assert {one.realisation for one in found.missing} == set(range(2, n_realisation))
     assert store.progress(replace(SWEEP, seed=7), item).stored == 0
+
+
+def flipped(content, bit):
+    """Content with one bit changed."""
+    changed = bytearray(content)
+    changed[bit // 8] ^= 1 << bit % 8
+    return bytes(changed)
+
+
+def test_no_flipped_bit_and_no_lost_sector_of_a_shard_is_believed_and_hdf5_sees_none(
+    path, monkeypatch, rng
+):
+    def refuse(*_, **__):
+        raise AssertionError("HDF5 opens a damaged file")
+
+    content, store = path.read_bytes(), Store(path.parents[1])
+    monkeypatch.setattr("crackfront.sweep.shards.netCDF4.Dataset", refuse)
+    monkeypatch.setattr("crackfront.data.files.read_dataset", refuse)
+    bits = rng.integers(8 * len(content), size=300).tolist()
+    damaged = [flipped(content, bit) for bit in [0, 8 * len(content) - 1, *bits]]
+    for start in range(0, len(content), 512):
+        sector = content[start : start + 512]
+        lost = content[:start] + bytes(len(sector)) + content[start + 512 :]
+        damaged += [lost] if any(sector) else []
+    damaged += [content[:size] for size in (0, 1, 4096, len(content) - 1)]
+    for changed in [*damaged, content + b"\0"]:
+        path.write_bytes(changed)
+        assert finished_shard(path) is None
+        assert damaged_files(store.folder) == [path]
+        assert [*lost_curves(store.folder)] == []
+
+
+@pytest.mark.parametrize("damage", ["removed", "emptied", "of another", "flipped"])
+def test_a_shard_without_its_checksum_is_not_believed_and_made_anew(path, damage):
+    beside, store = place_of_digest(path), Store(path.parents[1])
+    stated = beside.read_bytes()
+    assert stated.decode() == f"{file_digest(path)}  flat.nc\n"
+    contents = {
+        "emptied": b"",
+        "of another": b"0" * 64 + stated[64:],
+        "flipped": flipped(stated, 9),
+    }
+    if damage == "removed":
+        beside.unlink()
+    else:
+        beside.write_bytes(contents[damage])
+    assert finished_shard(path) is None
+    configuration = Path(__file__).parents[2] / "config/test.yaml"
+    [sentence] = store.renewed(configuration)
+    assert sentence.startswith(str(path))
+    assert "made anew" in sentence
+    assert not path.exists()
 
 
 @pytest.mark.parametrize("content", [b"", b"text", "half"])

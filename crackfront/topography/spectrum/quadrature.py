@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter
 from scipy.special import log_ndtr, ndtri_exp
-from scipy.stats import qmc
 
 from crackfront.core.arrays import Array
 
@@ -123,6 +122,8 @@ class Quadrature:
     """States of one likelihood."""
 
     def __init__(self, likelihood: Likelihood) -> None:
+        from scipy.stats import qmc  # as slow to import as all else here
+
         self._likelihood = likelihood
         self._cells = _fine_cells(likelihood)
         count = len(self._cells.logarithm)

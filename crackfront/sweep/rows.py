@@ -1,0 +1,107 @@
+"""The row of one simulation in the file of a sweep, and rows as columns of a file."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, fields
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crackfront.analysis.steady import SteadyAdhesion, SteadyMeasures, mean_adhesion
+from crackfront.analysis.table import PLACE, SweepRow
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.fingerprint import fingerprint
+from crackfront.core.outcome import Status
+from crackfront.core.variables import ADHESION, variables
+from crackfront.data.labels import label
+from crackfront.simulate.numerics import stated_error
+from crackfront.simulate.run import SimulationResult
+from crackfront.simulate.simulation import Simulation
+
+COMPLETE = ("lost_contact", "steady")
+"""Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
+
+NO_STEADY_PART = "no_steady_part"
+"""Status of a complete cycle without enough steady states."""
+
+_STATUSES = (*(one.name.lower() for one in Status), NO_STEADY_PART, "refused", "defect")
+"""What `status` may be; the file of a sweep has their places."""
+
+
+def sweep_row(result: SimulationResult) -> SweepRow:
+    """What the file of a sweep says about one simulation."""
+    record, simulation = result.record, result.simulation
+    length = simulation.correlation_length
+    mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
+    steady = mean_adhesion(record, length, simulation.schedule.n_period, mean)
+    status, sentence = _status(record, steady)
+    known, cycle = status in COMPLETE, status == COMPLETE[0]
+    numerical = stated_error(simulation, steady, length) if known else (np.nan, np.nan)
+    measures: dict[str, Any] = {
+        item.name: getattr(steady, item.name) if known or item.units != ADHESION else np.nan
+        for item in variables(SteadyMeasures)
+    }
+    return SweepRow(
+        **measures | asdict(result.measures),
+        w_appr_numerical_error=numerical[0],
+        w_retr_numerical_error=numerical[1],
+        iterations=int(np.sum(record.states.iterations)),
+        n_step=record.states.direction.size,
+        pull_off_force=float(np.min(record.states.force, initial=np.inf)) if cycle else np.nan,
+        end_penetration=record.end_load,
+        status=status,
+        status_sentence=sentence,
+        seed=simulation.seed,
+        curve=f"{simulation.stem}.nc",
+    )
+
+
+def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
+    """The same about a simulation that cannot be done, and why, in a word and in a sentence."""
+    unknown: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
+    nothing = dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
+    known = {"status": status, "status_sentence": sentence, "seed": simulation.seed, "curve": ""}
+    return SweepRow(**(unknown | nothing | known))
+
+
+@functools.cache
+def row_fingerprint() -> str:
+    """Twelve hexadecimal digits that change with any module that makes a row of a result."""
+    return fingerprint(__name__)
+
+
+def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
+    """How a simulation ended, in a word and in a sentence."""
+    status = record.status.name.lower()
+    if status in COMPLETE and steady.sentence:
+        return NO_STEADY_PART, steady.sentence
+    return status, record.status.value
+
+
+def row_columns(
+    rows: Sequence[SweepRow], shape: tuple[int, int, int]
+) -> dict[str, NDArray[np.generic]]:
+    """Values of rows as a file has them: spectra, amplitudes and realisations of a shape."""
+    columns = {
+        item.name: np.array([getattr(row, item.name) for row in rows]).reshape(shape)
+        for item in variables(SweepRow)
+    }
+    places = [_STATUSES.index(row.status) for row in rows]
+    return columns | {"status": np.array(places, np.int8).reshape(shape)}
+
+
+def labelled_columns(columns: Mapping[str, NDArray[np.generic]]) -> dict[str, xr.Variable]:
+    """Variables of a file for columns as of :func:`row_columns`; texts may be bytes of UTF-8."""
+    found = {}
+    for item in variables(SweepRow, *PLACE):
+        values = columns[item.name]
+        about = label(item, _STATUSES if item.name == "status" else ())
+        if values.dtype.kind == "S":
+            about |= {"_Encoding": "utf-8"}  # as xarray writes for texts
+        found[item.name] = xr.Variable(item.dims, values, about)
+    return found
