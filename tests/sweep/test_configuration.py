@@ -6,14 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 
 from crackfront.analysis.law import spectral_breadth
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
-from crackfront.data.section import ConfigurationError, movable_text
+from crackfront.data.section import ConfigurationError, content_of, movable_text
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
@@ -21,6 +20,7 @@ from crackfront.sweep.table import failed_row, read_table, rows_dataset
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import measured_surface
+from tests.yaml_texts import from_yaml, to_yaml
 
 ROOT = Path(__file__).parents[2]
 
@@ -102,7 +102,7 @@ def test_an_rms_is_converted_to_the_energy_of_full_conformity(tmp_path):
 
 def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
     scales = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.93e6)
-    content = yaml.safe_load(GOOD)
+    content = from_yaml(GOOD)
     content["numerics"]["tolerance"] = 1e-6
     content["scales"] = {"radius": 1.25e-3, "work_of_adhesion": 63e-3, "contact_modulus": 0.93e6}
     for spectrum in content["spectra"]:
@@ -111,7 +111,7 @@ def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
     for name in ("max_penetration", "step"):
         content["load"][name] *= scales.vertical
     reduced = load_configuration(written(tmp_path, GOOD))
-    metres = load_configuration(written(tmp_path, yaml.safe_dump(content)))
+    metres = load_configuration(written(tmp_path, to_yaml(content)))
     for one, other in zip(reduced.spectra, metres.spectra, strict=True):
         assert other.spectrum.short_cutoff == pytest.approx(one.spectrum.short_cutoff, rel=1e-14)
         assert other.spectrum.roll_off == pytest.approx(one.spectrum.roll_off, rel=1e-14)
@@ -184,11 +184,11 @@ def test_steady_loads_are_read_in_both_units(tmp_path):
         0.25, 1.0, 2.0, 0.1
     )
     scales = Scales(radius=1e-3, work_of_adhesion=0.05, contact_modulus=1e6)
-    content = yaml.safe_load(text)
+    content = from_yaml(text)
     content["scales"] = {"radius": 1e-3, "work_of_adhesion": 0.05, "contact_modulus": 1e6}
     content["load"]["max_penetration"] *= scales.vertical
     content["load"]["steady"]["start"] *= scales.vertical
-    metres = load_configuration(written(tmp_path, yaml.safe_dump(content))).schedule
+    metres = load_configuration(written(tmp_path, to_yaml(content))).schedule
     assert metres.start == pytest.approx(0.25, rel=1e-14)
     assert (metres.travel, metres.standard_error) == (2.0, 0.1)
 
@@ -596,6 +596,15 @@ HARSH = {
     "digits": ("x: " + "9" * 5000 + "\n", "is no valid YAML: Exceeds the limit"),
     "a tag that is not met": ("x: !!bool maybe\n", "is no valid YAML: 'maybe'"),
     "a key twice as number and text": ("1: a\n'1': b\n", "line 2: key '1' stands twice"),
+    "an octal number of old": (
+        "a:\n  b: 010\n",
+        "in line 2: 010 begins with 0, as octal numbers do elsewhere; remove the 0",
+    ),
+    "a negative one": ("a: -0_7\n", "in line 1: -0_7 begins with 0"),
+    "another version": (
+        "%YAML 1.1\n---\na: yes\n",
+        "it is read as YAML 1.2; remove the line %YAML",
+    ),
     "unknown keys": (
         "".join(f"key_{k}: {k}\n" for k in range(20_000)),
         "more such keys and values",
@@ -609,6 +618,13 @@ def test_yaml_that_nobody_writes_is_refused_with_a_sentence(tmp_path, case):
     message = refusal(tmp_path, text)
     assert sentence in message
     assert len(message) < 5000
+
+
+def test_numbers_and_words_are_those_of_yaml_1_2(tmp_path):
+    path = written(tmp_path, "a: [1e-3, 0.5, 1E+2, 0o10, 0x10, 1:30, on, No, yes, 0, 0.10, true]\n")
+    found = content_of(path)["a"]
+    assert found == (0.001, 0.5, 100.0, 8, 16, "1:30", "on", "No", "yes", 0, 0.1, True)
+    assert [type(one) for one in found[:4]] == [float, float, float, int]
 
 
 def test_an_anchor_may_be_used_as_often_as_it_is_useful(tmp_path):
