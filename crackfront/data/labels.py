@@ -24,8 +24,8 @@ def unit_attributes(unit: str) -> dict[str, str]:
     ({'units': 'J / m^2'}, {'units': '1', 'reduced_unit': 'w_int'})
     """
     if _KNOWN_TO_UDUNITS.fullmatch(unit):
-        return {"units": unit}
-    return {"units": "1", "reduced_unit": unit}
+        return {"units": str(unit)}
+    return {"units": "1", "reduced_unit": str(unit)}
 
 
 def stated_unit(attributes: Mapping[Any, Any]) -> Any:

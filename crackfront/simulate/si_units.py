@@ -15,10 +15,10 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.spectrum import Spectrum
+from crackfront.core.units import ReducedUnit
 from crackfront.core.variables import (
     ADHESION,
     ENERGY,
-    FORCE,
     LATERAL,
     STEP,
     VERTICAL,
@@ -118,8 +118,7 @@ def in_si_units(data: Labelled, scales: units.Scales) -> Labelled:
     """
     refuse_no_scales(scales)
     refuse_other_units(data)
-    known = _si(scales)
-    found = _converted(data, lambda unit, _: known.get(unit, (1.0, unit)))
+    found = _converted(data, lambda unit, _: _si(unit, scales))
     return found.assign_attrs({_SPHERE + name: part for name, part in asdict(scales).items()})
 
 
@@ -166,10 +165,9 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     True
     """
     refuse_no_scales(scales)
-    known = _si(scales)
 
     def reduced(unit: str, part: xr.DataArray | None) -> tuple[float, str]:
-        scale, needed = known.get(unit, (1.0, unit))
+        scale, needed = _si(unit, scales)
         return (1.0 if part is None else _unit_value(part, needed)) / scale, unit
 
     found = _converted(data, reduced)
@@ -184,7 +182,7 @@ def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
         plain = "reduced" if needed in (LATERAL, VERTICAL) else needed
         if given not in (needed, plain) and not (name in ("x", "y") and given in (None, "", "1")):
             raise ValueError(
-                f"{name} has the units {given!r}; the attribute units must be {plain!r}: set it, "
+                f"{name} has the units {given!r}; the attribute units must be '{plain}': set it, "
                 "or convert other units by in_reduced_units"
             )
 
@@ -242,16 +240,9 @@ def _reduced_unit(name: str) -> str:
     return _REDUCED[name]
 
 
-def _si(scales: units.Scales) -> dict[str, tuple[float, str]]:
-    """Reduced units that have a scale: their values in SI units, and those."""
-    return {
-        LATERAL: (scales.lateral, "m"),
-        VERTICAL: (scales.vertical, "m"),
-        FORCE: (scales.force, "N"),
-        ADHESION: (scales.work_of_adhesion, "J / m^2"),
-        ENERGY: (scales.force * scales.vertical, "J"),
-        f"({LATERAL})^2": (scales.lateral**2, "m^2"),
-    }
+def _si(unit: str, scales: units.Scales) -> tuple[float, str]:
+    """What a unit is in SI, and the unit there; a unit that is no reduced one stays."""
+    return (unit.scale(scales), unit.si) if isinstance(unit, ReducedUnit) else (1.0, unit)
 
 
 def _unit_value(part: xr.DataArray, needed: str) -> float:
