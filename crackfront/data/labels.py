@@ -31,7 +31,8 @@ def unit_attributes(unit: str) -> dict[str, str]:
 def stated_unit(attributes: Mapping[Any, Any]) -> Any:
     """The unit that attributes state, a reduced one where there is one; None without any."""
     given = attributes.get("units")
-    return attributes.get("reduced_unit", given) if given == "1" else given
+    found = attributes.get("reduced_unit", given) if given == "1" else given
+    return str(found) if isinstance(found, str) else found
 
 
 def label(variable: Variable, flags: Sequence[str] = ()) -> dict[str, Any]:

@@ -111,11 +111,33 @@ _SPHERE = "sphere_"
 """Prefix of the attributes that state the sphere of a conversion."""
 
 
-def in_si_units(data: Labelled, scales: units.Scales) -> Labelled:
-    """A copy of a surface or cycle in SI units, whose attributes say for which sphere.
+_OF_SWEEP = "scale_"
+"""Prefix of the attributes in which a table states the sphere of its configuration."""
 
-    Arguments as of :func:`in_reduced_units`.
+
+def in_si_units(data: Labelled, scales: units.Scales | None = None) -> Labelled:
+    """A copy of a surface, a cycle or the table of a sweep in SI units, which states the sphere.
+
+    Parameters
+    ----------
+    data : xarray.DataArray or xarray.Dataset
+        What is in reduced units.
+    scales : Scales, optional
+        The sphere; by default that of the configuration, which the table of a sweep states.
+
+    Raises
+    ------
+    ValueError
+        If a variable is unknown or in other units, or neither `scales` nor the data say for which
+        sphere.
     """
+    if scales is None:
+        scales = _attributes_scales(as_dataset(data), _OF_SWEEP)
+        if scales is None:
+            raise ValueError(
+                "the data do not state a sphere, as tables of sweeps with a section scales do; "
+                "name it: in_si_units(data, crackfront.Scales(radius, ...))"
+            )
     refuse_no_scales(scales)
     refuse_other_units(data)
     found = _converted(data, lambda unit, _: _si(unit, scales))
@@ -127,11 +149,18 @@ def stated_scales(data: xr.DataArray | xr.Dataset) -> units.Scales | None:
 
     ValueError if they are in other units and do not say for which sphere they were converted.
     """
-    names = [item.name for item in fields(units.Scales)]
-    if not all(_SPHERE + name in data.attrs for name in names):
+    found = _attributes_scales(data, _SPHERE)
+    if found is None:
         refuse_other_units(data)
+    return found
+
+
+def _attributes_scales(data: xr.DataArray | xr.Dataset, prefix: str) -> units.Scales | None:
+    """The sphere that attributes with a prefix state, if they do."""
+    names = [prefix + item.name for item in fields(units.Scales)]
+    if not all(name in data.attrs for name in names):
         return None
-    return units.Scales(*(float(data.attrs[_SPHERE + name]) for name in names))
+    return units.Scales(*(float(data.attrs[name]) for name in names))
 
 
 def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
