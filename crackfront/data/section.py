@@ -55,7 +55,7 @@ _MOST_SENTENCES = 20
 
 
 def beside(path: Path, info: ValidationInfo) -> Path:
-    """A path that a configuration names, relative to the folder of that."""
+    """Path that a configuration names; a relative one begins in the folder of the configuration."""
     return Path(info.context or "") / path
 
 
@@ -220,7 +220,6 @@ _SHORT = {
 _MEANING = {
     "elastic_energy": " (in units of w_int: full conformity needs an energy below w_int)",
     "work_of_adhesion_rms": " (in units of w_int: at 2 the energy of full conformity is w_int)",
-    "hurst": " (a Hurst exponent lies in (0, 1])",
 }
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import crackfront as cf
 from crackfront.analysis.law import spectral_breadth
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
@@ -243,9 +244,9 @@ BAD = {
     "key twice": (("seed: 1", "seed: 1\nseed: 2"), "is no valid YAML in line 3: key 'seed' stands"),
     "hurst above one": (
         ("hurst: 0.8", "hurst: 1.2"),
-        "spectra[1].hurst is 1.2; it must be less than or equal to 1",
+        "spectra[1]: hurst is 1.2; it must lie in (0, 1]",
     ),
-    "hurst zero": (("hurst: 0.8", "hurst: 0"), "spectra[1].hurst is 0; it must be greater than 0"),
+    "hurst zero": (("hurst: 0.8", "hurst: 0"), "spectra[1]: hurst is 0.0; it must lie in (0, 1]"),
     "roll-off below the cutoff": (
         ("roll_off: 0.2", "roll_off: 0.05"),
         "spectra[1]: roll_off 0.05 is shorter than short_cutoff 0.1; lower the cutoff",
@@ -291,7 +292,7 @@ BAD = {
     ),
     "no contact": (
         ("max_penetration: 1.0", "max_penetration: -0.5"),
-        "load: max_penetration is -0.5, which never makes contact; the sphere touches at 0",
+        "load: max penetration -0.5 never makes contact; the sphere touches at 0",
     ),
     "steady beside step": (
         ("step: 0.1}", "step: 0.1, steady: {start: 0.5, travel: 2, error: 0.1}}"),
@@ -300,7 +301,7 @@ BAD = {
     "no load": (("step: 0.1}", "}"), "and steady (parts of them); give one"),
     "steady start too deep": (
         ("step: 0.1}", "steady: {start: 1.0, travel: 2, error: 0.1}}"),
-        "load: steady.start 1 is not below max_penetration 1; lower it or penetrate deeper",
+        "load: steady start is 1.0; it must be 0 or more, and below the largest penetration 1.0",
     ),
     "steady states that are all alike": (
         ("step: 0.1}", "steady: {start: 0.5, travel: 1e-6, error: 0.1}}"),
@@ -507,6 +508,38 @@ def test_the_table_of_a_sweep_keeps_measured_spectra(tmp_path):
     breadth = spectral_breadth("roughness", measured)
     assert spectral_breadth("roughness", table.shape_of(0)) == pytest.approx(breadth)
     assert np.isnan(table.hurst[0])
+
+
+def test_the_table_of_a_sweep_in_metres_is_converted_for_the_sphere_that_it_states(tmp_path):
+    scales = {"radius": 1.25e-3, "work_of_adhesion": 63e-3, "contact_modulus": 0.93e6}
+    content = from_yaml(GOOD) | {"scales": scales}
+    content["spectra"] = [{"name": "flat", "short_cutoff": 6e-6}]
+    content["load"] = {"max_penetration": 3e-6, "step": 1e-6}
+    sweep = load_configuration(written(tmp_path, to_yaml(content)))
+    rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
+    table = rows_dataset(sweep, rows, range(sweep.n_realisation))
+    found = cf.in_si_units(table)
+    assert found.short_cutoff.values == pytest.approx(6e-6, rel=1e-12)
+    assert found.short_cutoff.attrs["units"] == "m"
+    assert found.identical(cf.in_si_units(table, cf.Scales(**scales)))
+    again = cf.in_reduced_units(found, cf.Scales(**scales))
+    assert again.tile_side.values == pytest.approx(table.tile_side.values, rel=1e-12)
+
+
+def test_a_table_without_a_sphere_is_not_converted_without_one(tmp_path):
+    sweep = load_configuration(written(tmp_path, GOOD))
+    rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
+    with pytest.raises(ValueError, match="the data do not state a sphere"):
+        cf.in_si_units(rows_dataset(sweep, rows, range(sweep.n_realisation)))
+
+
+def test_a_flat_spectrum_needs_no_hurst_exponent_and_a_longer_roll_off_does(tmp_path):
+    given = "{name: flat, short_cutoff: 0.1, hurst: 1.0}"
+    flat = load_configuration(written(tmp_path, GOOD)).spectra
+    for text in ("{name: flat, short_cutoff: 0.1}", given.replace("hurst: 1.0", "roll_off: 0.1")):
+        assert load_configuration(written(tmp_path, changed(given, text))).spectra == flat
+    rough = changed(given, given.replace("hurst: 1.0", "roll_off: 1"))
+    assert "spectra[0]: key hurst is missing; add it" in refusal(tmp_path, rough)
 
 
 def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
