@@ -205,6 +205,7 @@ figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=pape
 	@$(REPAIR) $(wildcard results/figures) config/$(if $(filter paper,$(SCALE)),paper,default).yaml
 	$(SNAKE) --config scale=$(SCALE) -- figures
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
+	@sed -n '3p; s/^- FAIL/FAIL/p' results/figures/checks.md
 
 report: env  ## The sweep SWEEP, run where it is not, as one page of HTML: fit, figures, configuration
 	@$(REPAIR) $(call quoted,$(SWEEP))

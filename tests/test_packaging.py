@@ -14,10 +14,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 from packaging.version import Version
 
 from crackfront import __version__, pinning_factor
+from tests.yaml_texts import from_yaml
 
 ROOT = Path(__file__).parents[1]
 
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.skipif(
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 COMING = PROJECT["tool"]["setuptools_scm"]["fallback_version"]
-CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+CITATION = from_yaml((ROOT / "CITATION.cff").read_text())
 
 
 def told(*command, **options):
@@ -132,7 +132,7 @@ def test_the_citation_names_the_paper_and_the_licence():
 
 
 def test_the_recipe_has_the_version_and_needs_of_the_package():
-    recipe = yaml.safe_load((ROOT / "recipe/recipe.yaml").read_text())
+    recipe = from_yaml((ROOT / "recipe/recipe.yaml").read_text())
     assert recipe["context"]["version"] == CITATION["version"]
     assert PROJECT["project"]["requires-python"] == f">={recipe['context']['python_min']}"
     texts = (PROJECT["project"]["dependencies"], PROJECT["build-system"]["requires"])
@@ -143,7 +143,7 @@ def test_the_recipe_has_the_version_and_needs_of_the_package():
 
 
 def test_the_catalogue_of_workflows_finds_what_it_asks_for():
-    usage = yaml.safe_load((ROOT / ".snakemake-workflow-catalog.yml").read_text())["usage"]
+    usage = from_yaml((ROOT / ".snakemake-workflow-catalog.yml").read_text())["usage"]
     assert set(usage) == {"mandatory-flags", "software-stack-deployment"}
     flags = usage["mandatory-flags"]["flags"].split()
     assert (ROOT / flags[flags.index("--profile") + 1] / "config.yaml").is_file()

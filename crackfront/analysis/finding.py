@@ -61,10 +61,12 @@ def finding(departure: str) -> str:
     )
 
 
-def departure_of_spheres(rms: float, n_large: int, n_cell: int) -> str:
-    """End of the finding where simulated spheres were held against the law."""
+def departure_of_spheres(
+    rms: float, n_large: int, n_cell: int, spheres: str = "simulated spheres"
+) -> str:
+    """End of the finding where spheres, named in words, were held against the law."""
     return (
-        f". No sphere entered it; simulated spheres have its k within {rms:.1%} rms where g is "
+        f". No sphere entered it; {spheres} have its k within {rms:.1%} rms where g is "
         f"above 1 ({n_large} of {n_cell} spectra and amplitudes)"
     )
 

@@ -218,7 +218,8 @@ def pinning_factor(
     TypeError
         If one of them is no number.
     ValueError
-        If w_rms does not lie between 0 and 2, where e_el is w_int, or the size is not positive.
+        If w_rms does not lie between 0 and 2, where e_el is w_int, or the size or the breadth is
+        not positive.
 
     Examples
     --------
@@ -234,6 +235,10 @@ def pinning_factor(
         )
     if not size > 0:
         raise ValueError(f"size g is {size:g}; it must be positive, or inf")
+    if breadth is not None:
+        refuse_no_numbers(breadth=breadth)
+        if not 0 < breadth < math.inf:
+            raise ValueError(f"breadth is {breadth:g}; it must be positive and finite")
     law = shipped_law()
     place = w_rms, size, TYPICAL_BREADTH if breadth is None else breadth
     value = float(law_value(law.coefficients, *place))

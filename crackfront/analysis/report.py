@@ -108,13 +108,13 @@ def _law_entries(law: LawEstimates, index: Any) -> tuple[str, ...]:
 
 
 def _pooled_entry(fit: SweepFit, name: str) -> str:
-    """A pooled k, which without the scatter of its spectra and its bias would say too much."""
+    """Pooled k with its interval, and with what this leaves out: scatter of spectra, and bias."""
     pooled = with_interval(getattr(fit.pooled, name))
     return "; ".join([pooled, *pooled_limits(fit, getattr(fit.spectra, name))])
 
 
 def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
-    """What no interval of a pooled k holds, as far as it is known."""
+    """Scatter of the spectra and numerical bias of a pooled k, which its interval leaves out."""
     bias = _largest_numerical_error(fit)
     apart = _apart(spectra.value)
     return (*apart, f"numerical bias to {bias[0]:.2f}") if bias else apart
@@ -232,7 +232,7 @@ def _departure(fit: SweepFit) -> str:
         return "; in this sweep no contact is large enough to tell, as g is nowhere above 1"
     counts = int(fit.n_large), fit.cells.size.size
     if not fit.table.straight:
-        return departure_of_spheres(float(fit.law_departure), *counts)
+        return departure_of_spheres(float(fit.law_departure), *counts, "those of this sweep")
     return (
         f", and those of this sweep have its k within {fit.law_departure:.1%} rms where g is above "
         f"1 ({counts[0]} of {counts[1]} spectra and amplitudes)"

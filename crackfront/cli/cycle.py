@@ -238,7 +238,7 @@ def _progress(expected: int, *, every_state: bool) -> Iterator[Observer]:
             bar.update(count - bar.n)
             if every_state or (bar.disable and time.monotonic() >= following):
                 following = time.monotonic() + _SECONDS_IN_LOG
-                branch = "approach" if last.direction > 0 else "retraction"
+                branch = last.branch_names[last.direction]
                 bar.write(f"state {count}, {branch}: {last.summary}", file=sys.stderr)
 
         yield shown

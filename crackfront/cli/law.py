@@ -32,8 +32,14 @@ _ERRORS = ("statistical", "numerical", "model")
     "--g", type=float, help="Front: length of its springs over the Larkin length, or inf."
 )
 @click.option(
+    "--breadth",
+    type=float,
+    help="Front: relative breadth of the spectrum of w_loc; by default that of any spectrum.",
+)
+@click.option(
     "--spectrum",
-    help="Sphere: short cutoff, roll-off and Hurst exponent, as in 0.005,0.1,0.3; reduced lengths.",
+    help="Sphere: short cutoff, roll-off and Hurst exponent, as in 0.005,0.1,0.3, or the cutoff of "
+    "a flat spectrum; reduced lengths.",
 )
 @click.option("--elastic-energy", type=float, help="Sphere: e_el, in w_int.")
 @click.option("--contact-radius", type=float, help="Sphere: radius of the contact, reduced.")
@@ -48,6 +54,7 @@ _ERRORS = ("statistical", "numerical", "model")
 def law(
     w_rms: float | None,
     g: float | None,
+    breadth: float | None,
     spectrum: str | None,
     elastic_energy: float | None,
     contact_radius: float | None,
@@ -64,14 +71,16 @@ def law(
     from crackfront.analysis.law_spheres import sphere_factors
 
     front, sphere = (w_rms, g), (spectrum, elastic_energy, contact_radius)
-    if any(item is not None for item in front) and any(item is not None for item in sphere):
+    given_front = any(item is not None for item in (*front, breadth))
+    if given_front and any(item is not None for item in sphere):
         raise ValueError(
             f"options of a front ({_FRONT}) and a sphere ({_SPHERE}) are mixed; name those of one"
         )
     if w_rms is not None and g is not None:
-        found = pinning_factor(w_rms, g, field)
+        found = pinning_factor(w_rms, g, field, breadth)
         # JSON has no infinity.
         place: dict[str, Any] = {"w_rms": w_rms, "g": g if math.isfinite(g) else "inf"}
+        place |= {} if breadth is None else {"breadth": breadth}
         entries = _entries(found.factor, found, found, place, found.warning)
     elif spectrum is not None and elastic_energy is not None and contact_radius is not None:
         known = sphere_factors(field, _shape(spectrum), elastic_energy, contact_radius)
@@ -118,6 +127,8 @@ def _lines(entries: dict[str, Any]) -> Iterator[str]:
     size = f"g {float(entries['g']):.3g}"
     if "l_kappa" in entries:
         size += f" = L_kappa {entries['l_kappa']:.3g} / Larkin {entries['larkin_length']:.3g}"
+    if "breadth" in entries:
+        size += f", breadth {entries['breadth']:.3g}"
     yield f"at             w_rms {entries['w_rms']:.3g} w_int, {size}"
     ranges = (
         f"{name} {low:.3g} to {high:.3g}" for name, (low, high) in entries["measured"].items()
@@ -129,15 +140,17 @@ def _lines(entries: dict[str, Any]) -> Iterator[str]:
 
 
 def _shape(text: str) -> SelfAffineSpectrum:
-    """Spectrum that an option like 0.005,0.1,0.3 names."""
+    """Spectrum that an option like 0.005,0.1,0.3, or 0.005 for a flat one, names."""
     from crackfront.core.spectrum import SelfAffineSpectrum
 
     try:
-        short_cutoff, roll_off, hurst = (float(part) for part in text.split(","))
+        given = [float(part) for part in text.split(",")]
+        # The Hurst exponent has no effect on a flat spectrum.
+        short_cutoff, roll_off, hurst = (*given * 2, 1.0) if len(given) == 1 else given
     except ValueError as error:
         raise ValueError(
             f"--spectrum is {text!r}; write short cutoff, roll-off and Hurst exponent, as in "
-            "0.005,0.1,0.3"
+            "0.005,0.1,0.3, or the cutoff of a flat spectrum"
         ) from error
     for length in (short_cutoff, roll_off):
         refuse_outside("--spectrum: a wavelength", length, LENGTH)

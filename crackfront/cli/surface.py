@@ -239,7 +239,7 @@ def _write_samples(
 def _simulated(
     prediction: Prediction, scales: Scales, realisations: int, seed: int, say: Say
 ) -> Simulated:
-    """What simulations of a predicted surface find, which is announced and said."""
+    """Run the simulations of a predicted surface, and print their cost and their results."""
     from crackfront.topography.page.report import simulation_text
     from crackfront.topography.prediction.simulated import prediction_plan, simulated
 

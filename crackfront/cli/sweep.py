@@ -58,15 +58,13 @@ output_option = click.option(
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print what a sweep would run, shard by shard, what is stored and what the rest costs."""
-    from crackfront.sweep.expectation import doubts, expectation
+    from crackfront.sweep.expectation import doubts, expectations
     from crackfront.sweep.library import opened
     from crackfront.sweep.needs import postprocessing_costs
 
     sweep, store, _ = opened(configuration, output)
     shards, late = sweep.shards(block), postprocessing_costs(sweep)
-    expected = {
-        item.name: [*map(expectation, sweep.one_per_amplitude(item))] for item in sweep.spectra
-    }
+    expected = expectations(sweep)
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     missing = [one for found in progress.values() for one in found.missing]
     content = {
@@ -78,6 +76,7 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "missing": len(missing),
         "arithmetic": sorted(set().union(*(found.arithmetic for found in progress.values()))),
         "shards": [shard.name for shard in shards],
+        "unit_of_lengths": "reduced" if sweep.scales is None else "m",
         "expected": expected,
         "doubts": (doubtful := [*doubts(sweep)]),
         **_costs(missing),
@@ -99,6 +98,7 @@ def _plan_lines(
     from crackfront.sweep.store import NOTHING, mixture_sentence
 
     everything = sum(progress.values(), NOTHING)
+    lateral, unit = (1.0, "") if sweep.scales is None else (sweep.scales.lateral, " (m)")
     spectra, left = [], []
     for item in sweep.spectra:
         found = progress[item.name]
@@ -106,8 +106,8 @@ def _plan_lines(
         spectra.append(
             (
                 item.name,
-                f"{shape.short_cutoff:.4g}",
-                f"{shape.longest_feature:.4g}",
+                f"{lateral * shape.short_cutoff:.4g}",
+                f"{lateral * shape.longest_feature:.4g}",
                 f"{shape.hurst:.2f}" if hasattr(shape, "hurst") else "-",
                 *(
                     _span([getattr(one, name) for one in expected[item.name]], "{:.2g}")
@@ -119,8 +119,9 @@ def _plan_lines(
             )
         )
         left.append(_left(item.name, sum(shard.item is item for shard in shards), found.missing))
+    lengths = f"lambda_s{unit}", f"lambda_r{unit}"
     yield from table(
-        ("spectrum", "lambda_s", "lambda_r", "H", "s", "g", "k", "angles", "points", "stored"),
+        ("spectrum", *lengths, "H", "s", "g", "k", "angles", "points", "stored"),
         spectra,
     )
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
@@ -393,7 +394,7 @@ class Progress:
 
 
 def _progress(inventories: Mapping[str, Inventory]) -> list[Progress]:
-    """How far spectra are; they are expected to go on as fast as they did so far."""
+    """Progress of each spectrum; the time that is left assumes the speed so far."""
     from crackfront.sweep.store import NOTHING, expected_seconds
 
     known = sum(inventories.values(), NOTHING)

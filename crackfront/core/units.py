@@ -1,4 +1,4 @@
-"""Reduced units of the model and their one conversion from and to SI.
+"""Reduced units of the model: what each is called, and what it is in SI.
 
 Inside the package R = 1, w_int = 1/pi and E' = 3/4 (Barthel, Maugis; supplement, Sec. I A).
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import StrEnum
 
 WORK_OF_ADHESION = 1.0 / math.pi
 """Intrinsic work of adhesion w_int in reduced units."""
@@ -74,3 +75,58 @@ class Scales:
     def energy_per_area(self) -> float:
         """Works of adhesion; 1/pi in reduced units is w_int (Units: energy / area)."""
         return math.pi * self.work_of_adhesion
+
+
+class ReducedUnit(StrEnum):
+    """A unit of what the package computes; its value is the text that files state.
+
+    Examples
+    --------
+    >>> sphere = Scales(radius=1e-3, work_of_adhesion=0.05, contact_modulus=1e6)
+    >>> ReducedUnit.FORCE.value, ReducedUnit.FORCE.si, f"{ReducedUnit.FORCE.scale(sphere):.3g}"
+    ('pi w_int R', 'N', '0.000157')
+    """
+
+    LATERAL = (
+        "reduced lateral length, (3 pi w_int R^2 / 4E')^(1/3)",
+        r"(3\pi w_\mathrm{int}R^2/4E')^{1/3}",
+        "m",
+    )
+    VERTICAL = (
+        "reduced vertical length, (9 pi^2 w_int^2 R / 16E'^2)^(1/3)",
+        r"(9\pi^2 w_\mathrm{int}^2 R/16E'^2)^{1/3}",
+        "m",
+    )
+    FORCE = "pi w_int R", r"\pi w_\mathrm{int} R", "N"
+    ADHESION = "w_int", r"w_\mathrm{int}", "J / m^2"
+    ENERGY = (
+        f"{FORCE[0]} times {VERTICAL[0]}",
+        r"(9\pi^5 w_\mathrm{int}^5R^4/16E'^2)^{1/3}",
+        "J",
+    )
+    AREA = f"({LATERAL[0]})^2", r"(3\pi w_\mathrm{int}R^2/4E')^{2/3}", "m^2"
+
+    tex: str
+    si: str
+
+    def __new__(cls, text: str, tex: str, si: str) -> ReducedUnit:
+        """Unit of a text, a formula in TeX and the unit of SI of the same dimension."""
+        unit = str.__new__(cls, text)
+        unit._value_, unit.tex, unit.si = text, tex, si
+        return unit
+
+    def scale(self, scales: Scales) -> float:
+        """What the unit is in SI, for a sphere (Units: those of `si`)."""
+        match self:
+            case ReducedUnit.LATERAL:
+                return scales.lateral
+            case ReducedUnit.VERTICAL:
+                return scales.vertical
+            case ReducedUnit.FORCE:
+                return scales.force
+            case ReducedUnit.ADHESION:
+                return scales.work_of_adhesion
+            case ReducedUnit.ENERGY:
+                return scales.force * scales.vertical
+            case ReducedUnit.AREA:
+                return scales.lateral**2

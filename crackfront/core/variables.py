@@ -5,12 +5,17 @@ from __future__ import annotations
 from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any
 
-LATERAL = "reduced lateral length, (3 pi w_int R^2 / 4E')^(1/3)"
-VERTICAL = "reduced vertical length, (9 pi^2 w_int^2 R / 16E'^2)^(1/3)"
-FORCE = "pi w_int R"
-ADHESION = "w_int"
+from crackfront.core.units import ReducedUnit
+
+LATERAL = ReducedUnit.LATERAL
+VERTICAL = ReducedUnit.VERTICAL
+FORCE = ReducedUnit.FORCE
+ADHESION = ReducedUnit.ADHESION
+ENERGY = ReducedUnit.ENERGY
+AREA = ReducedUnit.AREA
+
 LENGTH = "length, in the unit of the tile"
-ENERGY = f"{FORCE} times {VERTICAL}"
+"""Unit of lengths of straight fronts on a tile that no sphere scales."""
 
 STEP = "step"
 """Dimension of the states of a cycle."""
@@ -30,7 +35,7 @@ class Variable:
     @property
     def attributes(self) -> dict[str, str]:
         """Attributes of the variable in a file."""
-        return {"units": self.units, "long_name": self.long_name}
+        return {"units": str(self.units), "long_name": self.long_name}
 
 
 def variable(long_name: str, units: str, *dims: str, default: Any = MISSING) -> Any:

@@ -63,7 +63,7 @@ class Comparison:
         return not self.alone and all(item.in_bits for item in self.differences)
 
     def by_variable(self) -> dict[str, Difference]:
-        """Of every variable the file in which it differs most."""
+        """For every variable, the file in which it differs most."""
         most: dict[str, Difference] = {}
         for item in self.differences:
             known = most.get(item.variable, item)

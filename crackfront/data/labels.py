@@ -24,14 +24,15 @@ def unit_attributes(unit: str) -> dict[str, str]:
     ({'units': 'J / m^2'}, {'units': '1', 'reduced_unit': 'w_int'})
     """
     if _KNOWN_TO_UDUNITS.fullmatch(unit):
-        return {"units": unit}
-    return {"units": "1", "reduced_unit": unit}
+        return {"units": str(unit)}
+    return {"units": "1", "reduced_unit": str(unit)}
 
 
 def stated_unit(attributes: Mapping[Any, Any]) -> Any:
     """The unit that attributes state, a reduced one where there is one; None without any."""
     given = attributes.get("units")
-    return attributes.get("reduced_unit", given) if given == "1" else given
+    found = attributes.get("reduced_unit", given) if given == "1" else given
+    return str(found) if isinstance(found, str) else found
 
 
 def label(variable: Variable, flags: Sequence[str] = ()) -> dict[str, Any]:

@@ -84,7 +84,7 @@ class Provenance:
     """Digits of requirements.lock, or without that file of the versions of all packages."""
 
     def here(self) -> Provenance:
-        """The same with the machine of this process, which may be a rank elsewhere."""
+        """Copy that states the machine of this process, which may be a rank on another one."""
         sources = self.crackfront_version, self.git_commit, self.solver_fingerprint
         return Provenance(*sources, self.command, self.configuration)
 

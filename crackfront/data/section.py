@@ -12,9 +12,12 @@ from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 from urllib.parse import quote_from_bytes, unquote_to_bytes
 
-import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
+from ruamel.yaml import YAML
+from ruamel.yaml.constructor import SafeConstructor
+from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from crackfront.data.bounds import COUNT, DENSITY, NUMBER, PLATEAU, SEED, Range, regular_file
 
@@ -54,7 +57,7 @@ _MOST_SENTENCES = 20
 
 
 def beside(path: Path, info: ValidationInfo) -> Path:
-    """A path that a configuration names, relative to the folder of that."""
+    """Path that a configuration names; a relative one begins in the folder of the configuration."""
     return Path(info.context or "") / path
 
 
@@ -114,27 +117,35 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
         raise ConfigurationError("\n".join(lines)) from error
 
 
-class _Loader(yaml.SafeLoader):
-    """Safe YAML that reads 1e-6 as a number, and refuses repeated keys."""
+class _Constructor(SafeConstructor):
+    """Values of YAML 1.2, each key once; refuses integers that are octal in YAML 1.1."""
 
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+    def construct_mapping(self, node: MappingNode, deep: bool = False) -> dict[Any, Any]:
         """Mapping of a node, each key once."""
+        if self.resolver.processing_version != (1, 2):
+            raise MarkedYAMLError(problem="it is read as YAML 1.2; remove the line %YAML")
         names = set()
         for key, _ in node.value:
             name = str(self.construct_object(key, deep=True))
             if name in names:
-                raise yaml.MarkedYAMLError(
+                raise MarkedYAMLError(
                     problem=f"key {name!r} stands twice; remove one", problem_mark=key.start_mark
                 )
             names.add(name)
-        return super().construct_mapping(node, deep)
+        mapping: dict[Any, Any] = super().construct_mapping(node, deep)
+        return mapping
+
+    def construct_yaml_int(self, node: ScalarNode) -> int:
+        """Integer of a node, without a leading 0."""
+        if re.fullmatch(r"[-+]?0[0-9_]+", node.value):
+            raise MarkedYAMLError(
+                problem=f"{node.value} begins with 0, as octal numbers do elsewhere; remove the 0",
+                problem_mark=node.start_mark,
+            )
+        return int(super().construct_yaml_int(node))
 
 
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float",
-    re.compile(r"^[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+$"),
-    list("-+0123456789"),
-)
+_Constructor.add_constructor("tag:yaml.org,2002:int", _Constructor.construct_yaml_int)
 
 
 def content_of(path: Path) -> dict[str, Any]:
@@ -152,8 +163,10 @@ def content_of(path: Path) -> dict[str, Any]:
     except ValueError as error:
         raise ConfigurationError(str(error)) from error
     try:
-        content = _frozen(yaml.load(text, Loader=_Loader), count())
-    except yaml.MarkedYAMLError as error:
+        reader = YAML(typ="safe", pure=True)
+        reader.Constructor = _Constructor
+        content = _frozen(reader.load(text), count())
+    except MarkedYAMLError as error:
         line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise ConfigurationError(f"{path} is no valid YAML{line}: {error.problem}") from error
     except RecursionError as error:
@@ -216,7 +229,6 @@ _SHORT = {
 _MEANING = {
     "elastic_energy": " (in units of w_int: full conformity needs an energy below w_int)",
     "work_of_adhesion_rms": " (in units of w_int: at 2 the energy of full conformity is w_int)",
-    "hurst": " (a Hurst exponent lies in (0, 1])",
 }
 
 

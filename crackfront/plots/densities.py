@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crackfront.core.arrays import Array
-from crackfront.plots.parts import LATERAL_UNIT
+from crackfront.core.variables import LATERAL, VERTICAL
 from crackfront.plots.style import BLACK, BLUE
 from crackfront.plots.units import REDUCED, AxisUnits
 
@@ -43,17 +43,18 @@ def draw_spectrum(
     the density of the spectrum that the surface was made from, zero where it has none.
     """
     axes.set(xscale="log", yscale="log")
-    wave, power = wavevector / units.lateral, (units.vertical * units.lateral) ** 2
+    lateral, vertical = units.scale(LATERAL), units.scale(VERTICAL)
+    wave, power = wavevector / lateral, (vertical * lateral) ** 2
     axes.plot(wave, power * density, color=BLUE, label="surface")
     axes.set_xlim(0.7 * wave[0], 1.4 * wave[-1])
     if units.is_si:
-        measured = units.vertical * rms / units.lateral ** np.array([0.0, 0.5, 1.0])
+        measured = vertical * rms / lateral ** np.array([0.0, 0.5, 1.0])
         names, labels = _measured_names(measured**2), (WAVEVECTOR_LABEL, ISOTROPIC_LABEL)
     else:
         orders = zip(("0", "1/2", "1"), rms, strict=True)
         names = [rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$" for order, value in orders]
-        labels = rf"wavevector $q$ $\times$ {LATERAL_UNIT}", _REDUCED_LABEL
-    _add_bars(axes, names, *(2 * np.pi / (units.lateral * ends) for ends in (longest, shortest)))
+        labels = rf"wavevector $q$ $\times$ ${LATERAL.tex}$", _REDUCED_LABEL
+    _add_bars(axes, names, *(2 * np.pi / (lateral * ends) for ends in (longest, shortest)))
     axes.set(xlabel=labels[0], ylabel=labels[1])
     if ideal is not None:
         kept = ideal > 0

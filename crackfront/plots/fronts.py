@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from crackfront.core.arrays import Array
+from crackfront.core.variables import ADHESION, LATERAL, VERTICAL
 from crackfront.plots.parts import field_colours
 from crackfront.plots.style import BLUE, VERMILION
 from crackfront.plots.units import REDUCED, AxisUnits
@@ -38,25 +39,27 @@ def draw_field(
     Values at n_x abscissae and n_y ordinates (units: reduced lateral length) have the shape
     (n_x, n_y) (units: w_int, as of mean and reach).
     """
-    ends = units.adhesion * (mean - reach), units.adhesion * (mean + reach)
+    ends = units.scale(ADHESION) * (mean - reach), units.scale(ADHESION) * (mean + reach)
     levels = MaxNLocator(_MOST_GREYS).tick_values(*ends)
     shades = ScalarMappable(BoundaryNorm(levels, field_colours().N), field_colours())
     # Coloured once, not once a frame.
-    _draw_image(axes, x, y, shades.to_rgba(units.adhesion * adhesion.T, bytes=True), units)
+    _draw_image(axes, x, y, shades.to_rgba(units.scale(ADHESION) * adhesion.T, bytes=True), units)
     bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, format="{x:.1f}", extend="both")
-    units.name(bar.ax.yaxis, "local work of adhesion", "adhesion")
+    units.name(bar.ax.yaxis, "local work of adhesion", ADHESION)
 
 
 def draw_heights(axes: Axes, x: Array, y: Array, heights: Array, units: AxisUnits) -> None:
     """Heights in colours, peaks bright, with a colour bar; arrays as of :func:`draw_field`."""
-    image = _draw_image(axes, x, y, units.vertical * heights.T, units)
+    image = _draw_image(axes, x, y, units.scale(VERTICAL) * heights.T, units)
     bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
-    units.name(bar.ax.yaxis, "height", "vertical")
+    units.name(bar.ax.yaxis, "height", VERTICAL)
 
 
 def _draw_image(axes: Axes, x: Array, y: Array, values: Array, units: AxisUnits) -> AxesImage:
     """Draw values, or their colours, at their places in the plane, and name the axes."""
-    left, right, bottom, top = (float(units.lateral * end) for end in (x[0], x[-1], y[0], y[-1]))
+    left, right, bottom, top = (
+        float(units.scale(LATERAL) * end) for end in (x[0], x[-1], y[0], y[-1])
+    )
     look: dict[str, Any] = {"origin": "lower", "interpolation": "nearest", "cmap": "cividis"}
     label_plane(axes, units)
     return axes.imshow(values, extent=(left, right, bottom, top), **look)
@@ -78,7 +81,7 @@ def draw_fronts(
     for sign, colour, label in ((1, BLUE, "approach"), (-1, VERMILION, "retraction")):
         for count, front in enumerate(_few(radius[direction == sign], most)):
             name = label if count == 0 else None
-            curve = closed_front(angle, units.lateral * front)
+            curve = closed_front(angle, units.scale(LATERAL) * front)
             axes.plot(*curve, color=colour, linewidth=0.7, label=name)
     frame_plane(axes, _MARGIN * float(np.max(radius)), units)
     axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
@@ -108,15 +111,15 @@ def _few(fronts: Array, most: int) -> Array:
 
 def frame_plane(axes: Axes, reach: float, units: AxisUnits = REDUCED) -> None:
     """A square of the plane around the apex, with its names and units."""
-    ends = -units.lateral * reach, units.lateral * reach
+    ends = -units.scale(LATERAL) * reach, units.scale(LATERAL) * reach
     axes.set(xlim=ends, ylim=ends, aspect="equal")
     label_plane(axes, units)
 
 
 def label_plane(axes: Axes, units: AxisUnits = REDUCED) -> None:
     """Names and units of both lateral axes."""
-    units.name(axes.xaxis, "$x$", "lateral")
-    units.name(axes.yaxis, "$y$", "lateral")
+    units.name(axes.xaxis, "$x$", LATERAL)
+    units.name(axes.yaxis, "$y$", LATERAL)
 
 
 def closed_front(angle: Array, radius: Array) -> tuple[Array, Array]:

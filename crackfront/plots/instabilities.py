@@ -11,11 +11,11 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm
 
 from crackfront.core.arrays import Array
+from crackfront.core.variables import ENERGY, LATERAL
 from crackfront.plots.fronts import frame_plane
-from crackfront.plots.parts import ENERGY_UNIT
 from crackfront.plots.units import REDUCED, AxisUnits
 
-ENERGY_LABEL = f"dissipated energy / {ENERGY_UNIT}"
+ENERGY_LABEL = f"dissipated energy / ${ENERGY.tex}$"
 
 
 def draw_instabilities(
@@ -40,15 +40,15 @@ def draw_instabilities(
     """
     if energy.size == 0:
         raise ValueError("the branch has no instability; there is none to draw")
-    shades = energy_shades(units.energy * energy)
+    shades = energy_shades(units.scale(ENERGY) * energy)
     # Around from the site that moved least, so that no patch spans the ends of the array.
     start = np.argmin(np.abs(after - before), axis=1)
     site = (start[:, None] + np.arange(angle.size + 1)) % angle.size
-    length = units.lateral
+    length = units.scale(LATERAL)
     fronts = [length * np.take_along_axis(values, site, axis=1) for values in (before, after)]
-    draw_patches(axes, angle[site], fronts, units.energy * energy, length * travel, shades)
+    draw_patches(axes, angle[site], fronts, units.scale(ENERGY) * energy, length * travel, shades)
     bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, extend="min")
-    units.name(bar.ax.yaxis, "dissipated energy", "energy")
+    units.name(bar.ax.yaxis, "dissipated energy", ENERGY)
     frame_plane(axes, 1.05 * max(float(np.max(before)), float(np.max(after))), units)
 
 

@@ -42,7 +42,7 @@ def _reduced(data: Labelled) -> tuple[Labelled, AxisUnits]:
     scales = stated_scales(data)
     if scales is None:
         return data, REDUCED
-    return in_reduced_units(data, scales), AxisUnits.by(scales)
+    return in_reduced_units(data, scales), AxisUnits(scales)
 
 
 def _refuse_no_loop(loop: object) -> None:

@@ -16,7 +16,9 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.geometry.line import LineState
+from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
+from crackfront.core.variables import FORCE, LATERAL
 from crackfront.plots.parts import Series, draw_arrow
 from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
 from crackfront.plots.units import REDUCED, AxisUnits
@@ -54,36 +56,38 @@ class LoopStates(Protocol):
         """Normal forces."""
 
 
-_BRANCHES = {1: Series(BLUE, "o", "approach"), -1: Series(VERMILION, "s", "retraction")}
+_BRANCHES = {
+    direction: Series(colour, marker, ContactState.branch_names[direction])
+    for direction, colour, marker in ((1, BLUE, "o"), (-1, VERMILION, "s"))
+}
 """How the branch of each direction is drawn."""
 
 
 def simulation_figure(result: SimulationResult) -> Figure:
     """Loop of one simulation: force of a sphere, pinning force of a straight front."""
     simulation, states = result.simulation, result.record.states
-    schedule, energy = simulation.schedule, result.measures.e_el
+    energy, kind = result.measures.e_el, simulation.kind
     title = (
         rf"{simulation.spectrum_name}, $e_\mathrm{{el}} = {simulation.elastic_energy:g}\,"
         rf"w_\mathrm{{int}}$, realisation {simulation.realisation}"
     )
-    is_line = schedule.n_period is not None
-    if not is_line:
-        steady = steady_adhesion(result.record, simulation.correlation_length)
-        works = steady.w_appr, steady.w_retr
-        drawn = states, works, (steady.lowest_radius, steady.highest_radius)
-        # Steady parts have no loop to draw but the one that they stand for.
-        if result.record.status is Status.STEADY and np.all(np.isfinite(works)):
-            return steady_loop_figure(
-                *drawn, elastic_energy=energy, kind=simulation.kind, title=title
-            )
+    if isinstance(states, LineState):
+        with house_style():
+            figure = blank_figure(COLUMN, 0.72 * COLUMN)
+            axes = figure.add_subplot(title=title)
+            draw_pinning(axes, states, simulation.schedule.n_period, elastic_energy=energy)
+            return figure
+    steady = steady_adhesion(result.record, simulation.correlation_length)
+    works, window = (steady.w_appr, steady.w_retr), (steady.lowest_radius, steady.highest_radius)
+    # Steady parts have no loop to draw but the one that they stand for.
+    if result.record.status is Status.STEADY and np.all(np.isfinite(works)):
+        return steady_loop_figure(
+            states, works, window, elastic_energy=energy, kind=kind, title=title
+        )
     with house_style():
-        figure = blank_figure(COLUMN, (0.72 if is_line else 0.82) * COLUMN)
-        axes = figure.add_subplot()
-        if is_line:
-            draw_pinning(axes, states, schedule.n_period, elastic_energy=energy)
-        else:
-            draw_loop(axes, *drawn, elastic_energy=energy, kind=simulation.kind)
-        axes.set_title(title)
+        figure = blank_figure(COLUMN, 0.82 * COLUMN)
+        axes = figure.add_subplot(title=title)
+        draw_loop(axes, states, works, window, elastic_energy=energy, kind=kind)
         return figure
 
 
@@ -180,8 +184,8 @@ def draw_loop(
     radius = np.linspace(0.0, 1.2 * np.max(states.mean_radius), 300)
 
     def draw_curve(adhesion: float, label: str | None, **look: Any) -> None:
-        force = units.force * jkr.equilibrium_force(radius, adhesion)
-        axes.plot(units.lateral * radius, force, label=label, **look)
+        force = units.scale(FORCE) * jkr.equilibrium_force(radius, adhesion)
+        axes.plot(units.scale(LATERAL) * radius, force, label=label, **look)
 
     for (direction, look), adhesion in zip(_BRANCHES.items(), works, strict=True):
         every = max(1, np.count_nonzero(states.direction == direction) // MOST_MARKERS)
@@ -197,7 +201,7 @@ def draw_loop(
             adhesion = max(centre + sign * PAPER_FACTOR * elastic_energy, 0.0)
             draw_curve(adhesion, name, color="0.35", linewidth=0.6, dashes=(4, 2), zorder=1)
     if np.isfinite(window[0]):
-        ends = (units.lateral * end for end in window)
+        ends = (units.scale(LATERAL) * end for end in window)
         axes.axvspan(*ends, color="0.93", linewidth=0, zorder=0, label="window of the averages")
     _set_limits(axes, states, units)
     for direction in _BRANCHES if arrows else ():
@@ -209,7 +213,9 @@ def draw_loop(
 def _places(states: LoopStates, direction: int, units: AxisUnits) -> tuple[Array, Array]:
     """Mean radii and forces of a branch in the units of the axes."""
     branch = states.direction == direction
-    return units.lateral * states.mean_radius[branch], units.force * states.force[branch]
+    return units.scale(LATERAL) * states.mean_radius[branch], units.scale(FORCE) * states.force[
+        branch
+    ]
 
 
 def _mark_states(
@@ -223,8 +229,8 @@ def _mark_states(
 
 def _name_axes(axes: Axes, units: AxisUnits = REDUCED) -> None:
     """Names of the axes of a loop."""
-    units.name(axes.xaxis, "mean contact radius", "lateral")
-    units.name(axes.yaxis, "normal force", "force")
+    units.name(axes.xaxis, "mean contact radius", LATERAL)
+    units.name(axes.yaxis, "normal force", FORCE)
 
 
 def draw_pinning(
@@ -246,7 +252,8 @@ def draw_pinning(
     """
     if states.spring_position.size == 0:
         raise ValueError("the record holds no state; there is no loop to draw")
-    for direction, name, colour in ((1, "forward", BLUE), (-1, "back", VERMILION)):
+    for direction, colour in ((1, BLUE), (-1, VERMILION)):
+        name = states.branch_names[direction]
         branch = states.direction == direction
         load, pinning = states.spring_position[branch], states.pinning_force[branch]
         axes.plot(load, pinning, color=colour, linewidth=0.8, label=name, zorder=3)
@@ -273,8 +280,8 @@ def draw_pinning(
 def _set_limits(axes: Axes, states: LoopStates, units: AxisUnits) -> None:
     """Limits around the states, with room for the legend at the upper left."""
     for values, setter, unit, below, above in (
-        (states.mean_radius, axes.set_xlim, units.lateral, 0.12, 0.08),
-        (states.force, axes.set_ylim, units.force, 0.15, 0.2),
+        (states.mean_radius, axes.set_xlim, units.scale(LATERAL), 0.12, 0.08),
+        (states.force, axes.set_ylim, units.scale(FORCE), 0.15, 0.2),
     ):
         low, high = float(np.min(values)), float(np.max(values))
         span = max(high - low, 0.1)

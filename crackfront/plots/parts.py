@@ -16,6 +16,7 @@ from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import SweepTable
 from crackfront.core.arrays import Array
+from crackfront.core.variables import FORCE, LATERAL, VERTICAL
 from crackfront.plots.style import BLACK, COLOURS, MARKERS
 
 if TYPE_CHECKING:
@@ -25,13 +26,9 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap
     from matplotlib.ticker import Locator
 
-LATERAL_UNIT = r"$(3\pi w_\mathrm{int}R^2/4E')^{1/3}$"
-VERTICAL_UNIT = r"$(9\pi^2 w_\mathrm{int}^2 R/16E'^2)^{1/3}$"
-ENERGY_UNIT = r"$(9\pi^5 w_\mathrm{int}^5R^4/16E'^2)^{1/3}$"
-FORCE_UNIT = r"$\pi w_\mathrm{int} R$"
-RADIUS_LABEL = rf"contact radius / {LATERAL_UNIT}"
-PENETRATION_LABEL = f"penetration / {VERTICAL_UNIT}"
-FORCE_LABEL = f"normal force / {FORCE_UNIT}"
+RADIUS_LABEL = f"contact radius / ${LATERAL.tex}$"
+PENETRATION_LABEL = f"penetration / ${VERTICAL.tex}$"
+FORCE_LABEL = f"normal force / ${FORCE.tex}$"
 ADHESION_LABEL = r"work of adhesion / $w_\mathrm{int}$"
 LENGTH_LABEL = r"{} / $(3\pi w_\mathrm{{int}}R^2/4E')^{{1/3}}$"
 HEIGHT_LABEL = r"{} / $(9\pi^2 w_\mathrm{{int}}^2 R/16E'^2)^{{1/3}}$"

@@ -3,25 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
-from crackfront.core.units import Scales
+from crackfront.core.units import ReducedUnit, Scales
+from crackfront.core.variables import ADHESION, LATERAL
 from crackfront.data.written_units import prefixed
-from crackfront.plots.parts import ENERGY_UNIT, FORCE_UNIT, LATERAL_UNIT, VERTICAL_UNIT
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
-
-Quantity = Literal["lateral", "vertical", "force", "adhesion", "energy"]
-
-_WRITTEN: dict[Quantity, tuple[str, str]] = {
-    "lateral": (LATERAL_UNIT, "m"),
-    "vertical": (VERTICAL_UNIT, "m"),
-    "force": (FORCE_UNIT, "N"),
-    "adhesion": (r"$w_\mathrm{int}$", "J/m²"),
-    "energy": (ENERGY_UNIT, "J"),
-}
-"""Reduced unit and that of SI of each quantity."""
 
 _MOST_TICKS = 5
 """Ticks of a length in SI, few because each stands with its unit."""
@@ -29,43 +18,36 @@ _MOST_TICKS = 5
 
 @dataclass(frozen=True, slots=True)
 class AxisUnits:
-    """What a reduced length, height, force and w_int are on an axis, in SI or themselves."""
+    """Units of the axes of a figure: those of SI for a sphere, or reduced ones without it."""
 
-    lateral: float = 1.0
-    vertical: float = 1.0
-    force: float = 1.0
-    adhesion: float = 1.0
-    is_si: bool = False
-
-    @classmethod
-    def by(cls, scales: Scales) -> AxisUnits:
-        """Units of SI, by the sphere that makes reduced units."""
-        reduced = scales.lateral, scales.vertical, scales.force, scales.work_of_adhesion
-        return cls(*reduced, is_si=True)
+    sphere: Scales | None = None
 
     @property
-    def energy(self) -> float:
-        """What a reduced energy is on an axis."""
-        return self.force * self.vertical
+    def is_si(self) -> bool:
+        """Whether the axes are in SI."""
+        return self.sphere is not None
 
-    def name(self, axis: Axis, what: str, quantity: Quantity) -> None:
+    def scale(self, unit: ReducedUnit) -> float:
+        """What a reduced unit is on an axis."""
+        return 1.0 if self.sphere is None else unit.scale(self.sphere)
+
+    def name(self, axis: Axis, what: str, unit: ReducedUnit) -> None:
         """Write on an axis, or on that of a colour bar, what it shows."""
-        reduced, si = _WRITTEN[quantity]
         if not self.is_si:
-            axis.set_label_text(f"{what} / {reduced}")
+            axis.set_label_text(f"{what} / ${unit.tex}$")
             return
         from matplotlib.ticker import EngFormatter, MaxNLocator
 
         axis.set_label_text(what)
-        if quantity == "lateral":
+        if unit is LATERAL:
             axis.set_major_locator(MaxNLocator(_MOST_TICKS))
-        axis.set_major_formatter(EngFormatter(si))
+        axis.set_major_formatter(EngFormatter(unit.si.replace(" / ", "/").replace("^2", "²")))
 
     def adhesion_text(self, value: float) -> str:
         """A work of adhesion that is given in w_int, in the mathematics of a label."""
         if not self.is_si:
-            return rf"{value:.3f}\,w_\mathrm{{int}}"
-        number, unit = prefixed("J/m^2", value * self.adhesion).split(" ")
+            return rf"{value:.3f}\,{ADHESION.tex}"
+        number, unit = prefixed("J/m^2", value * self.scale(ADHESION)).split(" ")
         return rf"{number}\ \mathrm{{{unit}}}"
 
 

@@ -20,7 +20,7 @@ from crackfront.core.field.fields import Field
 from crackfront.core.geometry.base import Geometry, weight, weight_slope
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Solver
-from crackfront.core.variables import ENERGY, LATERAL, VERTICAL, variable
+from crackfront.core.variables import AREA, ENERGY, LATERAL, VERTICAL, variable
 
 _JUMP = "instability"
 
@@ -98,7 +98,7 @@ class Instabilities:
 
     penetration: Array = variable("penetration of the instability", VERTICAL, _JUMP)
     dissipated_energy: Array = variable("energy that the instability dissipates", ENERGY, _JUMP)
-    area: Array = variable("area between the fronts before and after", f"({LATERAL})^2", _JUMP)
+    area: Array = variable("area between the fronts before and after", AREA, _JUMP)
     extent: Array = variable("width of the largest patch along the perimeter", LATERAL, _JUMP)
     before: Array = variable("front before the instability", LATERAL, _JUMP, "angle")
     after: Array = variable("front after the instability", LATERAL, _JUMP, "angle")

@@ -1,4 +1,4 @@
-r"""How wrong numerics make w_appr and w_retr: measured laws, and the numerics for an asked error.
+r"""Errors of w_appr and w_retr by the numerics: measured laws, and numerics for a requested error.
 
 `python -m studies accuracy report` fits the laws to measured errors and writes `laws.csv`. An error
 is that of the mean apparent work of adhesion of one branch, in units of e_el: that of its factor k.
@@ -38,7 +38,7 @@ Knob = Literal["sites", "cubic", "linear", "pixels", "tolerance"]
 KNOBS: tuple[Knob, ...] = get_args(Knob)
 
 _SHARES: dict[Knob, float] = {"sites": 0.95, "cubic": 0.2, "pixels": 0.2, "tolerance": 0.1}
-"""Parts of an asked error, the largest for the one knob that costs; squares sum up to 0.99."""
+"""Parts of a requested error, the largest for the one knob that costs; squares sum up to 0.99."""
 
 MEASURED: dict[str, tuple[FieldKind, SelfAffineSpectrum]] = {
     "chemical": ("chemical", SelfAffineSpectrum(0.02, 0.02, 1.0)),
@@ -166,7 +166,7 @@ def chosen_knobs(
     elastic_energy: float,
     usual_size: float | None = None,
 ) -> Knobs:
-    """Knobs that leave an asked error in w_appr and w_retr: the coarsest that the laws allow.
+    """Knobs that leave a requested error in w_appr and w_retr: the coarsest that the laws allow.
 
     The error is the standard error of the factor k of either branch that the numerics may leave, on
     fronts of the usual size, by default :func:`crackfront.simulate.front_sizes.sphere_size`; the
@@ -217,7 +217,7 @@ def measured_energies() -> tuple[float, float]:
 
 @functools.cache
 def _chosen_values(error: float, interpolation: _Interpolation, size: float) -> dict[Knob, float]:
-    """Coarsest values of all knobs whose errors together are at most the asked one."""
+    """Coarsest values of all knobs whose errors together are at most the requested one."""
     tried = {knob: _values(knob) for knob in _SHARES}
     parts = {knob: _parts(interpolation, knob, values) for knob, values in tried.items()}
     rarity = _rarity(error, interpolation, size)
@@ -241,7 +241,7 @@ def _chosen_values(error: float, interpolation: _Interpolation, size: float) -> 
 
 
 def _rarity(error: float, interpolation: _Interpolation, size: float) -> float:
-    """By how much scatter is to stay below an asked error, as few surfaces have an avalanche."""
+    """Factor by which scatter must stay below a requested error: few surfaces have an avalanche."""
     largest = 0.0
     for shape, part in interpolation.shapes:
         laws = _laws()[shape, "sites", 1]

@@ -122,7 +122,7 @@ def simulation_of(
 
 
 def missed_error(simulation: Simulation, wanted: float) -> float:
-    """Error of k that the numerics are expected to leave, 0 where it is the wanted one."""
+    """Error of k that the numerics are expected to leave; 0 where it is at most the wanted one."""
     left = max(numerical_error(simulation)) / simulation.elastic_energy
     # Knobs have two digits.
     return left if left > 1.2 * wanted else 0.0

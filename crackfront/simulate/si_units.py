@@ -15,10 +15,10 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.spectrum import Spectrum
+from crackfront.core.units import ReducedUnit
 from crackfront.core.variables import (
     ADHESION,
     ENERGY,
-    FORCE,
     LATERAL,
     STEP,
     VERTICAL,
@@ -111,15 +111,36 @@ _SPHERE = "sphere_"
 """Prefix of the attributes that state the sphere of a conversion."""
 
 
-def in_si_units(data: Labelled, scales: units.Scales) -> Labelled:
-    """A copy of a surface or cycle in SI units, whose attributes say for which sphere.
+_OF_SWEEP = "scale_"
+"""Prefix of the attributes in which a table states the sphere of its configuration."""
 
-    Arguments as of :func:`in_reduced_units`.
+
+def in_si_units(data: Labelled, scales: units.Scales | None = None) -> Labelled:
+    """A copy of a surface, a cycle or the table of a sweep in SI units, which states the sphere.
+
+    Parameters
+    ----------
+    data : xarray.DataArray or xarray.Dataset
+        What is in reduced units.
+    scales : Scales, optional
+        The sphere; by default that of the configuration, which the table of a sweep states.
+
+    Raises
+    ------
+    ValueError
+        If a variable is unknown or in other units, or neither `scales` nor the data say for which
+        sphere.
     """
+    if scales is None:
+        scales = _attributes_scales(as_dataset(data), _OF_SWEEP)
+        if scales is None:
+            raise ValueError(
+                "the data do not state a sphere, as tables of sweeps with a section scales do; "
+                "name it: in_si_units(data, crackfront.Scales(radius, ...))"
+            )
     refuse_no_scales(scales)
     refuse_other_units(data)
-    known = _si(scales)
-    found = _converted(data, lambda unit, _: known.get(unit, (1.0, unit)))
+    found = _converted(data, lambda unit, _: _si(unit, scales))
     return found.assign_attrs({_SPHERE + name: part for name, part in asdict(scales).items()})
 
 
@@ -128,11 +149,18 @@ def stated_scales(data: xr.DataArray | xr.Dataset) -> units.Scales | None:
 
     ValueError if they are in other units and do not say for which sphere they were converted.
     """
-    names = [item.name for item in fields(units.Scales)]
-    if not all(_SPHERE + name in data.attrs for name in names):
+    found = _attributes_scales(data, _SPHERE)
+    if found is None:
         refuse_other_units(data)
+    return found
+
+
+def _attributes_scales(data: xr.DataArray | xr.Dataset, prefix: str) -> units.Scales | None:
+    """The sphere that attributes with a prefix state, if they do."""
+    names = [prefix + item.name for item in fields(units.Scales)]
+    if not all(name in data.attrs for name in names):
         return None
-    return units.Scales(*(float(data.attrs[_SPHERE + name]) for name in names))
+    return units.Scales(*(float(data.attrs[name]) for name in names))
 
 
 def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
@@ -166,10 +194,9 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     True
     """
     refuse_no_scales(scales)
-    known = _si(scales)
 
     def reduced(unit: str, part: xr.DataArray | None) -> tuple[float, str]:
-        scale, needed = known.get(unit, (1.0, unit))
+        scale, needed = _si(unit, scales)
         return (1.0 if part is None else _unit_value(part, needed)) / scale, unit
 
     found = _converted(data, reduced)
@@ -184,7 +211,7 @@ def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
         plain = "reduced" if needed in (LATERAL, VERTICAL) else needed
         if given not in (needed, plain) and not (name in ("x", "y") and given in (None, "", "1")):
             raise ValueError(
-                f"{name} has the units {given!r}; the attribute units must be {plain!r}: set it, "
+                f"{name} has the units {given!r}; the attribute units must be '{plain}': set it, "
                 "or convert other units by in_reduced_units"
             )
 
@@ -242,16 +269,9 @@ def _reduced_unit(name: str) -> str:
     return _REDUCED[name]
 
 
-def _si(scales: units.Scales) -> dict[str, tuple[float, str]]:
-    """Reduced units that have a scale: their values in SI units, and those."""
-    return {
-        LATERAL: (scales.lateral, "m"),
-        VERTICAL: (scales.vertical, "m"),
-        FORCE: (scales.force, "N"),
-        ADHESION: (scales.work_of_adhesion, "J / m^2"),
-        ENERGY: (scales.force * scales.vertical, "J"),
-        f"({LATERAL})^2": (scales.lateral**2, "m^2"),
-    }
+def _si(unit: str, scales: units.Scales) -> tuple[float, str]:
+    """What a unit is in SI, and the unit there; a unit that is no reduced one stays."""
+    return (unit.scale(scales), unit.si) if isinstance(unit, ReducedUnit) else (1.0, unit)
 
 
 def _unit_value(part: xr.DataArray, needed: str) -> float:

@@ -247,7 +247,7 @@ class TileMeasures:
 
 
 def tile_measures(adhesion: AdhesionMap) -> TileMeasures:
-    """Measures of a tile, whose mean work of adhesion decides of what kind it is."""
+    """Measures of a tile; its kind follows from its mean work of adhesion."""
     values, energy = adhesion.work_of_adhesion, adhesion.e_el
     mean, period = float(np.mean(values)) / WORK_OF_ADHESION, adhesion.pixel * len(values)
     lacking = 1 - mean

@@ -162,7 +162,7 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
     if kind == "chemical":
         if units not in known:
             raise ValueError(
-                f"{surface.name} has the units {units!r}; they must be 'reduced' or {ADHESION!r}: "
+                f"{surface.name} has the units {units!r}; they must be 'reduced' or '{ADHESION}': "
                 "set them, or convert other units by in_reduced_units"
             )
         unit, samples = WORK_OF_ADHESION, known[units] * samples

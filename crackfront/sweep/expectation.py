@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from crackfront.analysis.law import mean_w_loc
 from crackfront.analysis.law_spheres import held_factors
@@ -29,7 +29,8 @@ class Expectation:
     factor: float | None
     """k by the law; None so close to pull-off that nothing holds the edge."""
     needed_penetration: float | None = None
-    """Where the largest one leaves no steady part. (Units: reduced vertical length)"""
+    """Where the largest one leaves no steady part. (Units: reduced vertical length, or those of a
+    configuration)"""
 
 
 def expectation(simulation: Simulation) -> Expectation:
@@ -60,20 +61,34 @@ def _needed_penetration(simulation: Simulation, size: float, factor: float, n_st
     return simulation.schedule.steady_load(simulation, (low, high), way, n_state)
 
 
+def expectations(sweep: Sweep) -> dict[str, list[Expectation]]:
+    """Expectations of each spectrum and amplitude, in the units of the configuration."""
+    vertical = 1.0 if sweep.scales is None else sweep.scales.vertical
+
+    def converted(found: Expectation) -> Expectation:
+        needed = found.needed_penetration
+        return found if needed is None else replace(found, needed_penetration=vertical * needed)
+
+    return {
+        item.name: [converted(expectation(one)) for one in sweep.one_per_amplitude(item)]
+        for item in sweep.spectra
+    }
+
+
 def doubts(sweep: Sweep) -> Iterator[str]:
     """A sentence for each spectrum of a sweep that may have no steady part, with what to do."""
-    unit, name = (1.0, "") if sweep.scales is None else (sweep.scales.vertical, " m")
-    for item in sweep.spectra:
+    vertical, name = (1.0, "") if sweep.scales is None else (sweep.scales.vertical, " m")
+    for spectrum, expected in expectations(sweep).items():
         needed = {
-            one.elastic_energy: found
-            for one in sweep.one_per_amplitude(item)
-            if (found := expectation(one).needed_penetration) is not None
+            energy: found.needed_penetration
+            for energy, found in zip(sweep.elastic_energies, expected, strict=True)
+            if found.needed_penetration is not None
         }
         if needed:
             energies = ", ".join(f"{energy:g}" for energy in needed)
-            given = f"{unit * sweep.schedule.max_penetration:.2g}{name}"
+            given = f"{vertical * sweep.schedule.max_penetration:.2g}{name}"
             yield (
-                f"{item.name} may have no steady part at e_el {energies}: up to the largest "
+                f"{spectrum} may have no steady part at e_el {energies}: up to the largest "
                 f"penetration, {given}, its front does not forget where both branches begin; "
-                f"penetrate to {unit * max(needed.values()):.2g}{name} or deeper"
+                f"penetrate to {max(needed.values()):.2g}{name} or deeper"
             )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any
@@ -128,7 +128,7 @@ class SpectrumSection(Section):
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=LONGEST_NAME - 57)]
     short_cutoff: Positive | None = None
     roll_off: Positive | None = None
-    hurst: Annotated[float, Field(gt=0, le=1)] | None = None
+    hurst: float | None = None
     surface: SurfaceSection | None = None
     table: TableSection | None = None
 
@@ -137,13 +137,10 @@ class SpectrumSection(Section):
         if sections := self._sections():
             others = "short_cutoff", "roll_off", "hurst", *sections[1:]
             _refuse_overruled(self, sections[0], others)
-        elif missing := _missing(self, ("short_cutoff", "hurst")):
+        elif missing := _missing(self, ("short_cutoff", *(() if self._is_flat else ("hurst",)))):
             raise refusal(f"key {', '.join(missing)} is missing; add it, or a table or surface")
-        if self.roll_off and self.short_cutoff and self.roll_off < self.short_cutoff:
-            raise refusal(
-                f"roll_off {self.roll_off:g} is shorter than short_cutoff {self.short_cutoff:g}; "
-                "lower the cutoff or raise the roll-off (equal values give a flat spectrum)"
-            )
+        else:
+            _refuse_unless_made(self._self_affine)
         return self
 
     def named(self, position: int, lateral: float) -> NamedSpectrum:
@@ -158,10 +155,19 @@ class SpectrumSection(Section):
                 raise ConfigurationError(f"spectra[{position}].{key}: {reason}") from error
             name = f"{self.name}-{ending}" if ending else self.name
             return NamedSpectrum(name, spectrum.in_units(lateral))
+        return NamedSpectrum(self.name, self._self_affine().in_units(lateral))
+
+    def _self_affine(self) -> SelfAffineSpectrum:
+        """Spectrum of the parameters, in the unit of length of the configuration."""
         given: Any = self
-        long = given.roll_off or given.short_cutoff
-        fractal = SelfAffineSpectrum(given.short_cutoff, long, given.hurst)
-        return NamedSpectrum(self.name, fractal.in_units(lateral))
+        long = given.short_cutoff if given.roll_off is None else given.roll_off
+        hurst = 1.0 if given.hurst is None else given.hurst  # without effect if flat
+        return SelfAffineSpectrum(given.short_cutoff, long, hurst)
+
+    @property
+    def _is_flat(self) -> bool:
+        """Whether there is a short cutoff, and no longer roll-off."""
+        return self.short_cutoff is not None and self.roll_off in (None, self.short_cutoff)
 
     def _sections(self) -> list[str]:
         """Keys of the sections that are given: shapes other than self-affine ones."""
@@ -271,7 +277,7 @@ class SteadySection(Section):
     States nearer than a hundredth of the correlation length are no further samples.
     """
 
-    start: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    start: float
     travel: Annotated[Positive, Field(ge=0.01)]
     error: Positive
 
@@ -308,20 +314,11 @@ class LoadSection(Section):
             return self
         if self.max_penetration is None:
             raise refusal("key max_penetration is missing; add it, or a section line")
-        if self.max_penetration < 0:
-            raise refusal(
-                f"max_penetration is {self.max_penetration:g}, which never makes contact; the "
-                "sphere touches at 0, so it must be 0 or more"
-            )
         _refuse_unless_one(
             "load needs exactly one of step (full cycles) and steady (parts of them)",
             (self.step, self.steady),
         )
-        if self.steady is not None and self.steady.start >= self.max_penetration:
-            raise refusal(
-                f"steady.start {self.steady.start:g} is not below max_penetration "
-                f"{self.max_penetration:g}; lower it or penetrate deeper"
-            )
+        _refuse_unless_made(lambda: self.schedule(1.0))
         return self
 
     def schedule(self, vertical: float) -> SweepLoad:
@@ -352,6 +349,14 @@ class FitSection(Section):
         return self
 
 
+def _refuse_unless_made(make: Callable[[], object]) -> None:
+    """Raise if what a section stands for refuses its values."""
+    try:
+        make()
+    except ValueError as error:
+        raise refusal(str(error)) from error
+
+
 def refuse_repeated(what: str, values: Any) -> None:
     """Raise if a value occurs twice."""
     known = set()
@@ -375,5 +380,5 @@ def _refuse_unless_one(what: str, values: tuple[Any, Any], otherwise: str = "giv
 
 
 def _missing(section: Section, keys: Iterable[str]) -> list[str]:
-    """Those of some keys that are not given."""
+    """Keys of a section, of some names, that are not given."""
     return [key for key in keys if getattr(section, key) is None]

@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.arrays import Array
-from crackfront.core.variables import FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.variables import AREA, FORCE, LATERAL, VERTICAL, variable
 from crackfront.plots.fronts import closed_front, label_plane
 from crackfront.plots.parts import FORCE_LABEL, HEIGHT_LABEL, PENETRATION_LABEL, label_panel
 from crackfront.plots.style import (
@@ -54,7 +54,7 @@ class ValidationPicture:
     boundary_penetration: Array = variable("penetration", VERTICAL, "boundary")
     boundary_direction: Array = variable("+1 in approach, else -1", "1", "boundary")
     boundary_force: Array = variable("force, boundary elements", FORCE, "boundary")
-    boundary_area: Array = variable("contact area", f"({LATERAL})^2", "boundary")
+    boundary_area: Array = variable("contact area", AREA, "boundary")
     front_penetration: Array = variable("penetration", VERTICAL, "front")
     front_direction: Array = variable("+1 in approach, else -1", "1", "front")
     front_force: Array = variable("force, crack front", FORCE, "front")

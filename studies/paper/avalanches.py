@@ -11,7 +11,7 @@ import numpy as np
 from crackfront.core.adhesion import force_correlation_length
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.variables import ADHESION, ENERGY, LATERAL, VERTICAL, variable
+from crackfront.core.variables import ADHESION, AREA, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.data.section import Count, Positive
 from crackfront.simulate.instabilities import resolved_motion, swept_clusters
 from studies.paper.events import EventParameters, EventRecord, event_record
@@ -57,7 +57,7 @@ class AvalancheRecord(EventRecord):
     elastic_energy: Array = variable("requested e_el", ADHESION, _DISORDER)
     rms: Array = variable("w_rms, mean of the tiles", ADHESION, _DISORDER)
     larkin_length: Array = variable("Larkin length", LATERAL, _DISORDER)
-    smallest_area: Array = variable("where the power law begins", f"({LATERAL})^2", _DISORDER)
+    smallest_area: Array = variable("where the power law begins", AREA, _DISORDER)
     circle_length: Array = variable(
         "perimeter over the stiffness of the circle, a dG/da / w_int", LATERAL, _DISORDER
     )
@@ -65,7 +65,7 @@ class AvalancheRecord(EventRecord):
     disorder_index: Integers = variable("which disorder", "1", _AVALANCHE)
     surface: Integers = variable("number of the surface", "1", _AVALANCHE)
     penetration: Array = variable("penetration of the avalanche", VERTICAL, _AVALANCHE)
-    area: Array = variable("area that it sweeps", f"({LATERAL})^2", _AVALANCHE)
+    area: Array = variable("area that it sweeps", AREA, _AVALANCHE)
     extent: Array = variable("width of its largest patch, area over depth", LATERAL, _AVALANCHE)
     n_patch: Integers = variable("patches that do not touch", "1", _AVALANCHE)
     energy: Array = variable("energy that it dissipates", ENERGY, _AVALANCHE)

@@ -90,6 +90,7 @@ def draw_figure(data: Path) -> None:
 def check_figures(output: Path) -> None:
     """Compare the data of all figures with what the paper states, in checks.md."""
     lines: list[str] = []
+    failed: list[str] = []
     counts: Counter[Result] = Counter()
     for scale in SCALES:
         for path in _data_of_figures(output / scale):
@@ -97,6 +98,12 @@ def check_figures(output: Path) -> None:
             checks = shown.checks(record)
             counts.update(check.result for check in checks)
             lines += ["", f"## {shown.title} ({scale})", "", *checks_table(checks)]
+            failed += [
+                f"FAIL: {shown.title} ({scale}): {check.claim}: {check.expected} expected, "
+                f"{check.found} found"
+                for check in checks
+                if check.result == "FAIL"
+            ]
     if not counts:
         raise _no_data(output)
     agree, predicted, fail = (counts[result] for result in get_args(Result))
@@ -104,10 +111,12 @@ def check_figures(output: Path) -> None:
         f"{agree} of {counts.total()} agree, {predicted} differ from the paper as the law of k "
         f"says (docs/law.md), {fail} fail"
     )
-    lines = ["# Checks of the figures", "", f"{told}.", *lines, ""]
+    listed = ["", *(f"- {one}" for one in failed)] if failed else []
+    lines = ["# Checks of the figures", "", f"{told}.", *listed, *lines, ""]
     forget_sums(output)
     write_text(output / "checks.md", "\n".join(lines))
-    click.echo(f"checks: {output / 'checks.md'}, {told}")
+    for line in (f"checks: {output / 'checks.md'}, {told}", *failed):
+        click.echo(line)
 
 
 @commands.command(epilog=examples("python -m studies paper gallery"))

@@ -630,6 +630,14 @@ def test_an_archive_has_the_whole_name_of_its_folder_and_an_empty_one_is_refused
     assert [path.name for path in tmp_path.glob("*.zip")] == ["of.2026.zip"]
 
 
+def test_branches_of_a_straight_front_are_told_as_forward_and_back(smooth_tile, tmp_path):
+    options = ["--spring", "1", "--loads", "0,1,0", "--step", "1", "--watch"]
+    done = run("cycle", "--field", smooth_tile, *options, "--output", tmp_path / "out.nc")
+    assert done.exit_code == 0, done.output
+    told = [line for line in done.stderr.splitlines() if line.startswith("state ")]
+    assert [line.split(":")[0].split(", ")[1] for line in told] == ["forward", "forward", "back"]
+
+
 def test_once_the_solver_is_compiled_ahead_no_run_compiles_it(smooth_tile, tmp_path):
     assert run("compile").exit_code == 0
     sphere = "--max-penetration 0.1 --step 0.1"

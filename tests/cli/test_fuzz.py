@@ -20,7 +20,6 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
-import yaml
 from click.testing import CliRunner
 
 from crackfront.cli import main
@@ -28,6 +27,7 @@ from crackfront.core import jkr
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL
 from tests.commands import curves
+from tests.yaml_texts import to_yaml
 
 SEED = 20261122
 ANSWERS = (0, 3)
@@ -254,7 +254,7 @@ def harsh_text(rng, text):
 
 def written_configuration(rng, path):
     """File of a configuration, changed or damaged."""
-    text = yaml.safe_dump(mutated(rng, good_configuration(rng)), allow_unicode=True)
+    text = to_yaml(mutated(rng, good_configuration(rng)))
     kind = rng.random()
     if kind < 0.15:
         text = harsh_text(rng, text)
@@ -462,7 +462,7 @@ def good_commands(folder):
     scan = folder / "scan.npy"
     np.save(scan, 1e-8 * np.random.default_rng(1).standard_normal((36, 36)))
     sweep = folder / "sweep.yaml"
-    sweep.write_text(yaml.safe_dump(good_configuration(np.random.default_rng(3))))
+    sweep.write_text(to_yaml(good_configuration(np.random.default_rng(3))))
     output, store = folder / "out.nc", folder / "store"
     cycle = f"cycle --output {output} --field"
     tuned = "--error 0.1"

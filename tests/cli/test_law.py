@@ -115,3 +115,23 @@ def test_what_cannot_be_answered_is_refused_with_a_sentence(options, sentence):
     assert "Traceback" not in result.output
     [told] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
     assert sentence in told
+
+
+def test_a_breadth_is_that_of_the_law_and_narrows_the_interval():
+    found, k = answer(FRONT, "--breadth", "0.92"), pinning_factor(0.4, math.inf, breadth=0.92)
+    assert (found["k"], found["breadth"]) == (k.factor.value, 0.92)
+    anybody = answer(FRONT)
+    assert found["k_high"] - found["k_low"] < anybody["k_high"] - anybody["k_low"]
+    assert "breadth 0.92" in run(FRONT, "--breadth", "0.92").stdout
+
+
+@pytest.mark.parametrize("breadth", ["0", "-1", "nan", "inf"])
+def test_a_breadth_that_no_spectrum_has_is_refused(breadth):
+    result = run(FRONT, "--breadth", breadth)
+    assert result.exit_code == 2
+    assert f"breadth is {breadth}; it must be positive and finite" in result.stderr
+
+
+def test_a_flat_spectrum_is_named_by_its_cutoff():
+    flat = answer(SPHERE | {"--spectrum": "0.05"})
+    assert flat == answer(SPHERE | {"--spectrum": "0.05,0.05,0.3"})

@@ -13,11 +13,11 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-import yaml
 
 from crackfront.cli import main
 from crackfront.sweep.parallel import default_launcher
 from tests.commands import curves
+from tests.yaml_texts import from_yaml, to_yaml
 
 ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
@@ -59,12 +59,12 @@ def configuration(folder, *changes):
 
 def profile(folder, **simulate):
     """The profile of the repository as a site would adapt it; resources of a shard may change."""
-    content = yaml.safe_load((ROOT / "workflow/profiles/slurm/config.yaml").read_text())
+    content = from_yaml((ROOT / "workflow/profiles/slurm/config.yaml").read_text())
     content["set-resources"]["simulate"] |= {"tasks": 3, "mem_mb_per_cpu": 500} | simulate
     # Every wait between two looks at a job is 10 s longer than the last: looks at 12 and 34 s.
     content |= {"slurm-init-seconds-before-status-checks": 12, "latency-wait": 5, "retries": 1}
     (folder / "profile").mkdir()
-    (folder / "profile/config.yaml").write_text(yaml.safe_dump(content))
+    (folder / "profile/config.yaml").write_text(to_yaml(content))
     return folder / "profile"
 
 

@@ -8,7 +8,7 @@ import pytest
 from crackfront import core
 
 BLOCKED = (
-    "xarray netCDF4 mpi4py snakemake matplotlib pandas click yaml pint tqdm finufft PIL "
+    "xarray netCDF4 mpi4py snakemake matplotlib pandas click ruamel pint tqdm finufft PIL "
     "SurfaceTopography"
 )
 

@@ -1,6 +1,10 @@
+import json
+import math
+import re
+
 import pytest
 
-from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, ReducedUnit, Scales
 
 NANODIAMOND = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / (1 - 0.5**2))
 
@@ -43,3 +47,33 @@ def test_a_scene_without_positive_finite_parameters_is_refused(name, value):
     scene = {"radius": 1.0, "work_of_adhesion": 1.0, "contact_modulus": 1.0, name: value}
     with pytest.raises(ValueError, match=f"{name} is {value}; it must be positive and finite"):
         Scales(**scene)
+
+
+def value_of(formula):
+    """Value of a formula of w_int, R and E' for the contact of the nanodiamond."""
+    python = re.sub(r"(\d+)E'(\^2)?", lambda found: f"({found[1]}*E{found[2] or ''})", formula)
+    python = re.sub(r"(?<=[\w)])\s*(times)?\s+(?=[\w(])", "*", python.replace("^", "**"))
+    known = {"pi": math.pi, "w_int": 63e-3, "R": 1.25e-3, "E": NANODIAMOND.contact_modulus}
+    return eval(python, known)
+
+
+@pytest.mark.parametrize("unit", ReducedUnit)
+def test_the_text_of_a_unit_is_the_formula_of_its_scale(unit):
+    formula = re.sub(r"reduced \w+ length, ", "", unit.value)
+    assert value_of(formula) == pytest.approx(unit.scale(NANODIAMOND), rel=1e-14)
+
+
+@pytest.mark.parametrize("unit", ReducedUnit)
+def test_the_formula_in_tex_is_that_of_the_text(unit):
+    formula = unit.tex.replace(r"w_\mathrm{int}", " w_int ").replace(r"\pi", " pi ")
+    formula = re.sub(r"\^\{(\d)/(\d)\}", r"^(\1/\2)", formula)
+    formula = re.sub(r" *\^(\d)", r"^\1 ", formula)
+    formula = re.sub(r"\s*/\s*", "/", re.sub(r"\s*([()])\s*", r"\1", formula)).strip()
+    assert value_of(formula) == pytest.approx(unit.scale(NANODIAMOND), rel=1e-14)
+
+
+@pytest.mark.parametrize("unit", ReducedUnit)
+def test_a_unit_is_its_text_wherever_it_is_written(unit):
+    assert json.loads(json.dumps({"units": unit})) == {"units": unit.value}
+    assert f"{unit}" == str(unit) == unit.value
+    assert type(str(unit)) is str

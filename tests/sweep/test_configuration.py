@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 
+import crackfront as cf
 from crackfront.analysis.law import spectral_breadth
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
-from crackfront.data.section import ConfigurationError, movable_text
+from crackfront.data.section import ConfigurationError, content_of, movable_text
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
@@ -22,6 +22,7 @@ from crackfront.sweep.table import read_table, rows_dataset
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import measured_surface
+from tests.yaml_texts import from_yaml, to_yaml
 
 ROOT = Path(__file__).parents[2]
 
@@ -103,7 +104,7 @@ def test_an_rms_is_converted_to_the_energy_of_full_conformity(tmp_path):
 
 def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
     scales = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.93e6)
-    content = yaml.safe_load(GOOD)
+    content = from_yaml(GOOD)
     content["numerics"]["tolerance"] = 1e-6
     content["scales"] = {"radius": 1.25e-3, "work_of_adhesion": 63e-3, "contact_modulus": 0.93e6}
     for spectrum in content["spectra"]:
@@ -112,7 +113,7 @@ def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
     for name in ("max_penetration", "step"):
         content["load"][name] *= scales.vertical
     reduced = load_configuration(written(tmp_path, GOOD))
-    metres = load_configuration(written(tmp_path, yaml.safe_dump(content)))
+    metres = load_configuration(written(tmp_path, to_yaml(content)))
     for one, other in zip(reduced.spectra, metres.spectra, strict=True):
         assert other.spectrum.short_cutoff == pytest.approx(one.spectrum.short_cutoff, rel=1e-14)
         assert other.spectrum.roll_off == pytest.approx(one.spectrum.roll_off, rel=1e-14)
@@ -185,11 +186,11 @@ def test_steady_loads_are_read_in_both_units(tmp_path):
         0.25, 1.0, 2.0, 0.1
     )
     scales = Scales(radius=1e-3, work_of_adhesion=0.05, contact_modulus=1e6)
-    content = yaml.safe_load(text)
+    content = from_yaml(text)
     content["scales"] = {"radius": 1e-3, "work_of_adhesion": 0.05, "contact_modulus": 1e6}
     content["load"]["max_penetration"] *= scales.vertical
     content["load"]["steady"]["start"] *= scales.vertical
-    metres = load_configuration(written(tmp_path, yaml.safe_dump(content))).schedule
+    metres = load_configuration(written(tmp_path, to_yaml(content))).schedule
     assert metres.start == pytest.approx(0.25, rel=1e-14)
     assert (metres.travel, metres.standard_error) == (2.0, 0.1)
 
@@ -244,9 +245,9 @@ BAD = {
     "key twice": (("seed: 1", "seed: 1\nseed: 2"), "is no valid YAML in line 3: key 'seed' stands"),
     "hurst above one": (
         ("hurst: 0.8", "hurst: 1.2"),
-        "spectra[1].hurst is 1.2; it must be less than or equal to 1",
+        "spectra[1]: hurst is 1.2; it must lie in (0, 1]",
     ),
-    "hurst zero": (("hurst: 0.8", "hurst: 0"), "spectra[1].hurst is 0; it must be greater than 0"),
+    "hurst zero": (("hurst: 0.8", "hurst: 0"), "spectra[1]: hurst is 0.0; it must lie in (0, 1]"),
     "roll-off below the cutoff": (
         ("roll_off: 0.2", "roll_off: 0.05"),
         "spectra[1]: roll_off 0.05 is shorter than short_cutoff 0.1; lower the cutoff",
@@ -292,7 +293,7 @@ BAD = {
     ),
     "no contact": (
         ("max_penetration: 1.0", "max_penetration: -0.5"),
-        "load: max_penetration is -0.5, which never makes contact; the sphere touches at 0",
+        "load: max penetration -0.5 never makes contact; the sphere touches at 0",
     ),
     "steady beside step": (
         ("step: 0.1}", "step: 0.1, steady: {start: 0.5, travel: 2, error: 0.1}}"),
@@ -301,7 +302,7 @@ BAD = {
     "no load": (("step: 0.1}", "}"), "and steady (parts of them); give one"),
     "steady start too deep": (
         ("step: 0.1}", "steady: {start: 1.0, travel: 2, error: 0.1}}"),
-        "load: steady.start 1 is not below max_penetration 1; lower it or penetrate deeper",
+        "load: steady start is 1.0; it must be 0 or more, and below the largest penetration 1.0",
     ),
     "steady states that are all alike": (
         ("step: 0.1}", "steady: {start: 0.5, travel: 1e-6, error: 0.1}}"),
@@ -510,6 +511,38 @@ def test_the_table_of_a_sweep_keeps_measured_spectra(tmp_path):
     assert np.isnan(table.hurst[0])
 
 
+def test_the_table_of_a_sweep_in_metres_is_converted_for_the_sphere_that_it_states(tmp_path):
+    scales = {"radius": 1.25e-3, "work_of_adhesion": 63e-3, "contact_modulus": 0.93e6}
+    content = from_yaml(GOOD) | {"scales": scales}
+    content["spectra"] = [{"name": "flat", "short_cutoff": 6e-6}]
+    content["load"] = {"max_penetration": 3e-6, "step": 1e-6}
+    sweep = load_configuration(written(tmp_path, to_yaml(content)))
+    rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
+    table = rows_dataset(sweep, rows, range(sweep.n_realisation))
+    found = cf.in_si_units(table)
+    assert found.short_cutoff.values == pytest.approx(6e-6, rel=1e-12)
+    assert found.short_cutoff.attrs["units"] == "m"
+    assert found.identical(cf.in_si_units(table, cf.Scales(**scales)))
+    again = cf.in_reduced_units(found, cf.Scales(**scales))
+    assert again.tile_side.values == pytest.approx(table.tile_side.values, rel=1e-12)
+
+
+def test_a_table_without_a_sphere_is_not_converted_without_one(tmp_path):
+    sweep = load_configuration(written(tmp_path, GOOD))
+    rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
+    with pytest.raises(ValueError, match="the data do not state a sphere"):
+        cf.in_si_units(rows_dataset(sweep, rows, range(sweep.n_realisation)))
+
+
+def test_a_flat_spectrum_needs_no_hurst_exponent_and_a_longer_roll_off_does(tmp_path):
+    given = "{name: flat, short_cutoff: 0.1, hurst: 1.0}"
+    flat = load_configuration(written(tmp_path, GOOD)).spectra
+    for text in ("{name: flat, short_cutoff: 0.1}", given.replace("hurst: 1.0", "roll_off: 0.1")):
+        assert load_configuration(written(tmp_path, changed(given, text))).spectra == flat
+    rough = changed(given, given.replace("hurst: 1.0", "roll_off: 1"))
+    assert "spectra[0]: key hurst is missing; add it" in refusal(tmp_path, rough)
+
+
 def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
     scan = tmp_path / "scan.al3d"
     spectra = f"spectra:\n  - {{name: film, surface: {{file: {scan}}}}}\n"
@@ -597,6 +630,15 @@ HARSH = {
     "digits": ("x: " + "9" * 5000 + "\n", "is no valid YAML: Exceeds the limit"),
     "a tag that is not met": ("x: !!bool maybe\n", "is no valid YAML: 'maybe'"),
     "a key twice as number and text": ("1: a\n'1': b\n", "line 2: key '1' stands twice"),
+    "an octal number of old": (
+        "a:\n  b: 010\n",
+        "in line 2: 010 begins with 0, as octal numbers do elsewhere; remove the 0",
+    ),
+    "a negative one": ("a: -0_7\n", "in line 1: -0_7 begins with 0"),
+    "another version": (
+        "%YAML 1.1\n---\na: yes\n",
+        "it is read as YAML 1.2; remove the line %YAML",
+    ),
     "unknown keys": (
         "".join(f"key_{k}: {k}\n" for k in range(20_000)),
         "more such keys and values",
@@ -610,6 +652,13 @@ def test_yaml_that_nobody_writes_is_refused_with_a_sentence(tmp_path, case):
     message = refusal(tmp_path, text)
     assert sentence in message
     assert len(message) < 5000
+
+
+def test_numbers_and_words_are_those_of_yaml_1_2(tmp_path):
+    path = written(tmp_path, "a: [1e-3, 0.5, 1E+2, 0o10, 0x10, 1:30, on, No, yes, 0, 0.10, true]\n")
+    found = content_of(path)["a"]
+    assert found == (0.001, 0.5, 100.0, 8, 16, "1:30", "on", "No", "yes", 0, 0.1, True)
+    assert [type(one) for one in found[:4]] == [float, float, float, int]
 
 
 def test_an_anchor_may_be_used_as_often_as_it_is_useful(tmp_path):

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-import yaml
 
 import crackfront as cf
 from tests.commands import curves, slow
+from tests.yaml_texts import from_yaml, to_yaml
 
 ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
@@ -193,9 +193,9 @@ def test_a_changed_fit_is_fitted_and_a_remark_is_not_whatever_the_dates(tmp_path
     before = states(results)
     assert snakemake(tmp_path, sweep=sweep, ranks=1).returncode == 0
     assert states(results) == before
-    content = yaml.safe_load(sweep.read_text())
+    content = from_yaml(sweep.read_text())
     content["fit"]["bootstrap"] += 50
-    sweep.write_text(yaml.safe_dump(content))
+    sweep.write_text(to_yaml(content))
     date(2001, sweep)
     date(2096, *before)
     repair(sweep, results)

@@ -41,7 +41,7 @@ class Step:
 
     @property
     def status(self) -> Status:
-        """What ended it."""
+        """How the relaxation at this load ended."""
         return self.found.status
 
 

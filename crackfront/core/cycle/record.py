@@ -164,7 +164,7 @@ class Recorder:
         return Checkpoint(self.record(), self.front, self._turn)
 
     def record(self, status: Status | None = None) -> CycleRecord:
-        """All states so far, with what ended the cycle if it is not the last relaxation."""
+        """Record of all states so far; its status is by default that of the last relaxation."""
         status, energies, fronts = status or self.status, self._dissipated, self._fronts
         lost = energies is not None and status is Status.LOST_CONTACT
         return CycleRecord(

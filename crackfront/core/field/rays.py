@@ -124,7 +124,7 @@ def _sample_rays(field, products, slopes):
 
 
 def sampled_on_rays(field: TileField) -> RayField:
-    """The same field with all samples evaluated beforehand, as the paper's code has it.
+    """Field with all samples evaluated beforehand, as in the code of the paper.
 
     Parameters
     ----------

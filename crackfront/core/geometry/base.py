@@ -11,6 +11,7 @@ line, which is diagonal in the modes of the front.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, ClassVar, Protocol
 
 from scipy.fft import next_fast_len
@@ -30,6 +31,8 @@ class State(Protocol):
 
     load_noun: ClassVar[str]
     """What messages call the load."""
+    branch_names: ClassVar[Mapping[int, str]]
+    """What messages and figures call the branches, by their direction."""
     front_name: ClassVar[str]
     """Name of the fronts in files."""
 

@@ -10,6 +10,7 @@ locally such a line: see docs/model.md.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
@@ -33,6 +34,7 @@ class LineState(Generic[Value]):
     """A metastable straight front, or all of a cycle, one entry a state."""
 
     load_noun: ClassVar[str] = "load"
+    branch_names: ClassVar[Mapping[int, str]] = {1: "forward", -1: "back"}
     front_name: ClassVar[str] = "position"
 
     spring_position: Value = variable("place of the springs' other end, the load", LENGTH)

@@ -8,6 +8,7 @@ Per angle, with the penetration b as the load (supplement, Sec. I D),
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
@@ -30,7 +31,7 @@ from crackfront.core.geometry import base
 from crackfront.core.geometry.base import fast_site_count
 from crackfront.core.outcome import Direction, Relaxation, Status
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
-from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, Variable, variable
+from crackfront.core.variables import ADHESION, AREA, FORCE, LATERAL, VERTICAL, Variable, variable
 
 Value = TypeVar("Value", float, Array)
 
@@ -43,6 +44,7 @@ class ContactState(Generic[Value]):
     """A metastable contact, or all of a cycle, one entry a state."""
 
     load_noun: ClassVar[str] = "penetration"
+    branch_names: ClassVar[Mapping[int, str]] = {1: "approach", -1: "retraction"}
     front_name: ClassVar[str] = "radius"
 
     penetration: Value = variable("rigid body penetration", VERTICAL)
@@ -52,7 +54,7 @@ class ContactState(Generic[Value]):
     max_radius: Value = variable("largest radius of the front", LATERAL)
     rms_radius: Value = variable("rms deviation of the radius from its mean", LATERAL)
     force: Value = variable("normal force, positive where it pushes", FORCE)
-    contact_area: Value = variable("area within the front", f"({LATERAL})^2")
+    contact_area: Value = variable("area within the front", AREA)
     apparent_work_of_adhesion: Value = variable("mean of a G over mean of a", ADHESION)
     least_travel: Value = variable("smallest way of a site since its branch began", LATERAL)
     iterations: Value = variable("sweeps of the solver", "1")

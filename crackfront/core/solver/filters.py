@@ -63,7 +63,7 @@ def make_filter(count, like):
 
 @kernel
 def set_filter(filtering, geometry, shift, inverted):
-    """Set the factors to the stiffness of the line plus a shift, or to the inverse of that."""
+    """Set the factors to the stiffness of the line plus a shift, or to the inverse of this sum."""
     size, paired = filtering.sine.size, filtering.paired
     for k in range(size):
         one = mode_stiffness(geometry, k if paired else min(k, size - k)) + shift

@@ -101,7 +101,7 @@ class LineSchedule(Schedule):
         return Line(n_site, self.length, WORK_OF_ADHESION / self.spring, WORK_OF_ADHESION)
 
     def adhesion(self, simulation: Simulation) -> AdhesionMap:
-        """That of a Gaussian surface, or independent rows in the limit of weak disorder."""
+        """Work of adhesion of a Gaussian surface, or of independent rows for weak disorder."""
         if self.uncorrelated:
             return uncorrelated_adhesion(simulation)
         return gaussian_adhesion(simulation)
@@ -174,6 +174,6 @@ class LineSchedule(Schedule):
     def averaged_sizes(
         self, steady: SteadyAdhesion, correlation_length: float, short_cutoff: float
     ) -> tuple[float, float, float]:
-        """Those of one period of the tile, the same for both branches."""
+        """Sizes of the fronts of one period of the tile, equal for both branches."""
         size = self.length / short_cutoff * (1 + self.period / correlation_length)
         return size, size, self.length

@@ -66,7 +66,7 @@ class SphereSchedule(Schedule):
     def averaged_sizes(
         self, steady: SteadyAdhesion, correlation_length: float, short_cutoff: float
     ) -> tuple[float, float, float]:
-        """Those of the circles of the steady window."""
+        """Sizes of the circles of the steady window."""
         low, high = steady.lowest_radius, steady.highest_radius
         cutoffs = math.pi * (low + high) / short_cutoff
         apart = 1 + (high - low) / correlation_length

@@ -83,8 +83,8 @@ class SteadySchedule(SphereSchedule):
                 raise ValueError(f"{what} is {getattr(self, name)}; it must be positive")
         if not 0 <= self.start < self.max_penetration < math.inf:
             raise ValueError(
-                f"steady start {self.start} must be 0 or more and below the largest penetration "
-                f"{self.max_penetration}"
+                f"steady start is {self.start}; it must be 0 or more, and below the largest "
+                f"penetration {self.max_penetration}: lower it or penetrate deeper"
             )
 
     def run(

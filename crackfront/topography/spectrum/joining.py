@@ -232,10 +232,11 @@ def _shares(spectrum: TabulatedSpectrum, wavevector: Array, fit: Fit) -> Shares:
     apart = np.diff(np.log10(wavevector)) > 1 / _CONTINUED_BINS
     groups = np.split(2 * np.pi / wavevector, np.flatnonzero(apart) + 1)
     parts = [spectrum.mean_square_between(0.5, group[-1], group[0]) for group in groups]
-    measured = sum(parts) / total
+    # Round-off may not leave less than nothing to the continuation.
+    measured = min(sum(parts) / total, 1.0)
     finer = np.geomspace(1, 10**_DECADES, 20) * 2 * np.pi / spectrum.short_cutoff
     tail = TabulatedSpectrum(tuple((2 * np.pi / finer).tolist()), tuple(fit.median(finer).tolist()))
     beyond = tail.mean_square_between(0.5, tail.short_cutoff, spectrum.short_cutoff)
-    longest = 2 * np.pi / float(wavevector[0])
-    shorter = spectrum.mean_square_between(0.5, spectrum.short_cutoff, longest)
-    return Shares(measured, 1 - measured, beyond / total, 1 - shorter / total)
+    longest = max(2 * np.pi / float(wavevector[0]), spectrum.short_cutoff)
+    longer = spectrum.longer_than(longest).mean_square(0.5)
+    return Shares(measured, 1 - measured, beyond / total, longer / total)

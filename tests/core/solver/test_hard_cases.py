@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
@@ -21,6 +20,7 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
+from tests.yaml_texts import from_yaml, to_yaml
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 
@@ -446,7 +446,7 @@ def test_zero_adhesion_at_places_is_physical_and_is_accepted(solver):
 
 @pytest.mark.parametrize("radius", [1e-9, 1e-6, 1e-3, 1.0])
 def test_a_scene_from_nanometres_to_metres_gives_the_reduced_result(tmp_path, radius):
-    reduced = yaml.safe_load(Path(__file__).parents[3].joinpath("config/test.yaml").read_text())
+    reduced = from_yaml(Path(__file__).parents[3].joinpath("config/test.yaml").read_text())
     reduced["numerics"] |= {"tolerance": 1e-12}
     # Adhesion and modulus that leave the contact smaller than the sphere at every size.
     scales = Scales(radius, 0.05, 1e9 * (1e-9 / radius) ** 0.5)
@@ -465,7 +465,7 @@ def test_a_scene_from_nanometres_to_metres_gives_the_reduced_result(tmp_path, ra
     }  # fmt: skip
     records = []
     for content in (reduced, metres):
-        (tmp_path / "sweep.yaml").write_text(yaml.safe_dump(content))
+        (tmp_path / "sweep.yaml").write_text(to_yaml(content))
         sweep = load_configuration(tmp_path / "sweep.yaml")
         records.append(run_simulation(sweep.simulation(sweep.named("rough"), 0.1, 0)).record)
     one, other = records

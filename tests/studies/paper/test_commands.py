@@ -4,13 +4,14 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
 
 from studies.__main__ import STUDIES, main
 from studies.pages import kept_parts
-from studies.paper.figure import figure
+from studies.paper.figure import Check, figure
 from tests.studies.paper.made import CONFIGURATIONS
 
 
@@ -32,6 +33,20 @@ def test_commands_compute_draw_check_and_keep_a_figure(tmp_path, monkeypatch):
     kept = kept_parts()["paper"]["main-1d"]
     assert "![Main Fig. 1d" in kept.text
     assert Path("docs/experiments/figures/main-1d.png").stat().st_size > 1000
+
+
+def test_what_fails_stands_in_the_last_lines_and_first_in_the_file(tmp_path, monkeypatch):
+    path = tmp_path / "quick" / "main-1d.nc"
+    path.parent.mkdir()
+    path.touch()
+    failing = Check("k is 3", "3", "2", passed=False)
+    shown = SimpleNamespace(title="Fig. 1", checks=lambda _: (failing,))
+    monkeypatch.setattr("studies.paper.commands._figure_and_record", lambda _: (shown, None))
+    last = run("check", "--output", tmp_path).stdout.splitlines()[-1]
+    assert last == "FAIL: Fig. 1 (quick): k is 3: 3 expected, 2 found"
+    lines = (tmp_path / "checks.md").read_text().splitlines()
+    assert "0 of 1 agree" in lines[2]
+    assert lines[4] == f"- {last}"
 
 
 def test_the_studies_and_their_commands_are_listed():
