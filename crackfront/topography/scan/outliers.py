@@ -50,7 +50,7 @@ def outliers(heights: Heights) -> tuple[Points, tuple[str, ...]]:
     spikes = _spikes(np.ma.array(heights, mask=np.ma.getmaskarray(heights) | found))
     if spikes.any():
         known = np.ma.getdata(heights)[spikes]
-        farthest = float(known[np.argmax(np.abs(known - np.ma.median(heights)))])
+        farthest = float(known[np.argmax(np.abs(known - np.median(heights.compressed())))])
         several = len(known) > 1
         sentences.append(
             f"{len(known)} point{'s' * several}, {'the farthest ' * several}at "

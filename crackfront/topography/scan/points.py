@@ -168,7 +168,7 @@ def _on_grid(
             f"{path} names the position {where} twice, or with too few digits; export each point "
             "once, with more digits"
         )
-    grid: np.ma.MaskedArray[Any, Any] = np.ma.masked_all(math.prod(counts))
+    grid: np.ma.MaskedArray[Any, Any] = np.ma.array(np.zeros(math.prod(counts)), mask=True)
     grid[flat] = heights
     if not np.ma.getmaskarray(grid).any():
         grid = np.ma.array(np.ma.getdata(grid))
