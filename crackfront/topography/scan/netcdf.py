@@ -78,7 +78,9 @@ def _unit(variable: Any) -> str | None:
 def _grid(path: Path, dataset: Any, name: str) -> Grid:
     """A variable on its coordinates."""
     variable = dataset.variables[name]
-    values = np.ma.masked_invalid(np.ma.asarray(variable[...], dtype=float))
+    values: np.ma.MaskedArray[Any, Any] = np.ma.masked_invalid(
+        np.ma.asarray(variable[...], dtype=float)
+    )
     if "mask" in dataset.variables and dataset["mask"].shape == values.shape:
         values = np.ma.masked_where(np.ma.filled(dataset["mask"][...], 1) != 0, values)
     size = []

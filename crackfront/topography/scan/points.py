@@ -41,7 +41,7 @@ _FEWEST_FILLED = 0.05
 class Points:
     """Heights of a map or a line, on the grid of its positions, in the units of the file."""
 
-    heights: np.ma.MaskedArray[Any, Any]
+    heights: np.ndarray[Any, Any]
     """Masked where the file has no point."""
     size: tuple[float, ...]
 
