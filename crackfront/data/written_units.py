@@ -6,6 +6,7 @@ import functools
 import math
 import re
 import shutil
+import unicodedata
 from tokenize import TokenError
 from typing import Any
 
@@ -18,8 +19,16 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?
 _NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area", "N": "force"}
 _EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2", "N": "0.4mN"}
 
-_POWER = re.compile(r"([A-Za-zµ]+)([2-9])(?!\w)")
-"""A power without a sign for it, as in J/m2."""
+_POWER = re.compile(r"([A-Za-z]+)(-?[1-9](?:\.\d+)?)(?![\w.])")
+"""A power without a sign for it, as in J/m2, J m-2 or Pa m0.5."""
+
+_SIGNS = str.maketrans(
+    {"\u03bc": "u", "\u2212": "-", "\u2010": "-", "\u2013": "-", "\u00b7": "*", "\u22c5": "*"}
+)
+"""Signs that pint does not know, or knows by another letter: Greek mu, dashes, dots of products."""
+
+_PRODUCT = re.compile(r"(?<=[A-Za-z])\.(?=[A-Za-z])")
+"""A full stop between two units, as in mJ.m-2."""
 
 
 def si_value(text: str, unit: str, *, what: str) -> float:
@@ -36,13 +45,13 @@ def si_value(text: str, unit: str, *, what: str) -> float:
     """
     dimension = _NAMES[unit]
     example = f"write a number and a unit of {dimension}, as in {_EXAMPLES[unit]}"
-    found = _QUANTITY.fullmatch(text)
+    found = _QUANTITY.fullmatch(unicodedata.normalize("NFKC", text).translate(_SIGNS))
     if found is None:
         raise ValueError(f"{what} is {text!r}, which is no number with a unit; {example}")
     if found[2] is None:
         raise ValueError(f"{what} is {text!r}, without a unit; {example}")
     try:
-        value = _converted(float(found[1]), _POWER.sub(r"\1^\2", found[2]), unit)
+        value = _converted(float(found[1]), _plain(found[2]), unit)
     except ValueError as error:
         is_other = isinstance(error, DimensionError)
         wrong = f"which is no {dimension}" if is_other else f"whose unit {found[2]} is unknown"
@@ -56,6 +65,12 @@ def si_value(text: str, unit: str, *, what: str) -> float:
     return value
 
 
+def _plain(given: str) -> str:
+    """A unit as pint reads it, of one as people and the files of this package write it."""
+    signs = unicodedata.normalize("NFKC", given).translate(_SIGNS)
+    return _POWER.sub(r"\1^\2", _PRODUCT.sub("*", signs))
+
+
 def unit_value(given: str, unit: str) -> float:
     """Value of one unit in another of the same dimension; a ValueError where there is none.
 
@@ -65,9 +80,18 @@ def unit_value(given: str, unit: str) -> float:
     0.001
     """
     try:
-        return _converted(1.0, _POWER.sub(r"\1^\2", given), unit)
+        return _converted(1.0, _plain(given), unit)
     except ValueError as error:
         raise ValueError(f"a {given} is not to be had in {unit}") from error
+
+
+def is_unit(given: str, unit: str) -> bool:
+    """Whether a text is a unit of the same dimension as another one."""
+    try:
+        unit_value(given, unit)
+    except ValueError:
+        return False
+    return True
 
 
 class DimensionError(ValueError):

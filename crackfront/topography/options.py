@@ -19,7 +19,7 @@ from pydantic_core import ErrorDetails
 
 from crackfront.data.arguments import refuse_other_type
 from crackfront.data.bounds import SI, Range, refuse_outside
-from crackfront.data.written_units import si_value
+from crackfront.data.written_units import is_unit, si_value
 
 DetrendName = Literal["center", "height", "slope", "curvature"]
 
@@ -38,7 +38,9 @@ PER_SCAN = "One for all scans, or one for each."
 REPEATED = "May be repeated."
 """Marks a field of which one scan may have several values."""
 
-_ZERO = re.compile(r"\s*0(\.0*)?\s*[a-zµ]*\s*")
+
+_ZERO = re.compile(r"\s*[-+]?0*\.?0+\.?\s*(\S.*?)?\s*")
+"""Zero, and its unit if it has one."""
 
 
 class Options(BaseModel):
@@ -188,7 +190,10 @@ def _region_of(text: str, what: str) -> Region:
 
 def _place(end: str, what: str) -> float:
     """An end of a part of a scan, for which 0 needs no unit (Units: m)."""
-    return 0.0 if _ZERO.fullmatch(end) else si_value(end, "m", what=what)
+    found = _ZERO.fullmatch(end)
+    if found is None or (found[1] and not is_unit(found[1], "m")):
+        return si_value(end, "m", what=what)
+    return 0.0
 
 
 def _masks(value: Any, info: ValidationInfo) -> tuple[Region | Path, ...]:

@@ -17,6 +17,20 @@ from crackfront.data.written_units import si_value
         ("0.063N/m", "J/m^2", 0.063),
         ("1.25e-3m", "m", 1.25e-3),
         ("5µm", "m", 5e-6),
+        ("5\u03bcm", "m", 5e-6),
+        ("5\u00a0µm", "m", 5e-6),
+        ("5 micron", "m", 5e-6),
+        ("5\u212b", "m", 5e-10),
+        ("384 \u03bcN", "N", 384e-6),
+        ("63 mJ m-2", "J/m^2", 0.063),
+        ("63 mJ m\u22122", "J/m^2", 0.063),
+        ("63 mJ m⁻²", "J/m^2", 0.063),
+        ("63 mJ·m^-2", "J/m^2", 0.063),
+        ("63 mJ.m-2", "J/m^2", 0.063),
+        ("63 mJ/m**2", "J/m^2", 0.063),
+        ("63 erg cm-2", "J/m^2", 0.063),
+        ("0.063 N m-1", "J/m^2", 0.063),
+        ("0.7 N mm-2", "Pa", 0.7e6),
     ],
 )
 def test_a_quantity_is_converted_to_si(text, unit, value):
@@ -39,6 +53,8 @@ def test_a_quantity_is_converted_to_si(text, unit, value):
         ("nanMPa", "no number"),
         ("1e400MPa", "positive"),
         ("0.7%", "no pressure"),
+        ("0.7 N m-1", "no pressure"),
+        ("0.7 N/m-2", "no pressure"),
     ],
 )
 def test_a_missing_or_absurd_unit_is_refused_with_the_value_and_an_example(text, sentence):

@@ -56,6 +56,18 @@ def test_texts_and_numbers_mean_the_same():
     assert checked_options(PredictionOptions, {"range": 3e-10, "unit": "m"}).range == 3e-10
 
 
+@pytest.mark.parametrize(
+    "crop",
+    ["0\u03bcm:10\u03bcm", "0µm:10µm", "0:10um", "0.0 nm:10 µm", "0\u00a0um:1e-5m", "0Å:10um"],
+)
+def test_a_crop_begins_at_zero_in_any_unit_of_length(crop):
+    [[low, high]] = checked_options(ReadingOptions, {"crop": crop}).crop
+    assert low == 0
+    assert high == pytest.approx(1e-5)
+    with pytest.raises(ValueError, match=r"^crop is '0kg', which is no length"):
+        checked_options(ReadingOptions, {"crop": "0kg:10um"})
+
+
 def test_an_option_is_given_once_for_all_scans_or_once_for_each():
     crops = ["0:1um,0:1um", "1um:2um,0um:1um"]
     each = reading_options({"crop": crops, "channel": ("A",), "unit": "um"}, 2)

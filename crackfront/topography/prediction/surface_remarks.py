@@ -46,9 +46,11 @@ def surface_remarks(surface: MeasuredSurface) -> list[Remark]:
 
 
 def scan_remarks(scans: Iterable[Scan], contact_radius: float | None = None) -> Iterator[Remark]:
-    """Notes on what was done to scans, and on those smaller than a contact (Units: m)."""
+    """Remarks on what was done to scans, and on those smaller than a contact (Units: m)."""
     for one in scans:
         path = str(one.measurement.path)
+        for sentence in one.measurement.outliers:
+            yield Remark(path, "reservation", f"{path}: {sentence}.")
         for sentence in _treatments(one):
             yield Remark(path, "note", sentence)
         if contact_radius is not None and min(one.measurement.size) < 2 * contact_radius:

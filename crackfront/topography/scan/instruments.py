@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib
+import io
+import math
 import re
 import warnings
 from collections.abc import Iterator, Sequence
@@ -15,10 +17,19 @@ from typing import Any
 import numpy as np
 
 from crackfront.data.optional_libraries import MissingExtraError
-from crackfront.data.written_units import prefixed
+from crackfront.data.written_units import prefixed, unit_value
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.deferred_import import import_without_executing, import_without_mpi
-from crackfront.topography.scan.files import readable, refuse_too_many_points, refuse_unreadable
+from crackfront.topography.scan.files import refuse_too_many_points, refuse_unreadable
+from crackfront.topography.scan.netcdf import Grid, netcdf_grids
+from crackfront.topography.scan.points import (
+    Points,
+    are_points,
+    even_line,
+    read_points,
+    refuse_positions,
+)
+from crackfront.topography.scan.text import NumberText, number_text
 
 _LIBRARY = "SurfaceTopography"
 
@@ -27,6 +38,31 @@ _BEGIN = 512
 
 _NO_HEIGHTS = re.compile("ampl|phase|error|deflection|friction|potential|adhesion", re.IGNORECASE)
 """Names of channels that are not of heights, also where the file gives them a unit of length."""
+
+_HEIGHTS = re.compile(
+    r"height|topograph|elevation|surface|(?:^|[^a-z])z(?:$|[^a-z]|sensor)", re.IGNORECASE
+)
+"""Names of arrays that are of heights."""
+
+_BARE_ARRAYS = {"h5", "mat", "npz", "nc"}
+"""Formats of arrays that say by their names alone what they hold."""
+
+_SHARED_SUFFIXES = {"zip", "txt", "dat", "csv", "asc"}
+"""Suffixes that do not say what a file is."""
+
+_TEXT_HEADS = {"X;Y;valid": "hfm", "Scan Parameters": "dektak", "#": "comments"}
+"""First line of a text of points, and the function of the library that reads this head."""
+
+_REASONS = (
+    (
+        r"number of (rows|columns) \(=(\d+)\).*metadata \(=(\d+)\)",
+        r"it has \2 \1, and its head says \3",
+    ),
+    (r"Units for x-coordinate and heights.*", "its sides and heights have different units"),
+    (r"Units for x- and y-coordinate.*", "its sides have different units"),
+    (r"Could not find any topography data.*", "none of its channels has a unit of length"),
+)
+"""Reasons of the library, and what they say to one who has only the file."""
 
 _SIDES = (1e-9, 1.0)
 """Sides of a scan within which instruments measure (Units: m): beyond, the unit is wrong."""
@@ -115,23 +151,23 @@ def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
     given, sides = _what_is_not_stated(path, reader.format(), channel, options)
     with _errors_as_sentences(path, reader.format()):
         raw = reader.topography(channel_index=channel.index, **given)
+    if not raw.is_uniform:
+        line = even_line(path, raw.positions(), raw.heights())
+        raw = _library_object(line, raw.unit, raw.info)
+    with _errors_as_sentences(path, reader.format()):
         level = raw.to_unit("m")
         level.heights()
-    if not raw.is_uniform:
-        raise ValueError(
-            f"{path}: the points are not equally spaced; resample the line on a uniform grid"
-        )
     if sides is not None:
         level = library_scan(level.heights(), sides, periodic=False, info=raw.info)
     if options.height_unit is not None:
-        _refuse_no_length("--height-unit", options.height_unit)
+        height_unit = _length_unit("--height-unit", options.height_unit)
         heights, sides = level.heights(), tuple(map(float, level.physical_sizes))
         if channel.unit is not None and are_possible_heights(heights, sides):
             raise ValueError(
                 f"{path} states heights in {channel.unit}, which may be; leave --height-unit "
                 f"{options.height_unit} out"
             )
-        [factor] = in_metres(options.height_unit, 1.0)
+        [factor] = in_metres(height_unit, 1.0)
         heights = factor * raw.heights()
         level = library_scan(heights, sides, periodic=bool(level.is_periodic), info=raw.info)
     return RawScan(level, reader.format(), name)
@@ -141,7 +177,7 @@ def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
 def array_of(path: Path) -> np.ndarray[Any, Any]:
     """Numbers of a file without units, as of a mask."""
     reader = _reader(path)
-    channel = reader.default_channel
+    channel, _ = _channel(path, reader, None)
     sized = {} if channel.physical_sizes else {"physical_sizes": (1.0,) * channel.dim}
     with _errors_as_sentences(path, reader.format()):
         return np.ma.filled(reader.topography(channel_index=channel.index, **sized).heights(), 0.0)
@@ -155,9 +191,16 @@ def library_scan(
     info: dict[str, Any] | None = None,
 ) -> Any:
     """Heights in metres as an object of the library."""
+    return _library_object(Points(heights, size), "m", info, periodic=periodic)
+
+
+def _library_object(
+    points: Points, unit: str | None, info: dict[str, Any] | None, *, periodic: bool = False
+) -> Any:
+    """Heights on a grid as an object of the library."""
     kinds = library_part("UniformLineScanAndTopography")
-    kind = kinds.Topography if heights.ndim > 1 else kinds.UniformLineScan
-    return kind(heights, size, periodic=periodic, unit="m", info=info or {})
+    kind = kinds.Topography if points.heights.ndim > 1 else kinds.UniformLineScan
+    return kind(points.heights, points.size, periodic=periodic, unit=unit, info=info or {})
 
 
 @contextmanager
@@ -167,30 +210,135 @@ def _errors_as_sentences(path: Path, name: str = "what its head says") -> Iterat
     try:
         yield
     except exceptions.CannotDetectFileFormat as error:
+        if (found := _reason_of_one(path, str(error))) is not None:
+            name, reason = found
+            raise ValueError(f"{path} cannot be read as {name}: {_in_our_words(reason)}") from error
         raise ValueError(
             f"{path} is in no format that SurfaceTopography reads, or damaged; export it from the "
             "instrument again, as X3P if there is a choice"
         ) from error
     # A damaged file may fail anywhere in a parser that is not ours.
     except Exception as error:
-        line = next(iter(str(error).splitlines()), "") or type(error).__name__
-        raise ValueError(
-            f"{path} cannot be read as {name}: {line}; export it from the instrument again"
-        ) from error
+        reason = next(iter(str(error).splitlines()), "") or type(error).__name__
+        raise ValueError(f"{path} cannot be read as {name}: {_in_our_words(reason)}") from error
+
+
+def _in_our_words(reason: str) -> str:
+    """Reason of the library, without its inner names, and what to do."""
+    for pattern, words in _REASONS:
+        if (found := re.search(pattern, reason)) is not None:
+            reason = found.expand(words)
+    return f"{reason.strip().rstrip('.')}; export it from the instrument again"
+
+
+def _reason_of_one(path: Path, tried: str) -> tuple[str, str] | None:
+    """Format that a file has by signature or name, and why its reader refuses; None if unknown."""
+    base, suffix = library_part("IO.Reader"), path.suffix[1:].lower()
+    with path.open("rb") as file:
+        begin = file.read(_BEGIN)
+    kinds = [(one.can_read(begin), one) for one in library_part("IO").readers]
+    by_name = [
+        one for kind, one in kinds if kind != base.MagicMatch.NO and suffix in _suffixes(one)
+    ]
+    by_signature = [one for kind, one in kinds if kind == base.MagicMatch.YES]
+    for fitting in (by_name, by_signature):
+        if len(fitting) == 1:
+            [one] = fitting
+            reason = re.search(rf"tried {one.__name__}: *\n *(\S.*)", tried)
+            return (one.format(), reason[1]) if reason else None
+    return None
+
+
+def _suffixes(reader: Any) -> set[str]:
+    """Suffixes of a format that are of no other one."""
+    return set(reader.file_extensions() or ()) - _SHARED_SUFFIXES
 
 
 def _reader(path: Path) -> Any:
-    """The library's reader of a file, which is regular and not too large."""
+    """Reader of a file, which is regular and not too large."""
     refuse_unreadable(path)
-    source: Any = readable(path)
+    text = number_text(path)
+    if text is not None and not text.lines[0].startswith("aISO"):
+        return _text_reader(path, text)
+    if grids := netcdf_grids(path):
+        return _GridsReader("nc", grids)
     with _errors_as_sentences(path):
-        if isinstance(source, Path):
-            # A file that is not what it begins as is left to the readers in their order.
-            with suppress(Exception):
-                if (reader := _reader_by_signature(path)) is not None:
-                    return reader(str(path))
-            source = str(source)
-        return library_part("IO").open_topography(source)
+        # A file that is not what it begins as is left to the readers in their order.
+        with suppress(Exception):
+            if (reader := _reader_by_signature(path)) is not None:
+                return reader(str(path))
+        return library_part("IO").open_topography(str(path))
+
+
+def _text_reader(path: Path, text: NumberText) -> Any:
+    """Reader of a text, of points or of a matrix of heights."""
+    kind = next((_TEXT_HEADS[one] for one in _TEXT_HEADS if text.lines[0].startswith(one)), None)
+    unit, factor, info = None, None, {}
+    is_matrix = kind != "dektak" and not are_points(text)
+    if kind is not None and not is_matrix:
+        library_part("IO").readers  # noqa: B018  # Its modules for texts import each other.
+        read_head = getattr(library_part("IO.XYZ"), f"read_text_header_{kind}")
+        try:
+            with _errors_as_sentences(path, kind):
+                head = io.StringIO("".join(f"{line}\n" for line in text.head))
+                *_, unit, factor, info = read_head(head, None, None)
+        except ValueError as error:
+            # The library says so where a head has the sides of a matrix.
+            if not isinstance(error.__cause__, library_part("Exceptions").FileFormatMismatch):
+                raise
+            is_matrix = True
+    if is_matrix:
+        refuse_positions(path, text)
+        with _errors_as_sentences(path, "text"):
+            return library_part("IO").AscReader(io.StringIO("\n".join([*text.lines, ""])))
+    points = read_points(path, text, kind)
+    heights = points.heights * (factor or 1.0)
+    grid = Grid("default", Points(heights, points.size), None)
+    return _GridsReader("xyz", [grid], unit, info)
+
+
+@dataclass(frozen=True, slots=True)
+class _GridsReader:
+    """Grids that were read here, with the face of the library's readers."""
+
+    name: str
+    """Name of the format, as the library calls it."""
+    grids: Sequence[Grid]
+    unit: str | None = "m"
+    """Unit of sides and heights, where the file states it."""
+    info: dict[str, Any] | None = None
+
+    def format(self) -> str:
+        """Name of the format."""
+        return self.name
+
+    @property
+    def channels(self) -> list[Any]:
+        """What the library says of each grid."""
+        return [
+            library_part("IO.Reader").ChannelInfo(
+                self,
+                number,
+                name=grid.name,
+                dim=grid.points.heights.ndim,
+                nb_grid_pts=grid.points.heights.shape,
+                physical_sizes=grid.points.size,
+                unit=self.unit,
+                data_unit=grid.unit,
+                info=self.info or {},
+            )
+            for number, grid in enumerate(self.grids)
+        ]
+
+    @property
+    def default_channel(self) -> Any:
+        """The first of them."""
+        return self.channels[0]
+
+    def topography(self, channel_index: int, unit: str | None = None) -> Any:
+        """Heights in the unit of the file, or in a named one."""
+        points = self.grids[channel_index].points
+        return _library_object(points, self.unit or unit, self.info)
 
 
 def _reader_by_signature(path: Path) -> Any:
@@ -240,17 +388,37 @@ def list_channels(path: str | PathLike[str]) -> tuple[Channel, ...]:
 def _channels(path: Path, reader: Any) -> tuple[Channel, ...]:
     """Channels of a file, numbered as its reader has them."""
     with _errors_as_sentences(path):
-        default = reader.default_channel.index
+        default = _default(reader)
         return tuple(
             Channel(one.index, one.name, _kind(one), one.nb_grid_pts or (), one.index == default)
             for one in reader.channels
         )
 
 
+def _default(reader: Any) -> int | None:
+    """Number of the channel that is read where none is named; None where nothing says which."""
+    channels = reader.channels
+    if reader.format() not in _BARE_ARRAYS or len(channels) < 2:
+        return int(reader.default_channel.index) if channels else None
+    lengths = [one for one in channels if _kind(one) == "height"]
+    named = [one for one in lengths if _HEIGHTS.search(one.name) and not is_doubtful(one.name)]
+    found = named or (lengths if reader.format() == "nc" else [])
+    return int(found[0].index) if len(found) == 1 else None
+
+
 def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
     """A channel of heights, the library's own choice if none is named, and what it is called."""
     known = _channels(path, reader)
+    if not known:
+        raise ValueError(
+            f"{path} holds no array of numbers in two dimensions; export the heights as one"
+        )
     named = [one for one in known if (one.is_default if wanted is None else one.name == wanted)]
+    if wanted is None and not named:
+        raise ValueError(
+            f"{path} holds {len(known)} arrays, and their names do not say which one has the "
+            f"heights; {_choice(known)}"
+        )
     named = named or [one for one in known if str(one.number) == wanted]
     if len(named) != 1:
         raise ValueError(
@@ -298,16 +466,18 @@ def _what_is_not_stated(
                 "unit is wrong, so name the sides, as in --size "
                 f"{','.join(f'{side:g}' for side in stated)} --unit um"
             )
-        return {}, _named_sides(path, _sides(path, options.size, len(stated)), options.unit)
+        named = _length_unit("--unit", options.unit)
+        return {}, _named_sides(path, _sides(path, options.size, len(stated)), named)
     given: dict[str, Any] = {}
     if unit is None:
         if options.unit is None:
             raise ValueError(
                 f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
             )
-        _refuse_no_length("--unit", options.unit)
-        given["unit"] = unit = options.unit
-    elif options.unit not in (None, unit):
+        given["unit"] = unit = _length_unit("--unit", options.unit)
+    elif options.unit is not None and _length_unit("--unit", options.unit) != _length_unit(
+        "", unit
+    ):
         raise ValueError(f"{path} states its own unit, {unit}; leave --unit {options.unit} out")
     if not is_sized:
         if options.size is None:
@@ -320,10 +490,17 @@ def _what_is_not_stated(
     return given, None
 
 
-def _refuse_no_length(option: str, unit: str) -> None:
-    """Raise where an option names no unit of length."""
-    if not library_part("Support.UnitConversion").is_length_unit(unit):
-        raise ValueError(f"{option} {unit} is no unit of length; name one, as in um")
+def _length_unit(option: str, given: str) -> str:
+    """Name by which the library knows a unit of length, refused where it has none."""
+    known = library_part("Support.UnitConversion").length_units
+    if given in known:
+        return str(next(name for name in known if known[name] == known[given]))
+    with suppress(ValueError):
+        metres = unit_value(given, "m")
+        for name, value in known.items():
+            if math.isclose(value, metres, rel_tol=1e-9):
+                return str(name)
+    raise ValueError(f"{option} {given} is no unit of length; name one, as in um")
 
 
 def _sides(path: Path, named: tuple[float, ...], n_side: int) -> tuple[float, ...]:

@@ -25,6 +25,7 @@ from crackfront.topography.scan.instruments import (
     surface_library,
 )
 from crackfront.topography.scan.levelling import Array, Points, levelled, order_of, taken_off
+from crackfront.topography.scan.outliers import outliers
 
 _PIXELS_PER_WAVE = 4
 """Points in the shortest wave to trust without a stated resolution: shorter ones are aliased."""
@@ -83,6 +84,8 @@ class Measurement:
     """Name of the channel in the file, and which of how many of heights it is."""
     levelling: str = ""
     """What was taken off, in words."""
+    outliers: tuple[str, ...] = ()
+    """Sentences on heights that were taken as missing, since no surface has them."""
 
     @property
     def pixels(self) -> tuple[float, ...]:
@@ -127,7 +130,7 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
     """Measurement of one file."""
     scan = raw_scan(path, options)
     raw = scan.topography
-    heights, fitted, size = _used_part(path, raw, options)
+    heights, fitted, size, sentences = _used_part(path, raw, options)
     gaps = np.ma.getmaskarray(heights)
     try:
         values = levelled(np.ma.getdata(heights), fitted, options.detrend)
@@ -166,13 +169,14 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
         tip_is_assumed=is_assumed,
         channel=scan.channel,
         levelling=levelling,
+        outliers=sentences,
     )
 
 
 def _used_part(
     path: Path, raw: Any, options: ReadingOptions
-) -> tuple[np.ma.MaskedArray[Any, Any], Points, tuple[float, ...]]:
-    """Heights of the part that is used, which of them the trend is fitted to, and its sides."""
+) -> tuple[np.ma.MaskedArray[Any, Any], Points, tuple[float, ...], tuple[str, ...]]:
+    """Heights of a part, points that its trend is fitted to, its sides, and on its outliers."""
     heights = np.ma.masked_invalid(raw.heights())
     counts, size = heights.shape, tuple(map(float, raw.physical_sizes))
     fitted = ~np.ma.getmaskarray(heights) & ~_masked(path, options, counts, size)
@@ -186,11 +190,16 @@ def _used_part(
     size = tuple(
         side * kept / count for side, kept, count in zip(size, heights.shape, counts, strict=True)
     )
+    impossible, sentences = outliers(heights)
+    heights = np.ma.array(np.ma.getdata(heights), mask=np.ma.getmaskarray(heights) | impossible)
+    fitted = fitted & ~impossible
     missing = float(np.mean(np.ma.getmaskarray(heights)))
     if missing > _MOST_MISSING:
+        of_them = f" ({'; '.join(sentences)})" if sentences else ""
         raise ValueError(
-            f"{path}: {missing:.0%} of the points are missing; more than {_MOST_MISSING:.0%} are "
-            "too many to interpolate, so use a part with --crop, or measure again"
+            f"{path}: {missing:.0%} of the points are missing{of_them}; more than "
+            f"{_MOST_MISSING:.0%} are too many to interpolate, so use a part with "
+            "--crop, or measure again"
         )
     known = np.ma.compressed(heights)
     rms, span = float(np.std(known)), float(np.ptp(known))
@@ -202,7 +211,7 @@ def _used_part(
             f"on {shown_sides(size)}, which cannot be; their unit is wrong, so name the right "
             "one, as in --height-unit nm"
         )
-    return heights, fitted, size
+    return heights, fitted, size, sentences
 
 
 def _tip(scan: RawScan, options: ReadingOptions) -> tuple[float, bool]:

@@ -57,17 +57,71 @@ def test_a_channel_is_chosen_by_name_or_number(tmp_path, noise):
     assert "has no channel 'Phase'; choose by number or name with --channel: 0 'Main'" in message
 
 
+ARRAYS = {
+    "named": ({"intensity": 0, "topography": 1}, "'topography', 1 of 2"),
+    "in a group": ({"scan/height": 1, "scan/quality": 0}, "'scan/height', 0 of 2"),
+    "z": ({"amplitude": 0, "z": 1}, "'z', 1 of 2"),
+    "sensor": ({"Phase": 0, "ZSensor": 1}, "'ZSensor', 1 of 2"),
+    "single": ({"anything": 1}, "'anything'"),
+}
+
+
+@pytest.mark.parametrize("name", ARRAYS)
+def test_the_array_that_is_named_as_heights_is_read(tmp_path, rng, noise, name):
+    arrays, channel = ARRAYS[name]
+    values = (rng.uniform(size=noise.shape), 1e6 * noise)
+    path = write_arrays(tmp_path / "a.h5", **{one: values[which] for one, which in arrays.items()})
+    found = read(path, detrend="center", **PLAIN)
+    assert found.channel == channel
+    np.testing.assert_allclose(found.heights, noise - noise.mean(), atol=1e-18)
+
+
+@pytest.mark.parametrize(
+    "names", [("a", "b"), ("height", "height_retrace"), ("HeightAmplitude", "data"), ("x", "y")]
+)
+@pytest.mark.parametrize("kind", ["h5", "npz"])
+def test_several_arrays_of_which_none_or_two_are_named_as_heights_are_refused(
+    tmp_path, noise, names, kind
+):
+    path = tmp_path / f"a.{kind}"
+    arrays = dict.fromkeys(names, 1000000.0 * noise)
+    if kind == "h5":
+        write_arrays(path, **arrays)
+    else:
+        np.savez(path, **arrays)
+    message = refusal(path, **PLAIN)
+    assert "holds 2 arrays, and their names do not say which one has the heights" in message
+    assert all(f"'{name}'" in message for name in names)
+    assert read(path, channel=names[1], **PLAIN).channel == f"'{names[1]}', 1 of 2"
+    assert not any(one.is_default for one in cf.list_channels(path))
+    masked = write_arrays(tmp_path / "scan.h5", surface=1e6 * noise)
+    assert "holds 2 arrays" in refusal(masked, mask=path, **PLAIN)
+
+
+def test_a_file_without_a_map_is_refused(tmp_path, noise):
+    assert "holds no array" in refusal(write_arrays(tmp_path / "a.h5", x=noise[0]), **PLAIN)
+
+
+@pytest.mark.parametrize("unit", ["um", "µm", "\u03bcm", "micron", "micrometer"])
+def test_a_unit_of_length_is_known_by_any_of_its_names(tmp_path, noise, unit):
+    path = tmp_path / "plain.npy"
+    np.save(path, 1e6 * noise)
+    found = read(path, unit=unit, size="20", height_unit=unit)
+    assert found.size == pytest.approx((20e-6, 20e-6))
+    assert np.std(found.heights) == pytest.approx(np.std(noise), rel=0.01)
+
+
 def test_warnings_of_parsers_are_none_of_the_users(tmp_path, noise, monkeypatch):
     library, path, mask = surface_library().IO, tmp_path / "scan.txt", tmp_path / "mask.npy"
     np.savetxt(path, 1e6 * noise.T)
     np.save(mask, np.zeros(noise.shape))
-    opened, warned = library.open_topography, []
+    opened, warned = library.AscReader, []
 
     def warning(*arguments, **options):
         warned.append(warnings.warn("wmf image format is not supported", stacklevel=2))
         return opened(*arguments, **options)
 
-    monkeypatch.setattr(library, "open_topography", warning)
+    monkeypatch.setattr(library, "AscReader", warning)
     assert read(path, unit="um", size="5,4", mask=mask).heights.shape == noise.shape
     assert warned
 
