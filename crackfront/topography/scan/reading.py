@@ -68,8 +68,6 @@ class Measurement:
     """Detrended heights without gaps. Shape (n_x, n_y) or (n_x,). (Units: m)"""
     periodic: bool
     """Whether the file says that opposite edges belong together."""
-    missing: float
-    """Part of the points that were interpolated."""
     shortest: float
     longest: float
     """Wavelengths that pixels, resolution and size of the scan allow to trust. (Units: m)"""
@@ -83,6 +81,8 @@ class Measurement:
     """Name of the channel in the file, and which of how many of heights it is."""
     levelling: str = ""
     """What was taken off, in words."""
+    gaps: Points | None = None
+    """Which points were missing and interpolated; None if none were. As `heights`."""
 
     @property
     def pixels(self) -> tuple[float, ...]:
@@ -90,6 +90,11 @@ class Measurement:
         return tuple(
             side / count for side, count in zip(self.size, self.heights.shape, strict=True)
         )
+
+    @property
+    def missing(self) -> float:
+        """Part of the points that were interpolated."""
+        return 0.0 if self.gaps is None else float(np.mean(self.gaps))
 
     @property
     def is_line(self) -> bool:
@@ -138,8 +143,7 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
         np.ma.array(values, mask=gaps), size, periodic=bool(periodic), info=raw.info
     )
     if gaps.any():
-        library_part("Uniform.Imputation")
-        level = level.interpolate_undefined_data()
+        level = interpolated(level)
     levelling = taken_off(options.detrend)
     if options.mask:
         left_out = 1 - np.count_nonzero(fitted) / np.ma.count(heights)
@@ -158,7 +162,6 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
         size=size,
         heights=np.array(np.ma.getdata(level.heights()), dtype=float),
         periodic=bool(level.is_periodic),
-        missing=float(np.mean(gaps)),
         shortest=shortest,
         longest=longest,
         tip_radius=radius,
@@ -166,7 +169,14 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
         tip_is_assumed=is_assumed,
         channel=scan.channel,
         levelling=levelling,
+        gaps=gaps if gaps.any() else None,
     )
+
+
+def interpolated(level: Any) -> Any:
+    """A scan of the library with its missing points interpolated by harmonic functions."""
+    library_part("Uniform.Imputation")
+    return level.interpolate_undefined_data()
 
 
 def _used_part(
