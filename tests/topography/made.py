@@ -89,5 +89,5 @@ def periodic_measurement(heights, side=SIDE, shortest=None):
     pixel = side / len(heights)
     shortest = 2 * pixel if shortest is None else shortest
     return Measurement(
-        Path("periodic"), "", "", "", (side, side), heights, True, 0.0, shortest, side * (1 + 1e-9)
+        Path("periodic"), "", "", "", (side, side), heights, True, shortest, side * (1 + 1e-9)
     )

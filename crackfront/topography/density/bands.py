@@ -16,10 +16,11 @@ from crackfront.topography.density.densities import (
     Periodogram,
     anisotropy,
     periodic_part,
-    periodogram,
     stripes,
     unevenness,
+    weight_of_gaps,
 )
+from crackfront.topography.density.gaps import Pairs, restored_periodogram, surrogate_pairs
 from crackfront.topography.density.self_affine import Instrument, seen_instrument
 from crackfront.topography.scan.levelling import polynomial
 from crackfront.topography.scan.reading import Measurement
@@ -56,8 +57,11 @@ _FORM, _FORM_BINS = 2.0, 16
 _FINER = 2.0
 """Shortest wave that pixels hold, over the shortest one at which a drawn spectrum may end."""
 
-_FEWEST_OCTAVES = 1
-"""Octaves that must be left of a band."""
+_FEWEST_OCTAVES, _FEWEST_BINS = 1, 2
+"""Octaves that must be left of a band, and values of the density in it."""
+
+_SHOWING = 8
+"""Values of a density in which an instrument can be seen: its parameters and those of P."""
 
 MOST_PERIODIC = 0.25
 """Part of e_el in one wave from which on a surface is not random."""
@@ -128,6 +132,10 @@ class Scan:
     """Standard error of the density, as parts of the scan differ, relative."""
     band: Band
     """The trusted wavelengths."""
+    profile: Density
+    """C_1D of the lines along x over the band."""
+    missing_weight: float
+    """Part of the window's weight on points that were missing."""
 
     @property
     def trusted_measurement(self) -> Measurement:
@@ -149,7 +157,8 @@ def scan(
     measurement: Measurement, shortest: float | None = None, longest: float | None = None
 ) -> Scan:
     """A measurement with its trusted band, refused if narrow; its ends may be named (Units: m)."""
-    waves, pixel = periodogram(measurement), max(measurement.pixels)
+    pairs, pixel = surrogate_pairs(measurement), max(measurement.pixels)
+    waves = restored_periodogram(measurement, pairs)
     periodic = periodic_part(waves, measurement.shortest, measurement.longest)
     # Grooves along an axis are no rows that the instrument has shifted.
     is_map = not measurement.is_line and periodic[0] < MOST_PERIODIC
@@ -159,20 +168,20 @@ def scan(
     seen = density.within(_PIXELS * pixel, measurement.longest)
     cliff, behind = _abrupt_fall(seen)
     seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
-    instrument = seen_instrument(seen)
+    instrument = seen_instrument(seen) if seen.value.size >= _SHOWING else Instrument()
     if measurement.tip_radius or instrument.loss_wavelength(_TRUSTED_LOSS) > _BLUNTEST * pixel:
         # A surface whose slope grows towards short waves looks like that.
         instrument = replace(instrument, attenuation=math.inf)
     lower = list(_lower_limits(measurement, seen, instrument, cliff))
     upper = [BandLimit("longest", "levelling", measurement.longest)]
-    alternatives = () if measurement.periodic else _alternatives(measurement, without)
+    alternatives = () if measurement.periodic else _alternatives(measurement, pairs, without)
     if left := _form_limit(density, alternatives, measurement.longest):
         upper.append(BandLimit("longest", "form", left))
     if shortest is not None:
         lower = [BandLimit("shortest", "named", shortest)]
     if longest is not None:
         upper = [BandLimit("longest", "named", longest)]
-    low, high = _ends(measurement, lower, upper)
+    low, high = _ends(measurement, density, lower, upper)
     noise_limit = instrument.noise_wavelength(seen, _FITTED_NOISE)
     least = max(cliff, noise_limit, measurement.shortest)
     shortest_fitted, longest_end = low.wavelength, high.wavelength
@@ -200,33 +209,54 @@ def scan(
         shortest_end=min(shortest_end, low.wavelength),
         longest_end=longest_end,
     )
-    return Scan(measurement, waves, density, alternatives, unevenness(measurement), band)
+    profiles = restored_periodogram(measurement, pairs, is_profile=True)
+    return Scan(
+        measurement,
+        waves,
+        density,
+        alternatives,
+        unevenness(measurement),
+        band,
+        profiles.density().within(*band.wavelengths),
+        weight_of_gaps(measurement),
+    )
 
 
 def _ends(
-    measurement: Measurement, lower: Sequence[BandLimit], upper: Sequence[BandLimit]
+    measurement: Measurement,
+    density: Density,
+    lower: Sequence[BandLimit],
+    upper: Sequence[BandLimit],
 ) -> tuple[BandLimit, BandLimit]:
-    """The limits that count, refused where less than an octave lies between them."""
+    """The limits that count, refused where hardly any waves lie between them."""
     low = max(lower, key=lambda limit: limit.wavelength)
     high = min(upper, key=lambda limit: limit.wavelength)
+    short, long = (prefixed("m", limit.wavelength) for limit in (low, high))
     if high.wavelength < 2**_FEWEST_OCTAVES * low.wavelength:
-        short, long = (prefixed("m", limit.wavelength) for limit in (low, high))
         raise ValueError(
             f"{measurement.path}: of the waves only those above {short} ({low.cause}) and below "
             f"{long} ({high.cause}) can be trusted, less than an octave; use a better scan, or "
             "name --shortest and --longest"
         )
+    count = density.within(low.wavelength, high.wavelength).value.size
+    if count < _FEWEST_BINS:
+        raise ValueError(
+            f"{measurement.path}: its density has {count} values between {short} ({low.cause}) and "
+            f"{long} ({high.cause}), too few for a spectrum; use a larger or finer scan, or name "
+            "--shortest and --longest within what it resolves"
+        )
     return low, high
 
 
 def _alternatives(
-    measurement: Measurement, without: NDArray[np.bool_] | None
+    measurement: Measurement, pairs: Pairs, without: NDArray[np.bool_] | None
 ) -> tuple[Density, Density]:
     """Densities with another window, and with one more order of polynomials taken off."""
-    heights = measurement.heights
-    form = polynomial(heights, np.full(heights.shape, True), _ORDER)
-    others = periodogram(measurement, window="blackman"), periodogram(measurement, heights - form)
-    return others[0].density(without), others[1].density(without)
+    heights, gaps = measurement.heights, measurement.gaps
+    form = polynomial(heights, np.full(heights.shape, True) if gaps is None else ~gaps, _ORDER)
+    window = restored_periodogram(measurement, pairs, window="blackman")
+    levelled = restored_periodogram(measurement, pairs, heights - form)
+    return window.density(without), levelled.density(without)
 
 
 def _lower_limits(

@@ -127,7 +127,8 @@ def periodogram(
     """Power of all waves of a measurement, or of other heights in its place.
 
     A profile holds the waves along x, with the mean power of all lines along x of a map; of these,
-    the modes of one line are counted. A periodic measurement needs no window.
+    the modes of one line are counted. A periodic measurement needs no window. Points that were
+    missing hold no modes.
     """
     heights = measurement.heights if heights is None else heights
     axes = (0,) if is_profile else tuple(range(heights.ndim))
@@ -138,6 +139,9 @@ def periodogram(
     weight = np.asarray(math.prod(np.ix_(*windows)))
     square = math.prod(float(np.mean(one**2)) for one in windows)
     dependence = math.prod(float(np.mean(one**4)) for one in windows) / square**2
+    if measurement.gaps is not None and not is_profile:
+        known = np.where(measurement.gaps, 0.0, weight)
+        dependence = float(np.mean(known**4) / np.mean(known**2) ** 2)
     level = np.sum(weight * heights, axes, keepdims=True) / np.sum(weight, axes, keepdims=True)
     transform = rfftn(weight * (heights - level), axes=axes, norm="forward")
     power = transform.real**2 + transform.imag**2
@@ -155,6 +159,18 @@ def periodogram(
         count=np.broadcast_to(count, power.shape),
         dependence=dependence,
     )
+
+
+def weight_of_gaps(measurement: Measurement) -> float:
+    """Part of the window's weight that lies on points that were missing."""
+    if measurement.gaps is None:
+        return 0.0
+    windows = [
+        np.ones(count) if measurement.periodic else cosine_window("hann", count)
+        for count in measurement.heights.shape
+    ]
+    weight = math.prod(np.ix_(*windows)) ** 2
+    return float(np.sum(weight[measurement.gaps]) / np.sum(weight))
 
 
 def cosine_window(name: str, count: int) -> Array:
@@ -227,6 +243,8 @@ def unevenness(measurement: Measurement) -> float:
     root = np.sqrt(np.sqrt(sum(one**2 for one in waves)))
     transform = root * rfftn(measurement.heights)
     energy, same, every = irfftn(transform, shape) ** 2, np.ones(1), np.ones(1)
+    if measurement.gaps is not None:
+        energy[measurement.gaps] = np.mean(energy[~measurement.gaps])
     for axis, count in enumerate(shape):
         inner = np.arange(count // _EDGE, count - count // _EDGE)
         parts = np.array_split(inner, _PARTS)

@@ -149,9 +149,9 @@ def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
 def _draw_profiles(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
     """Densities of profiles and the projection of the model that continues the spectrum."""
     wavevector = _set_wavevectors(axes, surface)
-    for index, (one, density) in enumerate(zip(surface.scans, surface.profiles, strict=True)):
+    for index, one in enumerate(surface.scans):
         name = one.measurement.path.name if one.measurement.is_line else ""
-        _draw_density(axes, index, density, name)
+        _draw_density(axes, index, one.profile, name)
     projection = surface.joint.fit.projected_density(wavevector)
     axes.plot(wavevector, projection, color=BLACK, label="projection of the model", zorder=4)
     low, high = axes.get_ylim()

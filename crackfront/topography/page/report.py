@@ -244,15 +244,17 @@ def _limit_text(limit: BandLimit) -> str:
 def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:
     """Scans without heights: their files, trusted wavelengths, and what their densities show."""
     joined = surface.joint.density
-    for index, (one, profile) in enumerate(zip(surface.scans, surface.profiles, strict=True)):
+    for index, one in enumerate(surface.scans):
         item = one.measurement
-        names = (entry.name for entry in fields(item) if entry.name != "heights")
+        names = (entry.name for entry in fields(item) if entry.name not in ("heights", "gaps"))
         yield {
             **{name: to_jsonable(getattr(item, name)) for name in names},
+            "missing": item.missing,
+            "missing_weight": one.missing_weight,
             "points": list(item.heights.shape),
             **to_jsonable(one.band),
             "density": to_jsonable(one.trusted),
-            "profile_density": to_jsonable(profile),
+            "profile_density": to_jsonable(one.profile),
             "level": to_jsonable(joined.levels[index]),
             "disagrees": joined.disagrees(index),
         }

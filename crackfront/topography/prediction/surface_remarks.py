@@ -67,7 +67,11 @@ def _treatments(one: Scan) -> Iterator[str]:
     """Sentences on what was filled, assumed or left out of a scan."""
     item = one.measurement
     if item.missing > 0:
-        yield f"{item.path}: {item.missing:.2%} of the points were missing and interpolated."
+        yield (
+            f"{item.path}: {item.missing:.2%} of the points were missing and interpolated, "
+            f"{one.missing_weight:.1%} by the weight of the window; what this takes from the "
+            "density is given back, as much as it takes from random surfaces of this density."
+        )
     if item.is_line:
         yield (
             f"{item.path} is a line scan: its density is that of an isotropic surface with "

@@ -69,8 +69,6 @@ class Measurement:
     """Detrended heights without gaps. Shape (n_x, n_y) or (n_x,). (Units: m)"""
     periodic: bool
     """Whether the file says that opposite edges belong together."""
-    missing: float
-    """Part of the points that were interpolated."""
     shortest: float
     longest: float
     """Wavelengths that pixels, resolution and size of the scan allow to trust. (Units: m)"""
@@ -86,6 +84,8 @@ class Measurement:
     """What was taken off, in words."""
     outliers: tuple[str, ...] = ()
     """Sentences on heights that were taken as missing, since no surface has them."""
+    gaps: Points | None = None
+    """Which points were missing and interpolated; None if none were. As `heights`."""
 
     @property
     def pixels(self) -> tuple[float, ...]:
@@ -93,6 +93,11 @@ class Measurement:
         return tuple(
             side / count for side, count in zip(self.size, self.heights.shape, strict=True)
         )
+
+    @property
+    def missing(self) -> float:
+        """Part of the points that were interpolated."""
+        return 0.0 if self.gaps is None else float(np.mean(self.gaps))
 
     @property
     def is_line(self) -> bool:
@@ -141,8 +146,7 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
         np.ma.array(values, mask=gaps), size, periodic=bool(periodic), info=raw.info
     )
     if gaps.any():
-        library_part("Uniform.Imputation")
-        level = level.interpolate_undefined_data()
+        level = interpolated(level)
     levelling = taken_off(options.detrend)
     if options.mask:
         left_out = 1 - np.count_nonzero(fitted) / np.ma.count(heights)
@@ -161,7 +165,6 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
         size=size,
         heights=np.array(np.ma.getdata(level.heights()), dtype=float),
         periodic=bool(level.is_periodic),
-        missing=float(np.mean(gaps)),
         shortest=shortest,
         longest=longest,
         tip_radius=radius,
@@ -170,7 +173,14 @@ def _measurement(path: Path, options: ReadingOptions) -> Measurement:
         channel=scan.channel,
         levelling=levelling,
         outliers=sentences,
+        gaps=gaps if gaps.any() else None,
     )
+
+
+def interpolated(level: Any) -> Any:
+    """A scan of the library with its missing points interpolated by harmonic functions."""
+    library_part("Uniform.Imputation")
+    return level.interpolate_undefined_data()
 
 
 def _used_part(

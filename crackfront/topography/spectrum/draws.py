@@ -42,6 +42,9 @@ _FIRST_BINS = 3
 _HIDDEN = 0.2
 """Part of a density that a tip takes at most where it ends the band, as much as an optic may."""
 
+GIVEN_BACK = 0.25
+"""How far the density varies that is given back for missing points, as a part of their weight."""
+
 _RARE = 1.5
 """Standard error of e_el over that which a scan shows where its parts differ: it holds few of the
 rare places that matter."""
@@ -172,7 +175,7 @@ class SpectrumSampler:
         """Changes of the logarithm of a density that all modes share."""
         options = _choices(one, item)
         found = options[chance.integers(len(options), size=count)]
-        found += one.measurement.missing * chance.uniform(0, 1, (count, 1))
+        found += GIVEN_BACK * one.missing_weight * chance.uniform(-1, 1, (count, 1))
         if one.band.shortest.cause == "tip":
             found -= math.log(1 - _HIDDEN) * chance.uniform(0, 1, (count, 1))
         found += _RARE * one.unevenness * chance.standard_normal((count, 1))

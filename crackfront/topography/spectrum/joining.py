@@ -187,10 +187,16 @@ def _joined(densities: Sequence[Density], scatter: float) -> tuple[Array, Array,
 
 def _below_bands(scans: Sequence[Scan], fit: Fit) -> Density:
     """What the finest scan holds below all trusted waves and above its noise, without this."""
-    index, one = min(enumerate(scans), key=lambda item: max(item[1].measurement.pixels))
+
+    def fineness(item: tuple[int, Scan]) -> tuple[float, float]:
+        return max(item[1].measurement.pixels), item[1].band.shortest.wavelength
+
+    index, one = min(enumerate(scans), key=fineness)
     shortest = min(other.band.shortest.wavelength for other in scans) / (1 + 1e-6)
     last = max(NYQUIST * max(one.measurement.pixels), one.band.noise_limit)
     rest = one.density.within(last, shortest)
+    if not rest.value.size:
+        return replace(rest, is_profile=False)
     logarithms = fit.isotropic(rest, index, restored=False)
     return replace(rest, value=np.exp(np.median(logarithms, axis=0)), is_profile=False)
 

@@ -11,11 +11,13 @@ import numpy as np
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.topography.density.bands import Scan, scan
-from crackfront.topography.density.densities import Density, periodogram
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import Measurement, read_measurements
 from crackfront.topography.spectrum.draws import ORDERS
 from crackfront.topography.spectrum.joining import JointSpectrum, joint_spectrum
+
+_UNDETERMINED = 1e4
+"""Upper over lower end of the interval of e_el from which on scans determine no spectrum."""
 
 _SHARE = 0.8
 """Part of a mean square that lies within the scales that dominate it."""
@@ -39,8 +41,6 @@ class MeasuredSurface:
 
     scans: tuple[Scan, ...]
     """The measurements with their trusted bands."""
-    profiles: tuple[Density, ...]
-    """Density of the lines along x of every measurement."""
     joint: JointSpectrum
     """Their spectrum; maps enter by their isotropic density, lines by that of profiles."""
     measures: tuple[RmsMeasure, ...]
@@ -77,12 +77,9 @@ def measured_surface(
     """
     scans = tuple(scan(item, shortest, longest) for item in measurements)
     joint = joint_spectrum(scans)
+    _refuse_undetermined(scans, joint)
     return MeasuredSurface(
         scans=scans,
-        profiles=tuple(
-            periodogram(one.measurement, is_profile=True).density().within(*one.band.wavelengths)
-            for one in scans
-        ),
         joint=joint,
         measures=tuple(_rms_measure(order, joint) for order in ORDERS),
         half_derivative=joint.draws.mean_square(0.5),
@@ -98,6 +95,24 @@ def read_surface(paths: Sequence[Path], options: Sequence[ReadingOptions]) -> Me
     """
     measurements = read_measurements(paths, options)
     return measured_surface(measurements, options[0].shortest, options[0].longest)
+
+
+def _refuse_undetermined(scans: Sequence[Scan], joint: JointSpectrum) -> None:
+    """Refuse scans whose e_el may be anything, as of a surface that shows no roughness."""
+    energy = joint.draws.mean_square(0.5)
+    if energy.high < _UNDETERMINED * energy.low:
+        return
+    paths = [str(one.measurement.path) for one in scans]
+    if any(joint.density.disagrees(index) for index in range(len(scans))):
+        advice = "they disagree where they overlap, so predict from each alone, and leave out the "
+        advice += "one that does not resolve the surface"
+    else:
+        advice = "use a finer or larger scan, or name --shortest and --longest about the waves of "
+        advice += "its roughness"
+    raise ValueError(
+        f"{' and '.join(paths)}: the density does not determine e_el, the upper end of whose "
+        f"interval is {energy.high / energy.low:.0e} times the lower one; {advice}"
+    )
 
 
 def _rms_measure(order: float, joint: JointSpectrum) -> RmsMeasure:

@@ -12,8 +12,9 @@ def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
     if upper.get_ylabel() == "" or "force" in lower.get_ylabel():
         force, lower = lower, force
     trusted = [one.trusted for one in surface.scans]
+    profiles = [one.profile for one in surface.scans]
     # Behind the points of every scan stands the whole of its density.
-    for lines, densities in ((upper.lines[::2], trusted), (lower.lines, surface.profiles)):
+    for lines, densities in ((upper.lines[::2], trusted), (lower.lines, profiles)):
         for line, density in zip(lines, densities, strict=False):
             np.testing.assert_array_equal(line.get_ydata(), density.value)
     radius, values = force.lines[1].get_data()

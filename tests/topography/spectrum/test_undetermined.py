@@ -1,0 +1,116 @@
+"""Scans that hardly show a spectrum: an interval that may be believed, or a sentence."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crackfront.topography.density.bands import scan
+from crackfront.topography.scan.reading import Measurement
+from crackfront.topography.spectrum import draws
+from crackfront.topography.spectrum.joining import joint_spectrum
+from crackfront.topography.spectrum.measures import measured_surface
+
+PIXEL = 0.1e-6
+
+
+def measurement(heights, name="scan"):
+    """Heights as they are read from a file."""
+    sides = tuple(PIXEL * count for count in heights.shape)
+    return Measurement(Path(name), "", "", "", sides, heights, False, 4 * PIXEL, min(sides) / 2)
+
+
+def profile(rng, n_point=64, hurst=0.8):
+    """A self-affine line, whose ends do not fit together."""
+    waves = np.arange(n_point + 1)
+    amplitude = np.maximum(waves, n_point / 4) ** (-0.5 - hurst)
+    amplitude[0] = 0
+    parts = rng.standard_normal((2, waves.size))
+    heights = np.fft.irfft(amplitude * (parts[0] + 1j * parts[1]))[:n_point]
+    return 1e-8 * (heights - heights.mean()) / heights.std()
+
+
+def waves_up_to(number, rng, shape=(48, 48)):
+    """A map without any wave beyond some in its side."""
+    transform = np.fft.rfft2(rng.standard_normal(shape))
+    along = np.fft.fftfreq(shape[0], 1 / shape[0])
+    transform[np.hypot(along[:, None], np.arange(transform.shape[1])) > number] = 0
+    return 1e-8 * np.fft.irfft2(transform, shape)
+
+
+@pytest.fixture(autouse=True)
+def few_draws(monkeypatch):
+    """One batch of draws, which is enough to see whether there is an answer."""
+    monkeypatch.setattr(draws, "BATCHES", (1,))
+
+
+def refusal(*measurements):
+    """The sentence by which measurements are refused."""
+    with pytest.raises(ValueError, match=r".") as caught:
+        measured_surface(measurements)
+    sentence = str(caught.value)
+    assert "\n" not in sentence
+    assert str(measurements[0].path) in sentence
+    return sentence
+
+
+def test_a_line_with_nothing_below_its_trusted_waves_has_a_spectrum(rng):
+    """As of a blurred profile, whose noise begins where its trusted waves end."""
+    heights = profile(rng, 128)
+    found = scan(measurement(heights), 6 * PIXEL, 32 * PIXEL)
+    found = replace(found, band=replace(found.band, noise_limit=found.band.shortest.wavelength))
+    joint = joint_spectrum([found])
+    energy = joint.draws.mean_square(0.5)
+    assert 0 < energy.low <= energy.value <= energy.high < np.inf
+    assert joint.recorded.mean_square(0.5) > 0
+
+
+def test_scans_that_disagree_beyond_all_measure_are_refused(rng):
+    heights = waves_up_to(24, rng)
+    sentence = refusal(measurement(1e3 * heights, "rough"), measurement(heights, "smooth"))
+    assert "rough and smooth" in sentence
+    assert "they disagree where they overlap" in sentence
+
+
+@pytest.mark.parametrize(
+    "heights",
+    [
+        pytest.param(lambda rng: waves_up_to(3, rng), id="long waves alone"),
+        pytest.param(lambda rng: waves_up_to(5, rng, (48, 80)), id="long waves, oblong"),
+    ],
+)
+def test_scans_without_informative_waves_are_refused(heights, rng):
+    given = measurement(heights(rng))
+    assert "determine e_el" in (found := refusal(given)) or "can be trusted" in found
+
+
+@pytest.mark.parametrize(
+    "heights",
+    [
+        pytest.param(lambda rng: profile(rng, 32), id="line of 32 points"),
+        pytest.param(lambda rng: 1e-9 * rng.standard_normal(64), id="line of white noise"),
+        pytest.param(lambda rng: 1e-9 * rng.standard_normal((32, 32)), id="smallest map"),
+        pytest.param(lambda rng: 1e-9 * rng.standard_normal((32, 200)), id="narrow map"),
+        pytest.param(lambda rng: 2e-9 * np.rint(profile(rng) / 2e-9), id="five heights"),
+        pytest.param(lambda rng: 1e-8 * (np.arange(64) > 32.0), id="one step"),
+    ],
+)
+def test_small_scans_have_intervals(heights, rng):
+    energy = measured_surface([measurement(heights(rng))]).half_derivative
+    assert 0 < energy.low < energy.value < energy.high < 1e4 * energy.low
+
+
+@pytest.mark.parametrize(
+    ("shortest", "longest"), [(1e-5, 4e-5), (1e-9, 3e-9), (1e-7, 2.05e-7), (2.9e-6, 5.9e-6)]
+)
+def test_named_ends_between_which_there_is_no_wave_are_refused(rng, shortest, longest):
+    given = measurement(profile(rng))
+    with pytest.raises(ValueError, match=r"scan: its density has [01] values between") as caught:
+        scan(given, shortest, longest)
+    assert "--shortest and --longest" in str(caught.value)
+
+
+def test_ends_that_are_named_one_for_the_other_are_refused(rng):
+    with pytest.raises(ValueError, match=r"less than an octave"):
+        scan(measurement(profile(rng)), 2e-6, 1e-6)
