@@ -56,6 +56,20 @@ def si_value(text: str, unit: str, *, what: str) -> float:
     return value
 
 
+def quantity_value(text: str, unit: str, *, what: str, example: str) -> float:
+    """Value in any unit of a positive number and its unit; ValueError as of :func:`si_value`."""
+    found = _QUANTITY.fullmatch(text)
+    try:
+        if found is None or found[2] is None:
+            raise ValueError
+        value = _converted(float(found[1]), _POWER.sub(r"\1^\2", found[2]), unit)
+    except ValueError as error:
+        raise ValueError(f"{what} is {text!r}; write it as in {example}") from error
+    if not (math.isfinite(value) and value > 0):
+        raise ValueError(f"{what} is {text!r}; it must be positive and finite")
+    return value
+
+
 def unit_value(given: str, unit: str) -> float:
     """Value of one unit in another of the same dimension; a ValueError where there is none.
 
