@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from crackfront.analysis.law import pinning_factor as pinning_factor
     from crackfront.core.spectrum import SelfAffineSpectrum as SelfAffineSpectrum
     from crackfront.data.provenance import __version__ as __version__
+    from crackfront.experiment.library import measured_loop as measured_loop
     from crackfront.plots.library import plot_fronts as plot_fronts
     from crackfront.plots.library import plot_instabilities as plot_instabilities
     from crackfront.plots.library import plot_loop as plot_loop

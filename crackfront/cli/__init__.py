@@ -11,6 +11,7 @@ import click
 from crackfront.cli.cycle import cycle
 from crackfront.cli.integrity import checksums, compare, repair, verify
 from crackfront.cli.law import law
+from crackfront.cli.loop import loop
 from crackfront.cli.output import output_that_may_close
 from crackfront.cli.report import StoppedError, announce_compilation, examples
 from crackfront.cli.results import aggregate, archive, curves, figures, fit, summary
@@ -90,7 +91,7 @@ def compile_solvers() -> None:
 
 SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Predictions": (predict, surface, law),
-    "One contact": (cycle,),
+    "One contact": (cycle, loop),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
     "Stored results": (curves, verify, repair, checksums, compare),
     "The machine": (compile_solvers,),

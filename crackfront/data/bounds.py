@@ -51,8 +51,9 @@ SI = {
     "Pa": Range(1e-6, 1e14),
     "J/m^2": Range(1e-9, 1e6),
     "N": Range(1e-18, 1e9),
+    "N/m": Range(1e-9, 1e12),
 }
-"""Lengths from below an atom to planets, moduli beyond those of foams and diamond, and adhesion."""
+"""Lengths from below an atom to planets, moduli beyond those of foams and diamond, adhesion, springs."""
 
 MOST_MEMORY = 64e12
 """Memory of the largest machine that a sweep may be planned for here. (Units: bytes)"""

@@ -16,8 +16,14 @@ from crackfront.data.bounds import SI, refuse_outside
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 """A number and what stands behind it."""
 
-_NAMES = {"m": "length", "Pa": "pressure", "J/m^2": "energy per area", "N": "force"}
-_EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2", "N": "0.4mN"}
+_NAMES = {
+    "m": "length",
+    "Pa": "pressure",
+    "J/m^2": "energy per area",
+    "N": "force",
+    "N/m": "stiffness",
+}
+_EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2", "N": "0.4mN", "N/m": "200N/m"}
 
 _POWER = re.compile(r"([A-Za-z]+)(-?[1-9](?:\.\d+)?)(?![\w.])")
 """A power without a sign for it, as in J/m2, J m-2 or Pa m0.5."""

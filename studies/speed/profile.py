@@ -194,9 +194,7 @@ def _functions(content: bytes) -> Iterator[tuple[str, int]]:
     """Names and sizes of the functions in an object file (ELF, 64 bits)."""
     (start,) = struct.unpack_from("<Q", content, 0x28)
     size, count = struct.unpack_from("<HH", content, 0x3A)
-    sections = [
-        struct.unpack_from("<IIQQQQIIQQ", content, start + i * size) for i in range(count)
-    ]
+    sections = [struct.unpack_from("<IIQQQQIIQQ", content, start + i * size) for i in range(count)]
     symbols, function = 2, 2
     for section in sections:
         if section[1] != symbols:

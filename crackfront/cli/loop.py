@@ -1,0 +1,142 @@
+"""`crackfront loop`: works of adhesion of a measured loop, beside what is predicted for scans."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from crackfront.cli.report import (
+    FILE,
+    Number,
+    as_json,
+    echo_json,
+    examples,
+    refuse_unwritable,
+)
+from crackfront.data.bounds import Range
+from crackfront.data.written_units import si_value
+
+if TYPE_CHECKING:
+    from crackfront.experiment.loop import MeasuredLoop
+    from crackfront.topography.prediction.prediction import Prediction
+
+_SHARE = Number(Range(0.0, 0.99))
+
+_COLUMNS = (("force", "N"), ("radius", "m"), ("displacement", "m"))
+
+
+def _columns(command: Any) -> Any:
+    """Options that name the columns of a table and their units."""
+    for name, unit in reversed(_COLUMNS):
+        command = click.option(
+            f"--{name}-unit", help=f"Unit of it, as in {'mN' if unit == 'N' else 'um'}."
+        )(command)
+        option = "--contact-radius" if name == "radius" else f"--{name}"
+        command = click.option(option, name, help=f"Head of the column of the {name}.")(command)
+    return command
+
+
+@click.command(
+    epilog=examples(
+        "crackfront loop rig.csv --radius 1.25mm --modulus 0.7MPa",
+        "crackfront loop rig.csv --radius 1.25mm --modulus 0.7MPa --scans surface.al3d \\",
+        "    --work-of-adhesion 63mJ/m2",
+    )
+)
+@click.argument("path", type=FILE, metavar="TABLE")
+@click.option("--radius", "sphere", required=True, help="Radius of the sphere, as in 1.25mm.")
+@click.option("--modulus", help="Young's modulus, as in 0.7MPa; fitted where it is left out.")
+@click.option(
+    "--poisson",
+    type=Number(Range(-0.99, 0.5)),
+    default=0.5,
+    show_default=True,
+    help="Poisson's ratio.",
+)
+@click.option("--modulus-error", type=_SHARE, default=0.0, help="Relative standard error of it.")
+@click.option("--radius-error", type=_SHARE, default=0.0, help="The same of the sphere's radius.")
+@click.option("--stiffness", help="Stiffness of the machine, as in 200N/m.")
+@click.option("--window", help="Contact radii to average over, as in 50um:150um.")
+@_columns
+@click.option("--scans", type=FILE, multiple=True, help="Scans of the surface, for a prediction.")
+@click.option("--work-of-adhesion", help="w_int of the prediction, as in 63mJ/m2.")
+@click.option("--figure", type=FILE, help="Figure of the loop; without suffix PDF and PNG.")
+@as_json
+def loop(
+    path: Path,
+    sphere: str,
+    modulus: str | None,
+    poisson: float,
+    modulus_error: float,
+    radius_error: float,
+    stiffness: str | None,
+    window: str | None,
+    scans: tuple[Path, ...],
+    work_of_adhesion: str | None,
+    figure: Path | None,
+    as_json: bool,
+    **columns: Any,
+) -> None:
+    """Evaluate a measured loop of force, contact radius and displacement.
+
+    TABLE is a text with heads, two of the three columns or all. Both branches have a mean work of
+    adhesion over the same contact radii, as simulations have.
+    """
+    from crackfront.experiment.loop import Rig, analyse_loop
+    from crackfront.experiment.recording import read_recording
+
+    if scans and work_of_adhesion is None:
+        raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
+    young = None if modulus is None else si_value(modulus, "Pa", what="--modulus")
+    rig = Rig(
+        radius=si_value(sphere, "m", what="--radius"),
+        contact_modulus=None if young is None else young / (1 - poisson**2),
+        modulus_error=modulus_error,
+        radius_error=radius_error,
+        stiffness=None if stiffness is None else si_value(stiffness, "N/m", what="--stiffness"),
+        window=None if window is None else _window(window),
+    )
+    named = {name: columns[name] for name, _ in _COLUMNS if columns[name]}
+    units = {name: columns[f"{name}_unit"] for name, _ in _COLUMNS if columns[f"{name}_unit"]}
+    if figure is not None:
+        refuse_unwritable(figure.parent)
+    found = analyse_loop(read_recording(path, named, units), rig)
+    predicted = _predicted(scans, found, rig.radius, work_of_adhesion) if scans else None
+    if as_json:
+        from crackfront.experiment.comparison import machine_readable
+
+        echo_json(machine_readable(found, predicted))
+    else:
+        click.echo(repr(found))
+        if predicted is not None:
+            from crackfront.experiment.comparison import comparison_lines
+
+            click.echo("\n".join(["", *comparison_lines(found, predicted)]))
+    if figure is not None:
+        from crackfront.experiment.drawing import loop_figure
+        from crackfront.plots.style import save_figure
+
+        for file in save_figure(loop_figure(found, rig.radius, predicted), figure):
+            click.echo(f"figure: {file}", err=as_json)
+
+
+def _window(text: str) -> tuple[float, float]:
+    """Two contact radii (Units: m)."""
+    ends = text.split(":")
+    if len(ends) != 2:
+        raise ValueError(f"--window is {text!r}; give two contact radii, as in 50um:150um")
+    low, high = (si_value(end, "m", what="--window") for end in ends)
+    return low, high
+
+
+def _predicted(
+    scans: tuple[Path, ...], found: MeasuredLoop, radius: float, work_of_adhesion: str | None
+) -> Prediction:
+    """What is predicted for the sphere on a surface of scans, by the modulus of the loop."""
+    from crackfront.core.units import Scales
+    from crackfront.topography.library import predict
+
+    adhesion = si_value(str(work_of_adhesion), "J/m^2", what="--work-of-adhesion")
+    return predict(scans, Scales(radius, adhesion, found.contact_modulus.value))

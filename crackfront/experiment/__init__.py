@@ -1,0 +1,1 @@
+"""Loops that a rig measured: force, contact radius and displacement of a sphere."""

@@ -1,0 +1,83 @@
+"""A measured loop in the library: from a file or from arrays to its works of adhesion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crackfront.data.arguments import refuse_other_type
+from crackfront.experiment.loop import MeasuredLoop, Rig, analyse_loop
+from crackfront.experiment.recording import UNITS, Recording, read_recording
+
+
+def measured_loop(
+    loop: str | PathLike[str] | Mapping[str, ArrayLike],
+    *,
+    radius: float,
+    contact_modulus: float | None = None,
+    modulus_error: float = 0.0,
+    radius_error: float = 0.0,
+    stiffness: float | None = None,
+    window: tuple[float, float] | None = None,
+) -> MeasuredLoop:
+    """Works of adhesion of a loop that a rig measured, with intervals.
+
+    Parameters
+    ----------
+    loop : path or mapping
+        A table whose heads name force, contact radius and displacement with their units, or arrays
+        by these names in SI units: `force`, `radius` (0 or NaN out of contact), `displacement`. Two
+        of them suffice.
+    radius : float
+        Radius of the sphere. (Units: m)
+    contact_modulus : float, optional
+        E' = E / (1 - nu^2); fitted to force and contact radius if it is not given. (Units: Pa)
+    modulus_error, radius_error : float, optional
+        Relative standard errors of the two.
+    stiffness : float, optional
+        Stiffness of the machine, for displacements without a contact radius. (Units: N/m)
+    window : (float, float), optional
+        Contact radii that both branches are averaged over. (Units: m)
+
+    Returns
+    -------
+    MeasuredLoop
+        w_appr, w_retr, hysteresis and more in SI units; printed, it is a page.
+
+    Raises
+    ------
+    ValueError
+        If the loop cannot be used; the sentence says what to do.
+    TypeError
+        If it is neither a path nor a mapping.
+    OSError
+        If the file cannot be opened.
+
+    Examples
+    --------
+    >>> radius = np.concatenate([np.linspace(60e-6, 150e-6, 40), np.linspace(149e-6, 60e-6, 40)])
+    >>> work = np.repeat([0.03, 0.06], 40)
+    >>> force = 4e6 / 3 * radius**3 / 1e-3 - np.sqrt(8 * np.pi * 1e6 * work * radius**3)
+    >>> loop = measured_loop({"force": force, "radius": radius}, radius=1e-3, contact_modulus=1e6)
+    >>> round(loop.w_appr.value, 6), round(loop.w_retr.value, 6)
+    (0.03, 0.06)
+    """
+    rig = Rig(radius, contact_modulus, modulus_error, radius_error, stiffness, window)
+    if isinstance(loop, Mapping):
+        if unknown := set(loop) - set(UNITS):
+            raise ValueError(
+                f"a loop has no {', '.join(map(str, sorted(unknown)))}; give two of "
+                f"{', '.join(UNITS)}"
+            )
+        columns = {
+            name: None if loop.get(name) is None else np.array(loop[name], float) for name in UNITS
+        }
+        return analyse_loop(Recording(**columns), rig)
+    refuse_other_type(
+        "loop", loop, (str, PathLike), "the path of a table, or arrays by their names"
+    )
+    return analyse_loop(read_recording(Path(loop), {}, {}), rig)

@@ -1,0 +1,528 @@
+"""Works of adhesion of a measured loop, by the definition of simulations, with their intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+from scipy.special import stdtrit
+
+from crackfront.analysis.estimate import REACH, Estimate
+from crackfront.analysis.standard_error import FEWEST_STATES
+from crackfront.core import jkr
+from crackfront.core.arrays import Array
+from crackfront.core.units import Scales
+from crackfront.core.variables import variable
+from crackfront.data.written_units import prefixed
+from crackfront.experiment.contact import penetration_at, radius_at
+from crackfront.experiment.recording import Recording
+
+Rows = NDArray[np.int64]
+
+_BLOCKS = 10
+"""Parts of a branch, each of which is left out once to find the errors of noise."""
+
+_TRANSIENT = 0.05
+"""Part of the largest radius that the edge travels before a branch counts as steady."""
+
+_ZEROS = 151
+"""Displacements among which the zero is looked for first."""
+
+_FEWEST_BASELINE = 5
+"""Rows out of contact from which the zero of the force is found."""
+
+_LEAST_FORCE, _NOISES = 0.02, 5.0
+"""Part of the largest force, and standard deviations of the first rows, that make a contact."""
+
+_RETURN = 0.2
+"""Part of the largest travel by which the mount may come back within a branch."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rig:
+    """What is known of the sphere and of the machine, in SI units."""
+
+    radius: float
+    """Radius of the sphere. (Units: m)"""
+    contact_modulus: float | None = None
+    """Contact modulus E' = E / (1 - nu^2); None to fit it. (Units: Pa)"""
+    modulus_error: float = 0.0
+    """Standard error of the modulus, relative."""
+    radius_error: float = 0.0
+    """Standard error of the radius of the sphere, relative."""
+    stiffness: float | None = None
+    """Stiffness of the machine, where no radius was measured. (Units: N/m)"""
+    window: tuple[float, float] | None = None
+    """Contact radii that both works are averaged over; None to find them. (Units: m)"""
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "contact_modulus", "stiffness"):
+            value = getattr(self, name)
+            if value is not None and not (math.isfinite(value) and value > 0):
+                raise ValueError(f"{name} is {value}; it must be positive and finite")
+        for name in ("modulus_error", "radius_error"):
+            if not 0 <= getattr(self, name) < 1:
+                raise ValueError(f"{name} is {getattr(self, name)}; it is relative, 0 to 1")
+        if self.window is not None and not 0 <= self.window[0] < self.window[1] < math.inf:
+            raise ValueError(f"window is {self.window}; give a smaller and a larger contact radius")
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredLoop:
+    """What a loop measures, in SI units; printed, it is a page.
+
+    Arrays have an entry for each row of the recording.
+    """
+
+    force: Array = variable("normal force, its zero corrected", "N", "row")
+    contact_radius: Array = variable("contact radius", "m", "row")
+    work_of_adhesion: Array = variable("apparent work of adhesion", "J m-2", "row")
+    direction: Array = variable("1 in approach, -1 in retraction, 0 out of contact", "1", "row")
+    in_window: Array = variable("whether a row is averaged", "1", "row")
+    w_appr: Estimate[float] = variable("work of adhesion of the approach", "J m-2")
+    w_retr: Estimate[float] = variable("work of adhesion of the retraction", "J m-2")
+    hysteresis: Estimate[float] = variable("w_retr - w_appr", "J m-2")
+    contact_modulus: Estimate[float] = variable("contact modulus E', given or fitted", "Pa")
+    fitted_modulus: Estimate[float] = variable("contact modulus E' that fits the loop", "Pa")
+    stiffness: Estimate[float] = variable("stiffness of the machine", "N m-1")
+    lost_energy: float = variable("energy lost in the loop per largest contact area", "J m-2")
+    pull_off_force: float = variable("largest pulling force", "N")
+    window: tuple[float, float] = (math.nan, math.nan)
+    """Contact radii that both works are averaged over (Units: m)."""
+    remarks: tuple[str, ...] = ()
+    """What was corrected or taken for granted, and what could not be found."""
+
+    def __repr__(self) -> str:
+        """The page that the command `crackfront loop` prints."""
+        return "\n".join(_page(self))
+
+
+def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
+    """Works of adhesion of approach and retraction of a measured loop.
+
+    Every row has the apparent work of adhesion of a JKR contact of its force and radius. The works
+    of adhesion are means over the rows of each branch within one window of contact radii, as those
+    of simulations are; the window leaves out what the edge travels before it is steady.
+
+    Parameters
+    ----------
+    recording : Recording
+        Two of force, contact radius and displacement, or all three.
+    rig : Rig
+        The sphere and the machine.
+
+    Returns
+    -------
+    MeasuredLoop
+        Works of adhesion, modulus and more, with 95% intervals. These hold the noise of the rows
+        (one of ten blocks of each branch is left out in turn), the errors of modulus and radius
+        that are given or fitted, and what half of the window changes.
+
+    Raises
+    ------
+    ValueError
+        If the branches share too few rows, the loop turns more than once, or no modulus is given
+        and none can be fitted.
+    """
+    recording, zero_errors, remarks = _with_zero_force(recording)
+    branches = _branches(recording, rig)
+    if rig.contact_modulus is None and (recording.force is None or recording.radius is None):
+        raise ValueError(
+            "without a contact radius and a force in each row no modulus is fitted; give --modulus"
+        )
+    known = rig.contact_modulus or _fit(recording, rig, branches)
+    zero = _zero_displacement(recording, rig, known, branches)
+    first = _contact(recording, rig, known, zero)
+    if zero != 0.0:
+        remarks.append(
+            "The zero of the displacement is where each branch is nearest to one work of adhesion."
+        )
+    branches = [rows[np.isfinite(first.work[rows])] for rows in branches]
+    window = rig.window or _window(first.radius, branches)
+    averaged = [_within(first.radius, rows, window) for rows in branches]
+    if min(rows.size for rows in averaged) < 2 * FEWEST_STATES:
+        counts = " and ".join(str(rows.size) for rows in averaged)
+        raise ValueError(
+            f"approach and retraction have {counts} rows within contact radii of "
+            f"{prefixed('m', window[0])} to {prefixed('m', window[1])}; {2 * FEWEST_STATES} each "
+            "are needed, so retract further, record more rows, or name a --window"
+        )
+
+    def found(rows: list[Rows], rig: Rig, recording: Recording = recording) -> Array:
+        """Both works, the hysteresis and the modulus from some rows of each branch."""
+        modulus = rig.contact_modulus or _fit(recording, rig, rows)
+        place = _zero_displacement(recording, rig, modulus, rows, near=zero)
+        work = _contact(recording, rig, modulus, place).work
+        appr, retr = (float(np.mean(work[one])) for one in rows)
+        return np.array([appr, retr, retr - appr, modulus])
+
+    shifted = [replace(recording, force=recording.force + one) for one in zero_errors]
+    estimates = _estimates(found, averaged, first.radius, rig, shifted)
+    fitted = _NOTHING
+    if recording.force is not None and recording.radius is not None:
+        free = Rig(rig.radius, None, 0.0, rig.radius_error)
+        fitted = _estimates(found, averaged, first.radius, free, shifted)[3]
+    lost, lost_remark = _lost_energy(recording, first, branches)
+    direction = np.zeros(first.radius.size)
+    for sign, rows in zip((1, -1), branches, strict=True):
+        direction[rows] = sign
+    inside = np.zeros(first.radius.size, bool)
+    inside[np.concatenate(averaged)] = True
+    remarks += [lost_remark] if lost_remark else []
+    if math.isfinite(fitted.low) and rig.contact_modulus is not None:
+        remarks += _modulus_remark(rig, fitted)
+    return MeasuredLoop(
+        force=first.force,
+        contact_radius=first.radius,
+        work_of_adhesion=first.work,
+        direction=direction,
+        in_window=inside,
+        w_appr=estimates[0],
+        w_retr=estimates[1],
+        hysteresis=estimates[2],
+        contact_modulus=estimates[3],
+        fitted_modulus=fitted,
+        stiffness=_stiffness(recording, rig, estimates[3], averaged),
+        lost_energy=lost,
+        pull_off_force=-float(np.nanmin(first.force)),
+        window=window,
+        remarks=tuple(remarks),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Contact:
+    """The contact of each row, in SI units."""
+
+    force: Array
+    radius: Array
+    penetration: Array
+    work: Array
+
+
+def _contact(recording: Recording, rig: Rig, modulus: float, zero: float = 0.0) -> _Contact:
+    """Force, radius, penetration and apparent work of adhesion of each row.
+
+    The zero is the displacement of no penetration, where force or radius is not recorded.
+    """
+    # Works of adhesion in units of 1 J/m^2.
+    scales = Scales(rig.radius, 1.0, modulus)
+    force, radius = recording.force, recording.radius
+    if force is not None and radius is not None:
+        force_, radius_ = force / scales.force, _touching(radius) / scales.lateral
+        penetration = penetration_at(radius_, force_)
+    else:
+        displacement = recording.displacement
+        if displacement is None:
+            raise ValueError("a loop needs two of force, radius and displacement")
+        bent = 0.0 if force is None or rig.stiffness is None else force / rig.stiffness
+        penetration = (displacement - bent - zero) / scales.vertical
+        if force is not None:
+            force_ = force / scales.force
+            radius_ = radius_at(force_, penetration)
+        else:
+            radius_ = _touching(np.asarray(radius)) / scales.lateral
+            force_ = jkr.force(radius_, penetration)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        work = jkr.apparent_work_of_adhesion(radius_, penetration)
+    return _Contact(
+        force_ * scales.force, radius_ * scales.lateral, penetration * scales.vertical, work
+    )
+
+
+def _zero_displacement(
+    recording: Recording,
+    rig: Rig,
+    modulus: float,
+    branches: list[Rows],
+    near: float | None = None,
+) -> float:
+    """Displacement of no penetration, at which each branch is nearest to one work of adhesion.
+
+    It is looked for near a known one, or anywhere. 0 where force and radius are recorded, which
+    need none.
+    """
+    displacement = recording.displacement
+    if displacement is None or (recording.force is not None and recording.radius is not None):
+        return 0.0
+
+    def unevenness(zero: float) -> float:
+        work = _contact(recording, rig, modulus, zero).work
+        total = 0.0
+        for rows in branches:
+            values = work[rows]
+            known = values[np.isfinite(values)]
+            if known.size < FEWEST_STATES or not np.any(known):
+                return math.inf
+            total += float(np.var(known) / np.mean(known) ** 2) + 1 - known.size / values.size
+        return total
+
+    moved = displacement[np.concatenate(branches)]
+    low, high = float(np.min(moved)), float(np.max(moved))
+    if near is None:
+        grid = np.linspace(low - (high - low), high + (high - low), _ZEROS)
+        near = float(grid[np.argmin([unevenness(zero) for zero in grid])])
+    step = 3 * (high - low) / (_ZEROS - 1)
+    around = near - step, near + step
+    tight = {"xatol": 1e-7 * (high - low)}
+    return float(minimize_scalar(unevenness, bounds=around, method="bounded", options=tight).x)
+
+
+def _touching(radius: Array) -> Array:
+    """Contact radii, NaN out of contact."""
+    return np.where(radius > 0, radius, np.nan)
+
+
+def _with_zero_force(recording: Recording) -> tuple[Recording, list[Array], list[str]]:
+    """The recording less the force of rows out of contact, errors of that, and what was done.
+
+    A line through the rows before and after the contact, or their mean on one side alone.
+    """
+    force, touches = recording.force, _touches(recording)
+    if force is None:
+        return recording, [], []
+    rows, touching = np.flatnonzero(~touches & np.isfinite(force)), np.flatnonzero(touches)
+    sides = [rows[rows < touching[0]], rows[rows > touching[-1]]]
+    enough = [side.size >= _FEWEST_BASELINE for side in sides]
+    if not any(enough):
+        return recording, [], ["The zero of the force is that of the file: no rows out of contact."]
+    order = 1 if all(enough) else 0
+    chosen = np.concatenate([side for side, use in zip(sides, enough, strict=True) if use])
+    line, covariance = np.polyfit(chosen / force.size, force[chosen], order, cov=True)
+    powers = np.vander(np.arange(force.size) / force.size, order + 1)
+    zero = powers @ line
+    # Independent errors of the line, each of one standard error.
+    errors = list((powers @ np.linalg.cholesky(covariance)).T)
+    largest = prefixed("N", float(np.max(np.abs(zero[touching]))))
+    kind = "a drift and a zero" if order else "a zero"
+    sentence = f"{chosen.size} rows out of contact give {kind} of the force of up to {largest}."
+    return replace(recording, force=force - zero), errors, [sentence]
+
+
+def _touches(recording: Recording) -> NDArray[np.bool_]:
+    """Rows in contact: of a positive radius, else between the first and the last that has a force.
+
+    Without a radius a force is one beyond a part of the largest and beyond the noise of the first
+    rows, from their median.
+    """
+    if recording.radius is not None:
+        touches = recording.radius > 0
+    else:
+        force = np.asarray(recording.force)
+        start = force[:_FEWEST_BASELINE]
+        apart = np.abs(force - np.median(start))
+        least = max(_LEAST_FORCE * float(np.max(apart)), _NOISES * float(np.std(start)))
+        beyond = np.flatnonzero(apart > least)
+        touches = np.zeros(force.size, bool)
+        touches[beyond[0] : beyond[-1] + 1] = beyond.size > 0
+    if not np.any(touches):
+        raise ValueError("no row is in contact: no contact radius is above zero; check the columns")
+    return touches
+
+
+def _branches(recording: Recording, rig: Rig) -> list[Rows]:
+    """Rows of approach and of retraction: before and after the largest displacement, or force."""
+    driven = recording.displacement if recording.displacement is not None else recording.force
+    if driven is None:
+        raise ValueError("a loop needs two of force, radius and displacement")
+    rows = np.flatnonzero(_touches(recording) & np.isfinite(driven))
+    turn = int(np.argmax(driven[rows]))
+    branches = [rows[: turn + 1], rows[turn:]]
+    span = float(np.ptp(driven[rows]))
+    for sign, one in zip((1, -1), branches, strict=True):
+        way = sign * driven[one]
+        if way.size and float(np.max(np.maximum.accumulate(way) - way)) > _RETURN * span:
+            # The jump into contact is no return: the force falls at a constant displacement.
+            if recording.displacement is None and sign > 0:
+                continue
+            raise ValueError(
+                "the loop turns more than once; cut the table to one approach and one retraction"
+            )
+    return branches
+
+
+def _window(radius: Array, branches: list[Rows]) -> tuple[float, float]:
+    """Contact radii that both branches pass when the edge has travelled since each began."""
+    appr, retr = (radius[rows] for rows in branches)
+    if min(appr.size, retr.size) == 0:
+        raise ValueError("the loop has no approach or no retraction in contact; record both")
+    travel = _TRANSIENT * float(max(appr.max(), retr.max()))
+    highest = min(float(appr.max()), float(retr.max()) - travel)
+    return max(float(appr.min()) + travel, float(retr.min())), highest
+
+
+def _within(radius: Array, rows: Rows, window: tuple[float, float]) -> Rows:
+    """Rows whose contact radius lies within a window."""
+    return rows[(radius[rows] >= window[0]) & (radius[rows] <= window[1])]
+
+
+def _fit(recording: Recording, rig: Rig, branches: list[Rows]) -> float:
+    """Contact modulus of the JKR curves, one work of adhesion a branch, that fit the force best.
+
+    The force is linear in E' and in the roots of E' w: F = 4/3 E' a^3 / R - sqrt(8 pi E' w a^3).
+    """
+    force, radius = recording.force, recording.radius
+    if force is None or radius is None:
+        raise ValueError("a modulus is fitted to force and contact radius alone")
+    rows = np.concatenate(branches)
+    a, known = radius[rows], np.isfinite(force[rows]) & (radius[rows] > 0)
+    is_approach = np.arange(rows.size) < branches[0].size
+    root = -(a**1.5)
+    matrix = np.stack([a**3, root * is_approach, root * ~is_approach], axis=1)[known]
+    scale = np.max(np.abs(matrix), axis=0)
+    found, *_ = np.linalg.lstsq(matrix / scale, force[rows][known], rcond=None)
+    modulus = 0.75 * rig.radius * float(found[0] / scale[0])
+    if not modulus > 0:
+        raise ValueError("no positive modulus fits force and contact radius; give --modulus")
+    return modulus
+
+
+_NOTHING = Estimate(math.nan, math.nan, math.nan, math.nan)
+
+
+def _estimates(
+    found: Callable[..., Array],
+    averaged: list[Rows],
+    radius: Array,
+    rig: Rig,
+    shifted: Iterable[Recording],
+) -> list[Estimate[float]]:
+    """Numbers that are found from the rows of both branches, with their 95% intervals.
+
+    The shifted recordings are off by a standard error of the force's zero each.
+    """
+    value = found(averaged, rig)
+    count = min(_BLOCKS, min(rows.size for rows in averaged) // 2)
+    parts = [np.array_split(rows, count) for rows in averaged]
+    left_out = np.array(
+        [
+            found([np.concatenate(part[:i] + part[i + 1 :]) for part in parts], rig)
+            for i in range(count)
+        ]
+    )
+    noise = np.sqrt((count - 1) / count * np.sum((left_out - left_out.mean(axis=0)) ** 2, axis=0))
+    others = np.zeros_like(value)
+    for recording in shifted:
+        others += (found(averaged, rig, recording) - value) ** 2
+    for error, changed in _scene_errors(rig):
+        others += (error * (found(averaged, changed) - value) / 1e-4) ** 2
+    middle = float(np.median(radius[np.concatenate(averaged)]))
+    halves = [
+        [rows[radius[rows] <= middle] for rows in averaged],
+        [rows[radius[rows] >= middle] for rows in averaged],
+    ]
+    if min(rows.size for half in halves for rows in half) >= FEWEST_STATES:
+        low, high = (found(half, rig) for half in halves)
+        # A trend along the window, beyond what noise makes of two halves.
+        others += np.maximum(((high - low) / 2) ** 2 - noise**2, 0.0) / 3
+    reach = np.sqrt((float(stdtrit(count - 1, 0.975)) * noise) ** 2 + REACH**2 * others)
+    error = np.sqrt(noise**2 + others)
+    return [
+        Estimate(float(one), float(sigma), float(one - half), float(one + half))
+        for one, sigma, half in zip(value, error, reach, strict=True)
+    ]
+
+
+def _scene_errors(rig: Rig) -> Iterator[tuple[float, Rig]]:
+    """Relative standard errors of the scene, each with the scene that is larger by 1e-4."""
+    more = 1 + 1e-4
+    if rig.contact_modulus is not None and rig.modulus_error > 0:
+        modulus = rig.contact_modulus * more
+        yield rig.modulus_error, Rig(rig.radius, modulus, stiffness=rig.stiffness)
+    if rig.radius_error > 0:
+        larger = rig.radius * more
+        yield rig.radius_error, Rig(larger, rig.contact_modulus, stiffness=rig.stiffness)
+
+
+def _modulus_remark(rig: Rig, fitted: Estimate[float]) -> list[str]:
+    """A sentence where the loop's own modulus departs from the given one."""
+    given = rig.contact_modulus or math.nan
+    least, most = (given * (1 + sign * REACH * rig.modulus_error) for sign in (-1, 1))
+    if least <= fitted.high and most >= fitted.low:
+        return []
+    shown = prefixed("Pa", fitted.value, fitted.low, fitted.high)
+    return [
+        f"Force and contact radius fit a contact modulus of {shown}, not {prefixed('Pa', given)}: "
+        "leave --modulus out, or check the radius of the sphere and the zero of the force."
+    ]
+
+
+def _stiffness(
+    recording: Recording, rig: Rig, modulus: Estimate[float], averaged: list[Rows]
+) -> Estimate[float]:
+    """Stiffness of the machine: displacement beyond the penetration that force and radius have."""
+    displacement, force = recording.displacement, recording.force
+    if displacement is None or force is None or recording.radius is None:
+        return _NOTHING
+    rows = np.concatenate(averaged)
+
+    def compliance(modulus: float, chosen: Rows) -> float:
+        bent = displacement - _contact(recording, rig, modulus).penetration
+        return float(np.polyfit(force[chosen], bent[chosen], 1)[0])
+
+    value = compliance(modulus.value, rows)
+    blocks = np.array_split(rows, _BLOCKS)
+    left_out = [
+        compliance(modulus.value, np.concatenate(blocks[:i] + blocks[i + 1 :]))
+        for i in range(_BLOCKS)
+    ]
+    noise = math.sqrt((_BLOCKS - 1) * float(np.var(left_out)))
+    other = REACH * (compliance(modulus.value + modulus.standard_error, rows) - value)
+    reach = math.hypot(float(stdtrit(_BLOCKS - 1, 0.975)) * noise, other)
+    low, high = value - reach, value + reach
+    if not high > 0:
+        return _NOTHING
+    least, most = 1 / high, 1 / low if low > 0 else math.inf
+    return Estimate(1 / value if value > 0 else math.inf, math.nan, least, most)
+
+
+def _lost_energy(
+    recording: Recording, contact: _Contact, branches: list[Rows]
+) -> tuple[float, str]:
+    """Energy lost in a whole loop per largest contact area, or why it is not known.
+
+    The work of the force along the displacement of the mount: what bends in the machine comes back.
+    """
+    rows = np.concatenate([branches[0], branches[1][1:]])
+    moved = recording.displacement
+    if moved is None:
+        moved = contact.penetration
+    force = contact.force
+    largest = float(np.max(contact.radius[rows]))
+    if _touches(recording)[-1]:
+        return math.nan, "The energy lost is not known: the retraction does not end out of contact."
+    path, pull = moved[rows], force[rows]
+    work = float(np.sum(np.diff(path) * (pull[1:] + pull[:-1]) / 2))
+    # The loop is closed by the jumps, at the displacements of the first and the last contact.
+    return work / (math.pi * largest**2), ""
+
+
+def _page(loop: MeasuredLoop) -> Iterator[str]:
+    """Lines of what a reader wants first."""
+    for name, found in (
+        ("hysteresis", loop.hysteresis),
+        ("w_appr", loop.w_appr),
+        ("w_retr", loop.w_retr),
+    ):
+        yield f"{name:18}{prefixed('J/m2', found.value, found.low, found.high)}"
+    yield f"{'pull-off force':18}{prefixed('N', loop.pull_off_force)}"
+    if math.isfinite(loop.lost_energy):
+        yield f"{'energy lost':18}{prefixed('J/m2', loop.lost_energy)} of the largest contact area"
+    for name, known, unit in (
+        ("fitted modulus", loop.fitted_modulus, "Pa"),
+        ("machine", loop.stiffness, "N/m"),
+    ):
+        if math.isfinite(known.value):
+            yield f"{name:18}{prefixed(unit, known.value, known.low, known.high)}"
+    low, high = loop.window
+    counts = [int(np.sum(loop.in_window & (loop.direction == sign))) for sign in (1, -1)]
+    yield (
+        f"{'averaged over':18}contact radii of {prefixed('m', low)} to {prefixed('m', high)}: "
+        f"{counts[0]} rows of approach, {counts[1]} of retraction"
+    )
+    yield from loop.remarks
+    yield "Intervals hold 95%."

@@ -1,0 +1,229 @@
+"""Columns of a recorded loop: force, contact radius and displacement from a table, in SI units."""
+
+from __future__ import annotations
+
+import codecs
+import io
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from crackfront.core.arrays import Array
+from crackfront.data.written_units import unit_value
+
+UNITS = {"force": "N", "radius": "m", "displacement": "m"}
+"""The columns of a loop and their SI units."""
+
+_HEADS = {
+    "force": r"(normal |measured )?(force|load)|f|fn|p",
+    "radius": r"(contact )?radius|a",
+    "displacement": r"(stage |measured )?(displacement|penetration|indentation|depth)|delta|δ|d",
+}
+"""What the head of a column is called, in lower case and without its unit."""
+
+_HEAD = re.compile(r"(?P<name>.*?)\s*(?:[\[(](?P<bracket>[^])]+)[])]|/\s*(?P<slash>\S+))?\s*")
+"""A name and its unit: `force (mN)`, `force [mN]`, `force / mN`."""
+
+_MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"))
+_MARKS += ((codecs.BOM_UTF16_BE, "utf-16"),)
+
+_SEPARATORS = ("\t", ";", ",")
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """Columns of a loop, row by row in the order of time.
+
+    Attributes
+    ----------
+    force : (n_row,) array or None
+        Normal force, positive where it pushes. (Units: N)
+    radius : (n_row,) array or None
+        Contact radius; 0 or NaN out of contact. (Units: m)
+    displacement : (n_row,) array or None
+        Displacement of the sphere's mount towards the surface. (Units: m)
+    """
+
+    force: Array | None
+    radius: Array | None
+    displacement: Array | None
+
+    def __post_init__(self) -> None:
+        known = [getattr(self, name) for name in UNITS if getattr(self, name) is not None]
+        if len(known) < 2:
+            raise ValueError(
+                f"a loop needs two of {', '.join(UNITS)}, and has {len(known)}; name its columns, "
+                "as in --force 'Load (mN)'"
+            )
+        if len({column.shape for column in known}) > 1 or known[0].ndim != 1:
+            raise ValueError(
+                "the columns of a loop are not of one length; give a value for each row"
+            )
+
+
+def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str]) -> Recording:
+    """Read the columns of a loop from a table.
+
+    Parameters
+    ----------
+    path : Path
+        Text with a line of heads: separated by tabs, semicolons, commas or spaces, with decimal
+        points or commas, in UTF-8, UTF-16 or Latin-1; lines before the heads are skipped.
+    named : mapping
+        Heads of columns where they are not called as usual: of `force`, `radius`, `displacement`.
+    units : mapping
+        Units of columns whose heads have none.
+
+    Returns
+    -------
+    Recording
+        What the table has of the three columns.
+
+    Raises
+    ------
+    ValueError
+        If there are no two such columns, or a unit or a number cannot be read.
+    OSError
+        If the file cannot be opened.
+    """
+    lines = _decoded(path.read_bytes()).splitlines()
+    separator, first = _layout(path, lines)
+    heads = _cells(lines[first - 1].lstrip("#% "), separator) if first > 0 else []
+    below: Sequence[str] = ()
+    if first > 1 and heads and all(_is_unit(head) for head in heads):
+        # A line of units stands below that of the names.
+        below, heads = heads, _cells(lines[first - 2].lstrip("#% "), separator)
+    chosen = dict(_chosen(path, heads, named))
+    table = _numbers(path, lines, first, separator, len(heads))
+    columns: dict[str, Array | None] = dict.fromkeys(UNITS)
+    for name, place in chosen.items():
+        written = _unit(heads[place]) or (below[place].strip("[]() ") if below else "")
+        unit = units.get(name) or written
+        if not unit:
+            raise ValueError(
+                f"{path}: the column {heads[place]!r} has no unit; give one, as in "
+                f"--{name}-unit {'mN' if name == 'force' else 'um'}"
+            )
+        columns[name] = table[:, place] * unit_value(unit, UNITS[name])
+    return Recording(**columns)
+
+
+def _decoded(content: bytes) -> str:
+    """Text of a file by its byte order mark; else UTF-8, or Latin-1 where it is none."""
+    for mark, encoding in _MARKS:
+        if content.startswith(mark):
+            return content.decode(encoding)
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")
+
+
+def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
+    """Separator of a table, None for spaces, and its first line of numbers."""
+    for separator in (*_SEPARATORS, None):
+        for number, line in enumerate(lines):
+            cells = _cells(line, separator)
+            filled = [cell for cell in cells if cell]
+            # A decimal comma is no separator: both cells of 1,5 would be numbers.
+            if len(filled) > 1 and all(map(_is_number, filled)):
+                heads = _cells(lines[number - 1], separator) if number else []
+                if len(heads) == len(cells) or separator != ",":
+                    return separator, number
+                break
+    raise ValueError(f"{path} has no line with two numbers or more; a loop is a table of columns")
+
+
+def _cells(line: str, separator: str | None) -> list[str]:
+    """Cells of a line, without blanks and quotes around them."""
+    return [cell.strip().strip('"') for cell in line.split(separator)]
+
+
+def _is_number(cell: str) -> bool:
+    """Whether a cell is a number, with a decimal point or comma."""
+    return re.fullmatch(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?|nan|NaN", cell) is not None
+
+
+def _is_unit(head: str) -> bool:
+    """Whether a cell of a line of heads is a unit of force, of length or of time."""
+    text = head.strip("[]() ")
+    for unit in ("N", "m", "s"):
+        try:
+            unit_value(text, unit)
+        except ValueError:
+            continue
+        return len(text) > 0
+    return text in ("", "-", "1")
+
+
+def _unit(head: str) -> str:
+    """Unit in a head, empty where it has none."""
+    found = _HEAD.fullmatch(head)
+    return (found["bracket"] or found["slash"] or "").strip() if found else ""
+
+
+def _name(head: str) -> str:
+    """Name in a head, in lower case."""
+    found = _HEAD.fullmatch(head)
+    return (found["name"] if found else head).replace("_", " ").strip().lower()
+
+
+def _chosen(
+    path: Path, heads: Sequence[str], named: Mapping[str, str]
+) -> Iterator[tuple[str, int]]:
+    """Columns of force, radius and displacement among the heads of a table."""
+    listed = ", ".join(map(repr, heads)) or "none"
+    for name, pattern in _HEADS.items():
+        if name in named:
+            wanted = named[name].strip().lower()
+            places = [i for i, head in enumerate(heads) if wanted in (head.lower(), _name(head))]
+            if not places:
+                raise ValueError(f"{path} has no column {named[name]!r}; its heads are {listed}")
+        else:
+            places = [i for i, head in enumerate(heads) if re.fullmatch(pattern, _name(head))]
+        if len(places) > 1:
+            both = ", ".join(repr(heads[i]) for i in places)
+            raise ValueError(
+                f"{path} has {len(places)} columns of {name}: {both}; name one by --{name}"
+            )
+        if places:
+            yield name, places[0]
+
+
+def _numbers(
+    path: Path, lines: Sequence[str], first: int, separator: str | None, width: int
+) -> Array:
+    """Numbers of a table, NaN in empty cells."""
+    import pandas
+
+    text = "\n".join(lines[first:])
+    # Where a comma separates no cells it is a decimal one.
+    decimal = "," if separator != "," and re.search(r"\d,\d", text) else "."
+    if decimal == "," and re.search(r"\d\.\d", text):
+        raise ValueError(
+            f"{path} has numbers with decimal points and with decimal commas; write one of them"
+        )
+    try:
+        table = pandas.read_csv(
+            io.StringIO(text),
+            sep=separator or r"\s+",
+            decimal=decimal,
+            header=None,
+            names=range(width) if width else None,
+            skip_blank_lines=True,
+            index_col=False,
+        )
+    except pandas.errors.ParserError as error:
+        raise ValueError(f"{path} is no table: {str(error).strip()}") from error
+    numbers = table.apply(pandas.to_numeric, errors="coerce").to_numpy(float)
+    bad = np.argwhere(np.isnan(numbers) & table.notna().to_numpy())
+    if bad.size:
+        row, column = bad[0]
+        raise ValueError(
+            f"{path}: {table.iat[row, column]!r} in row {row + 1} of the numbers, column "
+            f"{column + 1}, is no number; mend or remove the row"
+        )
+    return np.asarray(numbers)

@@ -1,0 +1,108 @@
+"""Measured loops: works of adhesion within their intervals, the modulus and the machine."""
+
+import numpy as np
+import pytest
+
+from crackfront import measured_loop
+from crackfront.experiment.contact import penetration_at, radius_at
+from crackfront.experiment.loop import Rig, analyse_loop
+from crackfront.experiment.recording import Recording
+from tests.experiment.made import MODULUS, RADIUS, W_APPR, W_RETR, loop
+
+TRUTH = {"w_appr": W_APPR, "w_retr": W_RETR, "hysteresis": W_RETR - W_APPR}
+
+
+@pytest.mark.parametrize(
+    ("made", "modulus"),
+    [
+        ({}, MODULUS),
+        ({}, None),
+        ({"drift": 0.05}, MODULUS),
+        ({"force_noise": 0.01, "radius_noise": 0.01}, MODULUS),
+        ({"force_noise": 0.01, "radius_noise": 0.01}, None),
+        ({"retraction": 0.6}, MODULUS),
+        ({"n_row": 20}, MODULUS),
+        ({"stiffness": 100.0}, MODULUS),
+        ({"stiffness": 1e6}, MODULUS),
+    ],
+)
+def test_intervals_hold_the_truth_of_loops_with_noise_drift_and_partial_retraction(made, modulus):
+    """In 90% of 40 loops and three works or more: 95% are claimed."""
+    held = []
+    for seed in range(40):
+        found = analyse_loop(loop(seed, **made), Rig(RADIUS, modulus))
+        for name, truth in TRUTH.items():
+            estimate = getattr(found, name)
+            held.append(estimate.low <= truth <= estimate.high)
+            assert estimate.value == pytest.approx(truth, rel=0.1)
+    assert np.mean(held) >= 0.9
+
+
+def test_the_modulus_and_the_stiffness_of_the_machine_are_found():
+    found = [analyse_loop(loop(seed, stiffness=500.0), Rig(RADIUS)) for seed in range(20)]
+    for name, truth in (("fitted_modulus", MODULUS), ("stiffness", 500.0)):
+        estimates = [getattr(one, name) for one in found]
+        assert np.mean([one.low <= truth <= one.high for one in estimates]) >= 0.8
+        assert np.median([one.value for one in estimates]) == pytest.approx(truth, rel=0.02)
+
+
+@pytest.mark.parametrize(("without", "stiffness"), [("radius", 1e3), ("force", 1e9)])
+def test_two_columns_suffice_with_a_displacement_of_unknown_zero(without, stiffness):
+    rig = Rig(RADIUS, MODULUS, stiffness=stiffness if without == "radius" else None)
+    for seed in range(3):
+        found = analyse_loop(loop(seed, stiffness=stiffness, without=without), rig)
+        assert found.hysteresis.low <= W_RETR - W_APPR <= found.hysteresis.high
+        assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.05)
+
+
+def test_the_energy_lost_is_the_hysteresis_times_the_area_that_was_swept():
+    found = analyse_loop(loop(0), Rig(RADIUS, MODULUS))
+    assert found.lost_energy == pytest.approx(W_RETR - W_APPR, rel=0.1)
+
+
+def test_an_unclosed_loop_has_no_lost_energy_and_says_so():
+    found = analyse_loop(loop(0, retraction=0.6), Rig(RADIUS, MODULUS))
+    assert np.isnan(found.lost_energy)
+    assert any("energy lost is not known" in remark for remark in found.remarks)
+
+
+def test_errors_of_modulus_and_radius_widen_the_intervals():
+    known = analyse_loop(loop(0), Rig(RADIUS, MODULUS))
+    for unsure in (
+        Rig(RADIUS, MODULUS, modulus_error=0.05),
+        Rig(RADIUS, MODULUS, radius_error=0.05),
+    ):
+        wider = analyse_loop(loop(0), unsure)
+        assert wider.w_retr.value == pytest.approx(known.w_retr.value)
+        assert wider.w_retr.high - wider.w_retr.low > 2 * (known.w_retr.high - known.w_retr.low)
+
+
+def test_a_modulus_that_the_loop_contradicts_is_said():
+    found = analyse_loop(loop(0), Rig(RADIUS, 1.5 * MODULUS))
+    assert any("fit a contact modulus" in remark for remark in found.remarks)
+
+
+def test_edges_of_all_kinds_have_the_radius_of_their_force_and_penetration():
+    radius = np.linspace(0.3, 2.5, 60)
+    for work in (0.01, 1.0, 2.0):
+        force = radius**3 - np.sqrt(6 * work * radius**3)
+        assert radius_at(force, penetration_at(radius, force)) == pytest.approx(radius, rel=1e-6)
+
+
+def test_a_loop_that_turns_twice_is_refused():
+    one = loop(0)
+    twice = Recording(*(np.tile(column, 2) for column in (one.force, one.radius, one.displacement)))
+    with pytest.raises(ValueError, match="turns more than once"):
+        analyse_loop(twice, Rig(RADIUS, MODULUS))
+
+
+def test_arrays_and_their_table_are_the_same_loop(tmp_path):
+    one = loop(0)
+    arrays = {"force": one.force, "radius": one.radius}
+    path = tmp_path / "rig.csv"
+    rows = zip(one.force, one.radius, strict=True)
+    path.write_text("Force (N),Radius (m)\n" + "".join(f"{f!r},{a!r}\n" for f, a in rows))
+    known = {"radius": RADIUS, "contact_modulus": MODULUS}
+    assert repr(measured_loop(arrays, **known)) == repr(measured_loop(path, **known))
+    with pytest.raises(ValueError, match="has no speed"):
+        measured_loop({"force": one.force, "speed": one.force}, **known)
