@@ -53,7 +53,7 @@ SI = {
     "N": Range(1e-18, 1e9),
     "N/m": Range(1e-9, 1e12),
 }
-"""Lengths from below an atom to planets, moduli beyond those of foams and diamond, adhesion, springs."""
+"""Lengths from below an atom to planets, moduli beyond those of foams and diamond, and so on."""
 
 MOST_MEMORY = 64e12
 """Memory of the largest machine that a sweep may be planned for here. (Units: bytes)"""

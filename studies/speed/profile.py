@@ -20,6 +20,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import click
+
 from crackfront.analysis.measures import RunMeasures
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.variables import variable
@@ -155,7 +157,7 @@ def run(control: str) -> None:
             spent[2] += time.process_time() - stored
     Path(f"/tmp/perf-{os.getpid()}.map").write_text("".join(_map_lines(objects)), encoding="utf-8")
     count = _REPEATS * len(simulations)
-    print(*(seconds / count for seconds in spent))
+    click.echo(" ".join(str(seconds / count) for seconds in spent))
 
 
 def _tell(control: str, word: str) -> None:
