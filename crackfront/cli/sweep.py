@@ -273,7 +273,8 @@ def simulate(
             _refuse_unfinished(code, sweep, store, shards, launcher)
             return
     with contextlib.ExitStack() as held:
-        if missing and held.enter_context(claimed(store.curves, shards, _warn)):
+        claim = claimed(store.curves, shards, _warn)
+        if missing and held.enter_context(claim):
             missing = store.unfinished(sweep, shards).missing
         try:
             fill_store(store, missing, origin, checkpoint)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from crackfront.core import jkr
 from crackfront.core.units import Scales
+from crackfront.core.variables import FORCE, LATERAL
 from crackfront.data.written_units import prefixed
 from crackfront.experiment.loop import MeasuredLoop
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
@@ -53,24 +54,18 @@ def loop_figure(found: MeasuredLoop, radius: float, predicted: Prediction | None
             )
             if predicted is not None:
                 band = predicted.w_appr if sign > 0 else predicted.w_retr
-                edges = [
+                least, most = (
                     scales.force * jkr.equilibrium_force(reach, max(end, 0.0))
                     for end in (band.low, band.high)
-                ]
-                label = f"predicted, {name}"
-                axes.fill_between(
-                    reach * scales.lateral,
-                    *edges,
-                    color=colour,
-                    alpha=0.15,
-                    linewidth=0,
-                    label=label,
                 )
+                look: dict[str, Any] = {"color": colour, "alpha": 0.15, "linewidth": 0}
+                label = f"predicted, {name}"
+                axes.fill_between(reach * scales.lateral, least, most, label=label, **look)
         low, high = float(np.nanmin(found.force)), float(np.nanmax(found.force))
         axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
         axes.axvspan(*found.window, color="0.93", linewidth=0, zorder=0, label="averaged")
-        units = AxisUnits.by(scales)
-        units.name(axes.xaxis, "contact radius", "lateral")
-        units.name(axes.yaxis, "normal force", "force")
+        units = AxisUnits(scales)
+        units.name(axes.xaxis, "contact radius", LATERAL)
+        units.name(axes.yaxis, "normal force", FORCE)
         figure.legend(loc="outside upper center", ncols=2)
         return figure

@@ -160,7 +160,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         appr, retr = (float(np.mean(work[one])) for one in rows)
         return np.array([appr, retr, retr - appr, modulus])
 
-    shifted = [replace(recording, force=recording.force + one) for one in zero_errors]
+    shifted = [replace(recording, force=np.asarray(recording.force) + one) for one in zero_errors]
     estimates = _estimates(found, averaged, first.radius, rig, shifted)
     fitted = _NOTHING
     if recording.force is not None and recording.radius is not None:

@@ -27,8 +27,12 @@ _HEADS = {
 _HEAD = re.compile(r"(?P<name>.*?)\s*(?:[\[(](?P<bracket>[^])]+)[])]|/\s*(?P<slash>\S+))?\s*")
 """A name and its unit: `force (mN)`, `force [mN]`, `force / mN`."""
 
-_MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"))
-_MARKS += ((codecs.BOM_UTF16_BE, "utf-16"),)
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+"""Marks at the beginning of a text, and its encoding."""
 
 _SEPARATORS = ("\t", ";", ",")
 

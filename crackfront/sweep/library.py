@@ -75,7 +75,8 @@ def run_sweep(
     missing = store.unfinished(found, shards).missing
     with contextlib.ExitStack() as held:
         held.enter_context(deferring_stops())
-        if missing and held.enter_context(claimed(store.curves, shards, warnings.warn)):
+        claim = claimed(store.curves, shards, warnings.warn)
+        if missing and held.enter_context(claim):
             missing = store.unfinished(found, shards).missing
         shown = bool(progress and missing)
         bar = held.enter_context(

@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -102,7 +102,7 @@ def shares() -> list[Share]:
 
 def _solver_shares(report: str) -> dict[str, float]:
     """Shares of the parts of the solver from what perf prints, which add up to 1."""
-    found: Counter[str] = Counter()
+    found: defaultdict[str, float] = defaultdict(float)
     for percent, rest in re.findall(r"^\s+([\d.]+)%\s+(.*)$", report, re.MULTILINE):
         kernel = _kernel(rest)
         parts = (part for part, pattern in _PARTS.items() if re.search(pattern, kernel))

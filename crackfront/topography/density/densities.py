@@ -169,7 +169,7 @@ def weight_of_gaps(measurement: Measurement) -> float:
         np.ones(count) if measurement.periodic else cosine_window("hann", count)
         for count in measurement.heights.shape
     ]
-    weight = math.prod(np.ix_(*windows)) ** 2
+    weight = np.asarray(math.prod(np.ix_(*windows))) ** 2
     return float(np.sum(weight[measurement.gaps]) / np.sum(weight))
 
 

@@ -79,6 +79,7 @@ def _interpolated_in_logarithms(density: Density, values: Array, wavevector: Arr
 
 def _filled(measurement: Measurement, heights: Array) -> Array:
     """Heights with the missing points of a measurement interpolated."""
-    holed = np.ma.array(heights, mask=measurement.gaps)
+    gaps = np.zeros(heights.shape, bool) if measurement.gaps is None else measurement.gaps
+    holed = np.ma.array(heights, mask=gaps)
     level = library_scan(holed, measurement.size, periodic=measurement.periodic)
     return np.asarray(np.ma.getdata(interpolated(level).heights()), dtype=float)
