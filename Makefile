@@ -57,18 +57,27 @@ READY    = .venv/.ready-$(MPI)
 # The blocks of the lock whose package matches the pattern $(1); those that do not with $(2) = !
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
+# When make began, and a note of when a part of it ended, for the last line of `make`.
+BEGAN   := $(shell date +%s)
+ended    = echo "$$(date +%s) $(1)" >> .venv/.times
+
 .DEFAULT_GOAL := all
 .PHONY: all env test test-portable test-cluster nightly law accuracy validate benchmark timings reproduce reproduce-boundary figures report docs \
   lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
+	@echo $(BEGAN) > .venv/.times; $(call ended,environment)
 	@$(REPAIR) $(call quoted,$(SWEEP)) $(if $(FRONTS),$(call quoted,$(FRONTS)))
 	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
+	@$(call ended,sweep)
 	$(if $(FRONTS),$(SNAKE) --config sweep=$(call quoted,$(FRONTS)))
+	@$(if $(FRONTS),$(call ended,straight fronts))
 	@sed -n '/^# /p; /^- /p; /^## /q' $(RESULTS)fit.md
 	@echo "Figures: $(addprefix $(RESULTS)figures/,hysteresis.png factor.png loop.png)"
 	@echo "Page:    $(RESULTS)summary.html$(call fronts,summary.html)"
 	@echo "Tables:  $(RESULTS)fit.md$(call fronts,fit.md)"
+	@printf "Minutes:"; awk 'NR > 1 { took = $$1 - last; printf "%s %s %d:%02d", comma, substr($$0, 12), took / 60, took % 60; comma = "," } \
+	  { last = $$1 } END { print "" }' .venv/.times
 
 env: $(READY)  ## Create .venv from requirements.lock
 

@@ -101,7 +101,7 @@ def test_arrays_and_their_table_are_the_same_loop(tmp_path):
     arrays = {"force": one.force, "radius": one.radius}
     path = tmp_path / "rig.csv"
     rows = zip(one.force, one.radius, strict=True)
-    path.write_text("Force (N),Radius (m)\n" + "".join(f"{f!r},{a!r}\n" for f, a in rows))
+    path.write_text("Force (N),Radius (m)\n" + "".join(f"{f},{a}\n" for f, a in rows))
     known = {"radius": RADIUS, "contact_modulus": MODULUS}
     assert repr(measured_loop(arrays, **known)) == repr(measured_loop(path, **known))
     with pytest.raises(ValueError, match="has no speed"):

@@ -351,7 +351,7 @@ def test_another_workflow_takes_the_rules_under_names_and_in_a_folder_of_its_own
     done = subprocess.run(called, capture_output=True, text=True, check=True, cwd=tmp_path)
     assert "cf_simulate" in done.stderr
     assert "factor" in json.loads((tmp_path / "mine.json").read_text())["columns"]
-    shards = {path.stem for path in (tmp_path / "theirs/results/sweep/shards").iterdir()}
+    shards = {path.stem for path in (tmp_path / "theirs/results/sweep/shards").glob("*.nc")}
     assert shards == {"flat.0-0", "flat.1-1"}
 
 
