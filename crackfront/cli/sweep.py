@@ -274,7 +274,8 @@ def simulate(
             return
     with contextlib.ExitStack() as held:
         claim = claimed(store.curves, shards, _warn)
-        if missing and held.enter_context(claim):
+        waited = held.enter_context(claim) if missing else False
+        if waited:
             missing = store.unfinished(sweep, shards).missing
         try:
             fill_store(store, missing, origin, checkpoint)

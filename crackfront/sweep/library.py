@@ -76,7 +76,8 @@ def run_sweep(
     with contextlib.ExitStack() as held:
         held.enter_context(deferring_stops())
         claim = claimed(store.curves, shards, warnings.warn)
-        if missing and held.enter_context(claim):
+        waited = held.enter_context(claim) if missing else False
+        if waited:
             missing = store.unfinished(found, shards).missing
         shown = bool(progress and missing)
         bar = held.enter_context(

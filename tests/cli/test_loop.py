@@ -1,0 +1,67 @@
+"""The command of measured loops."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from crackfront.cli import main
+from tests.experiment.made import W_APPR, W_RETR, loop
+
+
+@pytest.fixture
+def table(tmp_path):
+    """A table with semicolons and decimal commas."""
+    one, path = loop(0), tmp_path / "rig.csv"
+    rows = zip(1e3 * one.force, 1e6 * one.radius, strict=True)
+    lines = [f"{force:.6f};{radius:.4f}".replace(".", ",") for force, radius in rows]
+    path.write_text("Rig 7\nForce (mN);Contact radius (um)\n" + "\n".join(lines) + "\n")
+    return path
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, ["loop", *map(str, arguments)])
+
+
+def test_a_table_becomes_works_of_adhesion_and_a_figure(table, tmp_path):
+    sphere = ("--radius", "1.25mm", "--modulus", "0.7MPa")
+    done = run(table, *sphere, "--figure", tmp_path / "loop.png", "--json")
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    for name, truth in (("w_appr", W_APPR), ("w_retr", W_RETR)):
+        assert found[name]["low"] < truth < found[name]["high"]
+    assert (tmp_path / "loop.png").stat().st_size > 1e4
+    done = run(table, *sphere)
+    assert done.stdout.startswith("hysteresis")
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--radius", "1.25"), "without a unit"),
+        (("--radius", "1.25mm", "--window", "50um"), "give two contact radii"),
+        (("--radius", "1.25mm", "--stiffness", "3kg"), "no stiffness"),
+        (("--radius", "1.25mm", "--scans", "a.al3d"), "--work-of-adhesion"),
+        (("--radius", "1.25mm", "--force", "Kraft"), "has no column 'Kraft'"),
+    ],
+)
+def test_what_cannot_be_used_is_refused_with_what_to_do(table, options, sentence):
+    done = run(table, *options)
+    assert done.exit_code == 2
+    assert sentence in done.output
+
+
+def test_a_scan_beside_the_loop_gives_their_ratio(table):
+    pytest.importorskip("SurfaceTopography")
+    scan = Path(__file__).parents[2] / "examples/scans/nanodiamond-detail.al3d"
+    done = run(
+        table, "--radius", "1.25mm", "--scans", scan, "--work-of-adhesion", "63mJ/m2", "--json"
+    )
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    ratio = found["ratio"]
+    expected = found["hysteresis"]["value"] / found["predicted"]["hysteresis"]["value"]
+    assert np.isclose(ratio["value"], expected)
+    assert ratio["low"] < ratio["value"] < ratio["high"]
