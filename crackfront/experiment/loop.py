@@ -129,7 +129,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         and none can be fitted.
     """
     recording, zero_errors, remarks = _with_zero_force(recording)
-    branches = _branches(recording, rig)
+    branches = _branches(recording)
     if rig.contact_modulus is None and (recording.force is None or recording.radius is None):
         raise ValueError(
             "without a contact radius and a force in each row no modulus is fitted; give --modulus"
@@ -295,8 +295,9 @@ def _with_zero_force(recording: Recording) -> tuple[Recording, list[Array], list
     line, covariance = np.polyfit(chosen / force.size, force[chosen], order, cov=True)
     powers = np.vander(np.arange(force.size) / force.size, order + 1)
     zero = powers @ line
-    # Independent errors of the line, each of one standard error.
-    errors = list((powers @ np.linalg.cholesky(covariance)).T)
+    # Independent errors of the line, each of one standard error; a baseline may have no noise.
+    squares, directions = np.linalg.eigh(covariance)
+    errors = list((powers @ (directions * np.sqrt(np.maximum(squares, 0.0)))).T)
     largest = prefixed("N", float(np.max(np.abs(zero[touching]))))
     kind = "a drift and a zero" if order else "a zero"
     sentence = f"{chosen.size} rows out of contact give {kind} of the force of up to {largest}."
@@ -318,13 +319,17 @@ def _touches(recording: Recording) -> NDArray[np.bool_]:
         least = max(_LEAST_FORCE * float(np.max(apart)), _NOISES * float(np.std(start)))
         beyond = np.flatnonzero(apart > least)
         touches = np.zeros(force.size, bool)
-        touches[beyond[0] : beyond[-1] + 1] = beyond.size > 0
+        if beyond.size:
+            touches[beyond[0] : beyond[-1] + 1] = True
     if not np.any(touches):
-        raise ValueError("no row is in contact: no contact radius is above zero; check the columns")
+        raise ValueError(
+            "no row is in contact: no contact radius is above zero, or no force beyond its noise; "
+            "check the columns"
+        )
     return touches
 
 
-def _branches(recording: Recording, rig: Rig) -> list[Rows]:
+def _branches(recording: Recording) -> list[Rows]:
     """Rows of approach and of retraction: before and after the largest displacement, or force."""
     driven = recording.displacement if recording.displacement is not None else recording.force
     if driven is None:
@@ -377,7 +382,10 @@ def _fit(recording: Recording, rig: Rig, branches: list[Rows]) -> float:
     found, *_ = np.linalg.lstsq(matrix / scale, force[rows][known], rcond=None)
     modulus = 0.75 * rig.radius * float(found[0] / scale[0])
     if not modulus > 0:
-        raise ValueError("no positive modulus fits force and contact radius; give --modulus")
+        raise ValueError(
+            "no positive modulus fits force and contact radius; the force must be positive where "
+            "it pushes, so check its sign"
+        )
     return modulus
 
 
@@ -512,8 +520,9 @@ def _page(loop: MeasuredLoop) -> Iterator[str]:
     yield f"{'pull-off force':18}{prefixed('N', loop.pull_off_force)}"
     if math.isfinite(loop.lost_energy):
         yield f"{'energy lost':18}{prefixed('J/m2', loop.lost_energy)} of the largest contact area"
+    yield f"{'contact modulus':18}{prefixed('Pa', loop.contact_modulus.value)}"
     for name, known, unit in (
-        ("fitted modulus", loop.fitted_modulus, "Pa"),
+        ("modulus by fit", loop.fitted_modulus, "Pa"),
         ("machine", loop.stiffness, "N/m"),
     ):
         if math.isfinite(known.value):

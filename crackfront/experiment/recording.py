@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,7 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from crackfront.core.arrays import Array
-from crackfront.data.written_units import unit_value
+from crackfront.data.written_units import is_unit, unit_value
+from crackfront.topography.scan.text import decoded
 
 UNITS = {"force": "N", "radius": "m", "displacement": "m"}
 """The columns of a loop and their SI units."""
@@ -26,13 +26,6 @@ _HEADS = {
 
 _HEAD = re.compile(r"(?P<name>.*?)\s*(?:[\[(](?P<bracket>[^])]+)[])]|/\s*(?P<slash>\S+))?\s*")
 """A name and its unit: `force (mN)`, `force [mN]`, `force / mN`."""
-
-_MARKS = (
-    (codecs.BOM_UTF8, "utf-8-sig"),
-    (codecs.BOM_UTF16_LE, "utf-16"),
-    (codecs.BOM_UTF16_BE, "utf-16"),
-)
-"""Marks at the beginning of a text, and its encoding."""
 
 _SEPARATORS = ("\t", ";", ",")
 
@@ -75,7 +68,7 @@ def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str
     ----------
     path : Path
         Text with a line of heads: separated by tabs, semicolons, commas or spaces, with decimal
-        points or commas, in UTF-8, UTF-16 or Latin-1; lines before the heads are skipped.
+        points or commas, in any encoding that scans may have; lines before the heads are skipped.
     named : mapping
         Heads of columns where they are not called as usual: of `force`, `radius`, `displacement`.
     units : mapping
@@ -93,7 +86,10 @@ def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str
     OSError
         If the file cannot be opened.
     """
-    lines = _decoded(path.read_bytes()).splitlines()
+    text = decoded(path)
+    if text is None:
+        raise ValueError(f"{path} is no text; export the loop as a table, as CSV")
+    lines = text.split("\n")
     separator, first = _layout(path, lines)
     heads = _cells(lines[first - 1].lstrip("#% "), separator) if first > 0 else []
     below: Sequence[str] = ()
@@ -113,17 +109,6 @@ def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str
             )
         columns[name] = table[:, place] * unit_value(unit, UNITS[name])
     return Recording(**columns)
-
-
-def _decoded(content: bytes) -> str:
-    """Text of a file by its byte order mark; else UTF-8, or Latin-1 where it is none."""
-    for mark, encoding in _MARKS:
-        if content.startswith(mark):
-            return content.decode(encoding)
-    try:
-        return content.decode("utf-8")
-    except UnicodeDecodeError:
-        return content.decode("latin-1")
 
 
 def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
@@ -152,15 +137,9 @@ def _is_number(cell: str) -> bool:
 
 
 def _is_unit(head: str) -> bool:
-    """Whether a cell of a line of heads is a unit of force, of length or of time."""
+    """Whether a cell of a line of heads is a unit of force, of length or of time, or says none."""
     text = head.strip("[]() ")
-    for unit in ("N", "m", "s"):
-        try:
-            unit_value(text, unit)
-        except ValueError:
-            continue
-        return len(text) > 0
-    return text in ("", "-", "1")
+    return text in ("", "-", "1") or any(is_unit(text, unit) for unit in ("N", "m", "s"))
 
 
 def _unit(head: str) -> str:

@@ -39,10 +39,11 @@ CASES = (("flat", 0.01), ("flat", 0.1), ("h08", 0.1), ("h03", 0.05))
 _REPEATS = 2
 
 _PARTS = {
-    "bounds on the way ahead": r"forces\.harden|forces\.largest|window\._own",
+    "bounds on the way ahead": r"forces\.harden|forces\.largest",
     "splines of the tile": r"samples\.|_fill|_store",
     "windows: solving and moving": r"window\.",
     "steps of the whole front, transforms": r"newton\.|filters\.|rocket_fft|ducc0",
+    "Python and its libraries": r"libpython|multiarray|ld-linux|libc\.so|libm\.so|python3",
 }
 """What a part of the solver is called, and the pattern of its kernels."""
 
@@ -85,13 +86,15 @@ def shares() -> list[Share]:
         )
         if ran.returncode:
             raise RuntimeError(f"perf cannot sample this process: {ran.stderr.strip()[-300:]}")
-        tile, loads, store = (float(word) for word in ran.stdout.split()[-3:])
+        *spent, names = ran.stdout.split()[-4:]
+        tile, loads, store = map(float, spent)
         told = subprocess.run(
             ["perf", "report", "--stdio", "--input", str(samples), "--sort", "dso,sym"],
             check=True,
             capture_output=True,
             text=True,
         )
+        Path(names).unlink()
     solver = _solver_shares(told.stdout)
     seconds = {part: loads * share for part, share in solver.items()}
     seconds |= {"making the tile and its splines": tile, "making and packing the dataset": store}
@@ -126,7 +129,7 @@ def run(control: str) -> None:
     """Run the simulations while perf looks at the load steps.
 
     Prints the processor seconds a simulation of making the tile, of the load steps and of the
-    dataset.
+    dataset, and the file of the names of kernels.
     """
     objects = _loaded_objects()
     spent = [0.0, 0.0, 0.0]
@@ -155,9 +158,11 @@ def run(control: str) -> None:
             spent[0] += made - before
             spent[1] += end - start
             spent[2] += time.process_time() - stored
-    Path(f"/tmp/perf-{os.getpid()}.map").write_text("".join(_map_lines(objects)), encoding="utf-8")
+    # Where perf looks for them.
+    names = Path(f"/tmp/perf-{os.getpid()}.map")
+    names.write_text("".join(_map_lines(objects)), encoding="utf-8")
     count = _REPEATS * len(simulations)
-    click.echo(" ".join(str(seconds / count) for seconds in spent))
+    click.echo(" ".join([*(str(seconds / count) for seconds in spent), str(names)]))
 
 
 def _tell(control: str, word: str) -> None:
@@ -187,13 +192,31 @@ def _map_lines(objects: list[bytes]) -> Iterator[str]:
 
     engine = cpu_target.target_context.codegen()._engine._ee
     for content in objects:
-        for name, size in _functions(content):
-            if address := engine.get_function_address(name):
-                yield f"{address:x} {size:x} {name}\n"
+        functions = list(_functions(content))
+        # Where each section was loaded, by the first function in it that the engine knows: that of
+        # the object itself. Those that it shares with others may be used from another object.
+        bases: dict[int, int] = {}
+        for one in functions:
+            if one.section not in bases and (address := engine.get_function_address(one.name)):
+                bases[one.section] = address - one.place
+        for one in functions:
+            if one.section in bases:
+                yield f"{bases[one.section] + one.place:x} {one.size:x} {one.name}\n"
 
 
-def _functions(content: bytes) -> Iterator[tuple[str, int]]:
-    """Names and sizes of the functions in an object file (ELF, 64 bits)."""
+@dataclass(frozen=True, slots=True)
+class _Function:
+    """A function in an object file."""
+
+    name: str
+    section: int
+    place: int
+    """Bytes from the start of its section."""
+    size: int
+
+
+def _functions(content: bytes) -> Iterator[_Function]:
+    """Functions in an object file (ELF, 64 bits)."""
     (start,) = struct.unpack_from("<Q", content, 0x28)
     size, count = struct.unpack_from("<HH", content, 0x3A)
     sections = [struct.unpack_from("<IIQQQQIIQQ", content, start + i * size) for i in range(count)]
@@ -203,10 +226,11 @@ def _functions(content: bytes) -> Iterator[tuple[str, int]]:
             continue
         names = sections[section[6]][4]
         for place in range(section[4], section[4] + section[5], 24):
-            name, kind, *_, length = struct.unpack_from("<IBBHQQ", content, place)
+            name, kind, _, home, value, length = struct.unpack_from("<IBBHQQ", content, place)
             if kind & 15 == function:
                 first = names + name
-                yield content[first : content.index(b"\0", first)].decode(), length
+                word = content[first : content.index(b"\0", first)].decode()
+                yield _Function(word, home, value, length)
 
 
 def page(rows: list[Share]) -> str:

@@ -106,3 +106,30 @@ def test_arrays_and_their_table_are_the_same_loop(tmp_path):
     assert repr(measured_loop(arrays, **known)) == repr(measured_loop(path, **known))
     with pytest.raises(ValueError, match="has no speed"):
         measured_loop({"force": one.force, "speed": one.force}, **known)
+
+
+def test_a_loop_without_noise_is_that_of_its_works():
+    """Exact zeros out of contact leave no covariance of the force's zero."""
+    found = analyse_loop(loop(0, force_noise=0.0, radius_noise=0.0), Rig(RADIUS, MODULUS))
+    assert found.w_appr.value == pytest.approx(W_APPR, rel=1e-9)
+    assert found.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("columns", "sentence"),
+    [
+        ({"force": np.zeros(50), "displacement": np.linspace(0, 1e-6, 50)}, "no row is in contact"),
+        ({"force": np.zeros(50), "radius": np.zeros(50)}, "no row is in contact"),
+        ({"force": np.zeros(50)}, "needs two of"),
+        ({"force": np.zeros(50), "radius": np.ones(49)}, "not of one length"),
+    ],
+)
+def test_what_is_no_loop_is_refused(columns, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
+
+
+def test_a_force_of_the_other_sign_is_refused_with_what_to_check():
+    one = loop(0)
+    with pytest.raises(ValueError, match="check its sign"):
+        measured_loop({"force": -one.force, "radius": one.radius}, radius=RADIUS)
