@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -131,38 +131,46 @@ def run(control: str) -> None:
     Prints the processor seconds a simulation of making the tile, of the load steps and of the
     dataset, and the file of the names of kernels.
     """
-    objects = _loaded_objects()
-    spent = [0.0, 0.0, 0.0]
-    simulations = _simulations()
-    for simulation in simulations:
-        compile_solver(simulation.solver.name, type(simulation.schedule))
-        for _ in range(_REPEATS):
-            before = time.process_time()
-            adhesion = simulation_adhesion(simulation)
-            field = simulation_field(simulation, adhesion)
-            made = time.process_time()
-            _tell(control, "enable")
-            start = time.process_time()
-            record = simulation.schedule.run(
-                field,
-                simulation.solver,
-                Recorder(),
-                correlation_length=simulation.correlation_length,
-                elastic_energy=simulation.elastic_energy,
-            )
-            end = time.process_time()
-            _tell(control, "disable")
-            measures = RunMeasures(adhesion.e_el, adhesion.w_rms, 0.0, 0.0, 0.0, 0.0)
-            stored = time.process_time()
-            simulation_dataset(SimulationResult(simulation, record, measures)).to_netcdf()
-            spent[0] += made - before
-            spent[1] += end - start
-            spent[2] += time.process_time() - stored
+    objects, simulations = _loaded_objects(), _simulations()
+    # The first run loads kernels, which is no part of a simulation.
+    _timed(simulations[0], lambda _: None)
+    runs = [
+        _timed(simulation, lambda word: _tell(control, word))
+        for simulation in simulations
+        for _ in range(_REPEATS)
+    ]
     # Where perf looks for them.
     names = Path(f"/tmp/perf-{os.getpid()}.map")
     names.write_text("".join(_map_lines(objects)), encoding="utf-8")
-    count = _REPEATS * len(simulations)
-    click.echo(" ".join([*(str(seconds / count) for seconds in spent), str(names)]))
+    spent = (sum(part) / len(runs) for part in zip(*runs, strict=True))
+    click.echo(" ".join([*map(str, spent), str(names)]))
+
+
+def _timed(simulation: Simulation, tell: Callable[[str], None]) -> tuple[float, float, float]:
+    """Processor seconds of making the tile, of the load steps and of the dataset.
+
+    The load steps stand between the words enable and disable.
+    """
+    compile_solver(simulation.solver.name, type(simulation.schedule))
+    begin = time.process_time()
+    adhesion = simulation_adhesion(simulation)
+    field = simulation_field(simulation, adhesion)
+    made = time.process_time() - begin
+    tell("enable")
+    begin = time.process_time()
+    record = simulation.schedule.run(
+        field,
+        simulation.solver,
+        Recorder(),
+        correlation_length=simulation.correlation_length,
+        elastic_energy=simulation.elastic_energy,
+    )
+    loaded = time.process_time() - begin
+    tell("disable")
+    measures = RunMeasures(adhesion.e_el, adhesion.w_rms, 0.0, 0.0, 0.0, 0.0)
+    begin = time.process_time()
+    simulation_dataset(SimulationResult(simulation, record, measures)).to_netcdf()
+    return made, loaded, time.process_time() - begin
 
 
 def _tell(control: str, word: str) -> None:
