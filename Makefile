@@ -133,10 +133,11 @@ test-portable: env  ## Run the tests of predictions as on another processor (two
 test-cluster: env  ## Run the tests that need a Slurm, on one started for them (5 minutes)
 	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm tests/cluster
 
-nightly: env  ## Run all tests, the slow ones too
+nightly: env  ## Run all tests, the slow ones and those on a Slurm too
 	@mkdir -p $(dir $(REPORT))
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT)
+	@$(MAKE) --no-print-directory test-cluster
 
 benchmark: env  ## Solvers against the reference, what requests cost, how sweeps scale (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers
