@@ -166,6 +166,7 @@ reproduce: env  ## The numbers and figures of the pages, but for timings and rep
 	$(IN_ENV) .venv/bin/python -m studies law spheres config/spheres.yaml --output $(KEPT)
 	$(IN_ENV) .venv/bin/python -m studies law held-out --output $(KEPT)
 	$(IN_ENV) .venv/bin/python -m studies paper gallery
+	$(IN_ENV) .venv/bin/python -m studies paper experiment --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy report --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy energies --scans 12 --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy predictions --keep
@@ -175,6 +176,8 @@ reproduce: env  ## The numbers and figures of the pages, but for timings and rep
 	$(IN_ENV) .venv/bin/python -m studies law numbers --keep
 	$(IN_ENV) .venv/bin/crackfront predict examples/scans/nanodiamond-*.al3d --modulus 0.7MPa --poisson 0.5 \
 	  --radius 1.25mm --work-of-adhesion 63mJ/m2 --figure docs/figures/prediction.png
+	$(IN_ENV) .venv/bin/crackfront predict examples/scans/nanodiamond-*.al3d --modulus 0.7MPa --poisson 0.5 \
+	  --radius 1.25mm --work-of-adhesion 63mJ/m2 --panel c --figure docs/figures/prediction-force.png
 	$(IN_ENV) .venv/bin/python -m studies pages
 
 law: env  ## The law of k, from its straight fronts, into results/law (an hour of one core)

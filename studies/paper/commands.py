@@ -23,15 +23,16 @@ from crackfront.data.files import read_attributes, write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import save_figure, save_picture
-from studies.pages import keep_parts, output_option
+from studies.pages import keep_option, keep_parts, output_option, tell
 from studies.paper.drawing import save_animation
+from studies.paper.experiment import hystereses, hystereses_figure, hystereses_table
 from studies.paper.figure import FIGURES, SCALES, Figure, Result, checks_table, figure, load_figure
 
 commands = click.Group()
 
 _output = output_option(default=Path("results/figures"), help="Folder of all figures.")
 
-_PICTURES = Path("docs/experiments/figures")
+_PICTURES, _REFERENCE = Path("docs/experiments/figures"), Path("docs/reference")
 
 
 @commands.command(
@@ -148,6 +149,20 @@ def gallery(output: Path, pictures: Path) -> None:
         sources = f"studies.paper.{name.replace('-', '_')}"
         keep_parts("paper", {name: "\n\n".join(parts)}, sources, data=data)
         click.echo(f"figure: {picture}")
+
+
+@commands.command(epilog=examples("python -m studies paper experiment --keep"))
+@output_option(default=Path("docs/figures"))
+@keep_option
+def experiment(output: Path, keep: bool) -> None:
+    """Compare the measured hysteresis on nanodiamond with all that stands against it."""
+    refuse_unwritable(output)
+    path = _REFERENCE / "main-5bc.nc"
+    shown = hystereses(_figure_and_record(path)[1])
+    save_picture(hystereses_figure(shown), output / "experiment.png")
+    parts = {"experiment": hystereses_table(shown)}
+    sources = ("studies.paper.experiment", "crackfront.analysis.validity")
+    tell("paper", parts, *sources, keep=keep)
 
 
 def _data_of_figures(folder: Path) -> list[Path]:

@@ -1,0 +1,81 @@
+"""The measured hysteresis on nanodiamond, beside the paper, the front and boundary elements."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+from crackfront.analysis.estimate import REACH, Estimate
+from crackfront.analysis.finding import PAPER_FACTOR
+from crackfront.analysis.validity import front_excess
+from crackfront.plots.style import BLACK, BLUE, COLUMN, GREEN, VERMILION, blank_figure, house_style
+from studies.pages import markdown_table
+from studies.paper.main_5bc import MEASURED
+from studies.paper.nanodiamond import NanodiamondContact
+
+
+@dataclass(frozen=True, slots=True)
+class Hysteresis:
+    """One hysteresis of the rubber sphere on nanodiamond."""
+
+    name: str
+    value: Estimate[float]
+    """With its 95% interval, NaN where none is known. (Units: J / m^2)"""
+    colour: str
+
+    @property
+    def text(self) -> str:
+        """In mJ/m2, with the interval where there is one."""
+        value = f"{1e3 * self.value.value:.0f}"
+        if not math.isfinite(self.value.low):
+            return value
+        return f"{value} ({1e3 * self.value.low:.0f} to {1e3 * self.value.high:.0f})"
+
+
+def hystereses(contact: NanodiamondContact) -> tuple[Hysteresis, ...]:
+    """What was measured, and what theory and simulation say, from the data of Fig. 5b."""
+    unknown = math.nan
+    by_paper = 2 * PAPER_FACTOR * contact.whole_elastic_energy
+    front = float(contact.retraction[0] - contact.approach[0])
+    error = math.hypot(contact.approach[1], contact.retraction[1])
+    ratio = front_excess(contact.elastic_energy / contact.work_of_adhesion, contact.law.size).ratio
+    below = Estimate(front / ratio.value, unknown, front / ratio.high, front / ratio.low)
+    return (
+        Hysteresis("measured", Estimate(MEASURED, unknown, unknown, unknown), BLACK),
+        Hysteresis("paper, k = 3", Estimate(by_paper, unknown, unknown, unknown), GREEN),
+        Hysteresis(
+            "front, simulated",
+            Estimate(front, error, front - REACH * error, front + REACH * error),
+            BLUE,
+        ),
+        Hysteresis("front over its excess of\nboundary elements", below, VERMILION),
+    )
+
+
+def hystereses_table(shown: tuple[Hysteresis, ...]) -> str:
+    """Each hysteresis, and the measured one over it, in Markdown."""
+    measured = shown[0].value.value
+    rows = [
+        (" ".join(one.name.split()), one.text, f"{measured / one.value.value:.1f}") for one in shown
+    ]
+    return markdown_table("nanodiamond | hysteresis (mJ/m2) | measured over it", rows)
+
+
+def hystereses_figure(shown: tuple[Hysteresis, ...]) -> Figure:
+    """Each hysteresis with its interval, the measured one as a line through all."""
+    with house_style():
+        figure = blank_figure(COLUMN, 0.42 * COLUMN)
+        axes = figure.subplots()
+        axes.axvline(1e3 * shown[0].value.value, color=BLACK, linewidth=0.7, dashes=(4, 2))
+        for place, one in enumerate(shown):
+            axes.hlines(
+                place, 1e3 * one.value.low, 1e3 * one.value.high, color=one.colour, linewidth=2
+            )
+            axes.plot(1e3 * one.value.value, place, "o", color=one.colour)
+        axes.set_yticks(range(len(shown)), [one.name for one in shown])
+        axes.set_ylim(len(shown) - 0.5, -0.5)
+        axes.set_xlim(0, 100)
+        axes.set_xlabel(r"hysteresis $w_\mathrm{retr} - w_\mathrm{appr}$ (mJ m$^{-2}$)")
+    return figure

@@ -1,0 +1,36 @@
+"""The measured hysteresis on nanodiamond stands beside what models say of it."""
+
+from pathlib import Path
+
+import pytest
+
+from crackfront.data.records import read_record
+from studies.paper.experiment import hystereses, hystereses_figure, hystereses_table
+from studies.paper.nanodiamond import NanodiamondContact
+
+REFERENCE = Path(__file__).parents[3] / "docs/reference/main-5bc.nc"
+
+
+@pytest.fixture(scope="module")
+def shown():
+    return hystereses(read_record(REFERENCE, NanodiamondContact))
+
+
+def test_the_measured_hysteresis_is_above_all_that_is_computed(shown):
+    measured, paper, front, elements = (one.value.value for one in shown)
+    assert measured > paper > front > elements
+    assert paper == pytest.approx(0.0668, abs=1e-4)
+
+
+def test_boundary_elements_widen_the_interval_of_the_front(shown):
+    front, elements = (one.value for one in shown[2:])
+    assert front.high - front.low < elements.high - elements.low
+    assert elements.low < elements.value < elements.high < front.low
+
+
+def test_the_table_and_the_figure_have_them_all(shown):
+    table = hystereses_table(shown)
+    assert table.count("\n") == 1 + len(shown)
+    assert "| measured | 80 | 1.0 |" in table
+    [axes] = hystereses_figure(shown).axes
+    assert [label.get_text() for label in axes.get_yticklabels()] == [one.name for one in shown]
